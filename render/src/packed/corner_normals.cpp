@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <vector>
 
 #include "math/elementary.h"
-#include "math/rough_arc.h"
 #include "mesh/in_halves.h"
 #include "mesh/smooth_normals.h"
+#include "packed/corner_angles.h"
 
 namespace thimble::render {
 namespace {
@@ -78,27 +77,6 @@ void assign_group(const std::vector<std::array<std::int32_t, 3>>& triangles, con
     packed[index(t)].normals[corner_of(triangles[index(t)], vertex)] = pack_normal(own);
     done[index(t)] = true;
   });
-}
-
-// The angles of a triangle at its corners, rounded to single precision.
-std::array<float, 3> corner_angles(const Vector3d& ab, const Vector3d& ac,
-                                   double twice_area) noexcept {
-  const double along_a = ab.dot(ac), along_b = -ab.dot(ac - ab);
-  const math::RoughAngle a = math::rough_atan2(twice_area, along_a);
-  const math::RoughAngle b = math::rough_atan2(twice_area, along_b);
-  // Rounding is monotone: where the least and the most that angles may be round to the same, so
-  // does what is in between.
-  const auto rounded = [](const math::RoughAngle& at_a, const math::RoughAngle& at_b, double side) {
-    const double first = at_a.angle + side * at_a.wrong, second = at_b.angle + side * at_b.wrong;
-    return std::array<float, 3>{static_cast<float>(first), static_cast<float>(second),
-                                static_cast<float>(std::numbers::pi - first - second)};
-  };
-  const std::array<float, 3> least = rounded(a, b, -1);
-  if (least == rounded(a, b, 1)) return least;
-  const double at_a = math::atan2(twice_area, along_a);
-  const double at_b = math::atan2(twice_area, along_b);
-  return {static_cast<float>(at_a), static_cast<float>(at_b),
-          static_cast<float>(std::numbers::pi - at_a - at_b)};
 }
 
 // False if the triangle has no area.
