@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "bent_mesh.h"
+#include "view/gl/picture_parts.h"
+#include "view/ground_shadow.h"
 #include "view/marks/force_marks.h"
 #include "view/view_block.h"
 
@@ -49,6 +51,7 @@ ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(**program, block, kViewBinding);
     // As the canvas binds them; the shadows' map is texture 0.
     glUseProgram(**program);
+    glUniform1i(program->at("shadow_texels"), 4);
     glUniform1i(program->at("normals"), 1);
     glUniform1i(program->at("paints"), 2);
     glUniform1i(program->at("depths"), 3);
@@ -110,8 +113,8 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
   }
 }
 
-void ScenePainter::set_view(const Camera& camera, double aspect, Theme theme,
-                            const std::vector<Solid>& solids) {
+void ScenePainter::set_view(const Camera& camera, Theme theme, const std::vector<Solid>& solids,
+                            const Canvas& canvas) {
   const LitPlace place{
       .centre = light_centre_, .radius = light_radius_, .ground_height = ground_height_};
   const Eigen::Matrix4f shadow = shadow_from_world(place);
@@ -130,7 +133,9 @@ void ScenePainter::set_view(const Camera& camera, double aspect, Theme theme,
   if (!casters.isEmpty()) {
     casters = Eigen::AlignedBox2f(casters.min() - reach, casters.max() + reach);
   }
-  const ViewBlock block = view_block(camera, aspect, theme, place, casters);
+  const ViewBlock block = view_block(camera, canvas.aspect(), theme, place, casters);
+  ground_shadow_ = ground_shadow(block.view_projection, shadow, block.ground_place.z(), casters,
+                                 {canvas.width(), canvas.height() - canvas.strip()});
   glBindBuffer(GL_UNIFORM_BUFFER, *view_block_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, *view_block_);
@@ -302,20 +307,26 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
   glDepthMask(GL_TRUE);
 }
 
-void ScenePainter::paint_ground(const PaintChoice& choice) {
+void ScenePainter::paint_ground(const PaintChoice& choice, const Canvas& canvas) {
   const auto floor = static_cast<std::size_t>(floor_object_);
   const int marks = choice.surfaces && floor_object_ >= 0 ? marks_on(scene_.objects[floor]) : 0;
-  const GlProgram& program = marks > 0 ? programs_.ground_marked : programs_.ground;
-  glUseProgram(*program);
   const Eigen::Vector3f colour =
       linear(floor_object_ < 0 ? colours_of(choice.theme).ground : object_colour(floor));
-  glUniform3fv(program.at("colour"), 1, colour.data());
-  set_shadows(program, choice);
-  glUniform1f(program.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
-  glUniform1i(program.at("marks"), marks);
   glBindVertexArray(*nothing_);
-  // Its depth counts, so that what is below it is not outlined above.
-  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  const auto paint = [&](const GlProgram& program) {
+    glUseProgram(*program);
+    glUniform3fv(program.at("colour"), 1, colour.data());
+    set_shadows(program, choice);
+    glUniform1f(program.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
+    glUniform1i(program.at("marks"), marks);
+    // Its depth counts, so that what is below it is not outlined above.
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  };
+  if (marks > 0) return paint(programs_.ground_marked);
+  // Asking for shadows is most of its work: only where one can be.
+  paint_apart(
+      canvas, choice.shadows ? ground_shadow_ : Eigen::AlignedBox2i(),
+      [&] { paint(programs_.ground); }, [&] { paint(programs_.ground_open); });
 }
 
 void ScenePainter::paint_forces(const DrawnMoment& moment, const PaintChoice& choice,
@@ -344,7 +355,7 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
                                        const PaintChoice& choice, Canvas& canvas) {
   const TouchMarks marks = mark_touch(scene_, moment, camera.distance, choice.marks);
   place_objects(moment, choice.dent_normals);
-  set_view(camera, canvas.aspect(), choice.theme, marks.solids);
+  set_view(camera, choice.theme, marks.solids, canvas);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);
@@ -357,13 +368,13 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   paint_surfaces(choice, camera, false);
   paint_solids(marks.solids);
   canvas.begin_light();
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
+  shadow_map_.bind();
   paint_light(choice);
   paint_surfaces(choice, camera, true);
   paint_forces(moment, choice, camera.distance);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  paint_ground(choice);
+  paint_ground(choice, canvas);
   paint_edges(choice);
   panes_.draw(marks.panes, camera, programs_.plain);
   paint_what_shines_through(marks.solids);

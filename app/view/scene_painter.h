@@ -63,7 +63,8 @@ class ScenePainter {
                            const PaintChoice& choice, Canvas& canvas);
 
  private:
-  void set_view(const Camera& camera, double aspect, Theme theme, const std::vector<Solid>& solids);
+  void set_view(const Camera& camera, Theme theme, const std::vector<Solid>& solids,
+                const Canvas& canvas);
   void paint_shadows(const std::vector<Solid>& solids);
   void paint_shadow(std::size_t object);
   void paint_surfaces(const PaintChoice& choice, const Camera& camera, bool gouraud);
@@ -73,7 +74,7 @@ class ScenePainter {
   void paint_solids(const std::vector<Solid>& solids);
   void paint_what_shines_through(const std::vector<Solid>& solids);
   void paint_edges(const PaintChoice& choice);
-  void paint_ground(const PaintChoice& choice);
+  void paint_ground(const PaintChoice& choice, const Canvas& canvas);
   void paint_forces(const DrawnMoment& moment, const PaintChoice& choice, double eye_distance);
   void place_objects(const DrawnMoment& moment, DentNormals normals);
   float shadow_offset() const;
@@ -87,6 +88,7 @@ class ScenePainter {
   std::size_t naive_object_ = 0;
   SolidModels solids_;
   std::vector<Eigen::Matrix4f> places_;  // of the objects in this picture
+  Eigen::AlignedBox2i ground_shadow_;    // of this picture, pixels: elsewhere the ground has none
   GlBuffer view_block_;
   GlVertexArray nothing_;
   PaneModel panes_;

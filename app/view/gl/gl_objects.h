@@ -59,11 +59,18 @@ inline void make_renderbuffer(GLuint* name) {
 inline void remove_renderbuffer(GLuint* name) {
   glDeleteRenderbuffers(1, name);
 }
+inline void make_sampler(GLuint* name) {
+  glGenSamplers(1, name);
+}
+inline void remove_sampler(GLuint* name) {
+  glDeleteSamplers(1, name);
+}
 
 using GlBuffer = GlName<make_buffer, remove_buffer>;
 using GlVertexArray = GlName<make_vertex_array, remove_vertex_array>;
 using GlTexture = GlName<make_texture, remove_texture>;
 using GlFramebuffer = GlName<make_framebuffer, remove_framebuffer>;
+using GlSampler = GlName<make_sampler, remove_sampler>;
 using GlRenderbuffer = GlName<make_renderbuffer, remove_renderbuffer>;
 
 /// A program of a vertex and a fragment shader.

@@ -11,8 +11,8 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
                                                 ? shaders::gouraud_fragment()
                                                 : shaders::surface_fragment(shading, bent));
   };
-  const auto grounded = [](Shading shading) {
-    return GlProgram::make(shaders::ground_vertex(), shaders::ground_fragment(shading));
+  const auto grounded = [](Shading shading, bool shadowed) {
+    return GlProgram::make(shaders::ground_vertex(), shaders::ground_fragment(shading, shadowed));
   };
   auto surface = shaded(shaders::surface_vertex, Shading::kPhong);
   auto dent = shaded(shaders::dent_vertex, Shading::kPhong);
@@ -23,15 +23,16 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
   auto shadow = GlProgram::make(shaders::shadow_vertex(), shaders::shadow_fragment());
   auto plain = GlProgram::make(shaders::plain_vertex(), shaders::plain_fragment());
   auto coloured = GlProgram::make(shaders::coloured_vertex(), shaders::coloured_fragment());
-  auto ground = grounded(Shading::kPhong);
-  auto ground_marked = grounded(Shading::kMarked);
+  auto ground = grounded(Shading::kPhong, true);
+  auto ground_marked = grounded(Shading::kMarked, true);
+  auto ground_open = grounded(Shading::kPhong, false);
   auto backdrop = GlProgram::make(shaders::picture_vertex(), shaders::backdrop_fragment());
   auto light = GlProgram::make(shaders::picture_vertex(), shaders::light_fragment());
   auto edges = GlProgram::make(shaders::picture_vertex(), shaders::edges_fragment());
   auto smooth = GlProgram::make(shaders::picture_vertex(), shaders::smooth_fragment());
-  for (const auto* program :
-       {&surface, &dent, &surface_gouraud, &dent_gouraud, &surface_marked, &dent_marked, &shadow,
-        &plain, &coloured, &ground, &ground_marked, &backdrop, &light, &edges, &smooth}) {
+  for (const auto* program : {&surface, &dent, &surface_gouraud, &dent_gouraud, &surface_marked,
+                              &dent_marked, &shadow, &plain, &coloured, &ground, &ground_marked,
+                              &ground_open, &backdrop, &light, &edges, &smooth}) {
     if (!*program) return program->error();
   }
   return ScenePrograms{.surface = std::move(surface).value(),
@@ -45,16 +46,17 @@ driver::Result<ScenePrograms> ScenePrograms::make() {
                        .coloured = std::move(coloured).value(),
                        .ground = std::move(ground).value(),
                        .ground_marked = std::move(ground_marked).value(),
+                       .ground_open = std::move(ground_open).value(),
                        .backdrop = std::move(backdrop).value(),
                        .light = std::move(light).value(),
                        .edges = std::move(edges).value(),
                        .smooth = std::move(smooth).value()};
 }
 
-std::array<const GlProgram*, 15> ScenePrograms::all() const {
-  return {&surface,       &dent,     &surface_gouraud, &dent_gouraud, &surface_marked,
-          &dent_marked,   &shadow,   &plain,           &coloured,     &ground,
-          &ground_marked, &backdrop, &light,           &edges,        &smooth};
+std::array<const GlProgram*, 16> ScenePrograms::all() const {
+  return {&surface,  &dent,  &surface_gouraud, &dent_gouraud, &surface_marked, &dent_marked,
+          &shadow,   &plain, &coloured,        &ground,       &ground_marked,  &ground_open,
+          &backdrop, &light, &edges,           &smooth};
 }
 
 }  // namespace thimble::app::view

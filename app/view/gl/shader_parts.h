@@ -79,9 +79,9 @@ void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 d
 
 inline const std::string kShadow = R"(
 uniform sampler2DShadow shadow_map;
+uniform sampler2DShadow shadow_texels;  // the same map, of which a look takes the nearest texel
 uniform float shadow_strength;
 uniform int shadow_samples;   // along a side: 2 or 4
-float open_at(vec3 at, vec2 by) { return textureLod(shadow_map, vec3(at.xy + by, at.z), 0.0); }
 float lit(vec3 p) {
   vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
   // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
@@ -89,26 +89,26 @@ float lit(vec3 p) {
   float strength = max(rim, 2.0 * abs(at.z - 0.5)) > 1.0 ? 0.0 : shadow_strength;
   // Beside all that casts shadows there are none.
   bool beside = any(lessThan(at.xy, casters.xy)) || any(greaterThan(at.xy, casters.zw));
-  // Of a square of samples, each the mean of four already. Where its corners and its middle agree,
-  // the rest would as well: most of a picture is that.
-  int side = strength > 0.0 && !beside ? shadow_samples : 0;
-  float middle = 0.5 * float(shadow_samples - 1);
-  vec2 texel = 6.4 / float(shadow_samples) / vec2(textureSize(shadow_map, 0));
-  // One sample in a turn of one loop: where none is needed, one is all that software takes.
-  // Corners, middle, and where those differ the other twelve of four by four.
-  float sum = 0.0;
-  float centre = 0.0;
-  int looks = side > 2 ? 5 : 2 * side;
+  // Of a square of samples, each the mean of four texels. Where the texels at its corners and its
+  // middle agree, all would: most of a picture is that. Loops of one look, of which software takes
+  // one where none is needed.
+  vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
+  int looks = strength > 0.0 && !beside ? 5 : 0;
+  float agree = 0.0;
   for (int i = 0; i < looks; ++i) {
-    int k = i < 7 ? i - 4 : i < 15 ? i - 3 : i - 2;
-    vec2 grid = vec2(float(k & 3), float(k >> 2)) - 1.5;
-    vec2 corner = middle * vec2(float(i & 1) * 2.0 - 1.0, float(i & 2) - 1.0);
-    float one = open_at(at, texel * (i < 4 ? corner : i > 4 ? grid : vec2(0.0)));
-    sum += i == 4 ? 0.0 : one;
-    centre += i == 4 ? one : 0.0;
-    if (i == 4 && sum + centre > 0.001 && sum + centre < 4.999) looks = 17;
+    vec2 corner = i == 4 ? vec2(0.0) : vec2(float(i & 1) * 2.0 - 1.0, float(i & 2) - 1.0);
+    agree += textureLod(shadow_texels, vec3(at.xy + 3.0 * texel * corner, at.z), 0.0);
   }
-  float open = side == 0 ? 1.0 : looks == 17 ? sum / 16.0 : 0.25 * sum;
+  float open = looks == 0 || agree > 2.5 ? 1.0 : 0.0;
+  int side = agree > 0.5 && agree < 4.5 ? shadow_samples : 0;
+  float middle = 0.5 * float(side - 1);
+  vec2 apart = 6.4 / float(shadow_samples) * texel;
+  float sum = 0.0;
+  for (int i = 0; i < side * side; ++i) {
+    vec2 by = side == 4 ? vec2(float(i & 3), float(i >> 2)) : vec2(float(i & 1), float(i >> 1));
+    sum += textureLod(shadow_map, vec3(at.xy + apart * (by - middle), at.z), 0.0);
+  }
+  if (side > 0) open = sum / float(side * side);
   return mix(1.0, open, strength * (1.0 - smoothstep(0.8, 0.98, rim)));
 }
 )";

@@ -198,9 +198,10 @@ void main() {
 )";
 }
 
-std::string ground_fragment(Shading shading) {
+std::string ground_fragment(Shading shading, bool shadowed) {
   const std::string marks = shading == Shading::kMarked ? kMarks : "";
-  return kHead + choice(shading) + kShadow + kToScreen + marks + R"(
+  const std::string shadow = shadowed ? kShadow : "float lit(vec3 p) { return 1.0; }\n";
+  return kHead + choice(shading) + shadow + kToScreen + marks + R"(
 in vec3 p_W;
 uniform float grid_strength;
 uniform vec3 colour;   // linear

@@ -27,7 +27,8 @@ std::string shadow_fragment();
 std::string plain_vertex();  ///< Position 0, in one colour: lines, planes, what shines through.
 std::string plain_fragment();
 std::string ground_vertex();  ///< No attributes: a square on the ground.
-std::string ground_fragment(Shading shading);
+/// `shadowed`: it asks the light's map; without, no shadow falls on it.
+std::string ground_fragment(Shading shading, bool shadowed);
 std::string coloured_vertex();  ///< Of ColouredVertex: its members, in order.
 std::string coloured_fragment();
 std::string picture_vertex();  ///< No attributes: one triangle that covers the picture.

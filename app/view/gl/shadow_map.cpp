@@ -24,6 +24,21 @@ void make_depths(const GlTexture& texture, const GlFramebuffer& frame) {
 ShadowMap::ShadowMap() {
   make_depths(map_, map_frame_);
   make_depths(kept_, kept_frame_);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+    glSamplerParameteri(*texels_, filter, GL_NEAREST);
+  }
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) {
+    glSamplerParameteri(*texels_, wrap, GL_CLAMP_TO_EDGE);
+  }
+  glSamplerParameteri(*texels_, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+}
+
+void ShadowMap::bind() const {
+  glBindSampler(4, *texels_);
+  for (const GLenum unit : {GL_TEXTURE4, GL_TEXTURE0}) {
+    glActiveTexture(unit);
+    glBindTexture(GL_TEXTURE_2D, *map_);
+  }
 }
 
 void ShadowMap::begin_kept() {

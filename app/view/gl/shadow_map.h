@@ -19,11 +19,13 @@ class ShadowMap {
   /// Lets everything drawn from now on go to the map of this picture, which begins with what is
   /// kept if `on_kept`, else empty.
   void begin(bool on_kept);
-  /// Returns the map of this picture: a texture to compare depths with.
-  GLuint texture() const { return *map_; }
+  /// Binds the map of this picture, to compare depths with: as texture 0, where a look is the mean
+  /// of four texels, and as texture 4, where it is one.
+  void bind() const;
 
  private:
   GlTexture map_, kept_;
+  GlSampler texels_;
   GlFramebuffer map_frame_, kept_frame_;
 };
 
