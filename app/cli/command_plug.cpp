@@ -85,7 +85,7 @@ class TruthTrace {
     if (file_ != nullptr) {
       std::fprintf(file_,
                    "# frame reports sampled_frame c0 c1 c2 exact0 exact1 exact2 messages m0 m1 m2 "
-                   "amp0 amp1 amp2 x y z motors_on\n");
+                   "amp0 amp1 amp2 x y z motors_on sampled_ns message_ns\n");
     }
   }
   TruthTrace(const TruthTrace&) = delete;
@@ -110,8 +110,9 @@ class TruthTrace {
                  static_cast<unsigned long long>(truth.messages), truth.motor_values[0],
                  truth.motor_values[1], truth.motor_values[2], truth.currents[0], truth.currents[1],
                  truth.currents[2]);
-    std::fprintf(file_, "%.7f %.7f %.7f %d\n", truth.p_BT[0], truth.p_BT[1], truth.p_BT[2],
-                 truth.motors_on ? 1 : 0);
+    std::fprintf(file_, "%.7f %.7f %.7f %d %lld %lld\n", truth.p_BT[0], truth.p_BT[1],
+                 truth.p_BT[2], truth.motors_on ? 1 : 0, static_cast<long long>(truth.report_ns),
+                 static_cast<long long>(truth.message_ns));
   }
 
  private:

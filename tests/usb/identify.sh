@@ -108,10 +108,7 @@ identify() { # ARM SEED
     /tmp/motion.csv >/tmp/driver.trace
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace >/tmp/compare.log
   sed 's/^\(PASS\|FAIL\) '$arm'/& identified:/; s/^FIGURE '$arm'\./&identify_/' /tmp/compare.log
-  # Both ends of a HID board's delay lie on frames. A Falcon's message comes within the frame before the one in
-  # which the trace notes it, and so does the sampling of its answer, which is noted by its own time.
-  delay=$(sed -n "s/^FIGURE $arm.delay_median \([0-9]*\).*/\1/p" /tmp/compare.log)
-  [ $arm != falcon ] || delay=$((delay - 1))
+  delay=$(sed -n "s/^FIGURE $arm.delay_median \([0-9.]*\).*/\1/p" /tmp/compare.log)
   usb_check identified $arm $file /tmp/hidden.yaml /tmp/identified.yaml ${delay:-0}
   echo "FIGURE $arm.identify_time $(echo "$(uptime) $begun" | awk '{ print $1 - $2 }') s"
   rm -f /tmp/motion.* /tmp/identified.yaml /tmp/*.trace

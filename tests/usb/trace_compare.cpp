@@ -24,12 +24,12 @@ struct Tick {
 
 /// One packet as the arm saw it.
 struct Report {
-  std::int64_t sampled = 0;  // frame
+  std::int64_t sampled_ns = 0;
   Counts counts{};
   Numbers exact{};
 };
 struct Message {
-  std::int64_t frame = 0;
+  std::int64_t time_ns = 0;
   Counts values{};
 };
 
@@ -63,15 +63,17 @@ DeviceTrace read_device(const std::string& file) {
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with('#')) continue;
     std::istringstream words(line);
-    std::int64_t frame = 0;
+    std::int64_t frame = 0, sampled_frame = 0;
+    int motors_on = 0;
+    Numbers currents{}, p_BT{};
     std::uint64_t reports = 0, messages = 0;
     Report r;
     Message m;
-    words >> frame >> reports >> r.sampled >> r.counts[0] >> r.counts[1] >> r.counts[2] >>
+    words >> frame >> reports >> sampled_frame >> r.counts[0] >> r.counts[1] >> r.counts[2] >>
         r.exact[0] >> r.exact[1] >> r.exact[2] >> messages >> m.values[0] >> m.values[1] >>
-        m.values[2];
+        m.values[2] >> currents[0] >> currents[1] >> currents[2] >> p_BT[0] >> p_BT[1] >> p_BT[2] >>
+        motors_on >> r.sampled_ns >> m.time_ns;
     if (!words) break;  // the last line may be cut
-    m.frame = frame;
     if (reports != reports_before) trace.reports.push_back(r);
     if (messages != messages_before) trace.messages[messages] = m;
     reports_before = reports;
@@ -213,7 +215,7 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                  " refused ones left out");
 
   // Delay: only where the counts say for sure which report it was.
-  std::vector<std::int64_t> delays;
+  std::vector<double> delays;  // ms
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const std::size_t k = seen[i];
     if (k == SIZE_MAX || k == 0 || k + 1 >= trace.reports.size()) continue;
@@ -221,21 +223,19 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                       trace.reports[k + 1].counts != trace.reports[k].counts;
     const auto message = trace.messages.find(best.message_of[i]);
     if (!sure || message == trace.messages.end()) continue;
-    delays.push_back(message->second.frame - trace.reports[k].sampled);
+    delays.push_back(1e-6 *
+                     static_cast<double>(message->second.time_ns - trace.reports[k].sampled_ns));
   }
   std::sort(delays.begin(), delays.end());
   if (delays.size() < 10) return bad + say(false, arm.name + " delay", "too few moving ticks");
   const auto part = [&](double share) {
     return delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
   };
-  std::printf("FIGURE %s.delay_median %lld frames\n", arm.name.c_str(),
-              static_cast<long long>(part(0.5)));
-  std::printf("FIGURE %s.delay_99 %lld frames\n", arm.name.c_str(),
-              static_cast<long long>(part(0.99)));
-  std::printf("FIGURE %s.delay_least %lld frames\n", arm.name.c_str(),
-              static_cast<long long>(delays.front()));
-  return bad + say(delays.front() >= 1, arm.name + " delay",
-                   "from encoder to force " + std::to_string(part(0.5)) + " frames, 99 in 100 " +
+  std::printf("FIGURE %s.delay_median %.3f ms\n", arm.name.c_str(), part(0.5));
+  std::printf("FIGURE %s.delay_99 %.3f ms\n", arm.name.c_str(), part(0.99));
+  std::printf("FIGURE %s.delay_least %.3f ms\n", arm.name.c_str(), delays.front());
+  return bad + say(delays.front() > 0, arm.name + " delay",
+                   "from encoder to force " + std::to_string(part(0.5)) + " ms, 99 in 100 " +
                        std::to_string(part(0.99)) + " at most, of " +
                        std::to_string(delays.size()) + " sure ones");
 }

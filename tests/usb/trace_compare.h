@@ -16,7 +16,8 @@ void write_trace(const std::vector<driver::TickRecord>& records, std::uint64_t r
 /// Compares a driver's trace with that of `thimble plug --trace`: every position that the driver
 /// saw is one that the arm sent, in order, and right within a count; every message that the arm
 /// took asks for the force that the driver sent, within a quantum of the wire. Measures the delay
-/// from encoder to force in frames. Says PASS or FAIL for each; returns how many failed.
+/// from encoder to force by the arm's own clock. Says PASS or FAIL for each; returns how many
+/// failed.
 int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                    const std::string& device_trace);
 
