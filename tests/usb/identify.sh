@@ -60,7 +60,12 @@ hold_mass() { # ARM
   echo "mass $known" >$control
   usleep 300000
   echo >&8
-  usleep 1500000
+  # Some arms take a while to connect.
+  for i in $(seq 100); do
+    tail -n 2 /tmp/device.trace | head -n 1 | awk '{ exit !($20 && ($11 || $12 || $13)) }' && break
+    usleep 100000
+  done
+  usleep 600000
   echo "hand off" >$control
 }
 
