@@ -62,7 +62,7 @@ hold_mass() { # ARM
   echo >&8
   # Some arms take a while to connect.
   for i in $(seq 100); do
-    tail -n 2 /tmp/device.trace | head -n 1 | awk '{ exit !($20 && ($11 || $12 || $13)) }' && break
+    tail -n 1 /tmp/device.trace | awk '{ exit !(NF == 22 && $20 && ($11 || $12 || $13)) }' && break
     usleep 100000
   done
   usleep 600000
