@@ -199,13 +199,14 @@ THIMBLE_SSE2 __m128i _mm_slli_epi32(__m128i a, int bits) noexcept {
 THIMBLE_SSE2 __m128i _mm_srai_epi32(__m128i a, int bits) noexcept {
   return (__m128i)((Int4)a >> bits);
 }
-THIMBLE_SSE2 __m128 _mm_shuffle_ps(__m128 a, __m128 b, int lanes) noexcept {
+// In parentheses: to clang these names are macros.
+THIMBLE_SSE2 __m128(_mm_shuffle_ps)(__m128 a, __m128 b, int lanes) noexcept {
   return __m128{a[lanes & 3], a[lanes >> 2 & 3], b[lanes >> 4 & 3], b[lanes >> 6 & 3]};
 }
-THIMBLE_SSE2 __m128d _mm_shuffle_pd(__m128d a, __m128d b, int lanes) noexcept {
+THIMBLE_SSE2 __m128d(_mm_shuffle_pd)(__m128d a, __m128d b, int lanes) noexcept {
   return __m128d{a[lanes & 1], b[lanes >> 1 & 1]};
 }
-THIMBLE_SSE2 __m128i _mm_shuffle_epi32(__m128i a, int lanes) noexcept {
+THIMBLE_SSE2 __m128i(_mm_shuffle_epi32)(__m128i a, int lanes) noexcept {
   const Int4 v = (Int4)a;
   return (__m128i)Int4{v[lanes & 3], v[lanes >> 2 & 3], v[lanes >> 4 & 3], v[lanes >> 6 & 3]};
 }

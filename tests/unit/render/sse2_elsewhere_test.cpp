@@ -121,12 +121,12 @@ TEST(Sse2Elsewhere, EveryFunctionGivesTheBitsOfTheProcessorsOwn) {
                               "_mm_slli_epi32");
     expect_same<std::int32_t>(::_mm_srai_epi32(i, 16), other::_mm_srai_epi32(oi, 16),
                               "_mm_srai_epi32");
-    expect_same<float>(::_mm_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 0, 2)),
-                       other::_mm_shuffle_ps(oa, ob, _MM_SHUFFLE(3, 1, 0, 2)), "_mm_shuffle_ps");
-    expect_same<double>(::_mm_shuffle_pd(c, d, 1), other::_mm_shuffle_pd(oc, od, 1),
+    expect_same<float>(_mm_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 0, 2)),
+                       (other::_mm_shuffle_ps)(oa, ob, _MM_SHUFFLE(3, 1, 0, 2)), "_mm_shuffle_ps");
+    expect_same<double>(_mm_shuffle_pd(c, d, 1), (other::_mm_shuffle_pd)(oc, od, 1),
                         "_mm_shuffle_pd");
-    expect_same<std::int32_t>(::_mm_shuffle_epi32(i, _MM_SHUFFLE(2, 3, 1, 0)),
-                              other::_mm_shuffle_epi32(oi, _MM_SHUFFLE(2, 3, 1, 0)),
+    expect_same<std::int32_t>(_mm_shuffle_epi32(i, _MM_SHUFFLE(2, 3, 1, 0)),
+                              (other::_mm_shuffle_epi32)(oi, _MM_SHUFFLE(2, 3, 1, 0)),
                               "_mm_shuffle_epi32");
     EXPECT_EQ(::_mm_movemask_ps(a), other::_mm_movemask_ps(oa));
     EXPECT_EQ(::_mm_movemask_pd(c), other::_mm_movemask_pd(oc));
