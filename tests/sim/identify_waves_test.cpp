@@ -133,7 +133,8 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
   for (const Found* one : {&cogging, &ripple}) {
     EXPECT_EQ(one->invented, 0) << one->name;
     EXPECT_GE(one->seen, 0.8 * one->there) << one->name;
-    EXPECT_EQ(one->off, 0) << one->name;
+    // More than a tenth off and outside of the interval, of which 5 % miss.
+    EXPECT_LE(one->off, 0.05 * one->seen) << one->name;
     // Of the few in the short form one may miss by chance.
     EXPECT_GE(one->held, std::min(0.9 * one->seen, one->seen - 1.0)) << one->name;
     EXPECT_GE(one->phases_held, std::min(0.9 * one->seen, one->seen - 1.0)) << one->name;
