@@ -47,6 +47,9 @@ driver::Result<DriveTrain> DriveTrain::make(const DriveTrainSettings& settings,
       (wavy && settings.periods_per_turn == 0)) {
     return wrong("periods_per_turn must be finite, and above zero with cogging or ripple");
   }
+  if (!settings.cogging_phase.allFinite() || !settings.ripple_phase.allFinite()) {
+    return wrong("cogging_phase and ripple_phase must be finite (rad)");
+  }
   if (settings.compliant()) {
     if (!((settings.stiffness.array() > 0).all() && (settings.inertia.array() > 0).all())) {
       return wrong("stiffness needs a value above zero for each joint, and so does inertia then");
@@ -114,8 +117,11 @@ Eigen::Vector3d DriveTrain::torque(const Eigen::Vector3d& amperes,
   if (heat_) tau = tau.cwiseProduct(heat_->torque_share());
   if (!wavy_) return tau;
   for (int i = 0; i < 3; ++i) {
-    const double wave = math::sin(settings_.periods_per_turn * ratio_[i] * q_rotor[i]);
-    tau[i] += tau[i] * settings_.ripple[i] * wave - ratio_[i] * settings_.cogging[i] * wave;
+    const double turned = settings_.periods_per_turn * ratio_[i] * q_rotor[i];
+    const double poles = math::sin(turned + settings_.cogging_phase[i]);
+    const bool same = settings_.cogging_phase[i] == settings_.ripple_phase[i];
+    const double wave = same ? poles : math::sin(turned + settings_.ripple_phase[i]);
+    tau[i] += tau[i] * settings_.ripple[i] * wave - ratio_[i] * settings_.cogging[i] * poles;
   }
   return tau;
 }

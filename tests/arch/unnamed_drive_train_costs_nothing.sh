@@ -24,7 +24,7 @@ variant() {
 train() { echo "s/^simulation:/&\n  drive_train: {$1}/"; }
 cables='stiffness: [500, 500, 500], inertia: [0.0001, 0.0001, 0.0001], damping: [0.01, 0.01, 0.01]'
 variant none
-variant zeros "$(train 'current_lag: 0, cogging: [0, 0, 0], ripple: [0, 0, 0], periods_per_turn: 0, inertia: [0, 0, 0], stiffness: [0, 0, 0], damping: [0, 0, 0], play: [0, 0, 0], viscous: [0, 0, 0], coulomb: [0, 0, 0]')" \
+variant zeros "$(train 'current_lag: 0, cogging: [0, 0, 0], ripple: [0, 0, 0], periods_per_turn: 0, cogging_phase: [0, 0, 0], ripple_phase: [0, 0, 0], inertia: [0, 0, 0], stiffness: [0, 0, 0], damping: [0, 0, 0], play: [0, 0, 0], viscous: [0, 0, 0], coulomb: [0, 0, 0]')" \
   's/^  tip:/&\n    weight: 0/' 's/^  wire:/&\n    jitter: 0\n    loss: 0/' 's/^  firmware:/&\n    missed_edges: 0/'
 variant weight 's/^  tip:/&\n    weight: 0.02/'
 variant current_lag "$(train 'current_lag: 0.0005')"

@@ -150,7 +150,7 @@ TEST(IdentifyPlaces, AreNotGoneToWhereLinksCannotBeSeen) {
     EXPECT_TRUE(bench.ok());
     const std::atomic<bool> never{false};
     const auto over =
-        look_over_places(**bench, file, {.seconds = 2}, places, {}, stretches, held, never);
+        look_over_places(**bench, file, {.seconds = 2}, places, {}, {}, stretches, held, never);
     if (!over || over->fit) return std::string("it went: ") + name;
     EXPECT_EQ((*bench)->true_force_max(), 0);
     return over->not_done;

@@ -18,15 +18,18 @@ inline bool is_long() {
   return std::getenv("THIMBLE_LONG") != nullptr;
 }
 
-/// Identifies one; `hold_it` leaves the hand on it that its file names.
+/// Identifies one, whose file names no periods of cogging; `hold_it` leaves the hand on it that its
+/// file names.
 inline driver::Result<app::Identified> identified(const HiddenArm& arm,
                                                   const app::IdentifyOptions& options,
                                                   bool hold_it = false) {
   const app::OpenBench open = [&](bool loaded) {
     return app::simulated_bench(arm.file, loaded ? options.known_mass : 0, hold_it);
   };
+  scene::ArmFile named = arm.file;
+  named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
-  return app::identify(open, arm.file, options, never);
+  return app::identify(open, named, options, never);
 }
 
 /// How far estimates of one constant were off, and how often their intervals held it.

@@ -78,6 +78,32 @@ void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& row
   }
 }
 
+void add_waves(const Identified& identified, const scene::ArmFile& file, Rows& rows) {
+  const MotorWaves& waves = identified.waves;
+  if (!waves.told()) return;
+  const auto& train = file.simulated.drive_train;
+  const bool names = train.periods_per_turn > 0;
+  const auto named = [&](double value) { return names ? std::optional(value) : std::nullopt; };
+  rows.add("periods of cogging, ripple", {waves.periods, 0}, 1, "in a turn of a motor",
+           named(train.periods_per_turn));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto name = [i](const char* what) { return fmt::format("{} {}", what, i + 1); };
+    if (waves.cogging[i].seen) {
+      rows.add(name("cogging of motor"), cogging_at_motor(waves, i, identified.constants.gain[i]),
+               1e3, "mN m at the motor", named(train.cogging[k]));
+      rows.add(name("phase of cogging"), waves.cogging[i].phase, 1,
+               "rad where the joint's angle is zero", named(train.cogging_phase[k]));
+    }
+    if (waves.ripple[i].seen) {
+      rows.add(name("ripple of motor"), waves.ripple[i].amplitude, 100, "% of the torque constant",
+               named(train.ripple[k]));
+      rows.add(name("phase of ripple"), waves.ripple[i].phase, 1,
+               "rad where the joint's angle is zero", named(train.ripple_phase[k]));
+    }
+  }
+}
+
 void add_links(const LinkConstants& found, const scene::ArmFile& file, Rows& rows) {
   const device_sim::LinkSettings& links = file.simulated.links;
   const auto add = [&](const char* name, const Estimate& is, const char* unit, double named) {
@@ -122,6 +148,7 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   rows.add("delay, force to motion", found.delay, 1e3, "ms",
            names_delay ? named(delay) : std::nullopt);
   if (found.cables) add_cables(found, file, rows);
+  add_waves(identified, file, rows);
   if (found.links) add_links(*found.links, file, rows);
   for (std::size_t i = 0; i < 3; ++i) {
     const Saturation& one = identified.saturation[i];

@@ -27,6 +27,9 @@ constexpr double kMethodDelay = 2e-6;      // s
 constexpr double kPlaceLead = 0.5;         // s, that it moves about a place before it is recorded
 // Half-width of an interval over the value, of mass and gains; what is known worse is not written.
 constexpr double kUnknownMost = 0.03;
+// Share of the residual's square that waves may leave where the fit stays bad with them [chosen as
+// for saturation.cpp].
+constexpr double kWavesLeft = 0.3;
 // By how much the Bayesian information must prefer cables before they are blamed.
 constexpr double kCablesBlamed = 20;
 
@@ -71,6 +74,45 @@ void put_links(Identified& found, const Eigen::Vector3d& down_B) {
   }
   constants.delay = fit.delay;
   constants.absolute = fit.absolute;
+}
+
+/// Looks for cogging and ripple of the motors in the motion of a rigid arm with its bare tip, and
+/// frees the motion of them if they are what made its fit worse: then fit and lines are anew.
+driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motion, PerMass& fit,
+                                    Identified& found) {
+  if (found.lines.stretches) {
+    found.waves.not_done = "not looked for behind cables that stretch.";
+    return {};
+  }
+  const auto held = fit_motion(motion, true);
+  if (!held) return held.error();
+  Eigen::Vector3d ratio;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ratio[static_cast<Eigen::Index>(i)] = file.model.drives[i].ratio;
+  }
+  auto waves = find_waves(motion, *held, ratio, file.simulated.drive_train.periods_per_turn);
+  if (!waves) return waves.error();
+  if (!waves->seen()) {
+    found.waves = std::move(waves).value();
+    return {};
+  }
+  const ArmMotion freed = freed_of_waves(motion, *waves);
+  const auto better = fit_motion(freed, false);
+  if (!better) return better.error();
+  const LineSpectrum spectrum = line_spectrum(freed);
+  const CableFit lines = fit_cables(spectrum, *better, freed.dt);
+  const bool good = speaks_against(*better, *better, 1).empty();
+  if (lines.stretches || !(good || waves->left < kWavesLeft)) {
+    found.waves.not_done =
+        "not told, for something else makes the fit bad, which looks a little like them.";
+    return {};
+  }
+  motion = freed;
+  fit = *better;
+  found.spectrum = spectrum;
+  found.lines = lines;
+  found.waves = std::move(waves).value();
+  return {};
 }
 
 /// Measures what does not hang on the motion: how reports come, and the firmware's watchdog.
@@ -157,21 +199,26 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     auto bench = open(loaded);
     if (!bench) return bench.error();
     if (!loaded) (*bench)->watch(options.watch);
-    const auto motion = record_motion(**bench, file,
-                                      {.seconds = options.seconds,
-                                       .lead = options.lead,
-                                       .added_mass = loaded ? options.known_mass : 0,
-                                       .force_most = options.force_most,
-                                       .seed = options.seed + (loaded ? 1 : 0),
-                                       .share = share},
-                                      stop);
+    auto motion = record_motion(**bench, file,
+                                {.seconds = options.seconds,
+                                 .lead = options.lead,
+                                 .added_mass = loaded ? options.known_mass : 0,
+                                 .force_most = options.force_most,
+                                 .seed = options.seed + (loaded ? 1 : 0),
+                                 .share = share},
+                                stop);
     if (!motion) return motion.error();
     share = motion->share;
+    // The same motors, which all torques come through.
+    if (loaded) motion = freed_of_waves(*motion, found.waves);
     auto fit = fit_motion(*motion, false);
     if (!fit) return fit.error();
     if (!loaded) found.encoders.step = encoder_steps(*motion);
     if (!loaded) found.spectrum = line_spectrum(*motion);
     if (!loaded) found.lines = fit_cables(found.spectrum, *fit, motion->dt);
+    if (!loaded) {
+      if (auto done = look_for_waves(file, *motion, *fit, found); !done) return done.error();
+    }
     const double blamed = options.cables ? 0 : found.lines.better;
     if (!options.cables) found.lines = {};
     driver::Result<ArmMotion> links = *motion;
@@ -192,7 +239,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
                                     .force_most = options.force_most,
                                     .seed = options.seed + 2,
                                     .share = share},
-                                   options.places, *links, found.lines.stretches,
+                                   options.places, *links, found.waves, found.lines.stretches,
                                    mass.ok() && is_held(*held, mass->mass.value), stop);
       if (!over) return over.error();
       found.over = std::move(over).value();

@@ -11,6 +11,7 @@
 #include "bringup/identify/encoders.h"
 #include "bringup/identify/friction_directions.h"
 #include "bringup/identify/links/look_over_places.h"
+#include "bringup/identify/motor_waves/motor_waves.h"
 #include "bringup/identify/saturation.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
 #include "bringup/report_timing.h"
@@ -50,6 +51,8 @@ struct Identified {
   std::optional<PerMass> loaded;  ///< Of that with it, if there was one.
   CableFit lines;                 ///< What the lines of the motion without it say of its cables.
   LineSpectrum spectrum;          ///< These lines.
+  /// Cogging and ripple of the motors, which all motions here are freed of.
+  MotorWaves waves;
   /// The motion without the known mass, of the links where cables stretch: what `bare` fits.
   ArmMotion moved;
   double moved_ahead = 0;  ///< Of the delay, what that motion was freed from already, s.

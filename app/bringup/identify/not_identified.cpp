@@ -115,6 +115,51 @@ void of_encoders(const Encoders& encoders, Sentences& all) {
   }
 }
 
+/// What would have been seen of the waves that were not, motor by motor.
+std::string unseen_waves(const Identified& identified, bool cogging, double MotorWave::*below) {
+  const MotorWaves& waves = identified.waves;
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MotorWave& one = (cogging ? waves.cogging : waves.ripple)[i];
+    if (one.seen || one.*below == 0) continue;
+    const double scale = cogging ? 1e3 * identified.constants.gain[i].value /
+                                       waves.ratio[static_cast<Eigen::Index>(i)]
+                                 : 100;
+    text += fmt::format("{}{:.2g} {} (motor {})", text.empty() ? "" : ", ", scale * one.*below,
+                        cogging ? "mN m" : "%", i + 1);
+  }
+  return text;
+}
+
+void of_waves(const Identified& identified, Sentences& all) {
+  const MotorWaves& waves = identified.waves;
+  if (!waves.searched) {
+    all.push_back("Cogging and ripple of the motors: " + waves.not_done);
+    return;
+  }
+  if (waves.seen() && !waves.told()) {
+    std::string others;
+    for (const double other : waves.rivals) others += fmt::format(", {:g}", other);
+    all.push_back(fmt::format(
+        "Cogging and ripple of the motors: some was seen and taken off the motion, but not how "
+        "many "
+        "periods it has in a turn: {:g}{} explain it about as well. Take more time (--seconds), or "
+        "write drive_train: {{periods_per_turn: ...}} of the motors into the arm file.",
+        waves.periods, others));
+    return;
+  }
+  for (const bool cogging : {true, false}) {
+    const std::string few = unseen_waves(identified, cogging, &MotorWave::below);
+    const std::string any = unseen_waves(identified, cogging, &MotorWave::below_of_any);
+    if (any.empty()) continue;
+    all.push_back(fmt::format(
+        "{}: none seen; {}{} with any of {:g} to {:g} periods in a turn would have been.",
+        cogging ? "Cogging of the motors" : "Ripple of the motors",
+        few.empty() || few == any ? "" : fmt::format("{} with up to {:g}, ", few, kFewPeriods), any,
+        waves.least, waves.most));
+  }
+}
+
 std::string watchdog_text(const WatchdogSeen& seen) {
   switch (seen.end) {
     case WatchdogEnd::kTooLong:
@@ -195,7 +240,8 @@ std::vector<std::string> not_identified(const Identified& identified) {
   of_saturation(identified, all);
   of_encoders(identified.encoders, all);
   of_link(identified, all);
-  all.emplace_back("Play and cogging: not looked for.");
+  all.emplace_back("Play: not looked for.");
+  of_waves(identified, all);
   of_workspace(identified, all);
   return all;
 }

@@ -16,7 +16,8 @@ namespace {
 
 const std::string kTrain =
     "  drive_train: {current_lag: 0.0003, cogging: [0.001, 0.002, 0.003], ripple: [0.01, 0.02, "
-    "0.03], periods_per_turn: 7, inertia: [0.001, 0.002, 0.003], stiffness: [100, 200, 300], "
+    "0.03], periods_per_turn: 7, cogging_phase: [1, -2, 3], ripple_phase: [-3, 2, -1], inertia: "
+    "[0.001, 0.002, 0.003], stiffness: [100, 200, 300], "
     "damping: [0.01, 0.02, 0.03], play: [0.001, 0.002, 0.003], viscous: [0.004, 0.005, 0.006], "
     "coulomb: [0.007, 0.008, 0.009], heat: {rise: 80, continuous_current: [0.9, 1.1, 0.8], "
     "time_constant: [60, 40, 20], torque: -0.0019, at_start: [1, 2, 3]}}\n";
@@ -62,6 +63,8 @@ TEST(SimulationSection, ReadsADriveTrainToItsLastConstant) {
   EXPECT_EQ(train.cogging, Eigen::Vector3d(0.001, 0.002, 0.003));
   EXPECT_EQ(train.ripple, Eigen::Vector3d(0.01, 0.02, 0.03));
   EXPECT_EQ(train.periods_per_turn, 7);
+  EXPECT_EQ(train.cogging_phase, Eigen::Vector3d(1, -2, 3));
+  EXPECT_EQ(train.ripple_phase, Eigen::Vector3d(-3, 2, -1));
   EXPECT_EQ(train.inertia, Eigen::Vector3d(0.001, 0.002, 0.003));
   EXPECT_EQ(train.stiffness, Eigen::Vector3d(100, 200, 300));
   EXPECT_EQ(train.damping, Eigen::Vector3d(0.01, 0.02, 0.03));

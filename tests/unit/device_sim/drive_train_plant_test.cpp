@@ -219,6 +219,24 @@ TEST(DriveTrainPlant, HasTorqueConstantsThatRippleWithTheMotorsAngle) {
   }
 }
 
+TEST(DriveTrainPlant, TurnsCoggingAndRippleByTheirPhases) {
+  SimulatedArmSettings settings = free_arm();
+  settings.drive_train.cogging.x() = 0.001;
+  settings.drive_train.cogging_phase.x() = 0.4;
+  settings.drive_train.ripple.x() = 0.1;
+  settings.drive_train.ripple_phase.x() = -1.1;
+  settings.drive_train.periods_per_turn = 6;
+  for (const double yaw : {0.0, 0.01, -0.02}) {
+    const Eigen::Vector3d turned(0.138 * std::cos(yaw), 0.138 * std::sin(yaw), home_tip().z());
+    SerialDriveTrainPlant plant = plant_with(settings, turned);
+    plant.set_currents({0.1, 0, 0});
+    plant.step(turned, 1000);
+    const double driven = kYawTorque * 0.1 * (1 + 0.1 * std::sin(6 * 9 * yaw - 1.1));
+    const double cogged = 9 * 0.001 * std::sin(6 * 9 * yaw + 0.4);
+    EXPECT_NEAR(plant.f_T_B().norm(), std::abs(driven - cogged) * kYawTurn, 1e-9);
+  }
+}
+
 TEST(DriveTrainPlant, StopsAtTheEndOfItsReachAndComesBack) {
   SimulatedArmSettings settings = compliant_arm(0.05);
   settings.hand = {.mass = 0, .stiffness = 100, .damping = 2};
@@ -242,6 +260,7 @@ TEST(DriveTrainPlant, RefusesWhatCannotBe) {
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.stiffness.x() = 0; }), "stiffness"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.inertia.z() = 0; }), "inertia"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.cogging.x() = 0.1; }), "periods"));
+  EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.ripple_phase.z() = NAN; }), "phase"));
   EXPECT_TRUE(
       refuses(made_with([](auto& s) { s.drive_train.stiffness.setZero(); }), "need a stiffness"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.weight_B.z() = HUGE_VAL; }), "weight"));

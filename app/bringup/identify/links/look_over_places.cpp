@@ -16,7 +16,8 @@ driver::Result<LinkFit> fit_over(const OverPlaces& over, const scene::ArmFile& f
 
 driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFile& file,
                                             const MotionOrder& order, int places,
-                                            const ArmMotion& first, bool stretches, bool held,
+                                            const ArmMotion& first, const MotorWaves& waves,
+                                            bool stretches, bool held,
                                             const std::atomic<bool>& stop) {
   OverPlaces over;
   if (places == 0) return over;
@@ -41,7 +42,7 @@ driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFil
     over.not_done = "not done. " + motions.error().message;
     return over;
   }
-  over.motions = std::move(motions).value();
+  for (const ArmMotion& motion : *motions) over.motions.push_back(freed_of_waves(motion, waves));
   over.motions.insert(over.motions.begin(), first);
   auto fit = fit_over(over, file);
   if (!fit) {

@@ -9,6 +9,7 @@
 #include "bringup/identify/arm_motion.h"
 #include "bringup/identify/links/link_fit.h"
 #include "bringup/identify/motion_fit.h"
+#include "bringup/identify/motor_waves/motor_waves.h"
 #include "bringup/identify/record_motion.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
@@ -26,13 +27,14 @@ struct OverPlaces {
 };
 
 /// Leads a bare tip to `places` of its workspace, moves it about each by `order` (`record_places`),
-/// and fits these motions and `first`, which was about its middle. Where `held` (the fit of that
-/// one with a spring, of `mass`) says that something holds the tip, where `stretches`, or where the
-/// links of such a build have no model, it stays where it is, and `not_done` says why. An error is
-/// a fault or a stop. Real-time: never from the servo thread.
+/// and fits these motions, freed of `waves`, and `first`, which was about its middle. Where `held`
+/// (the fit of that one with a spring, of `mass`) says that something holds the tip, where
+/// `stretches`, or where the links of such a build have no model, it stays where it is, and
+/// `not_done` says why. An error is a fault or a stop. Real-time: never from the servo thread.
 driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFile& file,
                                             const MotionOrder& order, int places,
-                                            const ArmMotion& first, bool stretches, bool held,
+                                            const ArmMotion& first, const MotorWaves& waves,
+                                            bool stretches, bool held,
                                             const std::atomic<bool>& stop);
 
 /// Fits all motions of `over` and one more, with a known mass on the tip. Fails if that is not the

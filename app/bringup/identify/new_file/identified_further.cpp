@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bringup/identify/new_file/file_lines.h"
+#include "bringup/identify/new_file/waves_section.h"
 #include "math/elementary.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
@@ -36,7 +37,7 @@ class Further {
         mark_(mark),
         lines_(lines) {}
 
-  bool put() { return put_link() && put_saturation() && tell_friction(); }
+  bool put() { return put_link() && put_saturation() && tell_friction() && put_motor_waves(); }
 
   /// Returns whether a file that was read again says what was put.
   bool agrees(const scene::ArmFile& read) const {
@@ -44,7 +45,8 @@ class Further {
     const auto& wire = read.simulated.wire;
     return std::abs(firmware.report_period_ns - ns(period_)) <= 1 &&
            std::abs(firmware.watchdog_ns - ns(watchdog_)) <= ns(1e-5 * watchdog_) + 1 &&
-           std::abs(wire.jitter_ns - ns(jitter_)) <= ns(1e-5 * jitter_) + 1;
+           std::abs(wire.jitter_ns - ns(jitter_)) <= ns(1e-5 * jitter_) + 1 &&
+           (file_.is<driver::DeltaArm>() || reads_waves(read.simulated.drive_train, found_));
   }
 
  private:
@@ -112,6 +114,24 @@ class Further {
     if (all.empty()) return true;
     return exchange(simulation_["motors"]["current_max"], least,
                     "A, of all motors the least that was seen (" + all + ")", error);
+  }
+
+  /// Puts cogging and ripple. The drive train of a delta arm is not simulated: of these a remark.
+  bool put_motor_waves() {
+    if (!file_.is<driver::DeltaArm>()) return put_waves(simulation_, found_, mark_, lines_);
+    for (std::size_t i = 0; found_.waves.told() && i < 3; ++i) {
+      if (!found_.waves.cogging[i].seen) continue;
+      const Estimate cogging = cogging_at_motor(found_.waves, i, found_.constants.gain[i]);
+      if (!lines_.add_behind(
+              simulation_["tip"]["coulomb"],
+              fmt::format("# {:.3g} N m cogging of motor {}, {:g} periods in a turn [I {}, {}, +- "
+                          "{:.2g}]: not simulated",
+                          cogging.value, i + 1, found_.waves.periods, mark_.date, mark_.arm,
+                          cogging.plus_minus))) {
+        return false;
+      }
+    }
+    return true;
   }
 
   bool tell_friction() {

@@ -63,6 +63,19 @@ class MotionEquations {
     }
     return sum / area_;
   }
+  /// Returns the mean of many quantities at once over an equation's bump, `of(tick)`, of which one
+  /// tick in `every` is looked at.
+  template <class Many, class Of>
+  Many means(std::size_t number, int every, const Of& of) const {
+    Many sum = Many::Zero();
+    double area = 0;
+    for (int j = -kHalf; j <= kHalf; j += every) {
+      const double weight = bump_.value[static_cast<std::size_t>(j + kHalf)];
+      sum += weight * of(equations_[number].middle + j);
+      area += weight;
+    }
+    return sum / area;
+  }
   /// Returns what a shift of the seen tip, `of(tick, axis)` (m), adds to an equation's left side.
   template <class Of>
   double curved(std::size_t number, const Of& of) const {

@@ -86,6 +86,7 @@ device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
 
 /// Reads what lies between motors and links. What does not fit together is told by the plant.
 device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
+  constexpr double kTurn = 2 * std::numbers::pi;
   const auto amounts = [&map](std::string_view key, std::string_view unit, double most) {
     return map.optional_vector3(key, {0, 0, 0}, unit, 0, most);
   };
@@ -94,6 +95,12 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   train.cogging = amounts("cogging", "N m at the motor", 1);
   train.ripple = amounts("ripple", "", 0.5);
   train.periods_per_turn = map.optional_number("periods_per_turn", 0, "", 0, 1000);
+  const auto phase = [&map](std::string_view key) {
+    return map.optional_vector3(key, {0, 0, 0}, "rad where the joint's angle is zero", -kTurn,
+                                kTurn);
+  };
+  train.cogging_phase = phase("cogging_phase");
+  train.ripple_phase = phase("ripple_phase");
   train.inertia = amounts("inertia", "kg m^2 at the joint", 1);
   train.stiffness = amounts("stiffness", "N m/rad at the joint", 1e6);
   train.damping = amounts("damping", "N m s/rad at the joint", 1000);

@@ -68,6 +68,11 @@ struct DriveTrainSettings {
   Eigen::Vector3d cogging{0, 0, 0};  ///< Amplitude of the torque towards the poles, N m at a motor.
   Eigen::Vector3d ripple{0, 0, 0};   ///< Amplitude of the torque constant's variation, relative.
   double periods_per_turn = 0;       ///< Of cogging and ripple, in a turn of the motor.
+  /// Of each motor's wave where its joint's angle is zero, rad: the cogging pulls by
+  /// -sin(periods_per_turn theta + phase) at the motor's angle theta, the ripple adds
+  /// sin(periods_per_turn theta + phase).
+  Eigen::Vector3d cogging_phase{0, 0, 0};
+  Eigen::Vector3d ripple_phase{0, 0, 0};  ///< Likewise.
   /// Inertia of rotor and pulley, kg m^2 at the joint. It makes the mass at the tip depend on the
   /// pose: J^-T diag(inertia) J^-1 comes on top of the tip's own.
   Eigen::Vector3d inertia{0, 0, 0};
