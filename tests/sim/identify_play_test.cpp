@@ -41,9 +41,8 @@ constexpr double kPlay = 1e-3;
 
 bool says(const Identified& found, const std::string& what) {
   const auto sentences = not_identified(found);
-  return std::any_of(sentences.begin(), sentences.end(), [&](const std::string& one) {
-    return one.find(what) != std::string::npos;
-  });
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& one) { return one.find(what) != std::string::npos; });
 }
 
 TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
@@ -58,9 +57,9 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     if (!found || !found->against.empty() || !found->play.seen) {
       ++refused;
       std::printf("arm %d: %s\n", k,
-                  !found                     ? found.error().message.c_str()
+                  !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                             : "no play was seen");
+                                            : "no play was seen");
       continue;
     }
     const auto& train = arm.file.simulated.drive_train;
@@ -76,8 +75,8 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
       width.add(cable.play, train.play[joint]);
       gain_ratio.add(constants.gain[i], arm.gain[i] / mean);
       inertia.add(cable.inertia, motor);
-      resonance.add(cable.resonance, std::sqrt(stiffness * (1 / link + 1 / motor)) /
-                                         (2 * std::numbers::pi));
+      resonance.add(cable.resonance,
+                    std::sqrt(stiffness * (1 / link + 1 / motor)) / (2 * std::numbers::pi));
     }
   }
   for (const Score* score : {&width, &resonance, &inertia, &gain_ratio}) {
@@ -133,9 +132,10 @@ TEST(IdentifyPlay, IsWrittenWithItsInterval) {
   (*found.cables)[1].play = {1.25e-3, 2e-5};
   const auto some = identified_text(text, found, mark);
   ASSERT_TRUE(some.ok()) << some.error().message;
-  EXPECT_NE(some->find("play: [0, 0.00125, 0]  # rad, whole width at the joints [I 2026-11-26, sim, "
-                       "+- 0, 2e-05, 0]"),
-            std::string::npos);
+  EXPECT_NE(
+      some->find("play: [0, 0.00125, 0]  # rad, whole width at the joints [I 2026-11-26, sim, "
+                 "+- 0, 2e-05, 0]"),
+      std::string::npos);
   // Measured again, without play: the old width must not stay.
   (*found.cables)[1].play = {};
   const auto again = identified_text(*some, found, mark);

@@ -139,7 +139,8 @@ void look_closer(Identified& found, bool held) {
 
 std::string like_play_text(const PlayFit& play) {
   return fmt::format(
-      "The motors move as if there were play in the cables, but with play the arm is not understood "
+      "The motors move as if there were play in the cables, but with play the arm is not "
+      "understood "
       "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Dry friction of the motors, "
       "slack that changes, or a hand do that.",
       play.with.misfit, play.without.misfit);
@@ -192,7 +193,8 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
       if (found.play.like_play) found.against.push_back(like_play_text(found.play));
     }
     if (found.play.seen) {
-      const GapFit gap = loaded ? fit_play_again(*motion, *fit, rigid, found.play.with) : found.play.with;
+      const GapFit gap =
+          loaded ? fit_play_again(*motion, *fit, rigid, found.play.with) : found.play.with;
       rigid = *fit;
       if (!loaded) found.lines.elastic = two_mass_of(gap, found.lines.elastic);
       auto behind = motion_of_links(*motion, found.lines, file);

@@ -94,9 +94,10 @@ PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit&
   const GapFit closer = fit_gap(GapPieces(motion, kLongPieces, kMiddle), with.theta, true, 15);
   found.with = fit_gap(whole, closer.theta, true, 20);
   const double misfit = std::max(1.0, found.with.misfit);
-  found.better = (found.without.chi2 / found.without.samples - found.with.chi2 / found.with.samples) *
-                     found.with.samples / misfit -
-                 3 * math::log(found.with.samples);
+  found.better =
+      (found.without.chi2 / found.without.samples - found.with.chi2 / found.with.samples) *
+          found.with.samples / misfit -
+      3 * math::log(found.with.samples);
   found.fits = std::min(found.without.misfit, found.with.misfit) < kFits && found.with.lost < 0.25;
   constexpr double kBetter = 20;
   for (int i = 0; i < 3; ++i) {
@@ -130,12 +131,15 @@ GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMa
 }
 
 PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion) {
-  constexpr std::pair<int, int> kSame[] = {
-      {PerMass::kGain, Gap::kGain},           {PerMass::kGain + 1, Gap::kGain + 1},
-      {PerMass::kGain + 2, Gap::kGain + 2},   {PerMass::kViscous, Gap::kViscous},
-      {PerMass::kCoulomb, Gap::kCoulomb},     {PerMass::kWeight, Gap::kWeight},
-      {PerMass::kWeight + 1, Gap::kWeight + 1}, {PerMass::kWeight + 2, Gap::kWeight + 2},
-      {PerMass::kStiffness, Gap::kSpring}};
+  constexpr std::pair<int, int> kSame[] = {{PerMass::kGain, Gap::kGain},
+                                           {PerMass::kGain + 1, Gap::kGain + 1},
+                                           {PerMass::kGain + 2, Gap::kGain + 2},
+                                           {PerMass::kViscous, Gap::kViscous},
+                                           {PerMass::kCoulomb, Gap::kCoulomb},
+                                           {PerMass::kWeight, Gap::kWeight},
+                                           {PerMass::kWeight + 1, Gap::kWeight + 1},
+                                           {PerMass::kWeight + 2, Gap::kWeight + 2},
+                                           {PerMass::kStiffness, Gap::kSpring}};
   PerMass found;
   for (const auto& [to, from] : kSame) {
     found.theta[to] = fit.theta[from];

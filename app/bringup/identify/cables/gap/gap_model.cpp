@@ -53,13 +53,14 @@ void slide_axis(double& x, double& v, double a, double c, double h) {
 }  // namespace
 
 GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
-                    const Eigen::Vector3d& p_middle, const GapState& start, std::size_t first,
-                    std::size_t count, double* angles) {
+                        const Eigen::Vector3d& p_middle, const GapState& start, std::size_t first,
+                        std::size_t count, double* angles) {
   using Gap = GapTheta;
   const double dt = motion.dt, h = dt / kSubSteps;
   GapState now = start;
   Eigen::Vector3d q = now.q(), rate = now.rate(), p = now.p(), v = now.v();
-  const Eigen::Vector3d gain = theta.segment<3>(Gap::kGain), weight = theta.segment<3>(Gap::kWeight);
+  const Eigen::Vector3d gain = theta.segment<3>(Gap::kGain),
+                        weight = theta.segment<3>(Gap::kWeight);
   const Eigen::Vector3d yields = theta.segment<3>(Gap::kInertia).cwiseInverse();
   const double viscous = theta[Gap::kViscous], coulomb = std::max(0.0, theta[Gap::kCoulomb]);
   const double spring = theta[Gap::kSpring];
@@ -72,8 +73,8 @@ GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
     const MotionSample& seen = motion.samples[first + i];
     if (angles != nullptr) std::copy(q.data(), q.data() + 3, angles + 3 * i);
     const auto at = static_cast<std::ptrdiff_t>(first + i) - ticks_late;
-    const Eigen::Vector3d newer =
-        gain.cwiseProduct(motion.samples[static_cast<std::size_t>(std::max<std::ptrdiff_t>(at, 0))].tau);
+    const Eigen::Vector3d newer = gain.cwiseProduct(
+        motion.samples[static_cast<std::size_t>(std::max<std::ptrdiff_t>(at, 0))].tau);
     const Eigen::Vector3d older = gain.cwiseProduct(
         motion.samples[static_cast<std::size_t>(std::max<std::ptrdiff_t>(at - 1, 0))].tau);
     const Eigen::Matrix3d& G = seen.G;

@@ -44,13 +44,12 @@ struct GapState {
 };
 
 /// Moves the model from `start` at tick `first` over `count` ticks of a motion, under the torques
-/// that were sent, and writes the motors' angles at each, that of `first` included (3 x count, rad),
-/// unless that is null. Returns how it moves then.
-/// The links' angles are those of the tip linearised about where the encoders saw it in that tick:
-/// right to the square of play and stretch. Precondition: `first` is later than the delay.
-/// Real-time: never from the servo thread.
+/// that were sent, and writes the motors' angles at each, that of `first` included (3 x count,
+/// rad), unless that is null. Returns how it moves then. The links' angles are those of the tip
+/// linearised about where the encoders saw it in that tick: right to the square of play and
+/// stretch. Precondition: `first` is later than the delay. Real-time: never from the servo thread.
 GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
-                    const Eigen::Vector3d& p_middle, const GapState& start, std::size_t first,
-                    std::size_t count, double* angles);
+                        const Eigen::Vector3d& p_middle, const GapState& start, std::size_t first,
+                        std::size_t count, double* angles);
 
 }  // namespace thimble::app
