@@ -120,7 +120,7 @@ GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMa
   for (int i = 0; i < 3; ++i) {
     scale *= rigid.theta[PerMass::kGain + i] / rigid_bare.theta[PerMass::kGain + i];
   }
-  scale = std::cbrt(scale);
+  scale = math::pow(scale, 1.0 / 3);
   Gap::Vector from = bare.theta;
   from.segment<3>(Gap::kGain) *= scale;
   from.segment<2>(Gap::kViscous) *= scale;
