@@ -48,12 +48,15 @@ bool says(const Identified& found, const std::string& what) {
 TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
   const int arms = is_long() ? 40 : 1;
   Score width{"play", 0.1}, resonance{"resonance", 0.05}, inertia{"motor", 0.06};
-  Score gain_ratio{"gains", 0.02};
+  Score gain{"gains", 0.02}, mass{"mass", 0.03};
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6006 + k);
     const HiddenArm arm = arm_with_play(seed, kPlay);
-    const auto found = identified(arm, {.seconds = 30, .seed = seed});
+    const bool weighed = k % 2 == 0;
+    const auto found = identified(arm, {.seconds = is_long() ? 30.0 : 12.0,
+                                        .known_mass = weighed ? support::kKnownMass : 0,
+                                        .seed = seed});
     if (!found || !found->against.empty() || !found->play.seen) {
       ++refused;
       std::printf("arm %d: %s\n", k,
@@ -65,21 +68,23 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
     // Motion alone shows no mass: the gains' mean is taken to be one.
-    const double mean = std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
-    const double mass = arm.file.simulated.plant.mass / mean;
+    const double mean = weighed ? 1 : std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
+    const double moved = arm.file.simulated.plant.mass / mean;
+    EXPECT_EQ(constants.absolute, weighed);
+    if (weighed) mass.add(constants.mass, moved);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
       const CableConstants& cable = (*constants.cables)[i];
-      const double link = mass * found->lines.JTJ(joint, joint);
+      const double link = moved * found->lines.JTJ(joint, joint);
       const double motor = train.inertia[joint] / mean, stiffness = train.stiffness[joint] / mean;
       width.add(cable.play, train.play[joint]);
-      gain_ratio.add(constants.gain[i], arm.gain[i] / mean);
+      gain.add(constants.gain[i], arm.gain[i] / mean);
       inertia.add(cable.inertia, motor);
       resonance.add(cable.resonance,
                     std::sqrt(stiffness * (1 / link + 1 / motor)) / (2 * std::numbers::pi));
     }
   }
-  for (const Score* score : {&width, &resonance, &inertia, &gain_ratio}) {
+  for (const Score* score : {&mass, &width, &resonance, &inertia, &gain}) {
     std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
                 score->worst, score->most, score->held, score->all);
     EXPECT_LT(score->worst, score->most) << score->name;
@@ -91,26 +96,31 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
 
 TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
   const int arms = is_long() ? 40 : 1;
+  int told = 0;
   double most = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(105 + k);
-    const auto found = identified(arm_with_play(seed, 0), {.seconds = 30, .seed = seed});
+    const auto found =
+        identified(arm_with_play(seed, 0), {.seconds = is_long() ? 30.0 : 12.0, .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     if (!found->play.fits) continue;
+    ++told;
     EXPECT_TRUE(says(*found, "Play: none seen above")) << "arm " << k;
     for (const Estimate& width : found->play.width) {
       most = std::max(most, width.value + width.plus_minus);
     }
   }
-  std::printf("none of more than %.3g mrad in any of %d arms\n", 1e3 * most, arms);
+  std::printf("none of more than %.3g mrad in any of %d of %d arms\n", 1e3 * most, told, arms);
+  EXPECT_GE(told, 0.75 * arms);
   EXPECT_LT(most, 0.1 * kPlay);
 }
 
-TEST(IdentifyPlay, IsNotLookedForInAnArmWithoutCablesThatStretch) {
-  const auto found = identified(support::hidden_arm(7), {.seconds = 12});
-  ASSERT_TRUE(found.ok()) << found.error().message;
-  EXPECT_TRUE(says(*found, "Play: not looked for."));
+TEST(IdentifyPlay, IsNotBlamedOnLateReportsWhereAMotorOscillates) {
+  // Its motor oscillates at 85 Hz under the force that holds the tip.
+  const auto found = identified(arm_with_play(6007, kPlay), {.seconds = 18, .seed = 6007});
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(found.error().message.find("The joints jumped in"), 0U) << found.error().message;
 }
 
 TEST(IdentifyPlay, IsWrittenWithItsInterval) {

@@ -46,7 +46,11 @@ driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t 
   };
   const std::atomic<bool> never{false};
   const auto found = identify(open, hidden.file,
-                              {.seconds = seconds, .known_mass = kKnownMass, .seed = seed}, never);
+                              {.seconds = seconds,
+                               .play = std::getenv("THIMBLE_LONG") != nullptr,
+                               .known_mass = kKnownMass,
+                               .seed = seed},
+                              never);
   if (!found) return found.error();
   if (!found->against.empty()) return driver::Error{found->against.front()};
   const auto text = identified_text(support::text_of_arm("vintage_phantom"), found->constants,
