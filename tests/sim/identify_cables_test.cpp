@@ -51,6 +51,7 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
                               : found.error().message);
       continue;
     }
+    EXPECT_FALSE(found->play.seen) << "arm " << k;
     const auto& plant = arm.file.simulated.plant;
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
@@ -88,7 +89,8 @@ TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(105 + k);
     const HiddenArm arm = soft_arm(seed, 200);
-    const auto found = identified(arm, {.seconds = 30, .play = is_long(), .seed = seed});
+    const auto found =
+        identified(arm, {.seconds = is_long() ? 30.0 : 20.0, .play = is_long(), .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables";
     if (!found->against.empty()) continue;
@@ -117,7 +119,7 @@ TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
 }
 
 TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
-  const auto found = identified(hidden_arm(7), {.seconds = 20});
+  const auto found = identified(hidden_arm(7), {.seconds = is_long() ? 20.0 : 12.0});
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
   const auto sentences = not_identified(*found);
