@@ -110,7 +110,7 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
               : ""),
       "small");
   page += verdict(found, heading.bad_fit_is_written);
-  page += "<h2>Constants</h2>\n" + table(found, file) + paragraph(fit_text(found.bare), "small");
+  page += "<h2>Constants</h2>\n" + table(found, file) + paragraph(fit_text(found), "small");
   for (const IdentifyPlot& plot : plots) {
     page += fmt::format("<h2>{}</h2>\n", html_text(plot.title)) + paragraph(plot.caption, "small") +
             inline_picture(folder / (plot.name + ".svg"), plot.name + "-") + "\n";

@@ -41,13 +41,17 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6000 + k);
     const HiddenArm arm = soft_arm(seed);
-    const auto found = identified(arm, {.seconds = 30, .known_mass = kKnownMass, .seed = seed});
+    const auto found = identified(arm, {.seconds = is_long() ? 30.0 : 20.0,
+                                        .play = is_long(),
+                                        .known_mass = kKnownMass,
+                                        .seed = seed});
     if (!found || !found->constants.cables || !found->against.empty()) {
       ADD_FAILURE() << "arm " << k << ": "
                     << (found ? (found->against.empty() ? "no cables" : found->against.front())
                               : found.error().message);
       continue;
     }
+    EXPECT_FALSE(found->play.seen) << "arm " << k;
     const auto& plant = arm.file.simulated.plant;
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
@@ -85,7 +89,8 @@ TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(105 + k);
     const HiddenArm arm = soft_arm(seed, 200);
-    const auto found = identified(arm, {.seconds = 30, .seed = seed});
+    const auto found =
+        identified(arm, {.seconds = is_long() ? 30.0 : 20.0, .play = is_long(), .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables";
     if (!found->against.empty()) continue;
@@ -114,12 +119,15 @@ TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
 }
 
 TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
-  const auto found = identified(hidden_arm(7), {.seconds = 20});
+  const auto found = identified(hidden_arm(7), {.seconds = is_long() ? 20.0 : 12.0});
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
   const auto sentences = not_identified(*found);
   EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
     return one.find("no compliance was seen") != std::string::npos;
+  }));
+  EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
+    return one.find("Play: not looked for.") == 0;
   }));
 }
 

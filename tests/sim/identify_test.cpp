@@ -147,7 +147,8 @@ std::string said_of(std::uint64_t seed, const std::function<void(scene::ArmFile&
   arm.file.simulated.hand = {};
   change(arm.file);
   return said_of(identified(
-      arm, {.seconds = is_long() ? 20.0 : 12.0, .cables = cables, .seed = seed}, hold_it));
+      arm, {.seconds = is_long() ? 20.0 : 12.0, .cables = cables, .play = is_long(), .seed = seed},
+      hold_it));
 }
 
 TEST(Identify, TellsAWrongModelApart) {

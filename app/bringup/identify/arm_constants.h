@@ -16,6 +16,7 @@ struct CableConstants {
   Estimate inertia;        ///< Of motor and pulley, kg m^2 at the joint.
   Estimate stiffness;      ///< Of the cable, N m/rad at the joint.
   Estimate damping;        ///< N m s/rad
+  Estimate play;           ///< Whole width, rad at the joint; 0 where none was seen.
   Estimate antiresonance;  ///< At which the link oscillates on its cable, the motor held, Hz.
   Estimate resonance;      ///< At which motor and link oscillate against each other, Hz.
 

@@ -31,6 +31,7 @@ struct ArmMotion {
   /// Constants of links that are known (LinkEquations) over the mass at the tip, m^2 and m; zero:
   /// none are. What they take counts as acceleration of the tip.
   Eigen::Matrix<double, 6, 1> links = Eigen::Matrix<double, 6, 1>::Zero();
+  std::size_t jumped = 0;  ///< Reports that the driver dropped for a jump (WireCounters).
   std::vector<MotionSample> samples;  ///< One for each tick.
 };
 

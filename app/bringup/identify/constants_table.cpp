@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "math/elementary.h"
 
 #include "bringup/identify/links/place_masses.h"
@@ -69,6 +71,9 @@ void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& row
     rows.add(name("inertia of motor"), cable.inertia, 1e3, "g m^2", of(train.inertia));
     rows.add(name("stiffness of cable"), cable.stiffness, 1, "N m/rad", of(train.stiffness));
     rows.add(name("damping of cable"), cable.damping, 1, "N m s/rad", of(train.damping));
+    if (cable.play.value > 0) {
+      rows.add(name("play of joint"), cable.play, 1e3, "mrad, whole width", of(train.play));
+    }
     if (CableConstants::sees(cable.antiresonance)) {
       rows.add(name("antiresonance"), cable.antiresonance, 1, "Hz, link on its cable");
     }
@@ -170,7 +175,15 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   return rows.take();
 }
 
-std::string fit_text(const PerMass& fit) {
+std::string fit_text(const Identified& identified) {
+  const PerMass& fit = identified.bare;
+  if (identified.play.seen) {
+    const GapFit& play = identified.play.with;
+    return fmt::format(
+        "Fitted with play to {} pieces of motion; what is left of the angles is {:.2f} times what "
+        "the encoders' steps leave, without play {:.1f} times.",
+        fit.windows, std::sqrt(play.misfit), std::sqrt(identified.play.without.misfit));
+  }
   return fmt::format(
       "Fitted to {} pieces of motion ({} left out, in which an axis stood); {:.3f} % of the "
       "acceleration is explained, what is left is {:.1f} times the encoders' steps.",
@@ -183,7 +196,7 @@ std::string constants_table(const Identified& identified, const scene::ArmFile& 
     text += fmt::format("  {:<24} {:>10.5g} +- {:<9.2g} {}\n", row.name, row.found.value,
                         row.found.plus_minus, row.unit);
   }
-  text += fit_text(identified.bare) + "\n";
+  text += fit_text(identified) + "\n";
   if (identified.constants.absolute) text += "Mass and forces were measured with the known mass.\n";
   if (identified.constants.links) text += place_table(*identified.over.fit, file);
   text += "Not identified:\n";

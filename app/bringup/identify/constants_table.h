@@ -21,7 +21,7 @@ struct ConstantRow {
 std::vector<ConstantRow> constant_rows(const Identified& identified, const scene::ArmFile& file);
 
 /// Returns what a fit rests on: how many pieces, and what it explains.
-std::string fit_text(const PerMass& fit);
+std::string fit_text(const Identified& identified);
 
 /// Returns the table of the constants with their intervals, what they rest on, and what was not
 /// identified.

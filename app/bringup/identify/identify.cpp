@@ -148,6 +148,8 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
 /// Looks in what the fit leaves for what it does not know of. A hand, which `held` tells of, looks
 /// like joints that stick, and those are not looked for then.
 void look_closer(Identified& found, bool held) {
+  // Where the links were in their play at each moment is not known.
+  if (found.play.seen) return;
   const FittedMotion motion = found.fitted();
   const Estimate mass = found.moved_mass();
   found.friction = friction_directions(motion, mass);
@@ -177,6 +179,15 @@ void look_closer(Identified& found, bool held) {
   }
 }
 
+std::string like_play_text(const PlayFit& play) {
+  return fmt::format(
+      "The motors move as if there were play in the cables, but with play the arm is not "
+      "understood "
+      "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Dry friction of the motors, "
+      "slack that changes, or a hand do that.",
+      play.with.misfit, play.without.misfit);
+}
+
 }  // namespace
 
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
@@ -194,6 +205,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   Identified found;
   Eigen::Vector3d down_B(0, 0, -1), share(1, 1, 1);
   bool held_tip = false;
+  PerMass rigid;  // fit of the motion with the bare tip
   for (const bool loaded : {false, true}) {
     if (loaded && options.known_mass == 0) break;
     auto bench = open(loaded);
@@ -222,13 +234,28 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     const double blamed = options.cables ? 0 : found.lines.better;
     if (!options.cables) found.lines = {};
     driver::Result<ArmMotion> links = *motion;
-    // A mass on the tip changes neither motors nor cables.
-    if (found.lines.stretches) {
+    std::optional<PerMass> held_fit;
+    if (!loaded && options.play && found.lines.stretches) {
+      found.play = find_play(*motion, *fit, found.lines);
+      if (found.play.like_play) found.against.push_back(like_play_text(found.play));
+    }
+    if (found.play.seen) {
+      const GapFit gap =
+          loaded ? fit_play_again(*motion, *fit, rigid, found.play.with) : found.play.with;
+      rigid = *fit;
+      if (!loaded) found.lines.elastic = two_mass_of(gap, found.lines.elastic);
+      auto behind = motion_of_links(*motion, found.lines, file);
+      if (!behind) return behind.error();
+      links = std::move(behind).value();
+      fit = per_mass_of(gap, *motion);
+      held_fit = *fit;
+    } else if (found.lines.stretches) {
+      // A mass on the tip changes neither motors nor cables.
       auto behind = behind_cables(*motion, file, found.lines, !loaded, *fit);
       if (!behind) return behind.error();
       links = std::move(behind).value();
     }
-    auto held = fit_motion(*links, true);
+    auto held = held_fit ? driver::Result<PerMass>(*held_fit) : fit_motion(*links, true);
     if (!held) return held.error();
     down_B = motion->down_B;
     if (!loaded) {

@@ -22,7 +22,7 @@ class Fit {
         equations_(motion, with_inertia) {}
 
   driver::Result<PerMass> run() {
-    if (equations_.torn()) return MotionEquations::torn_error();
+    if (equations_.torn()) return MotionEquations::torn_error(equations_.motion());
     if (equations_.equations().size() < 300) {
       return driver::Error{
           "The motion is too short or the tip stood still for most of it, so nothing can be "

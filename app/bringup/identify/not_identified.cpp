@@ -54,6 +54,30 @@ void of_cables(const Identified& identified, Sentences& all) {
   }
 }
 
+void of_play(const Identified& identified, Sentences& all) {
+  const PlayFit& play = identified.play;
+  if (!play.searched) {
+    all.emplace_back(
+        "Play: not looked for. It shows by the motors that turn freely in it, apart from their "
+        "links, and is looked for where cables were seen to stretch.");
+    return;
+  }
+  if (!play.fits) {
+    all.push_back(fmt::format(
+        "Play: not told. Neither with play nor without is the motion of the motors understood to "
+        "the encoders' steps (chi^2 {:.1f} and {:.1f} per degree of freedom).",
+        play.with.misfit, play.without.misfit));
+    return;
+  }
+  std::string none;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (play.seen && play.shows[i]) continue;
+    none += fmt::format("{}{:.2g} mrad (joint {})", none.empty() ? "" : ", ",
+                        1e3 * (play.width[i].value + play.width[i].plus_minus), i + 1);
+  }
+  if (!none.empty()) all.push_back("Play: none seen above " + none + ", whole width.");
+}
+
 void of_friction(const FrictionDirections& friction, Sentences& all) {
   if (!friction.axes_differ && !friction.directions_differ) {
     double most = 0;
@@ -236,11 +260,16 @@ std::vector<std::string> not_identified(const Identified& identified) {
   Sentences all;
   of_constants(identified.constants, all);
   of_cables(identified, all);
-  of_friction(identified.friction, all);
+  if (identified.play.seen) {
+    all.emplace_back(
+        "Dry friction that differs between axes or directions: not looked for behind play.");
+  } else {
+    of_friction(identified.friction, all);
+  }
   of_saturation(identified, all);
   of_encoders(identified.encoders, all);
   of_link(identified, all);
-  all.emplace_back("Play: not looked for.");
+  of_play(identified, all);
   of_waves(identified, all);
   of_workspace(identified, all);
   return all;

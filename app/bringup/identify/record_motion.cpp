@@ -114,10 +114,12 @@ class Recorder {
     Excitation excitation(p_WM_, {0, 0, 0}, order.seed, Excitation::Lines::kWith, force_most_);
     carried_W_ = {0, 0, kStandardGravity * order.added_mass};
     const double begin = bench_.now();
+    std::uint64_t jumped = bench_.device().wire_counters().jumped;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       const double t = bench_.now() - begin;
       // What was sent in the tick before stands until now.
       if (!motion.samples.empty()) motion.samples.back().tau = sent_torque(motion.samples.back());
+      if (t < lead_) jumped = bench_.device().wire_counters().jumped;
       if (t >= lead_) motion.samples.push_back(sample_of(file_, state));
       left_ = left_ || !within(state.p_WT);
       if (left_) return {0, 0, 0};
@@ -129,6 +131,7 @@ class Recorder {
     if (left_) return went_away();
     if (!whole) return why();
     if (!motion.samples.empty()) motion.samples.back().tau = sent_torque(motion.samples.back());
+    motion.jumped = bench_.device().wire_counters().jumped - jumped;
     return motion;
   }
 

@@ -81,6 +81,7 @@ void put_cables(Identified& found) {
       estimate->plus_minus *= kCableLines;
     }
     widen(cable.damping, kCableDamping * cable.damping.value);
+    if (found.play.seen && found.play.shows[i]) cable.play = found.play.width[i];
   }
   if (found.lines.elastic.misfit > kLinesMisfitMost) {
     found.against.push_back(fmt::format(

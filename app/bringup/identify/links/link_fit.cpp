@@ -44,7 +44,7 @@ class LinkSearch {
       : arm_(arm), table_(motions) {}
 
   driver::Result<LinkFit> run() {
-    if (table_.torn()) return MotionEquations::torn_error();
+    if (table_.torn() != nullptr) return MotionEquations::torn_error(*table_.torn());
     if (table_.motions().size() < 3 || table_.count() < 600) {
       return driver::Error{
           "The motions are too short or at places too few to tell links, or the tip stood still "

@@ -12,7 +12,7 @@ LinkRows::LinkRows(const std::vector<ArmMotion>& motions) : motions_(motions) {
   equations_.reserve(motions.size());
   for (const ArmMotion& motion : motions) {
     equations_.emplace_back(motion, false);
-    torn_ = torn_ || equations_.back().torn();
+    if (equations_.back().torn()) torn_ = &motion;
     loaded_ = loaded_ || motion.added_mass > 0;
     count_ += equations_.back().equations().size();
   }

@@ -55,7 +55,8 @@ class LinkRows {
   /// Returns which half second of which motion each equation belongs to.
   const std::vector<int>& clusters() const { return clusters_; }
   std::size_t count() const { return count_; }
-  bool torn() const { return torn_; }
+  /// Returns a motion that was not seen well enough, or null.
+  const ArmMotion* torn() const { return torn_; }
   bool loaded() const { return loaded_; }  ///< With a known mass, some of them.
 
  private:
@@ -69,7 +70,8 @@ class LinkRows {
   StepNoise noise_ = StepNoise::Zero();             // of the encoders' steps, in all equations
   std::vector<std::array<StepNoise, 3>> noise_at_;  // in those of each motion and axis
   std::size_t count_ = 0;
-  bool torn_ = false, loaded_ = false;
+  const ArmMotion* torn_ = nullptr;
+  bool loaded_ = false;
 };
 
 }  // namespace thimble::app

@@ -108,17 +108,29 @@ struct TrainConstant {
 
 constexpr TrainConstant kTrainConstants[] = {{"stiffness", "N m/rad", &CableConstants::stiffness},
                                              {"inertia", "kg m^2", &CableConstants::inertia},
-                                             {"damping", "N m s/rad", &CableConstants::damping}};
+                                             {"damping", "N m s/rad", &CableConstants::damping},
+                                             {"play", "rad, whole width", &CableConstants::play}};
+
+/// Returns the constants that are written: play only where there is some, or was.
+std::vector<TrainConstant> train_constants(const YAML::Node& train,
+                                           const std::array<CableConstants, 3>& cables) {
+  const bool plays = std::any_of(cables.begin(), cables.end(),
+                                 [](const CableConstants& one) { return one.play.value > 0; });
+  std::vector<TrainConstant> all(std::begin(kTrainConstants), std::end(kTrainConstants));
+  if (!plays && !(train && train["play"])) all.pop_back();
+  return all;
+}
 
 /// Exchanges stiffness, inertia and damping of the drive train, or adds the section before `tip`.
 bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>& cables,
                const IdentifiedMark& mark, FileLines& lines) {
   const YAML::Node train = simulation["drive_train"];
+  const std::vector<TrainConstant> constants = train_constants(train, cables);
   if (train && train.Style() == YAML::EmitterStyle::Flow) {
     // On one line: the marks of all that it says behind it.
     YAML::Node changed = YAML::Clone(train);
     std::string marks;
-    for (const TrainConstant& constant : kTrainConstants) {
+    for (const TrainConstant& constant : constants) {
       changed[constant.key] = YAML::Load(constant.values(cables));
       marks += fmt::format("; {}: {}", constant.key,
                            constant.text(cables, mark).substr(constant.values(cables).size() + 4));
@@ -127,14 +139,15 @@ bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>
     return lines.exchange(train, YAML::Dump(changed) + "  # " + marks.substr(2));
   }
   if (train) {
-    return std::all_of(std::begin(kTrainConstants), std::end(kTrainConstants),
-                       [&](const TrainConstant& constant) {
-                         return train[constant.key] &&
-                                lines.exchange(train[constant.key], constant.text(cables, mark));
-                       });
+    return std::all_of(constants.begin(), constants.end(), [&](const TrainConstant& constant) {
+      const std::string text = constant.text(cables, mark);
+      if (train[constant.key]) return lines.exchange(train[constant.key], text);
+      return constant.member == &CableConstants::play &&
+             lines.add_behind(train["damping"], std::string(constant.key) + ": " + text);
+    });
   }
   std::vector<std::string> section{"drive_train:"};
-  for (const TrainConstant& constant : kTrainConstants) {
+  for (const TrainConstant& constant : constants) {
     section.push_back(fmt::format("  {}: {}", constant.key, constant.text(cables, mark)));
   }
   for (const auto& entry : simulation) {
@@ -226,7 +239,8 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     right = right &&
-            (!found.cables || near_train(train.stiffness[k], (*found.cables)[i].stiffness.value));
+            (!found.cables || (near_train(train.stiffness[k], (*found.cables)[i].stiffness.value) &&
+                               near_train(train.play[k], (*found.cables)[i].play.value)));
     right = right && near(read->model.drives[i].torque_constant, torque[i]);
   }
   if (!right) return bad_form("form");

@@ -1,5 +1,7 @@
 #include "bringup/identify/weak_form/motion_equations.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -27,7 +29,16 @@ MotionEquations::MotionEquations(const ArmMotion& motion, bool with_inertia)
   find_signs(0);
 }
 
-driver::Error MotionEquations::torn_error() {
+driver::Error MotionEquations::torn_error(const ArmMotion& motion) {
+  std::size_t missing = 0;
+  for (const MotionSample& sample : motion.samples) missing += sample.fresh ? 0 : 1;
+  if (2 * motion.jumped > missing) {
+    return driver::Error{fmt::format(
+        "The joints jumped in {:.0f} % of the ticks, farther than the driver believes of an arm, "
+        "so their reports were dropped and the motion was not seen well enough. A motor oscillates "
+        "on its cable under the force that holds the tip, or its encoder loses counts.",
+        100 * static_cast<double>(motion.jumped) / static_cast<double>(motion.samples.size()))};
+  }
   return driver::Error{
       "Too many ticks came without a new report, so the motion was not seen well enough. Run "
       "`thimble doctor`: it says what makes reports late."};

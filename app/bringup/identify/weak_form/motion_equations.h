@@ -104,7 +104,7 @@ class MotionEquations {
   /// Returns whether most pieces hold ticks that saw no report.
   bool torn() const { return torn_ > whole_; }
   /// Returns what a person is told then.
-  static driver::Error torn_error();
+  static driver::Error torn_error(const ArmMotion& motion);
 
  private:
   static constexpr std::size_t kLateMost = 24;  // ticks, kDelayMost and what a search looks beyond

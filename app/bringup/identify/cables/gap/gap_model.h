@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "bringup/identify/arm_motion.h"
+
+namespace thimble::app {
+
+/// Constants of motors, cables with play, and what is behind them, per moved mass:
+///
+///     J_i q_i'' = g_i tau_i(t - delay) - pull_i,      p'' = G^T pull - b p' - c sgn(p') + w
+///                                                           - s (p - p_0),
+///     pull_i = k_i (x_i - clamp(x_i, +-play_i / 2)) + d_i x_i' outside of the play, else 0,
+///
+/// x_i = q_i - l_i how far motor i is ahead of its link, dry friction with its rest. This is the
+/// two-mass joint of the simulated arm (device_sim DriveTrain), joint by joint.
+struct GapTheta {
+  enum Index {
+    kGain = 0,
+    kDelay = 3,
+    kViscous = 4,
+    kCoulomb = 5,
+    kWeight = 6,
+    kSpring = 9,
+    kInertia = 10,
+    kStiffness = 13,
+    kDamping = 16,
+    kPlay = 19,
+    kCount = 22
+  };
+  using Vector = Eigen::Matrix<double, kCount, 1>;
+};
+
+/// How motors (rad, rad/s at the joints) and tip (base, m, m/s) move at a moment.
+struct GapState {
+  static constexpr int kCount = 12;
+  using Vector = Eigen::Matrix<double, kCount, 1>;
+  Vector x = Vector::Zero();
+  auto q() { return x.segment<3>(0); }
+  auto rate() { return x.segment<3>(3); }
+  auto p() { return x.segment<3>(6); }
+  auto v() { return x.segment<3>(9); }
+};
+
+/// Moves the model from `start` at tick `first` over `count` ticks of a motion, under the torques
+/// that were sent, and writes the motors' angles at each, that of `first` included (3 x count,
+/// rad), unless that is null. Returns how it moves then. The links' angles are those of the tip
+/// linearised about where the encoders saw it in that tick: right to the square of play and
+/// stretch. Precondition: `first` is later than the delay. Real-time: never from the servo thread.
+GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
+                        const Eigen::Vector3d& p_middle, const GapState& start, std::size_t first,
+                        std::size_t count, double* angles);
+
+}  // namespace thimble::app
