@@ -148,10 +148,10 @@ for arm in $arms; do
   # few frames makes that too early, never too late.
   [ $arm = falcon ] && watchdog=100 && early=5
   awk -v arm=$arm -v stated=$watchdog -v early=$early '
-    !/^#/ && NF == 20 {
+    !/^#/ && NF == 22 {
       forced = $14 != 0 || $15 != 0 || $16 != 0
       if ($10 != messages) { messages = $10; said = $1; contact = forced; frames += forced; on = 1 }
-      if (on && $NF == 0) { on = 0; off = $1; current = forced }
+      if (on && $20 == 0) { on = 0; off = $1; current = forced }
     }
     END {
       after = off - said
