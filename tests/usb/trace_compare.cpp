@@ -234,9 +234,9 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
   std::printf("FIGURE %s.delay_median %.3f ms\n", arm.name.c_str(), part(0.5));
   std::printf("FIGURE %s.delay_99 %.3f ms\n", arm.name.c_str(), part(0.99));
   std::printf("FIGURE %s.delay_least %.3f ms\n", arm.name.c_str(), delays.front());
-  // Of two packets in one frame the trace keeps the last: a report that it lacks is taken for a
-  // later one with the same counts, now and then.
-  return bad + say(part(0.05) > 0, arm.name + " delay",
+  // Of two packets in one frame, as a Falcon has them, the trace keeps the last: a report that it
+  // lacks is taken for a later one with the same counts, so that the least of all says nothing.
+  return bad + say(part(0.5) >= 1, arm.name + " delay",
                    "from encoder to force " + std::to_string(part(0.5)) + " ms, 99 in 100 " +
                        std::to_string(part(0.99)) + " at most, of " +
                        std::to_string(delays.size()) + " sure ones");
