@@ -87,7 +87,7 @@ Answers ask(const TriangleMesh& mesh, TrackerChoice tracker, int questions) {
 }
 
 // A changed answer, in any bit, is seen: what changes one on purpose stores new hashes and says why
-// in the changelog. Both compilers and 64-bit ARM have these (tests/arm64.sh).
+// in the changelog. gcc and clang have these.
 TEST(RandomQuestions, HaveTheAnswersThatAreStored) {
   const bool all = support::long_form();
   struct Stored {

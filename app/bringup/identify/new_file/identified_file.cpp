@@ -121,7 +121,8 @@ std::vector<TrainConstant> train_constants(const YAML::Node& train,
   return all;
 }
 
-/// Exchanges stiffness, inertia and damping of the drive train, or adds the section before `tip`.
+/// Exchanges stiffness, inertia, damping and play of the drive train, or adds the section before
+/// `tip`.
 bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>& cables,
                const IdentifiedMark& mark, FileLines& lines) {
   const YAML::Node train = simulation["drive_train"];
