@@ -28,10 +28,18 @@ else
   done)
 fi
 
+# Each in a process of its own, as many at once as there are cores.
+run_emulated() {  # run_emulated PATH
+  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 >"$1.log" 2>&1 || touch "$1.failed"
+}
+export -f run_emulated
+rm -f "${paths[@]/%/.failed}"
+printf '%s\0' "${paths[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'run_emulated "$0"'
 failed=()
 for path in "${paths[@]}"; do
   echo "== $(basename "$path") on 64-bit ARM"
-  qemu-aarch64 -L build/arm64_sysroot "$path" --gtest_brief=1 || failed+=("$(basename "$path")")
+  cat "$path.log"
+  [ ! -e "$path.failed" ] || failed+=("$(basename "$path")")
 done
 if [ ${#failed[@]} -gt 0 ]; then
   echo "FAILED on 64-bit ARM: ${failed[*]}" >&2

@@ -38,7 +38,7 @@ TEST(Determinism, TheRunIsTheOneThatWasStored) {
   // the scene, the arm's data or any force shows here; store the new hash only if it was meant. It
   // holds for any x86-64 and any C library: nothing in a run calls a sine of that one
   // (arch.one_mathematics).
-  constexpr std::uint64_t kStored = 0xccbd688498ddf1c5;
+  constexpr std::uint64_t kStored = 0xc7a1040f486754b;
   EXPECT_EQ(hash_of_run(1), kStored) << "new hash: 0x" << std::hex << hash_of_run(1);
 }
 
@@ -67,10 +67,10 @@ TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
     std::uint64_t hash;
   };
   int others = 0, runs = 0;
-  for (const Stored& stored : {Stored{"box", 0x31be2ef0e15c24ea},
-                               {"clay", 0x69b3cf6085094106},
-                               {"clay_tablet", 0xebbcbdf45956abd0},
-                               {"floating_block", 0x5e14def3f8c3a7ef}}) {
+  for (const Stored& stored : {Stored{"box", 0x72c0dcc456dfb42f},
+                               {"clay", 0x9e158b0151b2f094},
+                               {"clay_tablet", 0x5fbdee1c077456eb},
+                               {"floating_block", 0xf096e969fc916bdd}}) {
     std::array<std::uint64_t, 5> found{};
     found[4] = hash_of_scene(stored.scene);
     std::array<std::thread, 4> threads;

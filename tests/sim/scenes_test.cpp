@@ -81,13 +81,13 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
 INSTANTIATE_TEST_SUITE_P(
     ByName, ShippedScene,
     ::testing::Values(
-        SceneRun{"box", 0xba50c397c9cd8e8c}, SceneRun{"charges", 0xb6c379285666609d},
-        SceneRun{"clay", 0xc8ff4682e3cacd48}, SceneRun{"clay_tablet", 0x54f6351a970f115c},
-        SceneRun{"floating_block", 0x4fb581957f1b5fa6}, SceneRun{"held_block", 0x3fcbf01b39d6a913},
-        SceneRun{"honey", 0x1e603288038b7890}, SceneRun{"ice", 0xef61daa9ee271ae8},
-        SceneRun{"rubber", 0xfc4623e024984446}, SceneRun{"sandpaper", 0xaf609a811233ef3d},
-        SceneRun{"soft_coarse", 0x616f62bc7419671e}, SceneRun{"tin_can", 0x1864ea1ac298e352},
-        SceneRun{"trampoline", 0xa542e4775591bda}, SceneRun{"water_balloon", 0xe1610059b3ad5311}),
+        SceneRun{"box", 0x9e8f2abb72cebbbb}, SceneRun{"charges", 0x9c431739f0314c51},
+        SceneRun{"clay", 0x63638a448aa1ea7c}, SceneRun{"clay_tablet", 0x6fcc76fa219aff64},
+        SceneRun{"floating_block", 0x9ee980afd50fde21}, SceneRun{"held_block", 0x51269ba0abe95299},
+        SceneRun{"honey", 0x956a38caf003103e}, SceneRun{"ice", 0xd045e322156e6abf},
+        SceneRun{"rubber", 0x9afcad3a5a7c23bc}, SceneRun{"sandpaper", 0x3de7219191bf4078},
+        SceneRun{"soft_coarse", 0x305daf9ecebc4776}, SceneRun{"tin_can", 0xf1b718886da3d9e2},
+        SceneRun{"trampoline", 0x29ba215e50450d70}, SceneRun{"water_balloon", 0x862545378c5ec0f6}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
 TEST(BoxScene, TurnsTheForceInWedgesButNotByTheEntryFace) {

@@ -129,11 +129,8 @@ SineCosine sin_cos(double angle) noexcept {
   const double size = std::abs(angle);
   if (size <= kNearAngle) {
     if (size <= 0x1p-27) return {angle, 1};
-    const NearAngle near = near_angle(angle);
-    const WideSineCosine both = near_sine_cosine(near);
-    if (near.good && is_sure(both.sine, kSineDoubt) && is_sure(both.cosine, kSineDoubt)) {
-      return {both.sine.hi, both.cosine.hi};
-    }
+    const NearAngle near = quick_angle(angle);
+    if (near.good) return quick_sine_cosine(near);
   } else if (!std::isfinite(angle)) {
     return {no_angle(angle), no_angle(angle)};
   }

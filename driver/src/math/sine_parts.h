@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "math/double_double.h"
+#include "math/elementary.h"
 #include "math/tables.h"
 
 namespace thimble::math {
@@ -37,15 +38,22 @@ struct NearAngle {
   bool good = false;       ///< Whether the rest has 64 good bits: not beside a multiple of pi / 64.
 };
 
-/// Returns the parts of an angle (rad) of at most `kNearAngle`.
-inline NearAngle near_angle(double angle) noexcept {
+/// Returns the parts of an angle (rad) of at most `kNearAngle`, in the shortest time: `lo` is not
+/// below the last place of `hi`, but below 2^-35.
+inline NearAngle quick_angle(double angle) noexcept {
   constexpr double kTail = kSineStep[2] + kSineStep[3];
   const double shifted = angle * 0x1.45f306dc9c883p+4 + kWhole;  // 64 / pi, rounded
   const double steps = shifted - kWhole;
   const DoubleDouble most = exact_sum(angle - steps * kSineStep[0], -(steps * kSineStep[1]));
-  const DoubleDouble rest = quick_sum(most.hi, most.lo - steps * kTail);
-  return {std::bit_cast<std::uint64_t>(shifted) & 127, rest.hi, rest.lo,
-          steps == 0 || rest.hi > 0x1p-20 || rest.hi < -0x1p-20};
+  return {std::bit_cast<std::uint64_t>(shifted) & 127, most.hi, most.lo - steps * kTail,
+          steps == 0 || most.hi > 0x1p-20 || most.hi < -0x1p-20};
+}
+
+/// Returns the parts of an angle (rad) of at most `kNearAngle`.
+inline NearAngle near_angle(double angle) noexcept {
+  const NearAngle quick = quick_angle(angle);
+  const DoubleDouble rest = quick_sum(quick.hi, quick.lo);
+  return {quick.step, rest.hi, rest.lo, quick.good};
 }
 
 /// What both functions of the rest of an angle are made of.
@@ -76,6 +84,18 @@ inline DoubleDouble near_sine(std::uint64_t step, const NearAngle& a, const Near
 inline WideSineCosine near_sine_cosine(const NearAngle& a) noexcept {
   const NearTurn t = near_turn(a);
   return {near_sine(a.step, a, t), near_sine((a.step + 32) & 127, a, t)};
+}
+
+/// Returns sine and cosine of an angle (rad) whose rest is good, wrong by less than 1.2 units in
+/// the last place: by series up to 10^-17, in sums that wait little for each other.
+inline SineCosine quick_sine_cosine(const NearAngle& a) noexcept {
+  const double r2 = a.hi * a.hi, r4 = r2 * r2;
+  const double cosine_less_1 = (-0.5 * r2 - a.hi * a.lo) + r4 * (1. / 24 - r2 * (1. / 720));
+  const double sine_more =
+      (a.lo - 0.5 * r2 * a.lo) + a.hi * r2 * ((-1. / 6 + r2 * (1. / 120)) - r4 * (1. / 5040));
+  const DoubleDouble s = kSines[a.step], c = kSines[a.step + 32];
+  return {s.hi + (c.hi * a.hi + (c.hi * sine_more + (s.lo + s.hi * cosine_less_1))),
+          c.hi + ((c.lo + c.hi * cosine_less_1) - s.hi * sine_more - s.hi * a.hi)};
 }
 
 }  // namespace thimble::math

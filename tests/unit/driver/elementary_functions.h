@@ -53,16 +53,12 @@ inline double just_below_1(support::Random& random) {
 /// Every function over what a simulation asks for, over any size, and where it is difficult.
 inline std::vector<Trial> trials() {
   const auto one = [](double (*f)(double)) { return [f](double x, double) { return f(x); }; };
-  const auto sine = [](double x, double) { return sin_cos(x).sine; };
-  const auto cosine = [](double x, double) { return sin_cos(x).cosine; };
   const auto none = between(0, 0);
   return {
       {"sin", one(sin), between(-7, 7), none, 0x4d49d8b6fcd76135},
       {"sin", one(sin), of_size(-1074, 1024), none, 0xd80ad604f3350f8d},
       {"cos", one(cos), between(-7, 7), none, 0x8eb4a64972ed6c2},
       {"cos", one(cos), of_size(-1074, 1024), none, 0x7ec13492eba57c72},
-      {"sin", sine, of_size(-40, 24), none, 0x2741529eb7b2f54c},
-      {"cos", cosine, of_size(-40, 24), none, 0x3d88975f7e3837fc},
       {"tan", one(tan), between(-7, 7), none, 0x97e25a4e9ef1cf1d},
       {"tan", one(tan), any_bits, none, 0x75afcb91bb0d41dd},
       {"asin", one(asin), between(-1, 1), none, 0x6be0c5fcfc88c1f0},

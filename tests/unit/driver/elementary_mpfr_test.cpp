@@ -82,6 +82,31 @@ TEST(ElementaryByMpfr, EveryResultIsTheDoubleNearestToTheTrueValue) {
   }
 }
 
+TEST(ElementaryByMpfr, SineAndCosineAtOnceAreWrongByLessThanTheirBound) {
+  Number x(53), sine(200), cosine(200);
+  const auto units = [](Number& value, double found) {
+    int exponent = 0;
+    std::frexp(mpfr_get_d(value, MPFR_RNDN), &exponent);
+    mpfr_sub_d(value, value, found, MPFR_RNDN);
+    return std::abs(std::ldexp(mpfr_get_d(value, MPFR_RNDN), 53 - exponent));
+  };
+  mpfr_set_emin(-4000);
+  support::Random random(2027);
+  const int count = std::getenv("THIMBLE_LONG") != nullptr ? 3'000'000 : 30'000;
+  double worst = 0;
+  for (const auto& draw : {of_size(-40, 20), of_size(-3, 3)}) {
+    for (int i = 0; i < count; ++i) {
+      const double angle = draw(random);
+      const auto found = sin_cos(angle);
+      mpfr_set_d(x, angle, MPFR_RNDN);
+      mpfr_sin_cos(sine, cosine, x, MPFR_RNDN);
+      worst = std::max({worst, units(sine, found.sine), units(cosine, found.cosine)});
+    }
+  }
+  EXPECT_LT(worst, 1.2);
+  EXPECT_GT(worst, 0.5) << "as good as sin and cos: these would do for both";
+}
+
 TEST(ElementaryByMpfr, MultiplesOfAQuarterTurnAreReducedToTheLastBitAtAnySize) {
   // The double nearest to a multiple of pi / 2: what remains is as small as it gets.
   Nearest nearest;

@@ -147,13 +147,43 @@ TEST(Elementary, NoProductIsFusedWithASum) {
   }
 }
 
-TEST(Elementary, BothAtOnceAreThoseOfEachAlone) {
+/// How many doubles `found` lies away from `wanted`.
+std::int64_t steps_apart(double found, double wanted) {
+  const auto place = [](double x) {
+    const auto bits = std::bit_cast<std::int64_t>(x);
+    return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
+  };
+  return std::abs(place(found) - place(wanted));
+}
+
+TEST(Elementary, SineAndCosineAtOnceAreTheNearestDoubleOrTheNextOne) {
   support::Random random(3);
-  const auto draw = of_size(-40, 40);
-  for (int i = 0; i < 20'000; ++i) {
-    const double x = draw(random);
-    expect_same(sin_cos(x).sine, sin(x));
-    expect_same(sin_cos(x).cosine, cos(x));
+  support::RunHash hash;
+  int next = 0;
+  for (const auto& draw : {of_size(-40, 24), of_size(-1074, 1024), of_size(-3, 3)}) {
+    for (int i = 0; i < 20'000; ++i) {
+      const double x = draw(random);
+      const auto [sine, cosine] = sin_cos(x);
+      hash.add(sine);
+      hash.add(cosine);
+      ASSERT_LE(steps_apart(sine, sin(x)), 1) << std::hexfloat << x;
+      ASSERT_LE(steps_apart(cosine, cos(x)), 1) << std::hexfloat << x;
+      next += sine != sin(x) || cosine != cos(x) ? 1 : 0;
+    }
+  }
+  EXPECT_LE(next, 3000) << "of 60,000";
+  EXPECT_EQ(hash.value(), 0xb69a902ec97f98feu) << std::hex << hash.value();
+}
+
+TEST(Elementary, SineAndCosineAtOnceHoldAroundEachStepOfTheirTable) {
+  for (int i = -200; i <= 200; ++i) {
+    for (const double beside : {0.0, 0x1p-50, 0x1p-30, 0x1p-21, 0x1p-20, 0x1p-19, 0x1.9p-7}) {
+      for (const double sign : {-1, 1}) {
+        const double x = i * 0x1.921fb54442d18p-5 + sign * beside;
+        ASSERT_LE(steps_apart(sin_cos(x).sine, sin(x)), 1) << std::hexfloat << x;
+        ASSERT_LE(steps_apart(sin_cos(x).cosine, cos(x)), 1) << std::hexfloat << x;
+      }
+    }
   }
 }
 

@@ -10,7 +10,7 @@
 namespace thimble::render {
 namespace {
 
-// Enough for heights that are spread like noise, at 2,900 instructions per tick. [chosen]
+// Enough for heights that are spread like noise, at 800 instructions per tick. [chosen]
 constexpr int kWaves = 16;
 
 std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const EffectContext& context) {

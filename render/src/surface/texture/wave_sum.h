@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
+#include <numbers>
 #include <vector>
 
-#include "math/elementary.h"
+#include "surface/texture/sine_pair.h"
 #include "surface/texture/texture_height.h"
 
 namespace thimble::render {
@@ -21,25 +21,35 @@ struct Wave {
 class WaveSum {
  public:
   /// Takes any number of waves. Real-time: never from the servo thread.
-  explicit WaveSum(std::vector<Wave> waves) : waves_(std::move(waves)) {
-    for (const Wave& wave : waves_) peak_ += wave.amplitude;
+  explicit WaveSum(const std::vector<Wave>& waves) : pairs_((waves.size() + 1) / 2) {
+    for (std::size_t i = 0; i < waves.size(); ++i) {
+      TwoWaves& two = pairs_[i / 2];
+      two.amplitude[i % 2] = waves[i].amplitude;
+      for (int axis = 0; axis < 3; ++axis) two.k_M[axis][i % 2] = waves[i].k_M[axis];
+      two.phase[i % 2] = waves[i].phase;
+      peak_ += waves[i].amplitude;
+    }
   }
 
-  /// Finds the height at a place (M, m). NaN gives NaN. Real-time: safe; 180 instructions per wave.
+  /// Finds the height at a place (M, m). NaN gives NaN. Real-time: safe; 50 instructions per wave.
   TextureHeight at(const Eigen::Vector3d& p_M) const noexcept {
-    TextureHeight texture{.height = -peak_};
-    for (const Wave& wave : waves_) {
-      const double angle = wave.k_M.dot(p_M) + wave.phase;
-      const auto [sine, cosine] = math::sin_cos(angle);
-      texture.height += wave.amplitude * sine;
-      texture.slope_M += wave.amplitude * cosine * wave.k_M;
+    Pair height{}, slope[3]{};
+    for (const TwoWaves& two : pairs_) {
+      const Pair angle =
+          two.k_M[0] * p_M[0] + two.k_M[1] * p_M[1] + two.k_M[2] * p_M[2] + two.phase;
+      const SinePair now = sine_pair(angle * (2 / std::numbers::pi));
+      height += two.amplitude * now.sine;
+      const Pair steepness = two.amplitude * now.cosine;
+      for (int axis = 0; axis < 3; ++axis) slope[axis] += steepness * two.k_M[axis];
     }
-    return texture;
+    return {.height = height[0] + height[1] - peak_,
+            .slope_M = {slope[0][0] + slope[0][1], slope[1][0] + slope[1][1],
+                        slope[2][0] + slope[2][1]}};
   }
 
   /// Makes all waves higher or lower by a factor (> 0). Real-time: safe.
   void scale(double factor) noexcept {
-    for (Wave& wave : waves_) wave.amplitude *= factor;
+    for (TwoWaves& two : pairs_) two.amplitude *= factor;
     peak_ *= factor;
   }
 
@@ -47,7 +57,14 @@ class WaveSum {
   double relief() const noexcept { return 2 * peak_; }
 
  private:
-  std::vector<Wave> waves_;
+  /// Two waves side by side; where their number is odd the last has no amplitude.
+  struct TwoWaves {
+    Pair amplitude{};  // m
+    Pair k_M[3]{};     // rad/m
+    Pair phase{};      // rad
+  };
+
+  std::vector<TwoWaves> pairs_;
   double peak_ = 0;
 };
 
