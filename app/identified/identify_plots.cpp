@@ -170,6 +170,9 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
        "pieces "
        "of 60 ms. Dots: their medians with quartiles. Line: the constants of friction on the same "
        "motion. A step at zero is dry friction, a slope viscous friction."}};
+  if (identified.play.friction.seen) {
+    shown.back().caption += " The motors' own friction, which was found beside it, is taken off.";
+  }
   std::vector<std::string> commands{fit_plot(), rest_plot(identified.bare.noise), friction_plot()};
   if (lines) {
     shown.push_back(

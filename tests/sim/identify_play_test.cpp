@@ -73,6 +73,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     const double mean = weighed ? 1 : std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     const double moved = arm.file.simulated.plant.mass / mean;
     EXPECT_EQ(constants.absolute, weighed);
+    EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
     EXPECT_EQ(says(*found, "(joint 1), whole width."), !is_long());
     if (weighed) mass.add(constants.mass, moved);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -17,6 +17,8 @@ struct CableConstants {
   Estimate stiffness;      ///< Of the cable, N m/rad at the joint.
   Estimate damping;        ///< N m s/rad
   Estimate play;           ///< Whole width, rad at the joint; 0 where none was seen.
+  Estimate viscous;        ///< Friction of the motor's side, N m s/rad at the joint; 0 likewise.
+  Estimate coulomb;        ///< Its dry friction, N m at the joint; 0 likewise.
   Estimate antiresonance;  ///< At which the link oscillates on its cable, the motor held, Hz.
   Estimate resonance;      ///< At which motor and link oscillate against each other, Hz.
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "math/elementary.h"
 
@@ -74,6 +77,14 @@ void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& row
     if (cable.play.value > 0) {
       rows.add(name("play of joint"), cable.play, 1e3, "mrad, whole width", of(train.play));
     }
+    if (cable.viscous.value > 0) {
+      rows.add(name("viscous friction, motor"), cable.viscous, 1e3, "mN m s/rad at the joint",
+               of(train.viscous));
+    }
+    if (cable.coulomb.value > 0) {
+      rows.add(name("Coulomb friction, motor"), cable.coulomb, 1e3, "mN m at the joint",
+               of(train.coulomb));
+    }
     if (CableConstants::sees(cable.antiresonance)) {
       rows.add(name("antiresonance"), cable.antiresonance, 1, "Hz, link on its cable");
     }
@@ -128,6 +139,24 @@ void add_links(const LinkConstants& found, const scene::ArmFile& file, Rows& row
   }
 }
 
+/// Names a joint whose friction stands out; empty if none does.
+std::string rubs_most_text(const Identified& identified) {
+  constexpr double kFarAbove = 3;  // [chosen: shipped arms' joints differ by less]
+  if (!identified.constants.cables) return "";
+  std::array<std::pair<double, int>, 3> by{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    by[i] = {(*identified.constants.cables)[i].coulomb.value, static_cast<int>(i)};
+  }
+  std::sort(by.begin(), by.end());
+  const auto& [most, joint] = by[2];
+  const double at_tip = most / std::sqrt(identified.lines.JTJ(joint, joint));
+  if (!(most > kFarAbove * by[1].first && at_tip > identified.constants.coulomb.value)) return "";
+  return fmt::format(
+      " Joint {} rubs far more than the others and than the tip: look at its cable, bearing and "
+      "motor.",
+      joint + 1);
+}
+
 }  // namespace
 
 std::vector<ConstantRow> constant_rows(const Identified& identified, const scene::ArmFile& file) {
@@ -177,12 +206,16 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
 
 std::string fit_text(const Identified& identified) {
   const PerMass& fit = identified.bare;
-  if (identified.play.seen) {
-    const GapFit& play = identified.play.with;
+  if (identified.play.told()) {
+    const PlayFit& play = identified.play;
+    const char* what = !play.seen           ? "friction of the motors"
+                       : play.friction.seen ? "play and friction of the motors"
+                                            : "play";
     return fmt::format(
-        "Fitted with play to {} pieces of motion; what is left of the angles is {:.2f} times what "
-        "the encoders' steps leave, without play {:.1f} times.",
-        fit.windows, std::sqrt(play.misfit), std::sqrt(identified.play.without.misfit));
+        "Fitted with {} to {} pieces of motion; what is left of the angles is {:.2f} times what "
+        "the encoders' steps leave, without {:.1f} times.{}",
+        what, fit.windows, std::sqrt(play.best().misfit), std::sqrt(play.plain.misfit),
+        rubs_most_text(identified));
   }
   return fmt::format(
       "Fitted to {} pieces of motion ({} left out, in which an axis stood); {:.3f} % of the "

@@ -148,8 +148,8 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
 /// Looks in what the fit leaves for what it does not know of. A hand, which `held` tells of, looks
 /// like joints that stick, and those are not looked for then.
 void look_closer(Identified& found, bool held) {
-  // Where the links were in their play at each moment is not known.
-  if (found.play.seen) return;
+  // Where the links were in their play is not known, and behind motors that rub only nearly.
+  if (found.play.told()) return;
   const FittedMotion motion = found.fitted();
   const Estimate mass = found.moved_mass();
   found.friction = friction_directions(motion, mass);
@@ -183,8 +183,8 @@ std::string like_play_text(const PlayFit& play) {
   return fmt::format(
       "The motors move as if there were play in the cables, but with play the arm is not "
       "understood "
-      "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Dry friction of the motors, "
-      "slack that changes, or a hand do that.",
+      "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Friction that changes, slack "
+      "that changes, or a hand do that.",
       play.with.misfit, play.without.misfit);
 }
 
@@ -239,11 +239,15 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
       found.play = find_play(*motion, *fit, found.lines);
       if (found.play.like_play) found.against.push_back(like_play_text(found.play));
     }
-    if (found.play.seen) {
+    if (found.play.told()) {
       const GapFit gap =
-          loaded ? fit_play_again(*motion, *fit, rigid, found.play.with) : found.play.with;
+          loaded ? fit_play_again(*motion, *fit, rigid, found.play) : found.play.best();
       rigid = *fit;
-      if (!loaded) found.lines.elastic = two_mass_of(gap, found.lines.elastic);
+      if (!loaded) {
+        found.lines.elastic = two_mass_of(gap, found.lines.elastic);
+        found.lines.rotor_viscous = gap.theta.segment<3>(GapTheta::kRotorViscous);
+        found.lines.rotor_coulomb = gap.theta.segment<3>(GapTheta::kRotorCoulomb);
+      }
       auto behind = motion_of_links(*motion, found.lines, file);
       if (!behind) return behind.error();
       links = std::move(behind).value();

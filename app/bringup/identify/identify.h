@@ -31,7 +31,7 @@ struct IdentifyOptions {
   double lead = 1;      ///< That it moves before each, s.
   /// Whether cables that stretch are looked for; if not, an arm that has some is a bad fit.
   bool cables = true;
-  bool play = true;       ///< Whether play is looked for where they do.
+  bool play = true;       ///< Whether play and friction of the motors are looked for where they do.
   double known_mass = 0;  ///< That the user fixes to the tip for the second motion, kg; 0: none.
   double force_most = kIdentifyForceMax;  ///< The most that is asked for, N; the file's at most.
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
@@ -53,7 +53,9 @@ struct Identified {
   std::optional<PerMass> loaded;  ///< Of that with it, if there was one.
   CableFit lines;                 ///< What the lines of the motion without it say of its cables.
   LineSpectrum spectrum;          ///< These lines.
-  PlayFit play;  ///< Of cables that stretch. Where it is seen, `lines` and `bare` are this fit's.
+  /// Play of cables that stretch and friction of their motors. Where some is seen, `lines` and
+  /// `bare` are this fit's.
+  PlayFit play;
   /// Cogging and ripple of the motors, which all motions here are freed of.
   MotorWaves waves;
   /// The motion without the known mass, of the links where cables stretch: what `bare` fits.

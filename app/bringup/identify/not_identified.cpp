@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/cables/behind_cables.h"
 #include "bringup/identify/line_forces.h"
 
 namespace thimble::app {
@@ -76,6 +77,52 @@ void of_play(const Identified& identified, Sentences& all) {
                         1e3 * (play.width[i].value + play.width[i].plus_minus), i + 1);
   }
   if (!none.empty()) all.push_back("Play: none seen above " + none + ", whole width.");
+}
+
+/// What would have been seen of one friction of the motors' side, joint by joint.
+std::string unseen_friction(const Identified& identified, const std::array<Estimate, 3>& friction,
+                            const std::array<bool, 3>& shows, const char* unit) {
+  std::string none;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (identified.play.friction.seen && shows[i]) continue;
+    const Estimate is = by_gain(friction[i], identified.constants.gain[i]);
+    none += fmt::format("{}{:.2g} {} (joint {})", none.empty() ? "" : ", ",
+                        1e3 * std::max(0.0, is.value + is.plus_minus), unit, i + 1);
+  }
+  return none;
+}
+
+void of_rotor_friction(const Identified& identified, Sentences& all) {
+  const PlayFit& play = identified.play;
+  if (!play.searched) {
+    all.emplace_back(
+        "Friction of single joints: not looked for. It shows by motors that come to rest apart "
+        "from their links, and is looked for where cables were seen to stretch; else the friction "
+        "along the axes of the tip is all that is told.");
+    return;
+  }
+  if (!play.fits) {
+    all.emplace_back(
+        "Friction of single joints: not told, for the motion of the motors is not understood.");
+    return;
+  }
+  const RotorFriction& friction = play.friction;
+  const std::string dry =
+      unseen_friction(identified, friction.coulomb, friction.shows_coulomb, "mN m");
+  const std::string viscous =
+      unseen_friction(identified, friction.viscous, friction.shows_viscous, "mN m s/rad");
+  if (!dry.empty()) {
+    all.push_back("Dry friction of joints beside that of the tip: none seen above " + dry + ".");
+  }
+  if (!viscous.empty()) {
+    all.push_back("Viscous friction of joints beside that of the tip: none seen above " + viscous +
+                  ".");
+  }
+  if (friction.seen) {
+    all.emplace_back(
+        "Dry friction of a joint by direction: not told. Half of what it differs by is a constant "
+        "torque, which looks like weight.");
+  }
 }
 
 void of_friction(const FrictionDirections& friction, Sentences& all) {
@@ -260,9 +307,10 @@ std::vector<std::string> not_identified(const Identified& identified) {
   Sentences all;
   of_constants(identified.constants, all);
   of_cables(identified, all);
-  if (identified.play.seen) {
+  if (identified.play.told()) {
     all.emplace_back(
-        "Dry friction that differs between axes or directions: not looked for behind play.");
+        "Dry friction that differs between axes or directions: not looked for behind play or "
+        "motors that rub.");
   } else {
     of_friction(identified.friction, all);
   }
@@ -270,6 +318,7 @@ std::vector<std::string> not_identified(const Identified& identified) {
   of_encoders(identified.encoders, all);
   of_link(identified, all);
   of_play(identified, all);
+  of_rotor_friction(identified, all);
   of_waves(identified, all);
   of_workspace(identified, all);
   return all;

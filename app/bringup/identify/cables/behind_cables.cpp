@@ -62,6 +62,11 @@ driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::Ar
   }
 }
 
+Estimate by_gain(const Estimate& torque, const Estimate& gain) {
+  return {torque.value * gain.value,
+          math::hypot(torque.plus_minus * gain.value, torque.value * gain.plus_minus)};
+}
+
 void put_cables(Identified& found) {
   ArmConstants& constants = found.constants;
   widen(constants.mass, kCableMass * constants.mass.value);
@@ -82,6 +87,14 @@ void put_cables(Identified& found) {
     }
     widen(cable.damping, kCableDamping * cable.damping.value);
     if (found.play.seen && found.play.shows[i]) cable.play = found.play.width[i];
+    const RotorFriction& friction = found.play.friction;
+    if (!friction.seen) continue;
+    if (friction.shows_viscous[i]) {
+      cable.viscous = by_gain(friction.viscous[i], constants.gain[i]);
+    }
+    if (friction.shows_coulomb[i]) {
+      cable.coulomb = by_gain(friction.coulomb[i], constants.gain[i]);
+    }
   }
   if (found.lines.elastic.misfit > kLinesMisfitMost) {
     found.against.push_back(fmt::format(

@@ -47,13 +47,45 @@ double kept(double hz) {
   return 0.5 + 0.5 * math::cos(std::numbers::pi * (hz - kWhole) / (kNone - kWhole));
 }
 
+/// Returns the frequency of an element of a transform, Hz.
+double hertz(std::size_t i, std::size_t count, double dt) {
+  const auto k = static_cast<double>(i <= count / 2 ? i : count - i);
+  return k / (static_cast<double>(count) * dt);
+}
+
+/// Returns i times its angular frequency, rad/s.
+Complex laplace(std::size_t i, std::size_t count, double dt) {
+  const double sign = i <= count / 2 ? 1 : -1;
+  return {0, sign * 2 * std::numbers::pi * hertz(i, count, dt)};
+}
+
 /// How a joint's torque and angle make what its cable does to the link: torque of an equal motor
 /// without inertia, and angle.
 struct JointOfLink {
   std::vector<double> tau, q, ddq;
 };
 
-JointOfLink behind_cable(const ArmMotion& motion, const TwoMass& fit, int joint) {
+/// Returns the transform of what friction takes of a motor's torque, whose angles' transform is
+/// `turned`, in the middle of each tick.
+Wave rubbed(const Wave& turned, double viscous, double coulomb, double dt) {
+  const std::size_t count = turned.size();
+  Wave rate(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Complex s = laplace(i, count, dt);
+    rate[i] = kept(hertz(i, count, dt)) * s * turned[i] * turn_by(0.5 * s.imag() * dt);
+  }
+  std::vector<double> torque = series_of(rate);
+  for (double& one : torque) {
+    one = viscous * one + coulomb * (one > 0 ? 1.0 : one < 0 ? -1.0 : 0.0);
+  }
+  Wave wave;
+  Eigen::FFT<double> transform;
+  transform.fwd(wave, torque);
+  return wave;
+}
+
+JointOfLink behind_cable(const ArmMotion& motion, const CableFit& cables, int joint) {
+  const TwoMass& fit = cables.elastic;
   const std::size_t count = motion.samples.size();
   std::vector<double> tau(count), q(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -66,15 +98,16 @@ JointOfLink behind_cable(const ArmMotion& motion, const TwoMass& fit, int joint)
   const double inertia = fit.theta[TwoMass::kInertia + joint];
   const double give = fit.theta[TwoMass::kCompliance + joint];
   const double fade = fit.theta[TwoMass::kFade + joint];
+  const double viscous = cables.rotor_viscous[joint], coulomb = cables.rotor_coulomb[joint];
+  Wave rubs;
+  if (viscous != 0 || coulomb != 0) rubs = rubbed(turned.wave, viscous, coulomb, motion.dt);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto k = static_cast<double>(i <= count / 2 ? i : count - i);
-    const double hz = k / (static_cast<double>(count) * motion.dt);
-    const double sign = i <= count / 2 ? 1 : -1;
-    const Complex s(0, sign * 2 * std::numbers::pi * hz);
+    const Complex s = laplace(i, count, motion.dt);
     // The torque of a tick is its mean over the tick that it is late.
-    const Complex pull = gain * turn_by(-s.imag() * fit.theta[TwoMass::kDelay]) * pushed.wave[i] -
-                         inertia * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
-    const double share = kept(hz);
+    Complex pull = gain * turn_by(-s.imag() * fit.theta[TwoMass::kDelay]) * pushed.wave[i] -
+                   inertia * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
+    if (!rubs.empty()) pull -= rubs[i];
+    const double share = kept(hertz(i, count, motion.dt));
     faster[i] = share * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
     turned.wave[i] = share * (turned.wave[i] - give / (1.0 + fade * s) * pull *
                                                    turn_by(-0.5 * s.imag() * motion.dt));
@@ -134,7 +167,7 @@ driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFi
   whole.samples.erase(whole.samples.begin(), whole.samples.begin() + over);
   std::array<JointOfLink, 3> links;
   for (int joint = 0; joint < 3; ++joint) {
-    links[static_cast<std::size_t>(joint)] = behind_cable(whole, fit.elastic, joint);
+    links[static_cast<std::size_t>(joint)] = behind_cable(whole, fit, joint);
   }
   ArmMotion seen = whole;
   const auto ends = static_cast<std::size_t>(std::llround(kEnds / motion.dt));

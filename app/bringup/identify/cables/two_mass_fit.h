@@ -49,6 +49,9 @@ struct CableFit {
   /// Where nothing was seen: cables that let the links oscillate below this would have been, Hz for
   /// each joint.
   Eigen::Vector3d unseen_from{0, 0, 0};
+  /// Friction of the motors' side per moved mass, where the motors' motion showed some (PlayFit):
+  /// of it lines see a viscous part alone, which differs from line to line.
+  Eigen::Vector3d rotor_viscous{0, 0, 0}, rotor_coulomb{0, 0, 0};
   Eigen::Matrix3d JTJ = Eigen::Matrix3d::Zero();  ///< Of the motion, m^2.
   std::vector<Eigen::Vector3d> noise;             ///< RMS beside each line, rad for each joint.
 };

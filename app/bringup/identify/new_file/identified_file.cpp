@@ -109,20 +109,28 @@ struct TrainConstant {
 constexpr TrainConstant kTrainConstants[] = {{"stiffness", "N m/rad", &CableConstants::stiffness},
                                              {"inertia", "kg m^2", &CableConstants::inertia},
                                              {"damping", "N m s/rad", &CableConstants::damping},
-                                             {"play", "rad, whole width", &CableConstants::play}};
+                                             {"play", "rad, whole width", &CableConstants::play},
+                                             {"viscous", "N m s/rad", &CableConstants::viscous},
+                                             {"coulomb", "N m", &CableConstants::coulomb}};
+constexpr std::size_t kAlways = 3;  // the others only where there is some, or was
 
-/// Returns the constants that are written: play only where there is some, or was.
+/// Returns the constants that are written.
 std::vector<TrainConstant> train_constants(const YAML::Node& train,
                                            const std::array<CableConstants, 3>& cables) {
-  const bool plays = std::any_of(cables.begin(), cables.end(),
-                                 [](const CableConstants& one) { return one.play.value > 0; });
-  std::vector<TrainConstant> all(std::begin(kTrainConstants), std::end(kTrainConstants));
-  if (!plays && !(train && train["play"])) all.pop_back();
+  std::vector<TrainConstant> all(std::begin(kTrainConstants),
+                                 std::begin(kTrainConstants) + kAlways);
+  for (std::size_t i = kAlways; i < std::size(kTrainConstants); ++i) {
+    const TrainConstant& one = kTrainConstants[i];
+    const bool some = std::any_of(cables.begin(), cables.end(), [&](const CableConstants& cable) {
+      return (cable.*one.member).value > 0;
+    });
+    if (some || (train && train[one.key])) all.push_back(one);
+  }
   return all;
 }
 
-/// Exchanges stiffness, inertia, damping and play of the drive train, or adds the section before
-/// `tip`.
+/// Exchanges stiffness, inertia, damping, play and friction of the drive train, or adds the section
+/// before `tip`.
 bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>& cables,
                const IdentifiedMark& mark, FileLines& lines) {
   const YAML::Node train = simulation["drive_train"];
@@ -143,7 +151,10 @@ bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>
     return std::all_of(constants.begin(), constants.end(), [&](const TrainConstant& constant) {
       const std::string text = constant.text(cables, mark);
       if (train[constant.key]) return lines.exchange(train[constant.key], text);
-      return constant.member == &CableConstants::play &&
+      const auto* always = std::begin(kTrainConstants) + kAlways;
+      return std::none_of(
+                 std::begin(kTrainConstants), always,
+                 [&](const TrainConstant& one) { return one.member == constant.member; }) &&
              lines.add_behind(train["damping"], std::string(constant.key) + ": " + text);
     });
   }
@@ -239,9 +250,13 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   const auto& train = read->simulated.drive_train;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    right = right &&
-            (!found.cables || (near_train(train.stiffness[k], (*found.cables)[i].stiffness.value) &&
-                               near_train(train.play[k], (*found.cables)[i].play.value)));
+    if (found.cables) {
+      const CableConstants& cable = (*found.cables)[i];
+      right = right && near_train(train.stiffness[k], cable.stiffness.value) &&
+              near_train(train.play[k], cable.play.value) &&
+              near_train(train.viscous[k], cable.viscous.value) &&
+              near_train(train.coulomb[k], cable.coulomb.value);
+    }
     right = right && near(read->model.drives[i].torque_constant, torque[i]);
   }
   if (!right) return bad_form("form");

@@ -23,9 +23,13 @@ struct GapPart {
 
 class GapSearch {
  public:
-  GapSearch(GapPieces& pieces, const Gap::Vector& from, bool with_play)
-      : pieces_(pieces), theta_(from), parts_(pieces.pieces().size()) {
-    for (int k = 0; k < (with_play ? Gap::kCount : Gap::kPlay); ++k) free_.push_back(k);
+  GapSearch(GapPieces& pieces, const Gap::Vector& from, const GapSought& sought)
+      : pieces_(pieces), theta_(from), friction_(sought.friction), parts_(pieces.pieces().size()) {
+    for (int k = 0; k < Gap::kCount; ++k) {
+      const bool is_play = k >= Gap::kPlay && k < Gap::kRotorViscous;
+      const bool is_free = k < Gap::kPlay || (is_play ? sought.play : sought.friction);
+      if (is_free) free_.push_back(k);
+    }
   }
 
   void go(int rounds) {
@@ -149,6 +153,25 @@ class GapSearch {
     }
   }
 
+  /// Holds viscous friction at zero where a step would take it below, which motion alone would do:
+  /// that of the tip and those of the motors hardly differ. Returns whether any was.
+  bool pin_viscous(const Eigen::VectorXd& by, const Eigen::VectorXd& scale,
+                   Eigen::MatrixXd& reduced, Eigen::VectorXd& right) const {
+    constexpr double kPin = 1e6;  // of scaled equations, whose diagonal is one
+    bool any = false;
+    for (std::size_t j = 0; j < free_.size(); ++j) {
+      const int k = free_[j];
+      const bool viscous =
+          k == Gap::kViscous || (k >= Gap::kRotorViscous && k < Gap::kRotorCoulomb);
+      const auto at = static_cast<Eigen::Index>(j);
+      if (!viscous || !(theta_[k] + by[at] < 0)) continue;
+      reduced(at, at) += kPin;
+      right[at] += kPin * theta_[k] / scale[at];
+      any = true;
+    }
+    return any;
+  }
+
   void step(double damping) {
     constexpr double kLogMost = 0.7;  // in one step
     Eigen::MatrixXd reduced;
@@ -158,12 +181,16 @@ class GapSearch {
     const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     reduced = scale.asDiagonal() * reduced * scale.asDiagonal();
     reduced.diagonal().array() += damping;
-    Eigen::VectorXd by = -(scale.asDiagonal() * reduced.ldlt().solve(scale.asDiagonal() * right));
+    right = scale.asDiagonal() * right;
+    Eigen::VectorXd by = -(scale.asDiagonal() * reduced.ldlt().solve(right));
+    if (friction_ && pin_viscous(by, scale, reduced, right)) {
+      by = -(scale.asDiagonal() * reduced.ldlt().solve(right));
+    }
     for (std::size_t j = 0; j < free_.size(); ++j) {
       double& one = by[static_cast<Eigen::Index>(j)];
       const int k = free_[j];
       if (k >= Gap::kInertia && k < Gap::kPlay) one = std::clamp(one, -kLogMost, kLogMost);
-      if (k >= Gap::kPlay) one = std::max(one, -theta_[k]);
+      if (k >= Gap::kPlay && k < Gap::kRotorViscous) one = std::max(one, -theta_[k]);
       if (k < Gap::kDelay) one = std::max(one, -0.5 * theta_[k]);
       move_constant(theta_, k, one);
     }
@@ -176,6 +203,7 @@ class GapSearch {
 
   GapPieces& pieces_;
   Gap::Vector theta_;
+  bool friction_;  // of the motors is searched for
   std::vector<int> free_;
   std::vector<GapPart> parts_;
   GapSlopes slopes_;
@@ -183,8 +211,8 @@ class GapSearch {
 
 }  // namespace
 
-GapFit fit_gap(GapPieces pieces, const Gap::Vector& from, bool with_play, int rounds) {
-  GapSearch search(pieces, from, with_play);
+GapFit fit_gap(GapPieces pieces, const Gap::Vector& from, const GapSought& sought, int rounds) {
+  GapSearch search(pieces, from, sought);
   search.go(rounds);
   return search.result();
 }

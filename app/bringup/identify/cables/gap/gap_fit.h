@@ -6,6 +6,12 @@
 
 namespace thimble::app {
 
+/// What is searched for beside gains, delay, tip, motors and cables.
+struct GapSought {
+  bool play = false;      ///< The widths.
+  bool friction = false;  ///< That of the motors' side.
+};
+
 /// A fit of GapTheta to pieces of a motion.
 struct GapFit {
   GapTheta::Vector theta = GapTheta::Vector::Zero();
@@ -21,8 +27,8 @@ struct GapFit {
 /// Fits GapTheta to the motors' angles (output error) by multiple shooting: the model moves over
 /// each of the pieces from a state of its own, and states and constants together leave the least.
 /// Short pieces keep what rattles in its play from being chaotic over them. The search is
-/// Levenberg's and Marquardt's, the states eliminated piece by piece. `with_play`: the widths are
-/// searched for, else they stay as they are in `from`. Real-time: never from the servo thread.
-GapFit fit_gap(GapPieces pieces, const GapTheta::Vector& from, bool with_play, int rounds);
+/// Levenberg's and Marquardt's, the states eliminated piece by piece. Constants that are not among
+/// `sought` stay as they are in `from`. Real-time: never from the servo thread.
+GapFit fit_gap(GapPieces pieces, const GapTheta::Vector& from, const GapSought& sought, int rounds);
 
 }  // namespace thimble::app

@@ -64,6 +64,9 @@ GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
   const Eigen::Vector3d yields = theta.segment<3>(Gap::kInertia).cwiseInverse();
   const double viscous = theta[Gap::kViscous], coulomb = std::max(0.0, theta[Gap::kCoulomb]);
   const double spring = theta[Gap::kSpring];
+  const Eigen::Vector3d rotor_viscous = yields.cwiseProduct(theta.segment<3>(Gap::kRotorViscous));
+  const Eigen::Vector3d rotor_coulomb = yields.cwiseProduct(theta.segment<3>(Gap::kRotorCoulomb));
+  const bool rubs = !rotor_viscous.isZero(0) || !rotor_coulomb.isZero(0);
   const double late = theta[Gap::kDelay] / dt;
   const auto ticks_late = static_cast<std::ptrdiff_t>(std::floor(late));
   // Until when in a tick the torque of the one before stands, in sub-steps.
@@ -91,6 +94,10 @@ GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
         pull[k] = mean_pull(ahead[k], h * slip[k], 0.5 * theta[Gap::kPlay + k],
                             theta[Gap::kStiffness + k], theta[Gap::kDamping + k] * slip_half[k]);
         const double a = (tau[k] - pull[k]) * yields[k];
+        if (rubs) {
+          slide_axis(q[k], rate[k], a - rotor_viscous[k] * rate[k], rotor_coulomb[k], h);
+          continue;
+        }
         q[k] += h * (rate[k] + 0.5 * h * a);
         rate[k] += h * a;
       }

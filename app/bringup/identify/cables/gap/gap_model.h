@@ -9,8 +9,8 @@ namespace thimble::app {
 
 /// Constants of motors, cables with play, and what is behind them, per moved mass:
 ///
-///     J_i q_i'' = g_i tau_i(t - delay) - pull_i,      p'' = G^T pull - b p' - c sgn(p') + w
-///                                                           - s (p - p_0),
+///     J_i q_i'' = g_i tau_i(t - delay) - pull_i - b_i q_i' - c_i sgn(q_i'),
+///     p'' = G^T pull - b p' - c sgn(p') + w - s (p - p_0),
 ///     pull_i = k_i (x_i - clamp(x_i, +-play_i / 2)) + d_i x_i' outside of the play, else 0,
 ///
 /// x_i = q_i - l_i how far motor i is ahead of its link, dry friction with its rest. This is the
@@ -27,7 +27,9 @@ struct GapTheta {
     kStiffness = 13,
     kDamping = 16,
     kPlay = 19,
-    kCount = 22
+    kRotorViscous = 22,  // of the motor's side
+    kRotorCoulomb = 25,
+    kCount = 28
   };
   using Vector = Eigen::Matrix<double, kCount, 1>;
 };

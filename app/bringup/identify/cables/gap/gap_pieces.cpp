@@ -29,6 +29,7 @@ double probe_of_constant(const Gap::Vector& theta, int k) {
   if (is_gap_log(k)) return 1e-4;
   if (k < Gap::kDelay) return 1e-4 * theta[k];
   if (k == Gap::kDelay) return 1e-6;
+  if (k >= Gap::kRotorViscous) return k < Gap::kRotorCoulomb ? 1e-4 : 1e-3;
   return k >= Gap::kPlay ? 2e-6 : 1e-3;
 }
 
