@@ -109,7 +109,7 @@ TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
       continue;
     }
     EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
-    if (!found->play.fits) continue;
+    if (!found->play.friction.fits) continue;
     ++told;
     EXPECT_TRUE(
         leaves_open(*found, "Dry friction of joints beside that of the tip: none seen above"))
@@ -154,7 +154,8 @@ TEST(IdentifyJointFriction, IsWrittenWithItsInterval) {
 
 TEST(IdentifyJointFriction, NamesTheJointThatRubsFarMoreThanAllElse) {
   Identified found;
-  found.play.searched = found.play.fits = found.play.friction.seen = true;
+  found.play.searched = found.play.fits = true;
+  found.play.friction.fits = found.play.friction.seen = true;
   found.play.friction.shows_coulomb = {true, true, true};
   found.lines.JTJ = 0.0156 * Eigen::Matrix3d::Identity();  // a lever of 0.125 m
   found.constants.coulomb = {0.04, 0.001};

@@ -101,9 +101,10 @@ void of_rotor_friction(const Identified& identified, Sentences& all) {
         "along the axes of the tip is all that is told.");
     return;
   }
-  if (!play.fits) {
+  if (!play.fits || !play.friction.fits) {
     all.emplace_back(
-        "Friction of single joints: not told, for the motion of the motors is not understood.");
+        "Friction of single joints: not told, for the motion of the motors is not understood to "
+        "the encoders' steps.");
     return;
   }
   const RotorFriction& friction = play.friction;

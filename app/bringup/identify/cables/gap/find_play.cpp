@@ -160,7 +160,9 @@ RotorFriction judge_friction(const GapFit& without, const GapFit& with) {
     take(Gap::kRotorViscous, kMethodViscous, found.viscous[k], found.shows_viscous[k]);
     take(Gap::kRotorCoulomb, 0, found.coulomb[k], found.shows_coulomb[k]);
   }
-  found.seen = any && with.misfit < kFits && found.better > kPlayBetter;
+  // A search that ended in another valley leaves little more, and friction that is far off.
+  found.fits = with.misfit < kFitsAlready;
+  found.seen = any && found.fits && found.better > kPlayBetter;
   return found;
 }
 

@@ -18,7 +18,8 @@ struct RotorFriction {
   std::array<Estimate, 3> coulomb;  ///< N m
   std::array<bool, 3> shows_viscous{}, shows_coulomb{};
   double better = 0;  ///< By how much the Bayesian information prefers it.
-  bool seen = false;  ///< It is so much better, and some of it shows.
+  bool fits = false;  ///< Nothing but the encoders' steps is left with it.
+  bool seen = false;  ///< It fits, is so much better, and some of it shows.
 };
 
 /// What a motion shows of play in the cables, and of friction of the motors before them.
