@@ -33,9 +33,11 @@ expect 1 '' test -e vintage_phantom_identified.yaml
 expect 0 '^Written to vintage_phantom_identified\.yaml' "$thimble" $brief --yes
 
 # A bad fit is written by name alone, and says so in each mark; a yes is not enough.
-sed 's/^simulation:/&\n  drive_train: {coulomb: [0, 0.02, 0], stiffness: [20, 20, 20], inertia: [0.0005, 0.0005, 0.0005], damping: [0.01, 0.01, 0.01]}/' \
+# A joint rubs whose cable is too stiff to be seen.
+sed 's/^simulation:/&\n  drive_train: {coulomb: [0, 0.03, 0], stiffness: [2000, 2000, 2000], inertia: [0.00001, 0.00001, 0.00001], damping: [0.01, 0.01, 0.01]}/' \
   "$arm" >sticky.yaml
-bad="identify --device sim --arm sticky.yaml --seconds 10 --output bad.yaml"
+bad="identify --device sim --arm sticky.yaml --seconds 10 --places 0 --output bad.yaml"
+expect 5 '^BAD FIT  Joint 2 sticks: ' "$thimble" $bad
 expect 5 '^Nothing was written\.' "$thimble" $bad --yes
 expect 1 '' test -e bad.yaml
 expect 5 '^Nothing was written\.' $at_terminal wait 'marked BAD FIT, to bad.yaml? [y/N]' keys '\n' -- "$thimble" $bad --write-bad-fit

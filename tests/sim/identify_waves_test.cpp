@@ -86,8 +86,9 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
     seeds.push_back(9000 + k);
   }
   Found cogging{"cogging"}, ripple{"ripple"};
-  Score mass{"mass", 0.03}, coulomb{"Coulomb", 0.05};
-  int told = 0, right = 0, arms = 0;
+  Score mass{"mass", 0.03}, coulomb{"Coulomb", 0.05}, delay{"delay", 1e-4};
+  Score viscous{"viscous", 0.1};
+  int told = 0, right = 0, arms = 0, viscous_right = 0;
   for (const std::uint64_t seed : seeds) {
     SCOPED_TRACE(seed);
     // A third of them WoodenHaptics arms, a few Polhems.
@@ -106,6 +107,11 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
     const auto& train = arm.file.simulated.drive_train;
     mass.add(found->constants.mass, arm.file.simulated.plant.mass);
     coulomb.add(found->constants.coulomb, arm.file.simulated.plant.coulomb);
+    delay.add(found->constants.delay, arm.delay, false);
+    const Estimate& rubs = found->constants.viscous;
+    const double truth = arm.file.simulated.plant.viscous;
+    viscous.add(rubs, truth);
+    viscous_right += std::abs(rubs.value / truth - 1) < viscous.most || rubs.holds(truth) ? 1 : 0;
     const MotorWaves& waves = found->waves;
     if (!waves.told()) continue;
     ++told;
@@ -122,11 +128,14 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
   std::printf("%d of %d arms written, %d with waves, %d of these with the right number\n", arms,
               drawn, told, right);
   for (const Found* one : {&cogging, &ripple}) one->tell();
-  for (const Score* score : {&mass, &coulomb}) {
+  for (const Score* score : {&mass, &coulomb, &delay, &viscous}) {
     std::printf("%-8s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
                 score->worst, score->most, score->held, score->all);
-    EXPECT_LT(score->worst, score->most) << score->name;
+    if (score != &viscous) {
+      EXPECT_LT(score->worst, score->most) << score->name;
+    }
   }
+  EXPECT_GE(viscous_right, 0.95 * arms);
   EXPECT_GE(arms, 0.75 * drawn);
   EXPECT_GE(told, 0.9 * arms);
   EXPECT_EQ(right, told);
