@@ -4,9 +4,9 @@
 # the ones in which threads of a run meet under the thread sanitizer.
 #   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
 #                                        release built by clang, a build in which no sources are
-#                                        joined, then sines on 64-bit ARM under QEMU, clang-tidy,
-#                                        coverage and mutants (3, 40, 30 and 30 minutes of two cores),
-#                                        if what they need is installed;
+#                                        joined, then tests on 64-bit ARM under QEMU (hours),
+#                                        clang-tidy, coverage and mutants (40, 30 and 30 minutes of
+#                                        two cores), if what they need is installed;
 #                                        PRESET: only these
 set -euo pipefail
 cd "$(dirname "$0")/.."
