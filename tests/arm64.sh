@@ -28,9 +28,10 @@ else
   done)
 fi
 
-# Each in a process of its own, as many at once as there are cores.
+# Each in a process of its own, as many at once as there are cores. The kernel sees QEMU where a test asks it for the
+# name of a program.
 run_emulated() {  # run_emulated PATH
-  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 >"$1.log" 2>&1 || touch "$1.failed"
+  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 '--gtest_filter=-NodeLock.NamesTheProgramThat*' >"$1.log" 2>&1 || touch "$1.failed"
 }
 export -f run_emulated
 rm -f "${paths[@]/%/.failed}"
