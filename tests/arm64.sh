@@ -28,10 +28,10 @@ else
   done)
 fi
 
-# Each in a process of its own, as many at once as there are cores. The kernel sees QEMU where a test asks it for the
-# name of a program.
+# Each in a process of its own, as many at once as there are cores. Two tests are left out: where one asks the kernel for
+# the name of a program it sees QEMU, and in another a message of 1 MB takes QEMU longer than a service may be silent.
 run_emulated() {  # run_emulated PATH
-  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 '--gtest_filter=-NodeLock.NamesTheProgramThat*' >"$1.log" 2>&1 || touch "$1.failed"
+  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 '--gtest_filter=-NodeLock.NamesTheProgramThat*:HaplyLinkTest.NamesEachFault*' >"$1.log" 2>&1 || touch "$1.failed"
 }
 export -f run_emulated
 rm -f "${paths[@]/%/.failed}"
