@@ -28,10 +28,11 @@ else
   done)
 fi
 
-# Each in a process of its own, as many at once as there are cores. Two tests are left out: where one asks the kernel for
-# the name of a program it sees QEMU, and in another a message of 1 MB takes QEMU longer than a service may be silent.
+# Each in a process of its own, as many at once as there are cores. Three tests are left out: where one asks the kernel for
+# the name of a program it sees QEMU, in another a message of 1 MB takes QEMU longer than a service may be silent, and a
+# limit of memory that the third sets is not that of what QEMU runs.
 run_emulated() {  # run_emulated PATH
-  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 '--gtest_filter=-NodeLock.NamesTheProgramThat*:HaplyLinkTest.NamesEachFault*' >"$1.log" 2>&1 || touch "$1.failed"
+  qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 '--gtest_filter=-NodeLock.NamesTheProgramThat*:HaplyLinkTest.NamesEachFault*:RunApart.SurvivesWork*' >"$1.log" 2>&1 || touch "$1.failed"
 }
 export -f run_emulated
 rm -f "${paths[@]/%/.failed}"

@@ -22,6 +22,7 @@ namespace {
 constexpr double kMethodMass = 0.0004;     // of mass
 constexpr double kMethodCoulomb = 0.0012;  // of Coulomb friction
 constexpr double kMethodViscous = 0.003;   // N s/m for each N of Coulomb friction
+constexpr double kMethodViscousWaves = 0.01;  // likewise of motors that cog [identify_waves_test]
 constexpr double kMethodGain = 0.0002;     // of a gain
 constexpr double kMethodDelay = 2e-6;      // s
 constexpr double kPlaceLead = 0.5;         // s, that it moves about a place before it is recorded
@@ -33,10 +34,11 @@ constexpr double kWavesLeft = 0.3;
 // By how much the Bayesian information must prefer cables before they are blamed.
 constexpr double kCablesBlamed = 20;
 
-void widen(ArmConstants& constants) {
+void widen(ArmConstants& constants, bool cogs) {
   widen(constants.mass, kMethodMass * constants.mass.value);
   widen(constants.coulomb, kMethodCoulomb * constants.coulomb.value);
-  widen(constants.viscous, kMethodViscous * constants.coulomb.value);
+  const double per_coulomb = cogs ? kMethodViscousWaves : kMethodViscous;
+  widen(constants.viscous, per_coulomb * constants.coulomb.value);
   for (Estimate& gain : constants.gain) widen(gain, kMethodGain * gain.value);
   widen(constants.delay, kMethodDelay);
 }
@@ -328,7 +330,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   }
   found.constants.links_sought = found.over.fit.has_value();
   if (found.over.links()) put_links(found, down_B);
-  widen(found.constants);
+  widen(found.constants, found.waves.seen());
   if (found.lines.stretches) put_cables(found);
   look_at_intervals(found);
   look_closer(found, held_tip);
