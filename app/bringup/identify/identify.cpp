@@ -19,13 +19,13 @@ namespace {
 
 // What the smoothing of velocities' signs and torques that are held for a tick cost beyond the
 // statistics [chosen: so that intervals hold 95 % of the truths of hidden arms, identify_test].
-constexpr double kMethodMass = 0.0004;     // of mass
-constexpr double kMethodCoulomb = 0.0012;  // of Coulomb friction
-constexpr double kMethodViscous = 0.003;   // N s/m for each N of Coulomb friction
-constexpr double kMethodViscousWaves = 0.01;  // likewise of motors that cog [identify_waves_test]
-constexpr double kMethodGain = 0.0002;     // of a gain
-constexpr double kMethodDelay = 2e-6;      // s
-constexpr double kPlaceLead = 0.5;         // s, that it moves about a place before it is recorded
+constexpr double kMethodMass = 0.0004;         // of mass
+constexpr double kMethodCoulomb = 0.0012;      // of Coulomb friction
+constexpr double kMethodViscous = 0.003;       // N s/m for each N of Coulomb friction
+constexpr double kMethodViscousWaves = 0.006;  // likewise of motors that cog [identify_waves_test]
+constexpr double kMethodGain = 0.0002;         // of a gain
+constexpr double kMethodDelay = 2e-6;          // s
+constexpr double kPlaceLead = 0.5;  // s, that it moves about a place before it is recorded
 // Half-width of an interval over the value, of mass and gains; what is known worse is not written.
 constexpr double kUnknownMost = 0.03;
 // Share of the residual's square that waves may leave where the fit stays bad with them [chosen as
