@@ -21,6 +21,7 @@ using support::cabled_arm;
 using support::HiddenArm;
 using support::identified;
 using support::is_long;
+using support::leaves_open;
 using support::Score;
 
 // About which friction of a joint is drawn: 6.3 mN m, 50 mN at the tip, as much as that of the tip
@@ -35,12 +36,6 @@ HiddenArm rubbing_arm(std::uint64_t seed) {
   for (int i = 0; i < 3; ++i) train.coulomb[i] = kRubs * std::pow(3, random.uniform(-1, 1));
   for (int i = 0; i < 3; ++i) train.viscous[i] = kRubsViscous * std::pow(3, random.uniform(-1, 1));
   return arm;
-}
-
-bool leaves_open(const Identified& found, const std::string& what) {
-  const auto sentences = not_identified(found);
-  return std::any_of(sentences.begin(), sentences.end(),
-                     [&](const std::string& one) { return one.find(what) != std::string::npos; });
 }
 
 /// Counts how far one is off only where its interval does not say so.

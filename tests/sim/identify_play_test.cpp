@@ -18,6 +18,7 @@ namespace {
 using support::HiddenArm;
 using support::identified;
 using support::is_long;
+using support::leaves_open;
 using support::Score;
 
 /// A vintage PHANTOM behind cables that stretch, as those of identify_cables_test, with play of 1/3
@@ -38,12 +39,6 @@ HiddenArm arm_with_play(std::uint64_t seed, double play) {
 // Whole width at a joint about which widths are drawn: 3 minutes of arc, what a worn gear of a
 // small drive has, or 0.14 mm at the tip; 5 steps of an encoder [chosen].
 constexpr double kPlay = 1e-3;
-
-bool says(const Identified& found, const std::string& what) {
-  const auto sentences = not_identified(found);
-  return std::any_of(sentences.begin(), sentences.end(),
-                     [&](const std::string& one) { return one.find(what) != std::string::npos; });
-}
 
 TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
   const int arms = is_long() ? 40 : 1;
@@ -74,7 +69,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     const double moved = arm.file.simulated.plant.mass / mean;
     EXPECT_EQ(constants.absolute, weighed);
     EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
-    EXPECT_EQ(says(*found, "(joint 1), whole width."), !is_long());
+    EXPECT_EQ(leaves_open(*found, "(joint 1), whole width."), !is_long());
     if (weighed) mass.add(constants.mass, moved);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
@@ -113,7 +108,7 @@ TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     if (!found->play.fits) continue;
     ++told;
-    EXPECT_TRUE(says(*found, "Play: none seen above")) << "arm " << k;
+    EXPECT_TRUE(leaves_open(*found, "Play: none seen above")) << "arm " << k;
     for (const Estimate& width : found->play.width) {
       most = std::max(most, width.value + width.plus_minus);
     }

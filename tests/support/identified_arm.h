@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 
 #include "bringup/identify/identify.h"
+#include "bringup/identify/not_identified.h"
 #include "bringup/identify/simulated_bench.h"
 #include "support/hidden_arm.h"
 
@@ -30,6 +32,13 @@ inline driver::Result<app::Identified> identified(const HiddenArm& arm,
   named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
   return app::identify(open, named, options, never);
+}
+
+/// Returns whether what was not identified names this.
+inline bool leaves_open(const app::Identified& found, const std::string& what) {
+  const auto sentences = app::not_identified(found);
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& one) { return one.find(what) != std::string::npos; });
 }
 
 /// How far estimates of one constant were off, and how often their intervals held it.

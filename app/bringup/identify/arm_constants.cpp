@@ -62,6 +62,11 @@ void widen(Estimate& estimate, double method) {
   estimate.plus_minus = math::hypot(estimate.plus_minus, kNormal95 * method);
 }
 
+Estimate by_gain(const Estimate& torque, const Estimate& gain) {
+  return {torque.value * gain.value,
+          math::hypot(torque.plus_minus * gain.value, torque.value * gain.plus_minus)};
+}
+
 driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
                                            const std::optional<PerMass>& loaded,
                                            double added_mass) {

@@ -61,6 +61,10 @@ struct ArmConstants {
 /// Widens an interval by what a method costs beyond its statistics, one standard deviation of it.
 void widen(Estimate& estimate, double method);
 
+/// Returns a torque by the arm file's constants (or one over something) as the true one.
+/// Real-time: never from the servo thread.
+Estimate by_gain(const Estimate& torque, const Estimate& gain);
+
 /// Returns the constants that the motion of a bare tip means, or those of two motions together, the
 /// second with a known mass on the tip: it moves as much slower as its mass is more, whatever the
 /// motors' constants. The error says why there is no such arm.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bringup/identify/cables/behind_cables.h"
 #include "bringup/identify/line_forces.h"
 
 namespace thimble::app {

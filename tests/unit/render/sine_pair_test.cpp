@@ -71,18 +71,17 @@ TEST(WaveSum, IsTheSumOfItsWavesWhetherOddOrEvenInNumber) {
     for (const double factor : {1.0, 0.5}) {
       sum.scale(factor);  // the second time on top of the first
       const Eigen::Vector3d p_M = random.in_box(0.1);
-      const double by = factor;
-      double height = -peak * by;
+      double height = -peak * factor;
       Eigen::Vector3d slope_M = Eigen::Vector3d::Zero();
       for (const Wave& wave : waves) {
         const double angle = wave.k_M.dot(p_M) + wave.phase;
-        height += by * wave.amplitude * math::sin(angle);
-        slope_M += by * wave.amplitude * math::cos(angle) * wave.k_M;
+        height += factor * wave.amplitude * math::sin(angle);
+        slope_M += factor * wave.amplitude * math::cos(angle) * wave.k_M;
       }
       const TextureHeight found = sum.at(p_M);
       EXPECT_NEAR(found.height, height, 1e-16);
       EXPECT_NEAR((found.slope_M - slope_M).norm(), 0, 1e-12);
-      EXPECT_NEAR(sum.relief(), 2 * by * peak, 1e-18);
+      EXPECT_NEAR(sum.relief(), 2 * factor * peak, 1e-18);
     }
   }
 }

@@ -62,11 +62,6 @@ driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::Ar
   }
 }
 
-Estimate by_gain(const Estimate& torque, const Estimate& gain) {
-  return {torque.value * gain.value,
-          math::hypot(torque.plus_minus * gain.value, torque.value * gain.plus_minus)};
-}
-
 void put_cables(Identified& found) {
   ArmConstants& constants = found.constants;
   widen(constants.mass, kCableMass * constants.mass.value);

@@ -10,9 +10,6 @@ namespace thimble::app {
 driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::ArmFile& file,
                                         CableFit& lines, bool refine, PerMass& fit);
 
-/// Returns a torque by the arm file's constants (or one over something) as the true one.
-Estimate by_gain(const Estimate& torque, const Estimate& gain);
-
 /// Adds what the lines say of motors and cables, and what their errors make of the rest.
 void put_cables(Identified& found);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/arm_constants.h"
 #include "bringup/identify/motor_waves/wave_rows.h"
 #include "bringup/identify/motor_waves/wave_search.h"
 #include "bringup/identify/weak_form/clustered_fit.h"
@@ -176,11 +177,9 @@ bool MotorWaves::seen() const {
 Estimate cogging_at_motor(const MotorWaves& waves, std::size_t motor, const Estimate& gain) {
   const MotorWave& wave = waves.cogging[motor];
   if (!waves.told() || !wave.seen) return {};
-  const double at_motor = gain.value / waves.ratio[static_cast<Eigen::Index>(motor)];
-  const Estimate& amplitude = wave.amplitude;
-  return {
-      at_motor * amplitude.value,
-      at_motor * math::hypot(amplitude.plus_minus, amplitude.value * gain.plus_minus / gain.value)};
+  const Estimate at_joint = by_gain(wave.amplitude, gain);
+  const double ratio = waves.ratio[static_cast<Eigen::Index>(motor)];
+  return {at_joint.value / ratio, at_joint.plus_minus / ratio};
 }
 
 ArmMotion freed_of_waves(const ArmMotion& motion, const MotorWaves& waves) {

@@ -93,6 +93,7 @@ struct TrainConstant {
   const char* key;
   const char* unit;
   Estimate CableConstants::*member;
+  bool always = false;  // the others only where there is some, or was
 
   std::string values(const std::array<CableConstants, 3>& cables) const {
     return fmt::format("[{:.5g}, {:.5g}, {:.5g}]", (cables[0].*member).value,
@@ -106,25 +107,23 @@ struct TrainConstant {
   }
 };
 
-constexpr TrainConstant kTrainConstants[] = {{"stiffness", "N m/rad", &CableConstants::stiffness},
-                                             {"inertia", "kg m^2", &CableConstants::inertia},
-                                             {"damping", "N m s/rad", &CableConstants::damping},
-                                             {"play", "rad, whole width", &CableConstants::play},
-                                             {"viscous", "N m s/rad", &CableConstants::viscous},
-                                             {"coulomb", "N m", &CableConstants::coulomb}};
-constexpr std::size_t kAlways = 3;  // the others only where there is some, or was
+constexpr TrainConstant kTrainConstants[] = {
+    {"stiffness", "N m/rad", &CableConstants::stiffness, true},
+    {"inertia", "kg m^2", &CableConstants::inertia, true},
+    {"damping", "N m s/rad", &CableConstants::damping, true},
+    {"play", "rad, whole width", &CableConstants::play},
+    {"viscous", "N m s/rad", &CableConstants::viscous},
+    {"coulomb", "N m", &CableConstants::coulomb}};
 
 /// Returns the constants that are written.
 std::vector<TrainConstant> train_constants(const YAML::Node& train,
                                            const std::array<CableConstants, 3>& cables) {
-  std::vector<TrainConstant> all(std::begin(kTrainConstants),
-                                 std::begin(kTrainConstants) + kAlways);
-  for (std::size_t i = kAlways; i < std::size(kTrainConstants); ++i) {
-    const TrainConstant& one = kTrainConstants[i];
+  std::vector<TrainConstant> all;
+  for (const TrainConstant& one : kTrainConstants) {
     const bool some = std::any_of(cables.begin(), cables.end(), [&](const CableConstants& cable) {
       return (cable.*one.member).value > 0;
     });
-    if (some || (train && train[one.key])) all.push_back(one);
+    if (one.always || some || (train && train[one.key])) all.push_back(one);
   }
   return all;
 }
@@ -151,10 +150,7 @@ bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>
     return std::all_of(constants.begin(), constants.end(), [&](const TrainConstant& constant) {
       const std::string text = constant.text(cables, mark);
       if (train[constant.key]) return lines.exchange(train[constant.key], text);
-      const auto* always = std::begin(kTrainConstants) + kAlways;
-      return std::none_of(
-                 std::begin(kTrainConstants), always,
-                 [&](const TrainConstant& one) { return one.member == constant.member; }) &&
+      return !constant.always &&
              lines.add_behind(train["damping"], std::string(constant.key) + ": " + text);
     });
   }

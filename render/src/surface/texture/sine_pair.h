@@ -15,7 +15,7 @@ struct SinePair {
 
 /// Returns them for angles in quarters of a turn of at most 2^50 either way, to 2e-16. NaN gives
 /// NaN. The same bits on every processor: products, sums and whole numbers only. A texture asks for
-/// many at once and for no last bit, which math::sin_cos has. Real-time: safe.
+/// many at once; math::sin_cos is right to the last places of small sines too. Real-time: safe.
 inline SinePair sine_pair(Pair quarters) noexcept {
   using Words = std::int64_t __attribute__((vector_size(16)));
   // Adding this rounds to a whole number, whose lowest bits are those of the sum.
