@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "fuzz/file_readers.h"
+#include "support/long_form.h"
 #include "support/noise.h"
 
 namespace thimble::fuzz {
@@ -49,7 +49,7 @@ TEST_P(FileReaders, KeepTheirPromisesOnDamagedFiles) {
 #else
   int rounds = 200;
 #endif
-  if (std::getenv("THIMBLE_LONG") != nullptr) rounds *= 20;
+  if (support::long_form()) rounds *= 20;
   std::vector<File> files;
   for (auto& [name, bytes] : corpus(GetParam())) files.push_back(std::move(bytes));
   support::Random random(202);

@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
 #include "fuzz/decoders.h"
+#include "support/long_form.h"
 #include "support/noise.h"
 
 namespace thimble::fuzz {
@@ -36,7 +36,7 @@ TEST(Decoders, KeepTheirPromisesOnEveryFileOfTheCorpus) {
 TEST(Decoders, KeepTheirPromisesOnAnyBytesAndOnDamagedOnes) {
   // A million takes a second here; the sanitizers take a tenth of it.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  const int rounds = std::getenv("THIMBLE_LONG") != nullptr ? 1'000'000 : 100'000;
+  const int rounds = support::long_form() ? 1'000'000 : 100'000;
 #else
   const int rounds = 1'000'000;
 #endif

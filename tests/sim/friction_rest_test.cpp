@@ -18,6 +18,7 @@
 #include "studies/friction/friction_cases.h"
 #include "studies/friction/friction_rig.h"
 #include "support/hard_case.h"
+#include "support/long_form.h"
 #include "support/rubbing.h"
 #include "surface/friction/bristle.h"
 #include "surface/friction/friction_settings.h"
@@ -251,7 +252,7 @@ TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatOscillates) {
   FrictionRigSettings rig;
   const auto context = app::effect_context_of(rig);
   rig.arm_coulomb = 0;
-  const bool full = std::getenv("THIMBLE_LONG") != nullptr;
+  const bool full = support::long_form();
   const int cycles = full ? 1000 : 200;
   for (const double step : {0.0, 3e-5}) {
     rig.encoder_step = step;

@@ -17,6 +17,7 @@
 
 #include "support/contact_walk.h"
 #include "support/hard_case.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"

@@ -17,6 +17,7 @@
 #include "firmware.h"
 #include "stability/stability_laws.h"
 #include "support/hard_case.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "support/wall_laws.h"
@@ -134,7 +135,7 @@ double jittered_growth(Jitter jitter, double stiffness, double viscous, int tick
 
 TEST(HardCase02, JitterCostsWhatTheMeanSquareOfThePeriodSays) {
   double worst = 0;
-  const int ticks = std::getenv("THIMBLE_LONG") != nullptr ? 20'000'000 : 1'000'000;
+  const int ticks = support::long_form() ? 20'000'000 : 1'000'000;
   for (const Jitter jitter : {Jitter::kUniform, Jitter::kExponential, Jitter::kDropouts}) {
     double mean = 0, square = 0;
     support::Random random(2);

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "hil/soak.h"
 #include "support/figure_value.h"
+#include "support/long_form.h"
 
 namespace thimble::app {
 namespace {
@@ -50,14 +50,10 @@ std::string missed(const HilResult& result) {
   return names;
 }
 
-bool is_long() {
-  return std::getenv("THIMBLE_LONG") != nullptr;
-}
-
 TEST(HilSoak, PassesMotorsThatWarmAsTheirFileSays) {
   // The short form is three time constants of motors that warm quickly; the long one an hour.
-  const scene::ArmFile file = is_long() ? warm_arm(kCurrent, 60) : warm_arm(kCurrent, 6);
-  const HilResult soak = soak_of(file, file, is_long() ? 60 : 0.3);
+  const scene::ArmFile file = support::long_form() ? warm_arm(kCurrent, 60) : warm_arm(kCurrent, 6);
+  const HilResult soak = soak_of(file, file, support::long_form() ? 60 : 0.3);
   std::printf("%s\n", soak.text.c_str());
   EXPECT_EQ(soak.outcome, HilOutcome::kPassed) << soak.text;
   EXPECT_GT(figure_value(soak.figures, "motor_heat"), 0.2);

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -18,6 +17,7 @@
 #include "hil/edge_of_wall.h"
 #include "hil/wall_check.h"
 #include "support/figure_value.h"
+#include "support/long_form.h"
 
 namespace thimble::app {
 namespace {
@@ -213,7 +213,7 @@ HilResult wall_of(const scene::ArmFile& file, const scene::ArmFile& arm, bool fu
 }
 
 TEST(Hil, JudgesTheStiffestWallToATenth) {
-  const bool all = std::getenv("THIMBLE_LONG") != nullptr;
+  const bool all = support::long_form();
   std::vector<const char*> names{"vintage_phantom"};
   if (all) names.insert(names.end(), {"woodenhaptics_teensy", "polhem"});
   for (const char* name : names) {

@@ -16,6 +16,7 @@
 #include "stability/tuning.h"
 #include "support/contact_walk.h"
 #include "support/hollows.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/mesh_file.h"

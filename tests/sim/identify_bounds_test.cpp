@@ -10,6 +10,7 @@
 #include "bringup/identify/record_motion.h"
 #include "support/fault_cell.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 
 namespace thimble::app {
@@ -17,7 +18,7 @@ namespace {
 
 using support::hidden_arm;
 using support::HiddenArm;
-using support::is_long;
+using support::long_form;
 using support::Random;
 
 using HandPath = std::vector<std::pair<double, Eigen::Vector3d>>;
@@ -173,7 +174,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
     }
     (*bench)->watch(watch);
     const auto motion = record_motion(**bench, file,
-                                      {.seconds = is_long() ? 20.0 : 3.0,
+                                      {.seconds = long_form() ? 20.0 : 3.0,
                                        .lead = 0.5,
                                        .added_mass = loaded ? support::kKnownMass : 0,
                                        .seed = seed},
@@ -187,7 +188,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
 }
 
 TEST(IdentifyBounds, AreKeptWhateverTheArmItsHandAndItsFaultsAre) {
-  const int arms = is_long() ? 40 : 2;
+  const int arms = long_form() ? 40 : 2;
   for (const Trouble& trouble : troubles()) {
     SCOPED_TRACE(trouble.name);
     int whole = 0, outside = 0;

@@ -16,6 +16,7 @@
 #include "bringup/identify/new_file/identified_file.h"
 #include "read_scene.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_link.h"
@@ -29,8 +30,8 @@ namespace {
 
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::kKnownMass;
+using support::long_form;
 using support::Score;
 
 /// Draws an arm of a shipped file as hidden_arm does, all but the delays, which a Falcon's bus has.
@@ -49,7 +50,7 @@ HiddenArm hidden_arm_of(const char* name, std::uint64_t seed) {
     simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] = arm.gain[i];
   }
   // A linkage that weighs something is simulated in steps of 25 us, which takes ten times as long.
-  const bool weighs = is_long() || arm.file.is<driver::DeltaArm>();
+  const bool weighs = long_form() || arm.file.is<driver::DeltaArm>();
   arm.weight = weighs ? random.uniform(0, 0.8) * simulated.plant.coulomb : 0;
   simulated.weight_B = arm.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -arm.weight);
   return arm;
@@ -110,8 +111,7 @@ struct Scores {
   void expect_kept(int arms) const {
     int held = held_weights + held_viscous, all = 2 * arms;
     for (const Score* score : {&mass, &coulomb, &gain, &delay}) {
-      std::printf("%-8s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
-                  score->worst, score->most, score->held, score->all);
+      score->tell();
       EXPECT_LT(score->worst, score->most) << score->name;
       held += score->held;
       all += score->all;
@@ -119,13 +119,13 @@ struct Scores {
     std::printf("weight %d, viscous friction %d of %d intervals\n", held_weights, held_viscous,
                 arms);
     // Of 8 intervals in the short form one may miss by chance.
-    EXPECT_GE(held, is_long() ? 0.9 * all : all - 1);
+    EXPECT_GE(held, long_form() ? 0.9 * all : all - 1);
   }
 };
 
 void find_hidden_arms(const char* name, double seconds) {
   Scores scores;
-  const int arms = is_long() ? 20 : 1;
+  const int arms = long_form() ? 20 : 1;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(7000 + k);
     const HiddenArm arm = hidden_arm_of(name, seed);
@@ -144,11 +144,11 @@ void find_hidden_arms(const char* name, double seconds) {
 }
 
 TEST(IdentifyBuilds, FindsTheConstantsOfHiddenFalcons) {
-  find_hidden_arms("falcon", is_long() ? 30 : 10);
+  find_hidden_arms("falcon", long_form() ? 30 : 10);
 }
 
 TEST(IdentifyBuilds, FindsTheConstantsOfHiddenPolhems) {
-  find_hidden_arms("polhem", is_long() ? 30 : 10);
+  find_hidden_arms("polhem", long_form() ? 30 : 10);
 }
 
 TEST(IdentifyBuilds, NamesAMotorOfAFalconThatIsTurnedRoundOrDead) {

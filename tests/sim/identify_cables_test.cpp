@@ -8,6 +8,7 @@
 #include "bringup/identify/line_forces.h"
 #include "bringup/identify/not_identified.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 
 namespace thimble::app {
@@ -16,8 +17,8 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::kKnownMass;
+using support::long_form;
 using support::Score;
 
 /// A hidden arm behind cables that stretch, of one to ten times the softest (N m/rad); motors of
@@ -35,14 +36,14 @@ HiddenArm soft_arm(std::uint64_t seed, double softest = 20) {
 }
 
 TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
-  const int arms = is_long() ? 20 : 1;
+  const int arms = long_form() ? 20 : 1;
   Score mass{"mass", 0.03}, gain{"gain", 0.02}, delay{"delay", 1e-4}, coulomb{"Coulomb", 0.05};
   Score resonance{"resonance", 0.05}, antiresonance{"antires.", 0.08}, inertia{"motor", 0.06};
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6000 + k);
     const HiddenArm arm = soft_arm(seed);
-    const auto found = identified(arm, {.seconds = is_long() ? 30.0 : 20.0,
-                                        .play = is_long(),
+    const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 20.0,
+                                        .play = long_form(),
                                         .known_mass = kKnownMass,
                                         .seed = seed});
     if (!found || !found->constants.cables || !found->against.empty()) {
@@ -73,8 +74,7 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
   int held = 0, all = 0;
   for (const Score* score :
        {&mass, &coulomb, &gain, &delay, &resonance, &antiresonance, &inertia}) {
-    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
-                score->worst, score->most, score->held, score->all);
+    score->tell();
     EXPECT_LT(score->worst, score->most) << score->name;
     held += score->held;
     all += score->all;
@@ -83,14 +83,14 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
 }
 
 TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
-  const int arms = is_long() ? 20 : 1;
+  const int arms = long_form() ? 20 : 1;
   int seen = 0;
   double worst = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(105 + k);
     const HiddenArm arm = soft_arm(seed, 200);
     const auto found =
-        identified(arm, {.seconds = is_long() ? 30.0 : 20.0, .play = is_long(), .seed = seed});
+        identified(arm, {.seconds = long_form() ? 30.0 : 20.0, .play = long_form(), .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables";
     if (!found->against.empty()) continue;
@@ -119,7 +119,7 @@ TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
 }
 
 TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
-  const auto found = identified(hidden_arm(7), {.seconds = is_long() ? 20.0 : 12.0});
+  const auto found = identified(hidden_arm(7), {.seconds = long_form() ? 20.0 : 12.0});
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
   const auto sentences = not_identified(*found);

@@ -8,6 +8,7 @@
 
 #include "bringup/identify/not_identified.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 
 namespace thimble::app {
@@ -16,14 +17,14 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::kKnownMass;
+using support::long_form;
 using support::Random;
 
 TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
   // c+ one way and c- the other is to the last bit their mean and a constant force of half their
   // difference, so that is how such an arm is simulated.
-  const int arms = is_long() ? 60 : 1;
+  const int arms = long_form() ? 60 : 1;
   int told = 0, held = 0, all = 0;
   double worst = 0;
   for (int k = 0; k < arms; ++k) {
@@ -39,7 +40,7 @@ TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
     // Nothing else pulls, so that the tip stays where it is put.
     arm.file.simulated.weight_B = arm.file.R_WB.transpose() * uneven_W;
     const auto found = identified(
-        arm, {.seconds = is_long() ? 30.0 : 15.0, .known_mass = kKnownMass, .seed = seed});
+        arm, {.seconds = long_form() ? 30.0 : 15.0, .known_mass = kKnownMass, .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     const FrictionDirections& friction = found->friction;
     told += friction.directions_differ ? 1 : 0;
@@ -60,7 +61,7 @@ TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
 }
 
 TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
-  const int arms = is_long() ? 30 : 1;
+  const int arms = long_form() ? 30 : 1;
   int held = 0, all = 0;
   double worst = 0;
   for (int k = 0; k < arms; ++k) {

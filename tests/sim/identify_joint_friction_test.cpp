@@ -12,6 +12,7 @@
 #include "bringup/identify/not_identified.h"
 #include "support/cabled_arm.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/recorded_motion.h"
 
 namespace thimble::app {
@@ -20,8 +21,8 @@ namespace {
 using support::cabled_arm;
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::leaves_open;
+using support::long_form;
 using support::Score;
 
 // About which friction of a joint is drawn: 6.3 mN m, 50 mN at the tip, as much as that of the tip
@@ -46,15 +47,15 @@ void add_viscous(const Estimate& estimate, double truth, Score& score) {
 }
 
 TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
-  const int arms = is_long() ? 40 : 1;
+  const int arms = long_form() ? 40 : 1;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.25}, tip{"tip", 0.05}, gain{"gains", 0.02};
   Score mass{"mass", 0.03}, motor{"motor", 0.06}, stiffness{"cable", 0.06};
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6102 + k);
     const HiddenArm arm = rubbing_arm(seed);
-    const bool weighed = is_long() && k % 2 == 0;
-    const auto found = identified(arm, {.seconds = is_long() ? 30.0 : 10.0,
+    const bool weighed = long_form() && k % 2 == 0;
+    const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 10.0,
                                         .known_mass = weighed ? support::kKnownMass : 0,
                                         .seed = seed});
     if (!found || !found->against.empty() || !found->play.friction.seen) {
@@ -83,8 +84,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
     }
   }
   for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness}) {
-    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
-                score->worst, score->most, score->held, score->all);
+    score->tell();
     EXPECT_LT(score->worst, score->most) << score->name;
     EXPECT_GE(score->held, 0.9 * score->all) << score->name;
   }
@@ -93,7 +93,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
 }
 
 TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
-  const int arms = is_long() ? 40 : 0;
+  const int arms = long_form() ? 40 : 0;
   int told = 0;
   double most = 0;
   for (int k = 0; k < arms; ++k) {

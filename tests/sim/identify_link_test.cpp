@@ -10,6 +10,7 @@
 #include "bringup/report_timing.h"
 #include "bringup/watchdog_time.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 
 namespace thimble::app {
@@ -18,7 +19,7 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
+using support::long_form;
 
 ReportTiming timed(const scene::ArmFile& file) {
   auto bench = BenchArm::open(file, {}, {}, {{0, file.workspace.middle()}}, kIdentifyForceMax);
@@ -66,8 +67,8 @@ TEST(ReportTiming, SaysWhereLateAndMissingCannotBeToldApart) {
 TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
   int held = 0, all = 0;
   for (const double watchdog_ms : {100.0, 60.0, 130.0}) {
-    if (!is_long() && watchdog_ms != 100) break;
-    for (std::uint64_t seed = 1; seed <= (is_long() ? 10 : 1); ++seed) {
+    if (!long_form() && watchdog_ms != 100) break;
+    for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
       HiddenArm arm = hidden_arm(seed);
       arm.file.simulated.firmware.watchdog_ns = static_cast<std::int64_t>(1e6 * watchdog_ms);
       const auto found = identified(arm, {.seconds = 12, .link = true, .seed = seed});
@@ -90,7 +91,7 @@ TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
 }
 
 TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
-  for (std::uint64_t seed = 1; seed <= (is_long() ? 40 : 4); ++seed) {
+  for (std::uint64_t seed = 1; seed <= (long_form() ? 40 : 4); ++seed) {
     support::Random random(seed);
     HiddenArm arm = hidden_arm(seed);
     scene::ArmFile& file = arm.file;

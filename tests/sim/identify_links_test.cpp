@@ -20,6 +20,7 @@
 #include "read_scene.h"
 #include "support/identified_arm.h"
 #include "support/linked_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/refuses.h"
 #include "yaml/yaml_reader.h"
@@ -29,8 +30,8 @@ namespace {
 
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::linked_arm;
+using support::long_form;
 using support::tip_masses;
 
 const IdentifiedMark kLinksMark{.date = "2026-11-26", .arm = "A 1"};
@@ -148,14 +149,14 @@ double pushed_way(scene::ArmFile file, const Eigen::Vector3d& p_W, int axis) {
 }
 
 TEST(IdentifiedLinks, MakeATwinWithTheMassOfItsArmFarAwayAndWithoutThemItIsNone) {
-  const std::uint64_t arms = is_long() ? 12 : 1;
+  const std::uint64_t arms = long_form() ? 12 : 1;
   for (std::uint64_t seed = 7201; seed < 7201 + arms; ++seed) {
     SCOPED_TRACE(seed);
     const HiddenArm arm = linked_arm(seed);
-    const auto found = identified(arm, {.seconds = is_long() ? 30.0 : 10.0,
+    const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 10.0,
                                         .known_mass = support::kKnownMass,
                                         .places = 7,
-                                        .place_seconds = is_long() ? 5.0 : 2.0,
+                                        .place_seconds = long_form() ? 5.0 : 2.0,
                                         .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     for (const std::string& sentence : found->against) ADD_FAILURE() << sentence;
@@ -269,7 +270,7 @@ TEST(IdentifiedLinks, OfAFileThatNamesSomeAreMeasuredOrItIsRefused) {
 }
 
 TEST(IdentifiedLinks, AreNotInventedForAnArmWithout) {
-  for (std::uint64_t seed = 7300; seed < (is_long() ? 7310u : 7301u); ++seed) {
+  for (std::uint64_t seed = 7300; seed < (long_form() ? 7310u : 7301u); ++seed) {
     const HiddenArm arm = support::hidden_arm(seed);
     const auto found =
         identified(arm, {.seconds = 10, .places = 5, .place_seconds = 2, .seed = seed});

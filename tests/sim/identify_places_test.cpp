@@ -10,6 +10,7 @@
 #include "bringup/identify/record_motion.h"
 #include "support/identified_arm.h"
 #include "support/linked_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 
 namespace thimble::app {
@@ -17,8 +18,8 @@ namespace {
 
 using support::hidden_arm;
 using support::HiddenArm;
-using support::is_long;
 using support::linked_arm;
+using support::long_form;
 using support::tip_masses;
 
 /// Fits what `thimble` sees of an arm that moves at several places.
@@ -82,7 +83,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
   int held_places = 0, all_places = 0;
   // The last ones are four times as heavy: up to a kilogram, which 1 N hardly moves, so that the
   // steps of the encoders count.
-  const std::uint64_t first = is_long() ? 7000 : 7021, end = is_long() ? 7040 : 7022;
+  const std::uint64_t first = long_form() ? 7000 : 7021, end = long_form() ? 7040 : 7022;
   for (std::uint64_t seed = first; seed < end; ++seed) {
     SCOPED_TRACE(seed);
     HiddenArm arm = linked_arm(seed);
@@ -90,7 +91,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
       auto& links = arm.file.simulated.links;
       links.inertia *= 4, links.yaw_b *= 4, links.yaw_c *= 4, links.coupling *= 4;
     }
-    const auto found = fitted(arm, seed, is_long() ? 5 : 2, 7);
+    const auto found = fitted(arm, seed, long_form() ? 5 : 2, 7);
     ASSERT_TRUE(found.ok()) << found.error().message;
     EXPECT_TRUE(found->links) << found->better;
     support::Score one{"mass", 0.03};
@@ -117,15 +118,15 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
   std::printf("worst %.3g; %d of %d intervals, %d of %d at the places\n", score.worst, score.held,
               score.all, held_places, all_places);
   EXPECT_LT(score.worst, score.most);
-  EXPECT_GE(score.held, (is_long() ? 0.93 : 0.85) * score.all);
+  EXPECT_GE(score.held, (long_form() ? 0.93 : 0.85) * score.all);
   EXPECT_GE(held_places, 0.85 * all_places);
 }
 
 TEST(IdentifyPlaces, SaysThatAnArmWithoutLinksHasOneMass) {
-  for (std::uint64_t seed = 7100; seed < (is_long() ? 7120u : 7101u); ++seed) {
+  for (std::uint64_t seed = 7100; seed < (long_form() ? 7120u : 7101u); ++seed) {
     SCOPED_TRACE(seed);
     const HiddenArm arm = hidden_arm(seed);
-    const auto found = fitted(arm, seed, is_long() ? 5 : 2, is_long() ? 7 : 5);
+    const auto found = fitted(arm, seed, long_form() ? 5 : 2, long_form() ? 7 : 5);
     ASSERT_TRUE(found.ok()) << found.error().message;
     EXPECT_FALSE(found->links) << found->better;
     EXPECT_EQ(found->theta.segment<6>(LinkFit::kInertia), (Eigen::Matrix<double, 6, 1>::Zero()));

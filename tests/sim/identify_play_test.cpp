@@ -9,6 +9,7 @@
 #include "bringup/identify/new_file/identified_file.h"
 #include "bringup/identify/not_identified.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/recorded_motion.h"
 
@@ -17,8 +18,8 @@ namespace {
 
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::leaves_open;
+using support::long_form;
 using support::Score;
 
 /// A vintage PHANTOM behind cables that stretch, as those of identify_cables_test, with play of 1/3
@@ -41,7 +42,7 @@ HiddenArm arm_with_play(std::uint64_t seed, double play) {
 constexpr double kPlay = 1e-3;
 
 TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
-  const int arms = is_long() ? 40 : 1;
+  const int arms = long_form() ? 40 : 1;
   Score width{"play", 0.1}, resonance{"resonance", 0.05}, inertia{"motor", 0.06};
   Score gain{"gains", 0.02}, mass{"mass", 0.03};
   int refused = 0;
@@ -49,9 +50,9 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     const auto seed = static_cast<std::uint64_t>(6006 + k);
     HiddenArm arm = arm_with_play(seed, kPlay);
     // Those without play in any joint are looked at in the long form.
-    if (!is_long()) arm.file.simulated.drive_train.play[0] = 0;
-    const bool weighed = is_long() && k % 2 == 0;
-    const auto found = identified(arm, {.seconds = is_long() ? 30.0 : 10.0,
+    if (!long_form()) arm.file.simulated.drive_train.play[0] = 0;
+    const bool weighed = long_form() && k % 2 == 0;
+    const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 10.0,
                                         .known_mass = weighed ? support::kKnownMass : 0,
                                         .seed = seed});
     if (!found || !found->against.empty() || !found->play.seen) {
@@ -69,7 +70,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     const double moved = arm.file.simulated.plant.mass / mean;
     EXPECT_EQ(constants.absolute, weighed);
     EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
-    EXPECT_EQ(leaves_open(*found, "(joint 1), whole width."), !is_long());
+    EXPECT_EQ(leaves_open(*found, "(joint 1), whole width."), !long_form());
     if (weighed) mass.add(constants.mass, moved);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
@@ -85,8 +86,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     }
   }
   for (const Score* score : {&mass, &width, &resonance, &inertia, &gain}) {
-    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
-                score->worst, score->most, score->held, score->all);
+    score->tell();
     EXPECT_LT(score->worst, score->most) << score->name;
     EXPECT_GE(score->held, 0.9 * score->all) << score->name;
   }
@@ -95,7 +95,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
 }
 
 TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
-  const int arms = is_long() ? 40 : 0;
+  const int arms = long_form() ? 40 : 0;
   int told = 0;
   double most = 0;
   for (int k = 0; k < arms; ++k) {

@@ -15,6 +15,7 @@
 #include "bringup/identify/new_file/identified_file.h"
 #include "bringup/identify/not_identified.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/scratch.h"
 
@@ -24,8 +25,8 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 using support::identified;
-using support::is_long;
 using support::kKnownMass;
+using support::long_form;
 using support::Random;
 using support::Score;
 using support::wide_hidden_arm;
@@ -81,7 +82,7 @@ struct Found {
 TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
   // Polhems, whose linkage takes ten times as long to simulate, are left to the long form.
   std::vector<std::uint64_t> seeds = {9000, 9001};
-  for (std::uint64_t k = 0; is_long() && k < 60; ++k) {
+  for (std::uint64_t k = 0; long_form() && k < 60; ++k) {
     if (k == 0) seeds.clear();
     seeds.push_back(9000 + k);
   }
@@ -92,12 +93,12 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
   for (const std::uint64_t seed : seeds) {
     SCOPED_TRACE(seed);
     // A third of them WoodenHaptics arms, a few Polhems.
-    const bool wide = is_long() && (seed % 3 == 1 || seed % 15 == 2);
+    const bool wide = long_form() && (seed % 3 == 1 || seed % 15 == 2);
     HiddenArm arm = wide ? wide_hidden_arm(seed) : hidden_arm(seed);
     Random random(seed + 1'000'000);
     give_waves(arm, random);
     const auto found = identified(
-        arm, {.seconds = is_long() ? 30.0 : 12.0, .known_mass = kKnownMass, .seed = seed});
+        arm, {.seconds = long_form() ? 30.0 : 12.0, .known_mass = kKnownMass, .seed = seed});
     if (!found || !found->against.empty()) {
       std::printf("arm %d: %s\n", static_cast<int>(seed),
                   (found ? found->against.front() : found.error().message).c_str());
@@ -129,8 +130,7 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
               drawn, told, right);
   for (const Found* one : {&cogging, &ripple}) one->tell();
   for (const Score* score : {&mass, &coulomb, &delay, &viscous}) {
-    std::printf("%-8s worst %.3g of %.3g, %d of %d intervals hold the truth\n", score->name,
-                score->worst, score->most, score->held, score->all);
+    score->tell();
     if (score != &viscous) {
       EXPECT_LT(score->worst, score->most) << score->name;
     }
@@ -154,11 +154,11 @@ TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
   // Arms without any are told so, and those with a little more than what is said to be seen are
   // found: of one motor alone, in turn.
   int invented = 0, missed = 0;
-  const int arms = is_long() ? 40 : 1;
+  const int arms = long_form() ? 40 : 1;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(9500 + k);
     HiddenArm arm = hidden_arm(seed);
-    const IdentifyOptions options{.seconds = is_long() ? 30.0 : 12.0, .seed = seed};
+    const IdentifyOptions options{.seconds = long_form() ? 30.0 : 12.0, .seed = seed};
     const auto none = identified(arm, options);
     ASSERT_TRUE(none.ok()) << none.error().message;
     if (!none->against.empty()) continue;

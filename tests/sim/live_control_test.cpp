@@ -18,6 +18,7 @@
 #include "share/live_knobs.h"
 #include "share/shared_reader.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/run_hash.h"
 #include "support/scratch.h"
 #include "support/shipped_scene.h"
@@ -221,7 +222,7 @@ TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
   GTEST_SKIP() << "no threads meet in it";
 #endif
   std::vector<std::string> scenes{"rubber", "sandpaper", "honey"};
-  if (std::getenv("THIMBLE_LONG") != nullptr) {
+  if (support::long_form()) {
     scenes.insert(scenes.end(), {"clay", "floating_block", "trampoline"});
   }
   for (const std::string& name : scenes) {

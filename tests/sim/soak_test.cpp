@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "setup.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/run_hash.h"
 #include "thimble/render/scene_touch.h"
@@ -167,7 +168,7 @@ std::uint64_t ticks_in_all() {
   if (const char* const asked = std::getenv("THIMBLE_SOAK_TICKS"))
     return std::strtoull(asked, nullptr, 10);
   if (watched()) return 8'000;
-  return std::getenv("THIMBLE_LONG") != nullptr ? 100'000'000 : 140'000;
+  return support::long_form() ? 100'000'000 : 140'000;
 }
 
 TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {

@@ -20,6 +20,7 @@
 #include "studies/trouble/trouble_run.h"
 #include "support/contact_walk.h"
 #include "support/hollows.h"
+#include "support/long_form.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/arm_simulation.h"

@@ -9,6 +9,7 @@
 
 #include "support/cabled_arm.h"
 #include "support/identified_arm.h"
+#include "support/long_form.h"
 #include "support/recorded_motion.h"
 #include "twin/compare_twin.h"
 #include "twin/relive.h"
@@ -21,7 +22,7 @@ namespace {
 
 using support::cabled_arm;
 using support::HiddenArm;
-using support::is_long;
+using support::long_form;
 using support::recorded_motion;
 
 TwinResult both_ways(const session::Recording& recording, const scene::ArmFile& file) {
@@ -46,7 +47,7 @@ double left_by(const TwinMotion& motion, const scene::ArmFile& file) {
 }
 
 TEST(TwinCables, OfTheSameConstantsReliveTheMotionToTheEncodersStepsBothWays) {
-  const std::uint64_t arms = is_long() ? 20 : 1;
+  const std::uint64_t arms = long_form() ? 20 : 1;
   double worst = 0, apart = 0;
   for (std::uint64_t seed = 1; seed <= arms; ++seed) {
     HiddenArm arm = cabled_arm(seed);
@@ -76,7 +77,7 @@ TEST(TwinCables, OfTheSameConstantsReliveTheMotionToTheEncodersStepsBothWays) {
 }
 
 TEST(TwinCables, NameTheConstantThatIsWrong) {
-  if (!is_long()) GTEST_SKIP() << "18 constants, each tried: in the long form alone";
+  if (!long_form()) GTEST_SKIP() << "18 constants, each tried: in the long form alone";
   using Train = device_sim::DriveTrainSettings;
   struct Mistake {
     const char* key;

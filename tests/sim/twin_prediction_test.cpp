@@ -22,6 +22,7 @@
 #include "stability/wall_bench.h"
 #include "support/cabled_arm.h"
 #include "support/hidden_arm.h"
+#include "support/long_form.h"
 #include "support/recorded_motion.h"
 #include "support/refuses.h"
 #include "yaml/yaml_reader.h"
@@ -49,12 +50,10 @@ driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t 
   scene::ArmFile named = hidden.file;
   named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
-  const auto found = identify(open, named,
-                              {.seconds = seconds,
-                               .play = std::getenv("THIMBLE_LONG") != nullptr,
-                               .known_mass = kKnownMass,
-                               .seed = seed},
-                              never);
+  const auto found = identify(
+      open, named,
+      {.seconds = seconds, .play = support::long_form(), .known_mass = kKnownMass, .seed = seed},
+      never);
   if (!found) return found.error();
   if (!found->against.empty()) return driver::Error{found->against.front()};
   const IdentifiedMark mark{.date = "2026-11-25", .arm = "hidden"};
@@ -142,7 +141,7 @@ void tell(const char* what, int arms, const Worst& worst) {
 }
 
 TEST(TwinPrediction, OfAnIdentifiedArmIsItsWallItsBounceAndItsFreeMotion) {
-  const bool all = std::getenv("THIMBLE_LONG") != nullptr;
+  const bool all = support::long_form();
   // Amplifiers that lag are nothing that the twin knows of: it takes them for delay.
   for (const double lag : {0.0, 5e-4}) {
     const int arms = !all ? (lag > 0 ? 0 : 1) : (lag > 0 ? 20 : 60);
@@ -160,7 +159,7 @@ TEST(TwinPrediction, OfAnIdentifiedArmIsItsWallItsBounceAndItsFreeMotion) {
 }
 
 TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
-  if (std::getenv("THIMBLE_LONG") == nullptr) GTEST_SKIP() << "20 arms: in the long form alone";
+  if (!support::long_form()) GTEST_SKIP() << "20 arms: in the long form alone";
   constexpr int kArms = 20;
   int written = 0;
   Worst worst;
@@ -178,7 +177,7 @@ TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
 }
 
 TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
-  if (std::getenv("THIMBLE_LONG") == nullptr) GTEST_SKIP() << "12 arms: in the long form alone";
+  if (!support::long_form()) GTEST_SKIP() << "12 arms: in the long form alone";
   constexpr int kArms = 12;
   Worst worst;
   for (std::uint64_t seed = 1; seed <= kArms; ++seed) {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
 #include "support/hidden_arm.h"
+#include "support/long_form.h"
 #include "support/refuses.h"
 #include "support/scratch.h"
 #include "twin/compare_twin.h"
@@ -108,7 +108,7 @@ const std::vector<Mistake>& mistakes() {
 
 TEST(Twin, NamesTheConstantThatIsWrong) {
   // The method was made with arms 101 to 120 in view; these are others.
-  const bool all = std::getenv("THIMBLE_LONG") != nullptr;
+  const bool all = support::long_form();
   const std::uint64_t arms = arms_of(all ? 60 : 4);
   for (std::uint64_t seed = 201; seed <= 200 + arms; ++seed) {
     const HiddenArm arm = hidden_arm(seed);

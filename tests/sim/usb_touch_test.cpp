@@ -8,6 +8,7 @@
 #include "arms/falcon/falcon_boot.h"
 #include "arms/falcon/falcon_packet.h"
 #include "support/deaf_board.h"
+#include "support/long_form.h"
 #include "support/usb_host_line.h"
 #include "support/usb_host_transport.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
@@ -115,7 +116,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
 };
 
 TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
-  const int ticks = std::getenv("THIMBLE_LONG") != nullptr ? 10'000 : 3'000;
+  const int ticks = support::long_form() ? 10'000 : 3'000;
   int in_contact = 0, fresh = 0;
   Eigen::Vector3d wanted(0, 0, 0);
   std::int64_t sampled_ns = 0;

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdlib>
-#include <string_view>
 
 #include "support/random.h"
 #include "thimble/driver/device_state.h"
@@ -10,12 +8,6 @@
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::support {
-
-/// Returns whether tests shall run at full length (THIMBLE_LONG=1) or in their short form.
-inline bool long_form() {
-  const char* const wish = std::getenv("THIMBLE_LONG");
-  return wish != nullptr && std::string_view(wish) == "1";
-}
 
 /// Moves the tip of any contact stage to `p_WT` (W, m).
 template <class Contact>

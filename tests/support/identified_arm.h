@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
 #include <string>
 
 #include "bringup/identify/identify.h"
@@ -14,11 +14,6 @@
 namespace thimble::support {
 
 inline constexpr double kKnownMass = 0.025;  // kg
-
-/// Returns whether tests shall take their time.
-inline bool is_long() {
-  return std::getenv("THIMBLE_LONG") != nullptr;
-}
 
 /// Identifies one, whose file names no periods of cogging; `hold_it` leaves the hand on it that its
 /// file names.
@@ -53,6 +48,11 @@ struct Score {
     worst = std::max(worst, off);
     ++all;
     held += estimate.holds(truth) ? 1 : 0;
+  }
+
+  void tell() const {
+    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", name, worst, most,
+                held, all);
   }
 };
 

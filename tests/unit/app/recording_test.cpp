@@ -15,6 +15,7 @@
 #include "observers/black_box.h"
 #include "recording/recorder.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/scratch.h"
 #include "thimble/session/recording.h"
 
@@ -318,7 +319,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
 #endif
   std::mt19937 random(5);
   int refused = 0;
-  const int rounds = std::getenv("THIMBLE_LONG") != nullptr ? 20'000 : 300;
+  const int rounds = support::long_form() ? 20'000 : 300;
   for (int round = 0; round < rounds; ++round) {
     std::string bad = good;
     bad[places[random() % places.size()]] = static_cast<char>(random());

@@ -15,6 +15,7 @@
 #include "search/tree_search.h"
 #include "studies/resident_memory.h"
 #include "support/contact_walk.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/scratch.h"
 

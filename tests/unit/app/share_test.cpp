@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -21,6 +20,7 @@
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 
 namespace thimble::app {
 namespace {
@@ -271,7 +271,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
       }
     });
   }
-  const std::uint64_t rounds = std::getenv("THIMBLE_LONG") != nullptr ? 3'000'000 : 30'000;
+  const std::uint64_t rounds = support::long_form() ? 3'000'000 : 30'000;
   render::BodyPatch patch{};
   patch.object = 0;
   patch.point_count = 300;

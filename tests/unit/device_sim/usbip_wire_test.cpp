@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <random>
 #include <string_view>
+
+#include "support/long_form.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -121,7 +122,7 @@ TEST(UsbipWire, LaysOutListAndImportAsDocumented) {
 
 TEST(UsbipWire, LivesThroughGarbageAndNeverReadsBeyondIt) {
   std::mt19937_64 random(7);
-  const int rounds = std::getenv("THIMBLE_LONG") != nullptr ? 5'000'000 : 200'000;
+  const int rounds = support::long_form() ? 5'000'000 : 200'000;
   int whole = 0;
   for (int i = 0; i < rounds; ++i) {
     // An exact-sized block on the heap, so that the address sanitizer sees any step beyond it.

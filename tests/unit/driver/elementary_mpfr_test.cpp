@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "math/tables.h"
+#include "support/long_form.h"
 #include "unit/driver/elementary_functions.h"
 
 #ifdef THIMBLE_MPFR
@@ -62,7 +61,7 @@ class Nearest {
 
 TEST(ElementaryByMpfr, EveryResultIsTheDoubleNearestToTheTrueValue) {
   Nearest nearest;
-  const int count = std::getenv("THIMBLE_LONG") != nullptr ? 1'000'000 : 10'000;
+  const int count = support::long_form() ? 1'000'000 : 10'000;
   for (const Trial& trial : trials()) {
     support::Random random(2026);
     int wrong = 0;
@@ -92,7 +91,7 @@ TEST(ElementaryByMpfr, SineAndCosineAtOnceAreWrongByLessThanTheirBound) {
   };
   mpfr_set_emin(-4000);
   support::Random random(2027);
-  const int count = std::getenv("THIMBLE_LONG") != nullptr ? 3'000'000 : 30'000;
+  const int count = support::long_form() ? 3'000'000 : 30'000;
   double worst = 0;
   for (const auto& draw : {of_size(-40, 20), of_size(-3, 3)}) {
     for (int i = 0; i < count; ++i) {

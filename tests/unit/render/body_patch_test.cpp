@@ -18,6 +18,7 @@
 #include "mesh/vertex_normals.h"
 #include "support/body_meshes.h"
 #include "support/contact_walk.h"
+#include "support/long_form.h"
 #include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::render {

@@ -12,6 +12,7 @@
 
 #include "support/hard_case.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "support/stylus.h"
@@ -91,7 +92,7 @@ ContactChoice phong() {
 }
 
 int presses() {
-  return std::getenv("THIMBLE_LONG") != nullptr ? 1000 : 150;
+  return support::long_form() ? 1000 : 150;
 }
 
 // Through contact and mesh: set = x_max - F_y / k, heat = F_y * set, and the second

@@ -14,6 +14,7 @@
 #include "mesh/contact_mesh.h"
 #include "search/make_search.h"
 #include "support/contact_walk.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "track/god_object.h"

@@ -20,6 +20,7 @@
 #include "mesh/smooth_normals.h"
 #include "search/make_search.h"
 #include "support/contact_walk.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdlib>
-#include <string_view>
 #include <vector>
 
 #include "support/dense_algebra.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
@@ -21,8 +20,7 @@ inline const render::ContactState& move(render::GodObjectContact& contact, const
 
 /// Gives the full length where THIMBLE_LONG=1 asks for it.
 inline int length_of_run(int in_short, int in_full) {
-  const char* const wanted = std::getenv("THIMBLE_LONG");
-  return wanted != nullptr && std::string_view(wanted) == "1" ? in_full : in_short;
+  return long_form() ? in_full : in_short;
 }
 
 /// Makes a block with a hollow: the outside of the result near the origin is the inside of

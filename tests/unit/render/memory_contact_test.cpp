@@ -14,6 +14,7 @@
 
 #include "support/bench_meshes.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/mesh_file.h"
@@ -24,7 +25,7 @@ namespace {
 using Eigen::Vector3d;
 
 int scaled(int full, int brief) {
-  return std::getenv("THIMBLE_LONG") != nullptr ? full : brief;
+  return support::long_form() ? full : brief;
 }
 
 const ContactState& move(MemoryContact& contact, const Vector3d& p_WT) {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "support/long_form.h"
 #include "support/random.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
@@ -32,8 +32,7 @@ constexpr double kDepthMean = 0.00065;  // m
 constexpr double kDepthWave = 0.00035;  // m
 
 int ticks_per_mesh() {
-  const char* value = std::getenv("THIMBLE_LONG");
-  return value != nullptr && std::string(value) == "1" ? 10000 : 1000;
+  return support::long_form() ? 10000 : 1000;
 }
 
 // Is what a walk over one mesh met.

@@ -7,6 +7,7 @@
 #include "support/contact_walk.h"
 #include "support/dents.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "track/blended.h"

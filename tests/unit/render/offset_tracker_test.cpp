@@ -11,6 +11,7 @@
 #include "support/contact_walk.h"
 #include "support/hard_case.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"

@@ -14,6 +14,7 @@
 #include "search/tree_search.h"
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "support/shapes.h"

@@ -16,6 +16,7 @@
 
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"

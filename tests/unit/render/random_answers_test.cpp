@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "support/contact_walk.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/run_hash.h"
 #include "support/shapes.h"

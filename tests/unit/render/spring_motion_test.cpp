@@ -15,6 +15,7 @@
 #include "support/contact_walk.h"
 #include "support/hard_case.h"
 #include "support/heap_guard.h"
+#include "support/long_form.h"
 #include "support/shapes.h"
 
 namespace thimble::render {

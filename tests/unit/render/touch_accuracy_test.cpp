@@ -11,6 +11,7 @@
 
 #include "support/contact_walk.h"
 #include "support/hard_case.h"
+#include "support/long_form.h"
 #include "support/shapes.h"
 #include "support/smooth_surfaces.h"
 #include "support/surface_nets.h"

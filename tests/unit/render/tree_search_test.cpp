@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <limits>
 
 #include "mesh/file/weld_mesh.h"
 #include "search/linear_search.h"
 #include "support/bench_meshes.h"
+#include "support/long_form.h"
 #include "support/random.h"
 #include "support/reference_geometry.h"
 #include "support/shapes.h"
@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 int scaled(int full, int brief) {
-  return std::getenv("THIMBLE_LONG") != nullptr ? full : brief;
+  return support::long_form() ? full : brief;
 }
 
 // Puts the positions of a packed surface, rounded as they are, back into a mesh in the order of

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdlib>
+#include <string_view>
+
+namespace thimble::support {
+
+/// Returns whether tests shall run at full length (THIMBLE_LONG=1) or in their short form.
+inline bool long_form() {
+  const char* const wish = std::getenv("THIMBLE_LONG");
+  return wish != nullptr && std::string_view(wish) == "1";
+}
+
+}  // namespace thimble::support
