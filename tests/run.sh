@@ -57,16 +57,38 @@ tell_failures() {  # tell_failures PRESET
   cut -d: -f2- "$logs/LastTestsFailed.log" | sed "s/^/Failed in $1: /"
 }
 
-failed=()
-for preset in "${presets[@]}"; do
-  leave=() targets=()
-  case $preset in
-    asan | tsan)
-      targets=(tests)
-      leave=(-L .) # what lies in sources, and not in a program, was tested with the release
-      ;;
+# A sanitizer builds no more than the tests of libraries (tests/CMakeLists.txt) in its short form.
+build() {  # build PRESET
+  case $1 in
+    asan | tsan) app/setup.sh "$1" tests ;;
+    *) app/setup.sh "$1" ;;
   esac
-  app/setup.sh "$preset" "${targets[@]}"
+}
+
+# The next preset is built beside the tests of one, which wait a lot, in the time that they leave over.
+building=
+build_beside() {  # build_beside [PRESET]
+  [ -n "${1:-}" ] || return 0
+  export -f build
+  chrt --idle 0 setsid bash -c 'set -euo pipefail; build "$1"' build "$1" &
+  building=$!
+}
+trap '[ -z "$building" ] || kill -- -"$building" 2>/dev/null || true' EXIT
+
+failed=()
+for ((k = 0; k < ${#presets[@]}; ++k)); do
+  preset=${presets[k]}
+  leave=()
+  case $preset in
+    asan | tsan) leave=(-L .) ;; # what lies in sources, and not in a program, was tested with the release
+  esac
+  if [ -n "$building" ]; then
+    wait "$building"
+    building=
+  else
+    build "$preset"
+  fi
+  build_beside "${presets[k + 1]:-}"
   echo "== Tests: $preset"
   # Tests by the wall clock fail where the machine stands still for longer than an arm's watchdog allows; what fails by
   # itself fails each time. Those that passed at a further try are named below.
