@@ -99,6 +99,14 @@ void put_cables(Identified& found) {
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const CableConstants& cable = (*constants.cables)[i];
+    if (cable.antiresonance.value < LineForces::kLowest) {
+      found.against.insert(
+          found.against.begin(),
+          fmt::format("The link of joint {} oscillates on its cable at {:.0f} Hz. Cables are "
+                      "identified where that is {:g} Hz or more: those of this arm are too soft.",
+                      i + 1, cable.antiresonance.value, LineForces::kLowest));
+      continue;
+    }
     if (cable.inertia.plus_minus < kMotorUnknownMost * cable.inertia.value &&
         cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
       continue;
