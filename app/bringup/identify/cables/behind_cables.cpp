@@ -97,16 +97,18 @@ void put_cables(Identified& found) {
         "cable (chi^2 {:.0f} per degree of freedom): play, a second resonance or a hand do that.",
         LineForces::kLowest, found.lines.elastic.misfit));
   }
+  const auto hz = [&](std::size_t i) { return (*constants.cables)[i].antiresonance.value; };
+  const std::size_t softest =
+      std::min<std::size_t>({0, 1, 2}, [&](auto a, auto b) { return hz(a) < hz(b); });
+  if (hz(softest) < LineForces::kLowest) {
+    found.against.insert(
+        found.against.begin(),
+        fmt::format("The link of joint {} oscillates on its cable at {:.0f} Hz. Cables are "
+                    "identified where that is {:g} Hz or more: this arm's are too soft.",
+                    softest + 1, hz(softest), LineForces::kLowest));
+  }
   for (std::size_t i = 0; i < 3; ++i) {
     const CableConstants& cable = (*constants.cables)[i];
-    if (cable.antiresonance.value < LineForces::kLowest) {
-      found.against.insert(
-          found.against.begin(),
-          fmt::format("The link of joint {} oscillates on its cable at {:.0f} Hz. Cables are "
-                      "identified where that is {:g} Hz or more: those of this arm are too soft.",
-                      i + 1, cable.antiresonance.value, LineForces::kLowest));
-      continue;
-    }
     if (cable.inertia.plus_minus < kMotorUnknownMost * cable.inertia.value &&
         cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
       continue;
