@@ -25,6 +25,8 @@ struct Tick {
 
 /// One packet as the arm saw it.
 struct Report {
+  std::uint64_t number =
+      0;  // counted by the arm; of two packets in one frame the trace has the last
   std::int64_t sampled_frame = 0, sampled_ns = 0;
   Counts counts{};
   Numbers exact{};
@@ -66,17 +68,17 @@ DeviceTrace read_device(const std::string& file) {
     std::istringstream words(line);
     int motors_on = 0;
     Numbers currents{}, p_BT{};
-    std::uint64_t reports = 0, messages = 0;
+    std::uint64_t messages = 0;
     Report r;
     Message m;
-    words >> m.frame >> reports >> r.sampled_frame >> r.counts[0] >> r.counts[1] >> r.counts[2] >>
+    words >> m.frame >> r.number >> r.sampled_frame >> r.counts[0] >> r.counts[1] >> r.counts[2] >>
         r.exact[0] >> r.exact[1] >> r.exact[2] >> messages >> m.values[0] >> m.values[1] >>
         m.values[2] >> currents[0] >> currents[1] >> currents[2] >> p_BT[0] >> p_BT[1] >> p_BT[2] >>
         motors_on >> r.sampled_ns >> m.time_ns;
     if (!words) break;  // the last line may be cut
-    if (reports != reports_before) trace.reports.push_back(r);
+    if (r.number != reports_before) trace.reports.push_back(r);
     if (messages != messages_before) trace.messages[messages] = m;
-    reports_before = reports;
+    reports_before = r.number;
     messages_before = messages;
   }
   return trace;
@@ -214,19 +216,21 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                  std::to_string(best.left_out) + " of " + std::to_string(driven.refused) +
                  " refused ones left out");
 
-  // Delay: only where the counts say for sure which report it was.
+  // Delay: only where the counts say for sure which report it was. One that the trace lacks may
+  // have had the same.
   std::vector<double> delays;  // ms
   std::int64_t least_frames = std::numeric_limits<std::int64_t>::max();
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const std::size_t k = seen[i];
     if (k == SIZE_MAX || k == 0 || k + 1 >= trace.reports.size()) continue;
-    const bool sure = trace.reports[k - 1].counts != trace.reports[k].counts &&
-                      trace.reports[k + 1].counts != trace.reports[k].counts;
+    const Report &before = trace.reports[k - 1], &report = trace.reports[k],
+                 &after = trace.reports[k + 1];
+    const bool sure = before.counts != report.counts && after.counts != report.counts &&
+                      before.number + 1 == report.number && report.number + 1 == after.number;
     const auto message = trace.messages.find(best.message_of[i]);
     if (!sure || message == trace.messages.end()) continue;
-    least_frames = std::min(least_frames, message->second.frame - trace.reports[k].sampled_frame);
-    delays.push_back(1e-6 *
-                     static_cast<double>(message->second.time_ns - trace.reports[k].sampled_ns));
+    least_frames = std::min(least_frames, message->second.frame - report.sampled_frame);
+    delays.push_back(1e-6 * static_cast<double>(message->second.time_ns - report.sampled_ns));
   }
   std::sort(delays.begin(), delays.end());
   if (delays.size() < 10) return bad + say(false, arm.name + " delay", "too few moving ticks");
@@ -236,8 +240,6 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
   std::printf("FIGURE %s.delay_median %.3f ms\n", arm.name.c_str(), part(0.5));
   std::printf("FIGURE %s.delay_99 %.3f ms\n", arm.name.c_str(), part(0.99));
   std::printf("FIGURE %s.delay_least %.3f ms\n", arm.name.c_str(), delays.front());
-  // In frames: of two packets in one, as a Falcon has them, the trace keeps the last, and a report
-  // that it lacks is taken for a later one with the same counts.
   return bad + say(least_frames >= 1 && part(0.5) >= 1, arm.name + " delay",
                    "from encoder to force " + std::to_string(part(0.5)) + " ms, 99 in 100 " +
                        std::to_string(part(0.99)) + " at most, of " +
