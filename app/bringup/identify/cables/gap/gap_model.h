@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 
 #include "bringup/identify/arm_motion.h"
 
@@ -45,13 +46,23 @@ struct GapState {
   auto v() { return x.segment<3>(9); }
 };
 
-/// Moves the model from `start` at tick `first` over `count` ticks of a motion, under the torques
-/// that were sent, and writes the motors' angles at each, that of `first` included (3 x count,
-/// rad), unless that is null. Returns how it moves then. The links' angles are those of the tip
-/// linearised about where the encoders saw it in that tick: right to the square of play and
-/// stretch. Precondition: `first` is later than the delay. Real-time: never from the servo thread.
-GapState move_gap_model(const ArmMotion& motion, const GapTheta::Vector& theta,
-                        const Eigen::Vector3d& p_middle, const GapState& start, std::size_t first,
-                        std::size_t count, double* angles);
+/// One of several models that are moved at once.
+struct GapRun {
+  const GapTheta::Vector* theta = nullptr;
+  GapState* state = nullptr;  ///< Where it begins, and afterwards where it is.
+  double* angles =
+      nullptr;  ///< Room for the motors' angles at each tick (3 x count, rad), or null.
+};
+
+/// So many are moved in the time of one.
+inline constexpr std::size_t kGapRunsAtOnce = 4;
+
+/// Moves up to kGapRunsAtOnce models, at tick `first`, over `count` ticks of a motion, under the
+/// torques that were sent, and writes the motors' angles at each, that of `first` included. The
+/// links' angles are those of the tip linearised about where the encoders saw it in that tick:
+/// right to the square of play and stretch. Precondition: `first` is later than the delay.
+/// Real-time: never from the servo thread.
+void move_gap_models(const ArmMotion& motion, const Eigen::Vector3d& p_middle,
+                     std::span<const GapRun> runs, std::size_t first, std::size_t count);
 
 }  // namespace thimble::app

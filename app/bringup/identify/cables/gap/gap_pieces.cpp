@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "math/elementary.h"
@@ -102,13 +103,16 @@ GapState GapPieces::tracked(const Gap::Vector& theta, std::size_t first) const {
   now.p() = motion_.samples[at].p_BT + J * (slow_q - motion_.samples[at].q);
   now.v() = J * slow_rate;
   for (; at < first; ++at) {
-    const GapState next = move_gap_model(motion_, theta, p_middle_, now, at, 1, nullptr);
+    std::array<GapState, kStates + 1> moved;
+    moved.fill(now);
+    for (int k = 0; k < kStates; ++k) moved[static_cast<std::size_t>(k)].x[k] += probe_of_state(k);
+    std::array<GapRun, kStates + 1> runs;
+    for (std::size_t k = 0; k < runs.size(); ++k) runs[k] = {&theta, &moved[k], nullptr};
+    move_all(runs, at, 1);
+    const GapState& next = moved[kStates];
     Normal F;
     for (int k = 0; k < kStates; ++k) {
-      GapState moved = now;
-      moved.x[k] += probe_of_state(k);
-      F.col(k) = (move_gap_model(motion_, theta, p_middle_, moved, at, 1, nullptr).x - next.x) /
-                 probe_of_state(k);
+      F.col(k) = (moved[static_cast<std::size_t>(k)].x - next.x) / probe_of_state(k);
     }
     P = F * P * F.transpose() + drift;
     now = next;
@@ -142,6 +146,7 @@ void GapPieces::track(const Gap::Vector& theta) {
 
 void GapPieces::settle(const Gap::Vector& theta, int rounds, GapPiece& piece) const {
   GapSlopes slope;
+  std::vector<double> rest(rows());
   double damping = 1e-3;
   for (int round = 0; round < rounds; ++round) {
     slopes(theta, {}, piece, slope);
@@ -155,7 +160,7 @@ void GapPieces::settle(const Gap::Vector& theta, int rounds, GapPiece& piece) co
       damped.diagonal() *= 1 + damping;
       GapState next = piece.start;
       next.x -= damped.ldlt().solve(down);
-      const double sum = left(theta, next, piece.first, slope.other.data());
+      const double sum = left(theta, next, piece.first, rest.data());
       damping *= sum < piece.left ? 0.2 : 8;
       if (!(sum < piece.left)) continue;
       gained = piece.left - sum;
@@ -182,19 +187,32 @@ void GapPieces::offer(const Gap::Vector& theta, std::size_t i, const GapState::V
   piece.start = other;
 }
 
-double GapPieces::left(const Gap::Vector& theta, const GapState& start, std::size_t first,
-                       double* rest) const {
-  move_gap_model(motion_, theta, p_middle_, start, first, ticks_, rest);
+void GapPieces::move_all(std::span<const GapRun> runs, std::size_t first, std::size_t count) const {
+  for (; !runs.empty(); runs = runs.subspan(std::min(kGapRunsAtOnce, runs.size()))) {
+    move_gap_models(motion_, p_middle_, runs.first(std::min(kGapRunsAtOnce, runs.size())), first,
+                    count);
+  }
+}
+
+double GapPieces::rest_of(double* angles, std::size_t first) const {
   double sum = 0;
   for (std::size_t i = 0; i < ticks_; ++i) {
     const MotionSample& seen = motion_.samples[first + i];
     for (int k = 0; k < 3; ++k) {
-      double& one = rest[3 * i + static_cast<std::size_t>(k)];
+      double& one = angles[3 * i + static_cast<std::size_t>(k)];
       one = seen.fresh ? (one - seen.q[k]) * weight_[k] : 0;
       sum += one * one;
     }
   }
   return std::isfinite(sum) ? sum : HUGE_VAL;
+}
+
+double GapPieces::left(const Gap::Vector& theta, const GapState& start, std::size_t first,
+                       double* rest) const {
+  GapState moved = start;
+  const GapRun run{&theta, &moved, rest};
+  move_all({&run, 1}, first, ticks_);
+  return rest_of(rest, first);
 }
 
 double GapPieces::lost_from() const {
@@ -208,24 +226,35 @@ double GapPieces::lost_from() const {
 void GapPieces::slopes(const Gap::Vector& theta, const std::vector<int>& free,
                        const GapPiece& piece, GapSlopes& out) const {
   const auto count = static_cast<Eigen::Index>(rows());
-  out.global.resize(count, static_cast<Eigen::Index>(free.size()));
+  const std::size_t constants = free.size(), all = constants + kStates + 1;
+  out.moved.resize(count, static_cast<Eigen::Index>(all));
+  // The constants, each moved by its probe; the states; and at the end all as it is.
+  std::vector<Gap::Vector> thetas(constants, theta);
+  std::vector<GapState> states(all, piece.start);
+  std::vector<GapRun> runs(all);
+  Eigen::VectorXd probe(static_cast<Eigen::Index>(all - 1));
+  for (std::size_t j = 0; j < all; ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    if (j < constants) {
+      probe[at] = probe_of_constant(theta, free[j]);
+      move_constant(thetas[j], free[j], probe[at]);
+    } else if (j + 1 < all) {
+      const int k = static_cast<int>(j - constants);
+      probe[at] = probe_of_state(k);
+      states[j].x[k] += probe[at];
+    }
+    runs[j] = {j < constants ? &thetas[j] : &theta, &states[j], out.moved.col(at).data()};
+  }
+  move_all(runs, piece.first, ticks_);
+  for (Eigen::Index at = 0; at < out.moved.cols(); ++at)
+    rest_of(out.moved.col(at).data(), piece.first);
+  out.rest = out.moved.rightCols<1>();
+  const auto slope = [&](Eigen::Index at) { return (out.moved.col(at) - out.rest) / probe[at]; };
+  const auto globals = static_cast<Eigen::Index>(constants);
+  out.global.resize(count, globals);
   out.local.resize(count, kStates);
-  out.rest.resize(count);
-  out.other.resize(count);
-  left(theta, piece.start, piece.first, out.rest.data());
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    Gap::Vector moved = theta;
-    const double step = probe_of_constant(theta, free[j]);
-    move_constant(moved, free[j], step);
-    left(moved, piece.start, piece.first, out.other.data());
-    out.global.col(static_cast<Eigen::Index>(j)) = (out.other - out.rest) / step;
-  }
-  for (int k = 0; k < kStates; ++k) {
-    GapState moved = piece.start;
-    moved.x[k] += probe_of_state(k);
-    left(theta, moved, piece.first, out.other.data());
-    out.local.col(k) = (out.other - out.rest) / probe_of_state(k);
-  }
+  for (Eigen::Index j = 0; j < globals; ++j) out.global.col(j) = slope(j);
+  for (int k = 0; k < kStates; ++k) out.local.col(k) = slope(globals + k);
 }
 
 }  // namespace thimble::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "bringup/identify/cables/gap/gap_model.h"
@@ -18,7 +19,8 @@ struct GapPiece {
 struct GapSlopes {
   Eigen::MatrixXd global;  ///< By the constants that are searched for.
   Eigen::Matrix<double, Eigen::Dynamic, GapState::kCount> local;
-  Eigen::VectorXd rest, other;
+  Eigen::VectorXd rest;
+  Eigen::MatrixXd moved;  ///< Room for what is left with one of them moved.
 };
 
 /// Pieces of a motion, and the states that they begin with. Real-time: never from the servo thread.
@@ -55,6 +57,9 @@ class GapPieces {
  private:
   GapState tracked(const GapTheta::Vector& theta, std::size_t first) const;
   void settle(const GapTheta::Vector& theta, int rounds, GapPiece& piece) const;
+  void move_all(std::span<const GapRun> runs, std::size_t first, std::size_t count) const;
+  /// Makes of a model's angles what it leaves. Returns the sum of squares; +inf if it is none.
+  double rest_of(double* angles, std::size_t first) const;
   double left(const GapTheta::Vector& theta, const GapState& start, std::size_t first,
               double* rest) const;
 
