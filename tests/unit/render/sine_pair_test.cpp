@@ -56,6 +56,17 @@ TEST(SinePair, IsExactAtWholeQuartersAndPassesNan) {
   EXPECT_TRUE(std::isnan(found.sine[1]) && std::isnan(found.cosine[1]));
 }
 
+TEST(SinePair, RepeatsAfterWholeTurnsUpToItsLargestAngles) {
+  support::Random random(20);
+  for (int i = 0; i < 1000; ++i) {
+    const double quarters = std::floor(random.uniform(-8, 8)) / 4;  // exact beside many turns
+    const double turns = std::floor(random.uniform(-0x1p48, 0x1p48 - 2));
+    const SinePair found = sine_pair(Pair{quarters, quarters + 4 * turns});
+    EXPECT_EQ(found.sine[0], found.sine[1]) << turns;
+    EXPECT_EQ(found.cosine[0], found.cosine[1]) << turns;
+  }
+}
+
 TEST(WaveSum, IsTheSumOfItsWavesWhetherOddOrEvenInNumber) {
   support::Random random(19);
   for (std::size_t count = 0; count < 6; ++count) {
