@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bringup/identify/cables/behind_cables.h"
+#include "bringup/identify/cables/gap/gap_constants.h"
 #include "bringup/identify/line_forces.h"
 #include "bringup/identify/links/link_constants.h"
 #include "bringup/identify/links/link_equations.h"

@@ -100,12 +100,13 @@ void put_cables(Identified& found) {
   const auto hz = [&](std::size_t i) { return (*constants.cables)[i].antiresonance.value; };
   const std::size_t softest =
       std::min<std::size_t>({0, 1, 2}, [&](auto a, auto b) { return hz(a) < hz(b); });
-  if (hz(softest) < LineForces::kLowest) {
+  if (!found.against.empty() && hz(softest) < LineForces::kLowest) {
     found.against.insert(
         found.against.begin(),
-        fmt::format("The link of joint {} oscillates on its cable at {:.0f} Hz. Cables are "
-                    "identified where that is {:g} Hz or more: this arm's are too soft.",
-                    softest + 1, hz(softest), LineForces::kLowest));
+        fmt::format(
+            "The link of joint {} oscillates on its cable at {:.0f} Hz, and cables are looked "
+            "for from {:g} Hz on: this one may be too soft to be identified.",
+            softest + 1, hz(softest), LineForces::kLowest));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const CableConstants& cable = (*constants.cables)[i];

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bringup/identify/arm_constants.h"
+#include "bringup/identify/cables/gap/gap_constants.h"
 #include "math/elementary.h"
 
 namespace thimble::app {
@@ -24,29 +25,6 @@ constexpr double kMethodShare = 0.006, kMethodWidth = 3e-6;
 constexpr double kMethodViscous = 5e-5;
 constexpr double kPlayBetter = 20;  // information, before it is believed
 constexpr double kPlayShows = 5;    // deviations, before a number is written
-
-/// Returns constants to begin with. At high frequencies a motor moves alone, whatever its play is:
-/// the lines know gain over inertia. At low ones it moves with its link, as in the rigid fit. Both
-/// together are gain and inertia.
-Gap::Vector first_constants(const PerMass& rigid, const CableFit& lines) {
-  const Eigen::Matrix<double, TwoMass::kCount, 1>& seen = lines.elastic.theta;
-  Gap::Vector theta = Gap::Vector::Zero();
-  for (int i = 0; i < 3; ++i) {
-    const double fast = seen[TwoMass::kGain + i] / seen[TwoMass::kInertia + i];
-    const double slow = rigid.theta[PerMass::kGain + i];
-    const double inertia = slow / std::max(0.05 * fast, fast - slow / lines.JTJ(i, i));
-    const double stiffness = 1 / seen[TwoMass::kCompliance + i];
-    theta[Gap::kGain + i] = fast * inertia;
-    theta[Gap::kInertia + i] = inertia;
-    theta[Gap::kStiffness + i] = stiffness;
-    theta[Gap::kDamping + i] = stiffness * std::max(1e-5, seen[TwoMass::kFade + i]);
-    theta[Gap::kWeight + i] = rigid.theta[PerMass::kWeight + i];
-  }
-  theta[Gap::kDelay] = seen[TwoMass::kDelay];
-  theta[Gap::kViscous] = std::max(0.0, rigid.theta[PerMass::kViscous]);
-  theta[Gap::kCoulomb] = std::max(0.0, rigid.theta[PerMass::kCoulomb]);
-  return theta;
-}
 
 /// Searches for play from several widths.
 GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapFit& without,
@@ -186,7 +164,7 @@ void look_for_friction(const GapPieces& whole, PlayFit& found) {
 PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit& lines) {
   PlayFit found;
   found.searched = true;
-  const Gap::Vector start = first_constants(rigid, lines);
+  const Gap::Vector start = gap_constants(rigid, lines);
   const GapPieces brief(motion, kShortPieces, kShort), whole(motion, kLongPieces, kLong);
   const GapFit plain = fit_gap(brief, start, {}, 15);
   // Where friction of the motors is all that is missing, play is looked for beside it.
@@ -242,68 +220,6 @@ GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMa
   from.segment<3>(Gap::kWeight) = rigid.theta.segment<3>(PerMass::kWeight);
   const GapFit close = fit_gap(GapPieces(motion, kShortPieces, kShort), from, sought, 20);
   return fit_gap(GapPieces(motion, kLongPieces, kLong), close.theta, sought, 20);
-}
-
-PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion) {
-  constexpr std::pair<int, int> kSame[] = {{PerMass::kGain, Gap::kGain},
-                                           {PerMass::kGain + 1, Gap::kGain + 1},
-                                           {PerMass::kGain + 2, Gap::kGain + 2},
-                                           {PerMass::kViscous, Gap::kViscous},
-                                           {PerMass::kCoulomb, Gap::kCoulomb},
-                                           {PerMass::kWeight, Gap::kWeight},
-                                           {PerMass::kWeight + 1, Gap::kWeight + 1},
-                                           {PerMass::kWeight + 2, Gap::kWeight + 2},
-                                           {PerMass::kStiffness, Gap::kSpring}};
-  PerMass found;
-  for (const auto& [to, from] : kSame) {
-    found.theta[to] = fit.theta[from];
-    for (const auto& [other_to, other_from] : kSame) {
-      found.covariance(to, other_to) = fit.covariance(from, other_from);
-    }
-  }
-  found.delay = {fit.theta[Gap::kDelay],
-                 kNormal95 * std::sqrt(fit.covariance(Gap::kDelay, Gap::kDelay))};
-  found.windows = static_cast<std::size_t>(fit.samples) / (3 * kLong);
-  found.left_out = static_cast<std::size_t>(fit.lost * static_cast<double>(found.windows));
-  // Of the angles, for a fit of which no accelerations are known.
-  double square = 0;
-  Eigen::Vector3d mean(0, 0, 0);
-  for (const MotionSample& sample : motion.samples) mean += sample.q;
-  mean /= static_cast<double>(motion.samples.size());
-  for (const MotionSample& sample : motion.samples) {
-    square += (sample.q - mean).squaredNorm() / static_cast<double>(motion.samples.size());
-  }
-  found.noise = motion.step.norm() / std::sqrt(12.0);
-  found.residual = std::sqrt(fit.misfit) * found.noise;
-  found.explained = 1 - found.residual * found.residual / square;
-  return found;
-}
-
-TwoMass two_mass_of(const GapFit& fit, const TwoMass& before) {
-  TwoMass found = before;
-  Eigen::Matrix<double, TwoMass::kCount, Gap::kCount> slope;
-  slope.setZero();
-  const auto take = [&](int to, int from) {
-    found.theta[to] = fit.theta[from];
-    slope(to, from) = 1;
-  };
-  take(TwoMass::kDelay, Gap::kDelay);
-  take(TwoMass::kViscous, Gap::kViscous);
-  for (int i = 0; i < 3; ++i) {
-    take(TwoMass::kGain + i, Gap::kGain + i);
-    take(TwoMass::kInertia + i, Gap::kInertia + i);
-    // Of dry friction lines see what they were fitted with.
-    if (fit.theta.tail<6>().isZero(0)) found.theta[TwoMass::kRotorViscous + i] = 0;
-    const double stiffness = fit.theta[Gap::kStiffness + i], damping = fit.theta[Gap::kDamping + i];
-    found.theta[TwoMass::kCompliance + i] = 1 / stiffness;
-    found.theta[TwoMass::kFade + i] = damping / stiffness;
-    slope(TwoMass::kCompliance + i, Gap::kStiffness + i) = -1 / (stiffness * stiffness);
-    slope(TwoMass::kFade + i, Gap::kDamping + i) = 1 / stiffness;
-    slope(TwoMass::kFade + i, Gap::kStiffness + i) = -damping / (stiffness * stiffness);
-  }
-  found.covariance = slope * fit.covariance * slope.transpose();
-  found.misfit = fit.misfit;
-  return found;
 }
 
 }  // namespace thimble::app

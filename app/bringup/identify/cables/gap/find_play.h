@@ -52,11 +52,4 @@ PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit&
 GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMass& rigid_bare,
                       const PlayFit& bare);
 
-/// Returns what a fit with play says of what moves the tip, in place of the weak form's: a spring
-/// that holds the tip is in it. `windows` are its pieces.
-PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion);
-
-/// Returns what it says of motors and cables, in place of the lines' `before`.
-TwoMass two_mass_of(const GapFit& fit, const TwoMass& before);
-
 }  // namespace thimble::app

@@ -71,6 +71,7 @@ class GapSearch {
       ++used;
     }
     const auto all = static_cast<double>(pieces_.pieces().size());
+    found.pieces = used;
     found.lost = 1 - static_cast<double>(used) / all;
     found.samples = static_cast<double>(pieces_.rows() * used);
     found.misfit = found.chi2 / (found.samples - static_cast<double>(free_.size()) -
