@@ -22,7 +22,7 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   BenchArm& bench = **opened;
-  Excitation excitation(bench.device().state().p_WT, {0, 0, 0}, 1);
+  Excitation excitation(bench.device().state().p_WT, 1);
   const driver::WireCounters before = bench.device().wire_counters();
   const double begin = bench.now();
   double ticks = 0, moved = 0;
@@ -55,7 +55,7 @@ HilResult check_soak(const HilRig& rig, double minutes) {
       kName,
       fmt::format("For {:.1f} minutes it was pushed with up to {:g} N{}; {:.3f} % of the ticks had "
                   "no report.",
-                  done, Excitation::kForceMost,
+                  done, excitation.force_most(),
                   left ? ", until the tip left the space that it may move in" : "", 100 * missing) +
           heat.text(),
       std::move(figures));

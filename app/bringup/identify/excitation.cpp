@@ -15,12 +15,8 @@ constexpr double kLowest = 0.7, kHighest = 13;  // Hz
 
 }  // namespace
 
-Excitation::Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W,
-                       std::uint64_t seed, Lines lines, double allowed)
-    : hold_(p_WM, f_carried_W),
-      lines_(seed + 1),
-      with_lines_(lines == Lines::kWith),
-      allowed_(allowed) {
+Excitation::Excitation(const Eigen::Vector3d& p_WM, std::uint64_t seed, Lines lines, double allowed)
+    : hold_(p_WM), lines_(seed + 1), with_lines_(lines == Lines::kWith), allowed_(allowed) {
   std::mt19937_64 bits(seed);
   const double steps = 3 * kSines - 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -46,7 +42,7 @@ Eigen::Vector3d Excitation::force(double time, double dt, const Eigen::Vector3d&
     }
   }
   if (with_lines_) f += share * allowed_ * lines_.force(time);
-  const double length = f.norm(), most = kShareMost * allowed_;
+  const double length = f.norm(), most = force_most();
   if (!(length > most)) return f;
   return f * (most / length);
 }

@@ -14,23 +14,25 @@ namespace thimble::app {
 /// tip where it began. Never longer than `kShareMost` of what is allowed. Frame W: world.
 class Excitation {
  public:
-  static constexpr double kForceMost = 0.95;  ///< N, below the 1 N that is allowed unless said.
   static constexpr double kShareMost = 0.95;  ///< Of what is allowed.
   static constexpr double kFar = 0.04;        ///< How far the tip may go from the middle, m.
   static constexpr int kSines = 8;            ///< Per axis.
   /// Whether LineForces come on top, which show what the arm does at high frequencies.
   enum class Lines { kWithout, kWith };
 
-  /// Takes where the tip shall stay (m), the force that carries a known mass (N), what the phases
-  /// are drawn by, and the largest force that is allowed (N): all sines grow and shrink with it.
-  Excitation(const Eigen::Vector3d& p_WM, const Eigen::Vector3d& f_carried_W, std::uint64_t seed,
-             Lines lines = Lines::kWithout, double allowed = 1);
+  /// Takes where the tip shall stay (m), what the phases are drawn by, and the largest force that
+  /// is allowed (N): all sines grow and shrink with it.
+  Excitation(const Eigen::Vector3d& p_WM, std::uint64_t seed, Lines lines = Lines::kWithout,
+             double allowed = 1);
 
   /// Returns the force (N) at a time since the beginning (s), `dt` (s) after the last, for a tip at
   /// p_WT (m) with v_WT (m/s); zero for a tip that has left the space it may move in. Real-time:
   /// safe.
   Eigen::Vector3d force(double time, double dt, const Eigen::Vector3d& p_WT,
                         const Eigen::Vector3d& v_WT) noexcept;
+
+  /// Returns how long a force may be at the most, N.
+  double force_most() const noexcept { return kShareMost * allowed_; }
 
   /// Returns whether a tip is where it may be. Real-time: safe.
   bool near(const Eigen::Vector3d& p_WT) const noexcept {

@@ -111,7 +111,7 @@ class Recorder {
     }
     motion.samples.reserve(static_cast<std::size_t>(order.seconds / kTick) + 1);
     motion.share = share_;
-    Excitation excitation(p_WM_, {0, 0, 0}, order.seed, Excitation::Lines::kWith, force_most_);
+    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith, force_most_);
     carried_W_ = {0, 0, kStandardGravity * order.added_mass};
     const double begin = bench_.now();
     std::uint64_t jumped = bench_.device().wire_counters().jumped;
