@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 
 #include "bringup/identify/constants_table.h"
@@ -40,7 +41,7 @@ HiddenArm rubbing_arm(std::uint64_t seed) {
 }
 
 /// Counts how far one is off only where its interval does not say so.
-void add_viscous(const Estimate& estimate, double truth, Score& score) {
+void add_beside_interval(const Estimate& estimate, double truth, Score& score) {
   const double worst = score.worst;
   score.add(estimate, truth);
   if (estimate.holds(truth)) score.worst = worst;
@@ -50,6 +51,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
   const int arms = long_form() ? 40 : 1;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.25}, tip{"tip", 0.05}, gain{"gains", 0.02};
   Score mass{"mass", 0.03}, motor{"motor", 0.06}, stiffness{"cable", 0.06};
+  Score resonance{"resonance", 0.05};
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6102 + k);
@@ -77,13 +79,19 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       const auto joint = static_cast<Eigen::Index>(i);
       const CableConstants& cable = (*constants.cables)[i];
       gain.add(constants.gain[i], arm.gain[i] / mean);
-      motor.add(cable.inertia, train.inertia[joint] / mean);
-      stiffness.add(cable.stiffness, train.stiffness[joint] / mean);
+      const double rotor = train.inertia[joint] / mean, pulls = train.stiffness[joint] / mean;
+      const double link = arm.file.simulated.plant.mass / mean * found->lines.JTJ(joint, joint);
+      add_beside_interval(cable.inertia, rotor, motor);
+      add_beside_interval(cable.stiffness, pulls, stiffness);
+      resonance.add(cable.resonance,
+                    std::sqrt(pulls * (1 / link + 1 / rotor)) / (2 * std::numbers::pi));
       dry.add(cable.coulomb, train.coulomb[joint] / mean);
-      if (cable.viscous.value > 0) add_viscous(cable.viscous, train.viscous[joint] / mean, viscous);
+      if (cable.viscous.value > 0) {
+        add_beside_interval(cable.viscous, train.viscous[joint] / mean, viscous);
+      }
     }
   }
-  for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness}) {
+  for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness, &resonance}) {
     score->tell();
     EXPECT_LT(score->worst, score->most) << score->name;
     EXPECT_GE(score->held, 0.9 * score->all) << score->name;
