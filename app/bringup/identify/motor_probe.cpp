@@ -14,6 +14,8 @@ namespace {
 constexpr double kWeakest = 0.05;  // N, of the first push
 constexpr double kPulse = 0.04;    // s, the longest
 constexpr double kReach = 0.002;   // m, where a push turns round [chosen: a twentieth of the space]
+constexpr double kStill = 0.02;    // s without a count in which it rests
+constexpr double kRestMost = 2;    // s [chosen: longer than the softest of 200 hidden arms slides]
 constexpr double kNoticed = 3, kClear = 10;  // counts
 // Tip accelerations for each N asked for, 1/kg, up to which HoldPlace is stable behind a delay of
 // 5 ms: at the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w),
@@ -59,13 +61,28 @@ class Probe {
   }
 
  private:
+  /// Lets the tip come to rest after a push, for as long as kRestMost: an arm whose friction hardly
+  /// carries its weight slides on for long. Returns whether the run goes on.
+  bool rest() {
+    const auto nothing = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
+    for (double waited = 0; waited < kRestMost; waited += kStill) {
+      const Eigen::Vector3d before = bench_.device().state().q;
+      if (!bench_.run(kStill, nothing, stop_)) return false;
+      if (!within_(bench_.device().state().p_WT)) return false;
+      if (bench_.device().state().q == before) break;
+    }
+    return true;
+  }
+
   std::optional<Pushed> push(int joint, double force) {
+    if (!rest()) return {};
     const Eigen::Vector3d begin_W = bench_.device().state().p_WT;
     const double q0 = bench_.device().state().q[joint], begin = bench_.now();
     double turn = -1;  // when the push turned round, s
     Pushed seen;
     std::vector<std::pair<double, double>> way;  // s, m along the push, up to there
     bool left = false;
+    Phases phases;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       const double t = bench_.now() - begin;
       left = left || !within_(state.p_WT);
@@ -79,15 +96,46 @@ class Probe {
       if (turn < 0 || t < 1.1 * turn) {
         seen.counts = std::abs(away) > std::abs(seen.counts) ? away : seen.counts;
       }
-      // +, -, -, +: while it is pushed to and stopped, the joint goes one way and comes back.
-      const double phase = turn < 0 ? 0 : t / turn;
-      const double sign = phase < 1 ? 1 : phase < 3 ? -1 : phase < 4 ? 1 : 0;
-      return sign * force * push_W;
+      return sign_of(phases, t, turn, gone, std::copysign(1.0, force) * push_W.dot(state.v_WT)) *
+             force * push_W;
     };
     if (!bench_.run(5 * kPulse, law, stop_) || left) return {};
     seen.counts /= file_.model.step(static_cast<std::size_t>(joint));
     seen.acceleration = acceleration_of(way);
     return seen;
+  }
+
+  /// How far a push is: there, back, and stopped, each with the other sign.
+  struct Phases {
+    enum { kThere, kBack, kStop, kOver } now = kThere;
+    double until = 0;  ///< s, when the one before ended
+    double peak = 0;   ///< m, farthest along the push, with its sign
+  };
+
+  /// Returns the sign of the force at a time (s) in a push that turned round at `turn` (s, negative
+  /// before it has), with the tip `gone` (m) along it at `rate` (m/s). A weight makes the ways
+  /// there and back differ, so each ends where the tip is; at the latest after twice the time of
+  /// the push.
+  static double sign_of(Phases& phases, double t, double turn, double gone, double rate) {
+    if (turn < 0) return 1;
+    if (std::abs(gone) > std::abs(phases.peak)) phases.peak = gone;
+    const double side = std::copysign(1.0, phases.peak);
+    const bool late = t - phases.until >= 2 * turn;
+    const auto next = [&](auto phase) {
+      phases.now = phase;
+      phases.until = t;
+    };
+    if (phases.now == Phases::kThere) {
+      next(Phases::kBack);
+    } else if (phases.now == Phases::kBack && (late || side * gone < 0.5 * side * phases.peak) &&
+               side * rate < 0) {
+      next(Phases::kStop);
+    } else if (phases.now == Phases::kBack && late) {
+      next(Phases::kOver);  // it does not come back
+    } else if (phases.now == Phases::kStop && (late || side * rate >= 0)) {
+      next(Phases::kOver);
+    }
+    return phases.now == Phases::kBack ? -1 : phases.now == Phases::kStop ? 1 : 0;
   }
 
   /// Returns the unit force that one motor alone makes at the tip (W).

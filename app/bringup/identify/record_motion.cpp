@@ -20,6 +20,8 @@ constexpr double kProbeShare = 0.4;  // of the most that is allowed, while motor
 // spring of HoldPlace over 0.4 s, long against its oscillation.
 constexpr double kCarry = 150;
 
+constexpr double kCarried = 2;       // s, until it is carried [chosen: five times the slowest of
+                                     // 200 hidden arms]
 constexpr double kLeadSpeed = 0.06;  // m/s, between places [chosen: slower than a hand's reach]
 constexpr double kSettled = 0.3;     // s, at a new place
 
@@ -101,6 +103,23 @@ class Recorder {
     return {};
   }
 
+  /// Finds the force that carries a mass (kg): motors that are not as strong as the file says do
+  /// not carry what they are asked to.
+  driver::Result<void> carry(double mass) {
+    carried_W_ = {0, 0, kStandardGravity * mass};
+    HoldPlace hold(p_WM_);
+    const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
+      left_ = left_ || !within(state.p_WT);
+      if (left_) return {0, 0, 0};
+      carried_W_ += kCarry * kTick * (p_WM_ - state.p_WT);
+      return shared(hold.force(kTick, state.p_WT, state.v_WT), sample_of(file_, state).G);
+    };
+    const bool whole = bench_.run(kCarried, law, stop_);
+    if (left_) return went_away();
+    if (!whole) return why();
+    return {};
+  }
+
   driver::Result<ArmMotion> record(const MotionOrder& order) {
     ArmMotion motion;
     motion.dt = kTick;
@@ -111,8 +130,12 @@ class Recorder {
     }
     motion.samples.reserve(static_cast<std::size_t>(order.seconds / kTick) + 1);
     motion.share = share_;
-    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith, force_most_);
-    carried_W_ = {0, 0, kStandardGravity * order.added_mass};
+    if (order.added_mass > 0) {
+      if (auto carried = carry(order.added_mass); !carried) return carried.error();
+    }
+    // What is left beside what carries the mass moves it.
+    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith,
+                          std::max(0.0, force_most_ - carried_W_.norm()));
     const double begin = bench_.now();
     std::uint64_t jumped = bench_.device().wire_counters().jumped;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
@@ -123,8 +146,6 @@ class Recorder {
       if (t >= lead_) motion.samples.push_back(sample_of(file_, state));
       left_ = left_ || !within(state.p_WT);
       if (left_) return {0, 0, 0};
-      // Motors that are not as strong as the file says do not carry what they are asked to.
-      if (order.added_mass > 0 && t < lead_) carried_W_ += kCarry * kTick * (p_WM_ - state.p_WT);
       return shared(excitation.force(t, kTick, state.p_WT, state.v_WT), sample_of(file_, state).G);
     };
     const bool whole = bench_.run(lead_ + order.seconds, law, stop_);
