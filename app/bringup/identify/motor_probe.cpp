@@ -15,7 +15,7 @@ constexpr double kWeakest = 0.05;  // N, of the first push
 constexpr double kPulse = 0.04;    // s, the longest
 constexpr double kReach = 0.002;   // m, where a push turns round [chosen: a twentieth of the space]
 constexpr double kStill = 0.02;    // s without a count in which it rests
-constexpr double kRestMost = 2;    // s [chosen: longer than the softest of 200 hidden arms slides]
+constexpr double kRestMost = 2;    // s, after which it moves by itself [chosen]
 constexpr double kNoticed = 3, kClear = 10;  // counts
 // Tip accelerations for each N asked for, 1/kg, up to which HoldPlace is stable behind a delay of
 // 5 ms: at the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w),

@@ -17,11 +17,8 @@ namespace {
 constexpr double kTick = 1e-3;       // s, of BenchArm
 constexpr double kProbeShare = 0.4;  // of the most that is allowed, while motors are tried
 // How fast a force that carries a known mass is found, N/s for each m that it hangs too low: the
-// spring of HoldPlace over 0.4 s, long against its oscillation.
-constexpr double kCarry = 150;
-
-constexpr double kCarried = 2;       // s, until it is carried [chosen: five times the slowest of
-                                     // 200 hidden arms]
+// spring of HoldPlace over 0.4 s, long against its oscillation; and for how long, five times that.
+constexpr double kCarry = 150, kCarried = 2;
 constexpr double kLeadSpeed = 0.06;  // m/s, between places [chosen: slower than a hand's reach]
 constexpr double kSettled = 0.3;     // s, at a new place
 
