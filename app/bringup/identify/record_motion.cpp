@@ -130,9 +130,7 @@ class Recorder {
     if (order.added_mass > 0) {
       if (auto carried = carry(order.added_mass); !carried) return carried.error();
     }
-    // What is left beside what carries the mass moves it.
-    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith,
-                          std::max(0.0, force_most_ - carried_W_.norm()));
+    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith, force_most_);
     const double begin = bench_.now();
     std::uint64_t jumped = bench_.device().wire_counters().jumped;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
@@ -176,10 +174,13 @@ class Recorder {
       const Eigen::Vector3d tau = G.transpose().inverse() * (file_.R_WB.transpose() * f_W);
       f = file_.R_WB * (G.transpose() * share_.cwiseProduct(tau));
     }
-    f += carried_W_;
-    const double length = f.norm();
+    // What carries stays whole, and the rest becomes as short as it must.
     const double most = Excitation::kShareMost * force_most_;
-    return length > most ? Eigen::Vector3d(f * (most / length)) : f;
+    const double left = most * most - carried_W_.squaredNorm();
+    if (left <= 0) return carried_W_ * (most / carried_W_.norm());
+    if ((carried_W_ + f).squaredNorm() <= most * most) return carried_W_ + f;
+    const double along = carried_W_.dot(f), square = f.squaredNorm();
+    return carried_W_ + f * ((std::sqrt(along * along + square * left) - along) / square);
   }
 
   /// Returns the torques of the force that stands, in the pose that it was sent for.
