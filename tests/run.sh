@@ -70,7 +70,9 @@ building=
 build_beside() {  # build_beside [PRESET]
   [ -n "${1:-}" ] || return 0
   export -f build
-  chrt --idle 0 setsid bash -c 'set -euo pipefail; build "$1"' build "$1" &
+  local idle=()
+  ! chrt --idle 0 true 2>/dev/null || idle=(chrt --idle 0)
+  "${idle[@]}" setsid bash -c 'set -euo pipefail; build "$1"' build "$1" &
   building=$!
 }
 trap '[ -z "$building" ] || kill -- -"$building" 2>/dev/null || true' EXIT
