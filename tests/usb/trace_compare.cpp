@@ -25,8 +25,7 @@ struct Tick {
 
 /// One packet as the arm saw it.
 struct Report {
-  std::uint64_t number =
-      0;  // counted by the arm; of two packets in one frame the trace has the last
+  std::uint64_t number = 0;  // counted by the arm; two in one frame leave a gap
   std::int64_t sampled_frame = 0, sampled_ns = 0;
   Counts counts{};
   Numbers exact{};

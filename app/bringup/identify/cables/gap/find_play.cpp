@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/cables/gap/gap_constants.h"
