@@ -65,32 +65,13 @@ build() {  # build PRESET
   esac
 }
 
-# The next preset is built beside the tests of one, which wait a lot, in the time that they leave over.
-building=
-build_beside() {  # build_beside [PRESET]
-  [ -n "${1:-}" ] || return 0
-  export -f build
-  local idle=()
-  ! chrt --idle 0 true 2>/dev/null || idle=(chrt --idle 0)
-  "${idle[@]}" setsid bash -c 'set -euo pipefail; build "$1"' build "$1" &
-  building=$!
-}
-trap '[ -z "$building" ] || kill -- -"$building" 2>/dev/null || true' EXIT
-
 failed=()
-for ((k = 0; k < ${#presets[@]}; ++k)); do
-  preset=${presets[k]}
+for preset in "${presets[@]}"; do
   leave=()
   case $preset in
     asan | tsan) leave=(-L .) ;; # what lies in sources, and not in a program, was tested with the release
   esac
-  if [ -n "$building" ]; then
-    wait "$building"
-    building=
-  else
-    build "$preset"
-  fi
-  build_beside "${presets[k + 1]:-}"
+  build "$preset"
   echo "== Tests: $preset"
   # Tests by the wall clock fail where the machine stands still for longer than an arm's watchdog allows; what fails by
   # itself fails each time. Those that passed at a further try are named below.

@@ -8,6 +8,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cstdint>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -26,10 +27,8 @@ using nlohmann::json;
 constexpr const char* kId = "049D";
 /// How long the service keeps a force after the last message, ns.
 constexpr std::int64_t kKept_ns = 20'000'000;
-
-std::int64_t steady_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch().count();
-}
+/// How late it answers where it is late, ns.
+constexpr std::int64_t kLate_ns = 60'000'000;
 
 json vector(const Eigen::Vector3d& v) {
   return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
@@ -39,12 +38,13 @@ json vector(const Eigen::Vector3d& v) {
 
 class MockHaplyService::Server {
  public:
-  Server(HaplyGreeting greeting, bool old_spelling, std::uint16_t port)
-      : greeting_(greeting),
+  Server(HaplyGreeting greeting, bool old_spelling, std::uint16_t port, const driver::Clock* clock)
+      : clock_(clock == nullptr ? world_ : *clock),
+        greeting_(greeting),
         old_spelling_(old_spelling),
         acceptor_(io_, tcp::endpoint(asio::ip::address_v4::loopback(), port)) {
     arm_.p_BT = arm_.p_BH = {0.01, -0.13, 0.17};
-    arm_.time_ns = steady_ns();
+    arm_.time_ns = clock_.now_ns();
     thread_ = std::thread([this] { run(); });
   }
 
@@ -65,9 +65,10 @@ class MockHaplyService::Server {
     const std::lock_guard lock(mutex_);
     HaplyLog log = log_;
     log.p_BT = arm_.p_BT;
-    log.f_T_B = steady_ns() - last_message_ns_ > kKept_ns ? Eigen::Vector3d(0, 0, 0) : arm_.f_T_B;
+    log.f_T_B = clock_.now_ns() - last_message_ns_ > kKept_ns ? Eigen::Vector3d(0, 0, 0) : arm_.f_T_B;
     return log;
   }
+  std::uint64_t dealt_with() const { return dealt_with_; }
 
  private:
   void run() {
@@ -97,11 +98,18 @@ class MockHaplyService::Server {
       take(beast::buffers_to_string(buffer.data()));
       buffer.consume(buffer.size());
       const HaplyMischief mischief = mischief_;
-      if (mischief == HaplyMischief::kSilent) continue;
       answers = !answers;
-      if (mischief == HaplyMischief::kLeavesOneOut && !answers) continue;
+      if (mischief == HaplyMischief::kSilent ||
+          (mischief == HaplyMischief::kLeavesOneOut && !answers)) {
+        ++dealt_with_;
+        continue;
+      }
       if (mischief == HaplyMischief::kLate) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        ++dealt_with_;
+        for (const std::int64_t begin_ns = clock_.now_ns();
+             clock_.now_ns() - begin_ns < kLate_ns && !ended_;) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
       }
       if (mischief == HaplyMischief::kDie) return;  // the kernel closes the connection
       if (mischief == HaplyMischief::kClose) {
@@ -109,6 +117,7 @@ class MockHaplyService::Server {
         return;
       }
       stream.write(asio::buffer(answer(mischief)), failed);
+      if (mischief != HaplyMischief::kLate) ++dealt_with_;
     }
     const std::lock_guard lock(mutex_);
     log_.closed_by_client = failed == beast::websocket::error::closed;
@@ -158,7 +167,7 @@ class MockHaplyService::Server {
 
   std::string answer(HaplyMischief mischief) {
     const std::lock_guard lock(mutex_);
-    arm_.advance_to(steady_ns());
+    arm_.advance_to(clock_.now_ns());
     if (mischief == HaplyMischief::kGarbage) return R"({"inverse3":[{"device_id":"049D","state")";
     if (mischief == HaplyMischief::kHuge) return std::string(1'000'000, ' ');
     std::string text = state(mischief).dump();
@@ -176,7 +185,7 @@ class MockHaplyService::Server {
   void take(const std::string& text) {
     const std::lock_guard lock(mutex_);
     ++log_.messages;
-    const std::int64_t now_ns = steady_ns();
+    const std::int64_t now_ns = clock_.now_ns();
     if (now_ns - last_message_ns_ > kKept_ns) {
       arm_.advance_to(last_message_ns_ + kKept_ns);
       arm_.f_T_B.setZero();
@@ -201,12 +210,15 @@ class MockHaplyService::Server {
     log_.taken_B.push_back(arm_.f_T_B);
   }
 
+  const driver::WallClock world_{0};
+  const driver::Clock& clock_;
   const HaplyGreeting greeting_;
   const bool old_spelling_;
   asio::io_context io_;
   tcp::acceptor acceptor_;
   std::atomic<HaplyMischief> mischief_{HaplyMischief::kNone};
   std::atomic<bool> ended_{false};
+  std::atomic<std::uint64_t> dealt_with_{0};
   std::atomic<int> client_{-1};
   mutable std::mutex mutex_;
   PoseArm arm_;
@@ -215,8 +227,9 @@ class MockHaplyService::Server {
   std::thread thread_;
 };
 
-MockHaplyService::MockHaplyService(HaplyGreeting greeting, bool old_spelling, std::uint16_t port)
-    : server_(std::make_unique<Server>(greeting, old_spelling, port)) {}
+MockHaplyService::MockHaplyService(HaplyGreeting greeting, bool old_spelling, std::uint16_t port,
+                                   const driver::Clock* clock)
+    : server_(std::make_unique<Server>(greeting, old_spelling, port, clock)) {}
 MockHaplyService::~MockHaplyService() = default;
 
 std::uint16_t MockHaplyService::port() const {
@@ -230,6 +243,9 @@ void MockHaplyService::hand_to(const Eigen::Vector3d& p_BH) {
 }
 HaplyLog MockHaplyService::log() const {
   return server_->log();
+}
+std::uint64_t MockHaplyService::dealt_with() const {
+  return server_->dealt_with();
 }
 
 }  // namespace thimble::support

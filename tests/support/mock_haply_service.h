@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/clock.h"
+
 namespace thimble::support {
 
 /// What the mock service does with the next messages.
@@ -49,13 +51,15 @@ struct HaplyLog {
 };
 
 /// A service that keeps to Haply's published JSON, in a thread of its own, with a mass on a hand as
-/// its arm. It listens on this computer, on a port that the kernel chooses.
+/// its arm. It listens on this computer, on a port that the kernel chooses. It goes by `clock`,
+/// which outlives it and which any thread may read; by the time of the world where there is none.
 class MockHaplyService {
  public:
   /// `old_spelling`: takes the force under "values", as until 3.4, and knows no other; else under
   /// "vector". `port`: 0 for any.
   explicit MockHaplyService(HaplyGreeting greeting = HaplyGreeting::kInverse3,
-                            bool old_spelling = false, std::uint16_t port = 0);
+                            bool old_spelling = false, std::uint16_t port = 0,
+                            const driver::Clock* clock = nullptr);
   ~MockHaplyService();
 
   std::uint16_t port() const;
@@ -63,6 +67,8 @@ class MockHaplyService {
   /// Moves the hand that holds the arm, m.
   void hand_to(const Eigen::Vector3d& p_BH);
   HaplyLog log() const;
+  /// Returns how many messages have come, and all that follows from them has been done.
+  std::uint64_t dealt_with() const;
 
  private:
   class Server;

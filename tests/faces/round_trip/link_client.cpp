@@ -1,16 +1,17 @@
 // A program that has an arm by one of our back ends over a vendor's library, which is one of ours
 // that stands in for it when `thimble exec` starts this: it pushes another way in each tick, and
-// writes a line for each of what is known at this end.
-//   link_client dhd|hd ARM_FILE LOG TICKS
-#include <chrono>
+// writes a line for each of what is known at this end, until the arm has told of so many of its own
+// ticks.
+//   link_client dhd|hd ARM_FILE LOG ARM_TICKS
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <thread>
 
 #include "links/dhd/dhd_link.h"
 #include "links/hd/hd_link.h"
+#include "support/patient_clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/device_settings.h"
@@ -18,21 +19,6 @@
 namespace {
 
 using namespace thimble;
-
-/// A clock whose time passes only while somebody sleeps by it, a twentieth as long: a busy machine
-/// makes no tick late. The arm at the other end has a time of its own.
-class OwnClock final : public driver::Clock {
- public:
-  std::int64_t now_ns() const noexcept override { return now_ns_; }
-  void sleep_until_ns(std::int64_t time_ns) noexcept override {
-    if (time_ns <= now_ns_) return;
-    std::this_thread::sleep_for(std::chrono::nanoseconds((time_ns - now_ns_) / 20));
-    now_ns_ = time_ns;
-  }
-
- private:
-  std::int64_t now_ns_ = 0;
-};
 
 driver::Result<std::unique_ptr<driver::ArmLink>> open_link(const std::string& kind,
                                                            driver::Clock& clock) {
@@ -59,7 +45,7 @@ int complain(const driver::Error& error) {
   return 1;
 }
 
-int run(const std::string& kind, const char* arm_file, std::FILE* log, int ticks) {
+int run(const std::string& kind, const char* arm_file, std::FILE* log, std::uint64_t arm_ticks) {
   const auto arm = scene::load_arm(arm_file);
   if (!arm) return complain(arm.error());
   driver::DeviceSettings settings = scene::device_settings(*arm, 1000, driver::EnergyStage::kNone);
@@ -67,13 +53,18 @@ int run(const std::string& kind, const char* arm_file, std::FILE* log, int ticks
   settings.silence_limit_ns = 60'000'000'000;
   settings.limits.speed_max = 20;
   settings.motion = {};
-  OwnClock clock;
+  // A twentieth of the time of the world.
+  support::PatientClock clock(0.05);
   auto link = open_link(kind, clock);
   if (!link) return complain(link.error());
   auto device = driver::Device::open(std::move(link).value(), settings, clock.now_ns());
   if (!device) return complain(device.error());
   if (auto active = (*device)->activate(); !active) return complain(active.error());
-  for (int tick = 0; tick < ticks; ++tick) {
+  // The arm gets as much of the computer as it gets: many ticks here may be few there.
+  const auto arm_told = [&] {
+    return (*device)->wire_counters().reports + (*device)->wire_counters().skipped;
+  };
+  for (int tick = 0; arm_told() < arm_ticks && (*device)->fault() == driver::Fault::kNone; ++tick) {
     const std::int64_t next_ns = clock.now_ns() + 1'000'000;
     clock.sleep_until_ns(next_ns);
     (*device)->read(next_ns, next_ns + 20'000'000);
@@ -100,7 +91,7 @@ int main(int count, char** arguments) {
   if (count != 5) return 2;
   std::FILE* const log = std::fopen(arguments[3], "w");
   if (log == nullptr) return 2;
-  const int code = run(arguments[1], arguments[2], log, std::atoi(arguments[4]));
+  const int code = run(arguments[1], arguments[2], log, std::strtoull(arguments[4], nullptr, 10));
   std::fclose(log);
   return code;
 }

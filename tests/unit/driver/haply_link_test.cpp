@@ -10,6 +10,7 @@
 #include "support/heap_guard.h"
 #include "support/link_fault.h"
 #include "support/mock_haply_service.h"
+#include "support/patient_clock.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
 
@@ -23,14 +24,18 @@ using support::HaplyLog;
 using support::HaplyMischief;
 using support::MockHaplyService;
 
-// The service answers in the time of the world, on a machine that may be busy: nothing here passes
-// by being quick, and a fault may take its time.
+// The service lives in a thread of its own, on a machine that may be busy: nothing here passes by
+// being quick, and a fault may take its time.
 constexpr std::int64_t kPatient_ns = 2'000'000'000;
+
+/// How long a tick waits for what the service does about it: nothing, where a message before has
+/// not been answered.
+constexpr auto kServed = std::chrono::milliseconds(10);
 
 class HaplyLinkTest : public ::testing::Test {
  protected:
   void greet(HaplyGreeting greeting = HaplyGreeting::kInverse3, bool old_spelling = false) {
-    service_ = std::make_unique<MockHaplyService>(greeting, old_spelling);
+    service_ = std::make_unique<MockHaplyService>(greeting, old_spelling, 0, &clock_);
   }
 
   static DeviceSettings settings(std::int64_t silence_ns) {
@@ -58,13 +63,28 @@ class HaplyLinkTest : public ::testing::Test {
     ASSERT_TRUE(device_->activate());
   }
 
-  /// Runs ticks of a millisecond until `done`, or so many that something is wrong.
+  /// Runs a tick of a millisecond, and lets the service deal with its message. Returns how often the
+  /// servo's part of it asked something of the heap.
+  int tick(const Vector3d& f_T_W) {
+    const std::uint64_t before = service_ ? service_->dealt_with() : 0;
+    clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);
+    const int calls = support::heap_calls_of([&] {
+      device_->read(clock_.now_ns(), 0);
+      device_->write({.f_T_W = f_T_W, .touch = {}});
+    });
+    if (!service_ || device_->lost()) return calls;
+    const auto end = std::chrono::steady_clock::now() + kServed;
+    while (service_->dealt_with() == before && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+    return calls;
+  }
+
+  /// Runs ticks until `done`, or so many that something is wrong.
   template <class Done>
   bool ticks_until(const Vector3d& f_T_W, Done&& done) {
     for (int i = 0; i < 10'000; ++i) {
-      clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);
-      device_->read(clock_.now_ns(), 0);
-      device_->write({.f_T_W = f_T_W, .touch = {}});
+      tick(f_T_W);
       if (done()) return true;
     }
     return false;
@@ -90,7 +110,7 @@ class HaplyLinkTest : public ::testing::Test {
     return device_->fault();
   }
 
-  WallClock clock_{0};
+  support::PatientClock clock_;
   std::unique_ptr<MockHaplyService> service_;
   std::unique_ptr<Device> device_;
 };
@@ -155,9 +175,9 @@ TEST_F(HaplyLinkTest, ALoopThatStandsStillSendsNothingSoThatTheForceEnds) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->f_sent_W().x() > 0.3; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  clock_.sleep_until_ns(clock_.now_ns() + 100'000'000);
   const int messages = service_->log().messages;
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  clock_.sleep_until_ns(clock_.now_ns() + 100'000'000);
   EXPECT_EQ(service_->log().messages, messages);
   EXPECT_TRUE(service_->log().f_T_B.isZero(0));
 }
@@ -273,7 +293,7 @@ TEST_F(HaplyLinkTest, ComesBackOverANewLinkWithoutForceUntilTheUserAsks) {
   service_.reset();
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->lost(); }));
   EXPECT_EQ(device_->fault(), Fault::kTransportLost);
-  service_ = std::make_unique<MockHaplyService>(HaplyGreeting::kInverse3, false, port);
+  service_ = std::make_unique<MockHaplyService>(HaplyGreeting::kInverse3, false, port, &clock_);
   auto again = link();
   ASSERT_TRUE(again) << again.error().message;
   ASSERT_TRUE(device_->offer(std::move(again).value()));
@@ -291,13 +311,7 @@ TEST_F(HaplyLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(20, {0.1, 0, 0});
   int calls = 0;
-  for (int i = 0; i < 100; ++i) {
-    clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);
-    calls += support::heap_calls_of([&] {
-      device_->read(clock_.now_ns(), 0);
-      device_->write({.f_T_W = {0.1, 0, 0}, .touch = {}});
-    });
-  }
+  for (int i = 0; i < 100; ++i) calls += tick({0.1, 0, 0});
   EXPECT_EQ(calls, 0);
   EXPECT_GT(device_->wire_counters().reports, 50u);
 }

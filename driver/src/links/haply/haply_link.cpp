@@ -1,7 +1,6 @@
 #include "links/haply/haply_link.h"
 
 #include <charconv>
-#include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <string_view>
@@ -15,12 +14,13 @@ namespace {
 
 /// How long an answer is waited for before the next force goes out all the same: a service that
 /// left one message out must not be silent for ever. [chosen: half of what counts as silence]
-constexpr auto kAnswer = std::chrono::milliseconds(10);
+constexpr std::int64_t kAnswer_ns = 10'000'000;
 
 class HaplyLink final : public SlotLink, private Traffic {
  public:
   HaplyLink(std::unique_ptr<Socket> socket, FoundInverse3 arm, Clock& clock)
       : SlotLink({.has_velocity = true, .has_orientation = arm.state.has_grip}, clock),
+        clock_(clock),
         socket_(std::move(socket)),
         device_id_(std::move(arm.device_id)),
         state_(arm.state) {
@@ -57,12 +57,12 @@ class HaplyLink final : public SlotLink, private Traffic {
     publish(sample);
   }
   std::optional<std::string> next_message() override {
-    const auto now = std::chrono::steady_clock::now();
-    if (waits_ && now - sent_at_ < kAnswer) return std::nullopt;
+    const std::int64_t now_ns = clock_.now_ns();
+    if (waits_ && now_ns - sent_at_ns_ < kAnswer_ns) return std::nullopt;
     Eigen::Vector3d f_T_B;
     if (!take_force(f_T_B)) return std::nullopt;
     waits_ = true;
-    sent_at_ = now;
+    sent_at_ns_ = now_ns;
     // An arm whose pose is not known gets no force.
     if (!trusted_) f_T_B.setZero();
     return force_message(device_id_, f_T_B);
@@ -70,12 +70,13 @@ class HaplyLink final : public SlotLink, private Traffic {
   std::string last_message() override { return force_message(device_id_, {0, 0, 0}); }
   void lost() override { lose(); }
 
+  const Clock& clock_;
   std::unique_ptr<Socket> socket_;
   std::string device_id_;
   // Of the socket's thread.
   ArmState state_;
   bool waits_ = false, trusted_ = true;
-  std::chrono::steady_clock::time_point sent_at_;
+  std::int64_t sent_at_ns_ = 0;
   std::thread thread_;
 };
 

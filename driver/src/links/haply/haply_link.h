@@ -31,7 +31,7 @@ Result<std::vector<FoundInverse3>> find_arms(std::uint16_t port,
 /// `read` gives the newest state; kRejected where a message could not be understood or held what
 /// cannot be; kLost once the service closed or lists the arm no more. `write` refuses while the
 /// force before has not gone out, which is when the service is late. Real-time: never from the
-/// servo thread. `clock` is the loop's, and outlives the link.
+/// servo thread. `clock` is the loop's, outlives the link, and lets any thread ask for the time.
 Result<std::unique_ptr<ArmLink>> open_link(const std::string& device_id, std::uint16_t port,
                                            Clock& clock);
 
