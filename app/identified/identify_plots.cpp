@@ -139,14 +139,13 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
                                                           const scene::ArmFile& file,
                                                           const std::filesystem::path& folder) {
   const FittedMotion motion = identified.fitted();
-  const double mass = identified.moved_mass().value;
   const double dt = identified.moved.dt;
   const bool lines = !identified.lines.noise.empty();
   std::vector<std::pair<const char*, std::string>> tables{
       {"identify_fit", fit_table(motion)},
       {"identify_rest", rest_table(motion)},
-      {"identify_friction", friction_table(motion, mass)},
-      {"identify_friction_medians", friction_medians(motion, mass)}};
+      {"identify_friction", friction_table(motion, identified)},
+      {"identify_friction_medians", friction_medians(motion, identified)}};
   if (lines) {
     tables.emplace_back("identify_lines", lines_table(identified, dt));
     tables.emplace_back("identify_resonance", resonance_table(identified, dt));

@@ -80,9 +80,9 @@ std::string rest_table(const FittedMotion& motion) {
          });
 }
 
-std::string friction_table(const FittedMotion& motion, double mass) {
+std::string friction_table(const FittedMotion& motion, const Identified& found) {
   std::string text = "# speed rad/s, torque of friction N m\n";
-  for (const auto& points : joint_friction(motion, mass)) {
+  for (const auto& points : joint_friction(motion, found)) {
     const std::size_t stride = points.size() / kPointsMost + 1;
     for (std::size_t i = 0; i < points.size(); i += stride) {
       text += fmt::format("{:.6g} {:.6g}\n", points[i].speed, points[i].torque);
@@ -92,9 +92,9 @@ std::string friction_table(const FittedMotion& motion, double mass) {
   return text;
 }
 
-std::string friction_medians(const FittedMotion& motion, double mass) {
+std::string friction_medians(const FittedMotion& motion, const Identified& found) {
   std::string text = "# speed rad/s, torque N m: median, lower and upper quartile, fit\n";
-  for (const auto& points : joint_friction(motion, mass)) {
+  for (const auto& points : joint_friction(motion, found)) {
     std::vector<double> speeds;
     for (const FrictionPoint& point : points) speeds.push_back(std::abs(point.speed));
     const double most = speeds.empty() ? 0 : quantile(speeds, 0.98);

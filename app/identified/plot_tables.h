@@ -16,11 +16,11 @@ std::string fit_table(const FittedMotion& motion);
 std::string rest_table(const FittedMotion& motion);
 
 /// Returns friction over speed of the joints: each piece of motion, at most some thousand of them.
-std::string friction_table(const FittedMotion& motion, double mass);
+std::string friction_table(const FittedMotion& motion, const Identified& found);
 
 /// Returns the same as medians over equal steps of speed, with the quartiles and the median of the
 /// fit.
-std::string friction_medians(const FittedMotion& motion, double mass);
+std::string friction_medians(const FittedMotion& motion, const Identified& found);
 
 /// Returns the apparent mass by the constants and as it was seen at each place, an axis each.
 /// Precondition: links were seen.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace thimble::app {
 namespace {
@@ -22,7 +23,8 @@ struct JointConstant {
   Eigen::Vector3d device_sim::DriveTrainSettings::*member;
 };
 
-/// Adds motors and cables, which the motion shows where the cables stretch, and the currents' lag.
+/// Adds motors and cables, which the motion shows where the cables stretch, else the friction of
+/// joints; and the currents' lag.
 void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all) {
   using device_sim::DriveTrainSettings;
   const DriveTrainSettings& train = file.simulated.drive_train;
@@ -36,13 +38,17 @@ void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all)
          .set = [](scene::ArmFile& arm,
                    double to) { arm.simulated.drive_train.current_lag = to; }});
   }
-  if (!train.compliant()) return;
-  constexpr JointConstant kOfCables[] = {
+  static constexpr JointConstant kOfCables[] = {
       {"stiffness", "N m/rad", &DriveTrainSettings::stiffness},
       {"inertia", "kg m^2", &DriveTrainSettings::inertia},
       {"damping", "N m s/rad", &DriveTrainSettings::damping},
   };
-  for (const JointConstant& one : kOfCables) {
+  static constexpr JointConstant kOfJoints[] = {
+      {"coulomb", "N m", &DriveTrainSettings::coulomb},
+      {"viscous", "N m s/rad", &DriveTrainSettings::viscous},
+  };
+  const bool soft = train.compliant();
+  for (const JointConstant& one : soft ? std::span<const JointConstant>(kOfCables) : kOfJoints) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       const double value = (train.*one.member)[i];
       if (!(value > 0)) continue;

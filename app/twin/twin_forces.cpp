@@ -140,6 +140,29 @@ struct CablesInPose {
   }
 };
 
+/// Returns what joints that are one with their motors take of a piece, N in the base; not a number
+/// where one of them stands that rubs.
+Vector3d rubbed(const device_sim::DriveTrainSettings& train, const std::vector<TwinSample>& stretch,
+                std::size_t middle, const Bump& bump, double dt, double step_error) {
+  Vector3d force(0, 0, 0);
+  const std::ptrdiff_t slope = std::max<std::ptrdiff_t>(1, std::lround(kDirectionSpan / dt));
+  for (std::ptrdiff_t j = -bump.half; j <= bump.half; ++j) {
+    const auto at = static_cast<std::ptrdiff_t>(middle) + j;
+    const Eigen::Matrix3d& G = stretch[static_cast<std::size_t>(at)].G;
+    const Vector3d way = G * (stretch[static_cast<std::size_t>(at + slope)].p_BT -
+                              stretch[static_cast<std::size_t>(at - slope)].p_BT);
+    Vector3d torque = train.viscous.cwiseProduct(way) / (2 * static_cast<double>(slope) * dt);
+    for (int joint = 0; joint < 3; ++joint) {
+      if (train.coulomb[joint] == 0) continue;
+      const double stands = kStands * step_error * G.row(joint).norm();
+      torque[joint] +=
+          std::abs(way[joint]) > stands ? std::copysign(train.coulomb[joint], way[joint]) : kNone;
+    }
+    force += bump.value[static_cast<std::size_t>(j + bump.half)] * (G.transpose() * torque);
+  }
+  return force;
+}
+
 /// Turns a force into the world: an axis that stands spoils those alone that it has a part in.
 Vector3d turned(const Eigen::Matrix3d& R_WB, const Vector3d& f_B) {
   constexpr double kNoPart = 1e-9;
@@ -241,6 +264,8 @@ TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
       Vector3d needed_B = plant.mass * piece.a + plant.viscous * piece.v +
                           plant.coulomb * piece.direction - file.simulated.weight_B;
       if (soft) needed_B += CablesInPose(train, stretch[k].G).needed(piece, plant.mass);
+      if (train.joints_rub())
+        needed_B += rubbed(train, stretch, k, bump, motion.dt, motion.step_error);
       const Vector3d other_B = needed_B - piece.motors;
       fit.add(piece, other_B);
       const Vector3d other_W = turned(motion.R_WB, other_B);

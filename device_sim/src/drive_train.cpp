@@ -55,9 +55,8 @@ driver::Result<DriveTrain> DriveTrain::make(const DriveTrainSettings& settings,
       return wrong("stiffness needs a value above zero for each joint, and so does inertia then");
     }
   } else if (!(settings.inertia.isZero(0) && settings.damping.isZero(0) &&
-               settings.play.isZero(0) && settings.viscous.isZero(0) &&
-               settings.coulomb.isZero(0))) {
-    return wrong("inertia, damping, play, viscous and coulomb need a stiffness of the cable");
+               settings.play.isZero(0))) {
+    return wrong("inertia, damping and play need a stiffness of the cable");
   }
   std::optional<MotorHeat> heat;
   if (settings.heat.named()) {

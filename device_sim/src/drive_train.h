@@ -17,8 +17,8 @@ namespace thimble::device_sim {
 class DriveTrain {
  public:
   /// Makes one without current. Fails if a constant is out of range, if only some cables stretch,
-  /// if a cable stretches or rubs without an inertia before it, or if cogging and ripple have no
-  /// period. Real-time: never from the servo thread.
+  /// if a cable stretches without an inertia before it, or if cogging and ripple have no period.
+  /// Real-time: never from the servo thread.
   static driver::Result<DriveTrain> make(const DriveTrainSettings& settings,
                                          const std::array<driver::MotorDrive, 3>& drives,
                                          double current_max);

@@ -132,5 +132,6 @@ void DriveTrainPlant<Geometry, Tip>::step(const Eigen::Vector3d& p_BH,
 template class DriveTrainPlant<driver::SerialArm, PointTip>;
 template class DriveTrainPlant<driver::SerialArm, LinkedTip>;
 template class DriveTrainPlant<driver::LinkageArm, PointTip>;
+template class DriveTrainPlant<driver::LinkageArm, LinkedTip>;
 
 }  // namespace thimble::device_sim

@@ -28,7 +28,8 @@ struct DriveTrainState {
 };
 
 /// The mechanics of an arm whose drive train, weight or links are simulated, with a hand on it. The
-/// tip is the mass of ArmPlant (PointTip), or one that links hang on (LinkedTip). Without a cable
+/// tip is the mass of ArmPlant (PointTip), or one that links hang on or whose joints rub
+/// (LinkedTip). Without a cable
 /// that stretches the motors pull on it at once; with one each motor is a mass of its own, and the
 /// encoders, which sit on the motors, see their angles.
 ///
@@ -103,5 +104,6 @@ class DriveTrainPlant final : public Plant {
 using SerialDriveTrainPlant = DriveTrainPlant<driver::SerialArm>;
 using LinkedSerialPlant = DriveTrainPlant<driver::SerialArm, LinkedTip>;
 using LinkageDriveTrainPlant = DriveTrainPlant<driver::LinkageArm>;
+using RubbingLinkagePlant = DriveTrainPlant<driver::LinkageArm, LinkedTip>;
 
 }  // namespace thimble::device_sim

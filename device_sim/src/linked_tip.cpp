@@ -1,83 +1,48 @@
 #include "linked_tip.h"
 
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "axis_dynamics.h"
+#include "dry_friction.h"
 
 namespace thimble::device_sim {
-namespace {
-
-/// Solves for the axes that slide as in `guess` with the others at rest, to rounding; the guess
-/// itself if they would slide the other way then.
-Eigen::Vector3d sliding_with(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum,
-                             double most, const Eigen::Vector3d& guess) noexcept {
-  Eigen::Matrix3d of_sliding = inertia;
-  Eigen::Vector3d right = momentum - most * guess.cwiseSign();
-  for (int i = 0; i < 3; ++i) {
-    if (guess[i] != 0) continue;
-    of_sliding.row(i).setZero();
-    of_sliding.col(i).setZero();
-    of_sliding(i, i) = 1;
-    right[i] = 0;
-  }
-  Eigen::Vector3d v = of_sliding.inverse() * right;
-  for (int i = 0; i < 3; ++i) {
-    if (guess[i] == 0) v[i] = 0;
-    if (v[i] * guess[i] < 0) return guess;
-  }
-  return v;
-}
-
-}  // namespace
-
-Eigen::Vector3d velocity_after_friction(const Eigen::Matrix3d& inertia,
-                                        const Eigen::Vector3d& momentum, double most,
-                                        const Eigen::Vector3d& v_before) noexcept {
-  if (most == 0) return inertia.inverse() * momentum;
-  if ((v_before.array() != 0).all()) {
-    const Eigen::Vector3d sliding = inertia.inverse() * (momentum - most * v_before.cwiseSign());
-    if ((sliding.array() * v_before.array() > 0).all()) return sliding;
-  }
-  // It ends at once where the tip stays at rest, and soon where masses differ by less than ten
-  // times between directions.
-  constexpr int kRounds = 60;
-  constexpr double kEnough = 1e-12;
-  Eigen::Vector3d v = v_before;
-  for (int round = 0; round < kRounds; ++round) {
-    double change = 0, largest = 0;
-    for (int i = 0; i < 3; ++i) {
-      const double push = momentum[i] - inertia.row(i).dot(v) + inertia(i, i) * v[i];
-      const double moved =
-          std::abs(push) > most ? (push - std::copysign(most, push)) / inertia(i, i) : 0;
-      change = std::max(change, std::abs(moved - v[i]));
-      v[i] = moved;
-      largest = std::max(largest, std::abs(moved));
-    }
-    if (!(change > kEnough * largest)) break;
-  }
-  return sliding_with(inertia, momentum, most, v);
-}
-
 driver::Result<LinkedTip> LinkedTip::make(const driver::SerialArm& arm,
                                           const SimulatedArmSettings& settings,
                                           const Eigen::Vector3d& p_BT) {
+  if (auto good = check_links(settings.links); !good) return good.error();
+  std::optional<LinkMechanics> links;
+  if (settings.links.named()) links.emplace(arm, settings.links);
+  return make_of(std::move(links), settings, p_BT);
+}
+
+driver::Result<LinkedTip> LinkedTip::make(const driver::LinkageArm&,
+                                          const SimulatedArmSettings& settings,
+                                          const Eigen::Vector3d& p_BT) {
+  return make_of({}, settings, p_BT);
+}
+
+driver::Result<LinkedTip> LinkedTip::make_of(std::optional<LinkMechanics> links,
+                                             const SimulatedArmSettings& settings,
+                                             const Eigen::Vector3d& p_BT) {
   if (const auto good = AxisDynamics::make(settings.plant, settings.hand); !good) {
     return good.error();
   }
-  if (auto good = check_links(settings.links); !good) return good.error();
-  return LinkedTip(arm, settings, p_BT);
+  return LinkedTip(std::move(links), settings, p_BT);
 }
 
-LinkedTip::LinkedTip(const driver::SerialArm& arm, const SimulatedArmSettings& settings,
+LinkedTip::LinkedTip(std::optional<LinkMechanics> links, const SimulatedArmSettings& settings,
                      const Eigen::Vector3d& p_BT) noexcept
-    : links_(arm, settings.links),
+    : links_(std::move(links)),
       mass_(settings.plant.mass + settings.hand.mass),
       coulomb_(settings.plant.coulomb),
       viscous_(settings.plant.viscous + settings.hand.damping),
       hand_(settings.hand),
-      state_{.p = p_BT} {}
+      state_{.p = p_BT} {
+  // Behind a cable that stretches, a joint's friction is its motor's.
+  if (settings.drive_train.compliant()) return;
+  joint_coulomb_ = settings.drive_train.coulomb;
+  joint_viscous_ = settings.drive_train.viscous;
+}
 
 void LinkedTip::take(const AxisDynamics& tip) noexcept {
   mass_ = tip.mass();
@@ -95,15 +60,25 @@ void LinkedTip::step(const std::optional<TipPose>& half_way, const Eigen::Vector
   const Eigen::Vector3d before = state_.v;
   const Eigen::Vector3d p = state_.p + 0.5 * dt * before;
   const Eigen::Matrix3d& G = half_way->G;
-  const LinkMotion links = links_.at(half_way->q, G * (before + 0.5 * dt * acceleration_));
-  const Eigen::Matrix3d of_links = G.transpose() * links.inertia * G;
-  const Eigen::Vector3d f = force + G.transpose() * links.torque + of_links * links.turning +
-                            hand_.stiffness * (p_BH + 0.5 * dt * v_BH - p) + hand_.damping * v_BH;
+  Eigen::Vector3d f = force;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  if (links_) {
+    const LinkMotion links = links_->at(half_way->q, G * (before + 0.5 * dt * acceleration_));
+    inertia = G.transpose() * links.inertia * G;
+    f = force + G.transpose() * links.torque + inertia * links.turning;
+  }
+  f = f + hand_.stiffness * (p_BH + 0.5 * dt * v_BH - p) + hand_.damping * v_BH;
   // Viscous friction and the hand's damper are those of the mean velocity.
-  Eigen::Matrix3d inertia = of_links;
   inertia.diagonal().array() += mass_ + 0.5 * dt * viscous_;
-  const Eigen::Vector3d momentum = inertia * before + dt * (f - viscous_ * before);
-  state_.v = velocity_after_friction(inertia, momentum, dt * coulomb_, before);
+  Eigen::Vector3d drag = viscous_ * before;
+  if (!joint_viscous_.isZero(0)) {
+    const Eigen::Matrix3d of_joints = G.transpose() * joint_viscous_.asDiagonal() * G;
+    inertia += 0.5 * dt * of_joints;
+    drag += of_joints * before;
+  }
+  const Eigen::Vector3d momentum = inertia * before + dt * (f - drag);
+  const DryFriction friction{.tip = dt * coulomb_, .joints = dt * joint_coulomb_, .G = G};
+  state_.v = velocity_after_friction(inertia, momentum, friction, before);
   state_.p = p + 0.5 * dt * state_.v;
   acceleration_ = (state_.v - before) / dt;
 }

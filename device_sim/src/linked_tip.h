@@ -7,14 +7,16 @@
 #include "axis_dynamics.h"
 #include "link_mechanics.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/linkage_arm.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/serial_arm.h"
 #include "tip_kinematics.h"
 
 namespace thimble::device_sim {
 
-/// A tip that links hang on: its mass is the matrix m + G^T M(q) G, which changes with the pose,
-/// and its dry friction, along x, y and z of the base, is set-valued as AxisDynamics has it.
+/// A tip that links hang on, or whose joints rub: its mass is the matrix m + G^T M(q) G, which
+/// changes with the pose, and its dry friction, along x, y and z of the base and about each joint,
+/// is set-valued as AxisDynamics has it (DryFriction).
 ///
 /// A step of dt moves the tip half-way, changes its velocity there, and moves it on
 /// (drift, kick, drift): second order in dt. What hangs on the velocity is taken at that half-way
@@ -28,9 +30,12 @@ class LinkedTip {
     Eigen::Vector3d v{0, 0, 0};  ///< m/s; exactly 0 in an axis that friction holds.
   };
 
-  /// Makes it at rest at p_BT (m). Fails if a constant is out of range. Real-time: never from the
-  /// servo thread.
+  /// Makes it at rest at p_BT (m). Fails if a constant is out of range. Links are those of serial
+  /// arms; of others none are looked at. Real-time: never from the servo thread.
   static driver::Result<LinkedTip> make(const driver::SerialArm& arm,
+                                        const SimulatedArmSettings& settings,
+                                        const Eigen::Vector3d& p_BT);
+  static driver::Result<LinkedTip> make(const driver::LinkageArm& arm,
                                         const SimulatedArmSettings& settings,
                                         const Eigen::Vector3d& p_BT);
 
@@ -57,24 +62,20 @@ class LinkedTip {
   }
 
  private:
-  LinkedTip(const driver::SerialArm& arm, const SimulatedArmSettings& settings,
+  static driver::Result<LinkedTip> make_of(std::optional<LinkMechanics> links,
+                                           const SimulatedArmSettings& settings,
+                                           const Eigen::Vector3d& p_BT);
+  LinkedTip(std::optional<LinkMechanics> links, const SimulatedArmSettings& settings,
             const Eigen::Vector3d& p_BT) noexcept;
 
-  LinkMechanics links_;
-  double mass_;     // of tip and hand, kg
-  double coulomb_;  // N
-  double viscous_;  // N s/m
+  std::optional<LinkMechanics> links_;
+  double mass_;                                                      // of tip and hand, kg
+  double coulomb_;                                                   // N
+  double viscous_;                                                   // N s/m
+  Eigen::Vector3d joint_coulomb_{0, 0, 0}, joint_viscous_{0, 0, 0};  // N m, N m s/rad
   HandSettings hand_;
   State state_;
   Eigen::Vector3d acceleration_{0, 0, 0};  // in the last step, m/s^2
 };
-
-/// Finds the velocity v (m/s) after a step: inertia v + s = momentum, where friction takes any s_i
-/// up to `most` (N s) while v_i is zero, and `most` against v_i else. It is the one least point of
-/// a convex function, found directly where no axis turns or rests, else by descending along each
-/// axis by turns. `inertia` is symmetric and positive. Real-time: safe.
-Eigen::Vector3d velocity_after_friction(const Eigen::Matrix3d& inertia,
-                                        const Eigen::Vector3d& momentum, double most,
-                                        const Eigen::Vector3d& v_before) noexcept;
 
 }  // namespace thimble::device_sim

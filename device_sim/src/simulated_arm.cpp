@@ -79,7 +79,7 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
   return make_of(
       arm_model(model), settings, std::move(path), seed,
       [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
-        if (settings.links.named()) {
+        if (settings.links.named() || settings.drive_train.joints_rub()) {
           return as_any<AnyPlant>(LinkedSerialPlant::make(model, settings, p_BT, p_BH));
         }
         if (needs_drive_train(settings)) {
@@ -98,6 +98,9 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
       [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
         if (settings.links.named()) {
           return driver::Error{"Links are simulated of serial arms alone; leave them out."};
+        }
+        if (settings.drive_train.joints_rub()) {
+          return as_any<AnyPlant>(RubbingLinkagePlant::make(model, settings, p_BT, p_BH));
         }
         if (needs_drive_train(settings)) {
           return as_any<AnyPlant>(LinkageDriveTrainPlant::make(model, settings, p_BT, p_BH));

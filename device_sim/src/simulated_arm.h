@@ -112,7 +112,7 @@ class SimulatedArm {
 
  private:
   using AnyPlant = std::variant<ArmPlant, LinkagePlant, SerialDriveTrainPlant,
-                                LinkageDriveTrainPlant, LinkedSerialPlant>;
+                                LinkageDriveTrainPlant, LinkedSerialPlant, RubbingLinkagePlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
                const LoadedTip& tip, const Firmware& firmware, std::uint64_t seed) noexcept;

@@ -40,13 +40,6 @@ HiddenArm rubbing_arm(std::uint64_t seed) {
   return arm;
 }
 
-/// Counts how far one is off only where its interval does not say so.
-void add_beside_interval(const Estimate& estimate, double truth, Score& score) {
-  const double worst = score.worst;
-  score.add(estimate, truth);
-  if (estimate.holds(truth)) score.worst = worst;
-}
-
 TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
   const int arms = long_form() ? 40 : 1;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.25}, tip{"tip", 0.05}, gain{"gains", 0.02};
@@ -81,13 +74,13 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       gain.add(constants.gain[i], arm.gain[i] / mean);
       const double rotor = train.inertia[joint] / mean, pulls = train.stiffness[joint] / mean;
       const double link = arm.file.simulated.plant.mass / mean * found->lines.JTJ(joint, joint);
-      add_beside_interval(cable.inertia, rotor, motor);
-      add_beside_interval(cable.stiffness, pulls, stiffness);
+      motor.add_beside_interval(cable.inertia, rotor);
+      stiffness.add_beside_interval(cable.stiffness, pulls);
       resonance.add(cable.resonance,
                     std::sqrt(pulls * (1 / link + 1 / rotor)) / (2 * std::numbers::pi));
       dry.add(cable.coulomb, train.coulomb[joint] / mean);
       if (cable.viscous.value > 0) {
-        add_beside_interval(cable.viscous, train.viscous[joint] / mean, viscous);
+        viscous.add_beside_interval(cable.viscous, train.viscous[joint] / mean);
       }
     }
   }

@@ -25,6 +25,7 @@
 #include "support/long_form.h"
 #include "support/recorded_motion.h"
 #include "support/refuses.h"
+#include "support/rigid_rubbing_arm.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::app {
@@ -50,10 +51,8 @@ driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t 
   scene::ArmFile named = hidden.file;
   named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
-  const auto found = identify(
-      open, named,
-      {.seconds = seconds, .play = support::long_form(), .known_mass = kKnownMass, .seed = seed},
-      never);
+  const auto found =
+      identify(open, named, {.seconds = seconds, .known_mass = kKnownMass, .seed = seed}, never);
   if (!found) return found.error();
   if (!found->against.empty()) return driver::Error{found->against.front()};
   const IdentifiedMark mark{.date = "2026-11-25", .arm = "hidden"};
@@ -196,6 +195,19 @@ TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
     try_twin(*both, seed, worst);
   }
   tell("hidden arms that cog", kArms, worst);
+}
+
+TEST(TwinPrediction, OfAnArmWhoseJointsRubHoldsAsWell) {
+  const int arms = support::long_form() ? 12 : 1;
+  Worst worst;
+  for (int k = 0; k < arms; ++k) {
+    const auto seed = static_cast<std::uint64_t>(8000 + k);
+    const auto both = identified(support::rigid_rubbing_arm(seed), seed);
+    ASSERT_TRUE(both.ok()) << "arm " << seed << ": " << both.error().message;
+    EXPECT_TRUE(both->twin.simulated.drive_train.joints_rub()) << "arm " << seed;
+    try_twin(*both, seed, worst);
+  }
+  tell("hidden arms whose joints rub", arms, worst);
 }
 
 TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {

@@ -50,6 +50,13 @@ struct Score {
     held += estimate.holds(truth) ? 1 : 0;
   }
 
+  /// Counts how far it is off only where its interval does not say so.
+  void add_beside_interval(const app::Estimate& estimate, double truth, bool relative = true) {
+    const double before = worst;
+    add(estimate, truth, relative);
+    if (estimate.holds(truth)) worst = before;
+  }
+
   void tell() const {
     std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", name, worst, most,
                 held, all);

@@ -65,7 +65,8 @@ class MockHaplyService::Server {
     const std::lock_guard lock(mutex_);
     HaplyLog log = log_;
     log.p_BT = arm_.p_BT;
-    log.f_T_B = clock_.now_ns() - last_message_ns_ > kKept_ns ? Eigen::Vector3d(0, 0, 0) : arm_.f_T_B;
+    log.f_T_B =
+        clock_.now_ns() - last_message_ns_ > kKept_ns ? Eigen::Vector3d(0, 0, 0) : arm_.f_T_B;
     return log;
   }
   std::uint64_t dealt_with() const { return dealt_with_; }

@@ -50,7 +50,7 @@ unplug() {
 }
 
 # Programs written for other arms, each with a sphere of its own below the place where the hand goes up
-# and down: the forces that they log are those that the board's motors get.
+# and down: the forces that they log are those that the board's motors get. The short form takes the first.
 programs() {
   arm=$1
   while read -r program axes centre; do
@@ -66,6 +66,7 @@ programs() {
       usb_check compare $arm /tmp/program.trace /tmp/board.trace
     } | grep -v ^FIGURE | sed "s/^\([A-Z]* $arm\)/\1 with $program/"
     rm -f /tmp/program.*
+    [ $ticks -ge 10000 ] || break
   done <<EOF
 hello_sphere zxy 0 180 25
 chai_sphere xyz 0.025 0 0.180
@@ -102,9 +103,7 @@ for arm in $arms; do
   as stranger "usb_check denied $arm $image"
   as tester "usb_check listen $arm"
   as tester "usb_check wrong $arm"
-  touched=$ticks
-  [ $arm = woodenhaptics ] && touched=10000
-  as tester "usb_check touch $arm $touched /tmp/driver.trace $image"
+  as tester "usb_check touch $arm $ticks /tmp/driver.trace $image"
   unplug
   sed -n 's/^Unplugged\. /NOTE '$arm': /p' /tmp/plug.log
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace

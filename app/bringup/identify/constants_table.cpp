@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,6 +44,43 @@ void add_friction(const FrictionDirections& friction, Rows& rows) {
     } else if (friction.axes_differ || friction.directions_differ) {
       rows.add(fmt::format("Coulomb friction, {}", axis), mean, 1e3, "mN, base");
     }
+  }
+}
+
+/// Adds the friction of a rigid arm's joints, and of their two directions where these differ: what
+/// is more along an axis of the base in one direction is so about the joints that turn with it.
+void add_joints(const Identified& identified, const scene::ArmFile& file, Rows& rows) {
+  const RubbingJoints& rubbing = identified.rubbing;
+  if (!rubbing.seen) return;
+  const auto& train = file.simulated.drive_train;
+  const auto named = [&](double value) {
+    return file.can_simulate ? std::optional(value) : std::nullopt;
+  };
+  const FrictionDirections& friction = identified.friction;
+  const Eigen::Matrix3d J = identified.moved.samples.empty()
+                                ? Eigen::Matrix3d::Zero()
+                                : identified.moved.samples.back().G.inverse().eval();
+  for (std::size_t i = 0; rubbing.seen && i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const Estimate dry = identified.joint_coulomb(i);
+    rows.add(fmt::format("Coulomb friction, joint {}", i + 1), dry, 1e3, "mN m",
+             named(train.coulomb[k]));
+    if (!friction.directions_differ) continue;
+    double uneven = 0, square = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double lever = J(static_cast<Eigen::Index>(axis), k);
+      uneven += lever * friction.uneven[axis].value;
+      square += lever * lever * friction.uneven[axis].plus_minus * friction.uneven[axis].plus_minus;
+    }
+    const double error = math::hypot(dry.plus_minus, std::sqrt(square));
+    rows.add(fmt::format("  turning forwards, joint {}", i + 1), {dry.value - uneven, error}, 1e3,
+             "mN m, without what is vertical");
+    rows.add(fmt::format("  turning backwards, joint {}", i + 1), {dry.value + uneven, error}, 1e3,
+             "mN m, without what is vertical");
+  }
+  for (std::size_t i = 0; rubbing.seen && i < 3; ++i) {
+    rows.add(fmt::format("viscous friction, joint {}", i + 1), identified.joint_viscous(i), 1e3,
+             "mN m s/rad", named(train.viscous[static_cast<Eigen::Index>(i)]));
   }
 }
 
@@ -169,7 +207,8 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   rows.add("mass at the tip", found.mass, 1e3, "g", named(simulated.plant.mass));
   rows.add("viscous friction", found.viscous, 1, "N s/m", named(simulated.plant.viscous));
   rows.add("Coulomb friction", found.coulomb, 1e3, "mN per axis", named(simulated.plant.coulomb));
-  add_friction(identified.friction, rows);
+  if (!identified.rubbing.seen) add_friction(identified.friction, rows);
+  add_joints(identified, file, rows);
   rows.add("weight", found.weight, 1e3, "mN", named(simulated.weight_B.norm()));
   for (std::size_t i = 0; i < 3; ++i) {
     rows.add(fmt::format("gain of motor {}", i + 1), found.gain[i], 1,

@@ -118,6 +118,60 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
   return {};
 }
 
+/// Looks for friction of the joints of a rigid arm in its motion with the bare tip, and frees the
+/// motion of it if it is what made the fit worse: then fit and lines are anew.
+driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identified& found) {
+  if (found.lines.stretches) return {};
+  auto rubbing = find_rubbing_joints(motion, fit);
+  if (!rubbing) return rubbing.error();
+  found.rubbing = std::move(rubbing).value();
+  if (!found.rubbing.seen) return {};
+  const ArmMotion freed = freed_of_rubbing(motion, found.rubbing, fit);
+  const auto better = fit_motion(freed, false), held = fit_motion(freed, true);
+  if (!better) return better.error();
+  if (!held) return held.error();
+  const auto mass = arm_constants(*better, motion.down_B, {}, 0);
+  const LineSpectrum spectrum = line_spectrum(freed);
+  const CableFit lines = fit_cables(spectrum, *better, freed.dt);
+  const bool good = speaks_against(*better, *better, 1).empty();
+  // A hand looks a little like joints that stick.
+  const bool is_held_then = !mass || is_held(*held, mass->mass.value);
+  if (lines.stretches || is_held_then || !(good || found.rubbing.left < kWavesLeft)) {
+    found.rubbing = {};
+    return {};
+  }
+  motion = freed;
+  fit = *better;
+  found.spectrum = spectrum;
+  found.lines = lines;
+  return {};
+}
+
+/// Frees the motion with the known mass of what motors and joints of the same arm were seen to do.
+driver::Result<void> free_loaded(ArmMotion& motion, const Identified& found) {
+  motion = freed_of_waves(motion, found.waves);
+  if (!found.rubbing.seen) return {};
+  const auto fit = fit_motion(motion, false);
+  if (!fit) return fit.error();
+  motion = freed_of_rubbing(motion, found.rubbing, *fit);
+  return {};
+}
+
+/// Puts the friction at the tip as it was found beside that of joints; none where none was needed.
+void put_rubbing(Identified& found) {
+  const RubbingJoints& rubbing = found.rubbing;
+  if (!rubbing.seen) return;
+  const Estimate mass = found.moved_mass();
+  const auto put = [&](Estimate& one, const Estimate& per_mass) {
+    one = rubbing.tip_rubs
+              ? Estimate{mass.value * per_mass.value, math::hypot(mass.value * per_mass.plus_minus,
+                                                                  mass.plus_minus * per_mass.value)}
+              : Estimate{0, std::abs(one.value) + one.plus_minus};
+  };
+  put(found.constants.coulomb, rubbing.tip_coulomb);
+  put(found.constants.viscous, rubbing.tip_viscous);
+}
+
 /// Measures what does not hang on the motion: how reports come, and the firmware's watchdog.
 void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstants& bare,
                   double force_most, const std::atomic<bool>& stop, Identified& found) {
@@ -138,14 +192,29 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
   for (std::size_t i = 0; i < 3; ++i) tau[static_cast<Eigen::Index>(i)] *= bare.gain[i].value;
   const double share = y_B.dot(J_T.inverse() * tau);
   if (!(share > 0.2)) return;
+  // What joints rub along y.
+  double rubs = 0;
+  const Eigen::Vector3d turned = found.moved.samples.back().G * y_B;
+  for (std::size_t i = 0; found.rubbing.seen && i < 3; ++i) {
+    rubs += std::abs(turned[static_cast<Eigen::Index>(i)]) *
+            by_gain(found.rubbing.coulomb[i], bare.gain[i]).value;
+  }
   found.watchdog = watchdog_time(bench,
                                  {.named = 1e-9 * static_cast<double>(file.limits.watchdog_ns),
                                   .mass = bare.mass.value / (yields * share),
-                                  .coulomb = bare.coulomb.value / share,
+                                  .coulomb = (bare.coulomb.value + rubs) / share,
                                   .delay = bare.delay.value,
                                   .workspace = file.workspace,
                                   .force_most = force_most},
                                  file.limits.soft_start, stop);
+}
+
+void say_sticks(Identified& found, int joint, const Estimate& coulomb) {
+  found.against.insert(
+      found.against.begin(),
+      fmt::format("Joint {} sticks: {:.2g} +- {:.1g} N m of dry friction are its own, beside "
+                  "what all axes of the tip have. Its cable, bearing or motor rubs.",
+                  joint + 1, coulomb.value, coulomb.plus_minus));
 }
 
 /// Looks in what the fit leaves for what it does not know of. A hand, which `held` tells of, looks
@@ -156,16 +225,16 @@ void look_closer(Identified& found, bool held) {
   const FittedMotion motion = found.fitted();
   const Estimate mass = found.moved_mass();
   found.friction = friction_directions(motion, mass);
-  if (!found.against.empty() && !held) {
-    const RubbingJoints rubbing = rubbing_joints(motion, mass.value);
-    const int most = rubbing.most();
-    const Estimate& coulomb = rubbing.coulomb[static_cast<std::size_t>(most)];
-    if (rubbing.seen) {
-      found.against.insert(
-          found.against.begin(),
-          fmt::format("Joint {} sticks: {:.2g} +- {:.1g} N m of dry friction are its own, beside "
-                      "what all axes of the tip have. Its cable, bearing or motor rubs.",
-                      most + 1, coulomb.value, coulomb.plus_minus));
+  if (found.rubbing.seen) {
+    const Eigen::Matrix3d& G = found.moved.samples.back().G;
+    const int stuck =
+        found.rubbing.stuck(found.constants.coulomb.value, G.rowwise().norm().cwiseInverse());
+    if (stuck >= 0) say_sticks(found, stuck, found.joint_coulomb(static_cast<std::size_t>(stuck)));
+  } else if (!found.against.empty() && !held) {
+    const RubbingJoints left = rubbing_left(motion);
+    const auto most = static_cast<std::size_t>(left.most());
+    if (left.seen) {
+      say_sticks(found, left.most(), by_gain(left.coulomb[most], found.constants.gain[most]));
     }
   }
   if (found.lines.stretches) return;
@@ -225,7 +294,9 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     if (!motion) return motion.error();
     share = motion->share;
     // The same motors, which all torques come through.
-    if (loaded) motion = freed_of_waves(*motion, found.waves);
+    if (loaded) {
+      if (auto done = free_loaded(*motion, found); !done) return done.error();
+    }
     auto fit = fit_motion(*motion, false);
     if (!fit) return fit.error();
     if (!loaded) found.encoders.step = encoder_steps(*motion);
@@ -233,6 +304,9 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     if (!loaded) found.lines = fit_cables(found.spectrum, *fit, motion->dt);
     if (!loaded) {
       if (auto done = look_for_waves(file, *motion, *fit, found); !done) return done.error();
+      if (options.play) {
+        if (auto done = look_for_rubbing(*motion, *fit, found); !done) return done.error();
+      }
     }
     const double blamed = options.cables ? 0 : found.lines.better;
     if (!options.cables) found.lines = {};
@@ -267,14 +341,18 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     down_B = motion->down_B;
     if (!loaded) {
       const auto mass = arm_constants(*fit, down_B, {}, 0);
-      auto over = look_over_places(**bench, file,
-                                   {.seconds = options.place_seconds,
-                                    .lead = kPlaceLead,
-                                    .force_most = options.force_most,
-                                    .seed = options.seed + 2,
-                                    .share = share},
-                                   options.places, *links, found.waves, found.lines.stretches,
-                                   mass.ok() && is_held(*held, mass->mass.value), stop);
+      auto over = look_over_places(
+          **bench, file,
+          {.seconds = options.place_seconds,
+           .lead = kPlaceLead,
+           .force_most = options.force_most,
+           .seed = options.seed + 2,
+           .share = share},
+          options.places, *links,
+          [&](const ArmMotion& other) {
+            return freed_of_rubbing(freed_of_waves(other, found.waves), found.rubbing, *fit);
+          },
+          found.lines.stretches, mass.ok() && is_held(*held, mass->mass.value), stop);
       if (!over) return over.error();
       found.over = std::move(over).value();
     } else if (found.over.links()) {
@@ -332,6 +410,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   found.constants.links_sought = found.over.fit.has_value();
   if (found.over.links()) put_links(found, down_B);
   widen(found.constants, found.waves.seen());
+  put_rubbing(found);
   if (found.lines.stretches) put_cables(found);
   look_at_intervals(found);
   look_closer(found, held_tip);

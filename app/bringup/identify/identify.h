@@ -13,6 +13,7 @@
 #include "bringup/identify/friction_directions.h"
 #include "bringup/identify/links/look_over_places.h"
 #include "bringup/identify/motor_waves/motor_waves.h"
+#include "bringup/identify/rubbing_joints.h"
 #include "bringup/identify/saturation.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
 #include "bringup/report_timing.h"
@@ -31,7 +32,9 @@ struct IdentifyOptions {
   double lead = 1;      ///< That it moves before each, s.
   /// Whether cables that stretch are looked for; if not, an arm that has some is a bad fit.
   bool cables = true;
-  bool play = true;       ///< Whether play and friction of the motors are looked for where they do.
+  /// Whether play and friction of joints are looked for: beside cables that stretch those of the
+  /// motors, else friction alone. If not, an arm that has some is a bad fit.
+  bool play = true;
   double known_mass = 0;  ///< That the user fixes to the tip for the second motion, kg; 0: none.
   double force_most = kIdentifyForceMax;  ///< The most that is asked for, N; the file's at most.
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
@@ -58,6 +61,8 @@ struct Identified {
   PlayFit play;
   /// Cogging and ripple of the motors, which all motions here are freed of.
   MotorWaves waves;
+  /// Friction of the joints of a rigid arm, which all motions here are freed of as well.
+  RubbingJoints rubbing;
   /// The motion without the known mass, of the links where cables stretch: what `bare` fits.
   ArmMotion moved;
   double moved_ahead = 0;  ///< Of the delay, what that motion was freed from already, s.
@@ -77,6 +82,14 @@ struct Identified {
   /// Returns the mass that the constants of `bare` are per.
   Estimate moved_mass() const {
     return constants.links ? over.fit->constant(LinkFit::kMass) : constants.mass;
+  }
+
+  /// Returns the dry friction of a joint of a rigid arm, N m, and the viscous, N m s/rad.
+  Estimate joint_coulomb(std::size_t joint) const {
+    return by_gain(rubbing.coulomb[joint], constants.gain[joint]);
+  }
+  Estimate joint_viscous(std::size_t joint) const {
+    return by_gain(rubbing.viscous[joint], constants.gain[joint]);
   }
 
   /// Returns the motion with what its fit leaves. It must not outlive this.

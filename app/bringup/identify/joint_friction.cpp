@@ -1,10 +1,13 @@
 #include "bringup/identify/joint_friction.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace thimble::app {
 
-std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion, double mass) {
+std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion,
+                                                         const Identified& found) {
+  const double mass = found.moved_mass().value;
   std::array<std::vector<FrictionPoint>, 3> points;
   const auto& equations = motion.equations.equations();
   for (std::size_t i = 0; i + 2 < equations.size(); ++i) {
@@ -25,8 +28,12 @@ std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& mot
     const Eigen::Vector3d speed = G * motion.equations.velocity(middle);
     const Eigen::Vector3d of_seen = J_T * seen, of_fitted = J_T * fitted;
     for (int joint = 0; joint < 3; ++joint) {
-      points[static_cast<std::size_t>(joint)].push_back(
-          {speed[joint], of_seen[joint], of_fitted[joint]});
+      const auto k = static_cast<std::size_t>(joint);
+      const double rubs = found.rubbing.seen
+                              ? std::copysign(found.joint_coulomb(k).value, speed[joint]) +
+                                    found.joint_viscous(k).value * speed[joint]
+                              : 0;
+      points[k].push_back({speed[joint], of_seen[joint] + rubs, of_fitted[joint] + rubs});
     }
   }
   return points;

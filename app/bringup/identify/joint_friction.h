@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "bringup/identify/identify.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
 
 namespace thimble::app {
@@ -14,8 +15,9 @@ struct FrictionPoint {
   double fitted = 0;  ///< The same by the constants of friction that were found, N m.
 };
 
-/// Returns the friction of each joint, piece by piece of those in which no axis stood. `mass`: at
-/// the tip, kg. Real-time: never from the servo thread.
-std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion, double mass);
+/// Returns the friction of each joint, piece by piece of those in which no axis stood: what is left
+/// in the motion that was found, and what it was freed of. Real-time: never from the servo thread.
+std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion,
+                                                         const Identified& found);
 
 }  // namespace thimble::app

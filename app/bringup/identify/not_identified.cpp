@@ -91,13 +91,39 @@ std::string unseen_friction(const Identified& identified, const std::array<Estim
   return none;
 }
 
+/// What would have been seen of one friction of a rigid arm's joints.
+std::string unseen_friction(const Identified& identified, const std::array<double, 3>& below,
+                            const char* unit) {
+  std::string none;
+  for (std::size_t i = 0; i < 3; ++i) {
+    none += fmt::format("{}{:.2g} {} (joint {})", none.empty() ? "" : ", ",
+                        1e3 * identified.constants.gain[i].value * below[i], unit, i + 1);
+  }
+  return none;
+}
+
+void of_rubbing(const Identified& identified, Sentences& all) {
+  const RubbingJoints& rubbing = identified.rubbing;
+  if (!rubbing.searched) {
+    all.emplace_back(
+        "Friction of single joints: not looked for; the friction along the axes of the tip is all "
+        "that is told.");
+    return;
+  }
+  if (rubbing.seen) return;
+  all.push_back("Dry friction of joints beside that of the tip: none seen above " +
+                unseen_friction(identified, rubbing.coulomb_below, "mN m") + ".");
+  all.push_back("Viscous friction of joints beside that of the tip: none seen above " +
+                unseen_friction(identified, rubbing.viscous_below, "mN m s/rad") + ".");
+}
+
 void of_rotor_friction(const Identified& identified, Sentences& all) {
   const PlayFit& play = identified.play;
+  if (!identified.lines.stretches) return of_rubbing(identified, all);
   if (!play.searched) {
     all.emplace_back(
-        "Friction of single joints: not looked for. It shows by motors that come to rest apart "
-        "from their links, and is looked for where cables were seen to stretch; else the friction "
-        "along the axes of the tip is all that is told.");
+        "Friction of single joints: not looked for; the friction along the axes of the tip is all "
+        "that is told.");
     return;
   }
   if (!play.fits || !play.friction.fits) {

@@ -1,16 +1,203 @@
 #include "bringup/identify/rubbing_joints.h"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "bringup/identify/acting_tick.h"
+#include "bringup/identify/arm_constants.h"
 #include "bringup/identify/weak_form/clustered_fit.h"
+#include "math/elementary.h"
 
 namespace thimble::app {
 namespace {
 
-// Information by which it must be better before it is believed, and share of the residual's square
-// that may be left with it, where it is what makes the fit bad [chosen as for saturation.cpp].
+// Information by which a friction must be better before it is believed, and share of the residual's
+// square that may be left with it, where it is what makes a fit bad [chosen as for saturation.cpp].
 constexpr double kRubsBetter = 10;
 constexpr double kRubsLeft = 0.5;
+// How many times more than the others a joint rubs that sticks [chosen: those of one arm that are
+// 1/3 to 3 times what is published differ by nine times].
+constexpr double kSticks = 10;
+constexpr int kRubRounds = 4;  // of finding friction and where it turns the joints
+// What the smoothing of signs costs beyond the statistics, of dry friction, and N m s/rad for each
+// N m of it of the viscous [chosen: so that intervals hold 95 % of the truths,
+// identify_rubbing_test].
+constexpr double kMethodDry = 0.004;
+constexpr double kMethodViscous = 0.003;
+
+using Vector8 = Eigen::Matrix<double, 8, 1>;
+
+/// Columns beside those of a rigid arm without friction: of the tip dry and viscous, of each joint
+/// dry, of each joint viscous.
+enum Column { kTipDry = 0, kTipViscous = 1, kJointDry = 2, kJointViscous = 5, kColumns = 8 };
+
+/// Frictions that are believed or not as one: those of a tip, or of joints.
+struct Group {
+  int first, count;
+};
+constexpr Group kOfTip{kTipDry, 2}, kOfJoints{kJointDry, 6}, kOfBoth{kTipDry, kColumns};
+
+/// How the joints turn, tick by tick.
+struct Turning {
+  std::vector<Eigen::Vector3d> rate, sign;  // rad/s; the rate's mean sign over the tick
+};
+
+/// `dry`: dry friction of the joints, per mass at the tip, N m/kg.
+Turning turning_of(const MotionEquations& equations, const Eigen::Vector3d& dry) {
+  const auto& samples = equations.motion().samples;
+  Turning turning;
+  turning.rate.reserve(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    turning.rate.emplace_back(samples[k].G * equations.velocity(static_cast<int>(k)));
+  }
+  turning.sign.assign(samples.size(), Eigen::Vector3d::Zero());
+  for (std::size_t k = 1; k + 1 < samples.size(); ++k) {
+    for (int joint = 0; joint < 3; ++joint) {
+      const double slowed = dry[joint] * samples[k].G.row(joint).squaredNorm();
+      turning.sign[k][joint] = equations.sign_over(
+          turning.rate[k - 1][joint], turning.rate[k][joint], turning.rate[k + 1][joint], slowed);
+    }
+  }
+  return turning;
+}
+
+/// The equations of a motion in which no joint stands, with the friction of tip and joints in
+/// columns of its own.
+struct RubbingRows {
+  Eigen::MatrixXd rows, further;
+  Eigen::VectorXd rest;
+  std::vector<int> clusters;
+  double square = 0;  // of what the fit left of them
+};
+
+RubbingRows rows_of(const FittedMotion& motion, const Turning& turning) {
+  const auto& equations = motion.equations.equations();
+  std::vector<Eigen::Index> moving;
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    if (!motion.equations.stands(equations[i].middle, turning.rate)) {
+      moving.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(moving.size());
+  RubbingRows found;
+  found.rows = motion.residual.rows(moving, Eigen::all);
+  found.rest = motion.residual.rest(moving);
+  found.square = found.rest.squaredNorm();
+  found.further.resize(count, kColumns);
+  const auto& theta = motion.fit.theta;
+  for (const auto& [own, further] :
+       {std::pair(PerMass::kCoulomb, kTipDry), std::pair(PerMass::kViscous, kTipViscous)}) {
+    found.further.col(further) = found.rows.col(own);
+    found.rest += theta[own] * found.rows.col(own);
+    found.rows.col(own).setZero();
+  }
+  using Six = Eigen::Matrix<double, 6, 1>;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto number = static_cast<std::size_t>(moving[static_cast<std::size_t>(i)]);
+    const int axis = equations[number].axis;
+    found.clusters.push_back(motion.residual.clusters[number]);
+    const Six pull = motion.equations.means<Six>(number, 1, [&](int tick) {
+      const auto k = static_cast<std::size_t>(tick);
+      const Eigen::Vector3d along = motion.motion().samples[k].G.col(axis);
+      Six one;
+      one << -along.cwiseProduct(turning.sign[k]), -along.cwiseProduct(turning.rate[k]);
+      return one;
+    });
+    found.further.block<1, 6>(i, kJointDry) = pull.transpose();
+  }
+  return found;
+}
+
+/// Frictions by a fit, per mass; zero of what is not believed.
+struct RubbingFit {
+  Vector8 factor = Vector8::Zero();
+  Eigen::Matrix<double, 8, 8> covariance = Eigen::Matrix<double, 8, 8>::Zero();
+  double square = 0;  // of what it leaves
+};
+
+RubbingFit fit_of(const RubbingRows& rows, const Group& group) {
+  const FurtherColumns found = fit_further(
+      rows.rows, rows.rest, rows.further.middleCols(group.first, group.count), rows.clusters);
+  RubbingFit fit;
+  fit.factor.segment(group.first, group.count) = found.factor;
+  fit.covariance.block(group.first, group.first, group.count, group.count) = found.covariance;
+  fit.square = found.left * rows.rest.squaredNorm();
+  return fit;
+}
+
+/// By how much the Bayesian information prefers to have a group.
+double better_with(const Group& group, const RubbingFit& fit, Eigen::Index rows) {
+  const Eigen::VectorXd factor = fit.factor.segment(group.first, group.count);
+  const Eigen::MatrixXd covariance =
+      fit.covariance.block(group.first, group.first, group.count, group.count);
+  return factor.dot(covariance.ldlt().solve(factor)) -
+         group.count * math::log(static_cast<double>(rows));
+}
+
+/// Whose friction is believed.
+struct Believed {
+  bool joints = false, tip = true;
+};
+
+/// Leaves out what is not needed: of tip and joints the one that tells less first.
+RubbingFit believe(const RubbingRows& rows, Believed& believed) {
+  const RubbingFit both = fit_of(rows, kOfBoth);
+  const double joints = better_with(kOfJoints, both, rows.rest.size());
+  const double tip = better_with(kOfTip, both, rows.rest.size());
+  believed = {.joints = joints > kRubsBetter, .tip = true};
+  if (tip > kRubsBetter || joints < tip) return both;
+  const RubbingFit alone = fit_of(rows, kOfJoints);
+  believed = {.joints = better_with(kOfJoints, alone, rows.rest.size()) > kRubsBetter,
+              .tip = false};
+  return alone;
+}
+
+/// Puts what was found beside gains per mass, in the pose of `G`.
+void put(RubbingJoints& found, const RubbingFit& fit, const Eigen::Vector3d& gain,
+         const Eigen::Matrix3d& G) {
+  const auto of = [&](int column, double per) {
+    return Estimate{fit.factor[column] / per,
+                    kNormal95 * std::sqrt(fit.covariance(column, column)) / per};
+  };
+  found.tip_coulomb = of(kTipDry, 1);
+  found.tip_viscous = of(kTipViscous, 1);
+  // What turns its sign at about the same time is told apart by the little that it differs in.
+  double dry = std::abs(found.tip_coulomb.value);  // at the tip
+  for (int joint = 0; joint < 3; ++joint) {
+    const auto k = static_cast<std::size_t>(joint);
+    found.coulomb[k] = of(kJointDry + joint, gain[joint]);
+    found.viscous[k] = of(kJointViscous + joint, gain[joint]);
+    const double at_joint = std::abs(found.coulomb[k].value) +
+                            std::abs(found.tip_coulomb.value) / (G.row(joint).norm() * gain[joint]);
+    widen(found.coulomb[k], kMethodDry * at_joint);
+    widen(found.viscous[k], kMethodViscous * at_joint);
+    dry = std::max(dry, std::abs(fit.factor[kJointDry + joint]) * G.row(joint).norm());
+  }
+  widen(found.tip_coulomb, kMethodDry * dry);
+}
+
+/// Notes what would have been seen of each joint beside the tip's friction.
+void put_bounds(RubbingJoints& found, const RubbingRows& rows, const Eigen::Vector3d& gain) {
+  const RubbingFit fit = fit_of(rows, kOfBoth);
+  const double seen =
+      kNormal95 +
+      std::sqrt(kRubsBetter + kOfJoints.count * math::log(static_cast<double>(rows.rest.size())));
+  for (int joint = 0; joint < 3; ++joint) {
+    const auto k = static_cast<std::size_t>(joint);
+    const auto of = [&](int column) {
+      return seen * std::sqrt(fit.covariance(column, column)) / gain[joint];
+    };
+    found.coulomb_below[k] = of(kJointDry + joint);
+    found.viscous_below[k] = of(kJointViscous + joint);
+  }
+}
+
+Eigen::Vector3d gains(const PerMass& fit) {
+  return fit.theta.segment<3>(PerMass::kGain);
+}
 
 }  // namespace
 
@@ -24,28 +211,99 @@ int RubbingJoints::most() const {
   return best;
 }
 
-RubbingJoints rubbing_joints(const FittedMotion& motion, double mass) {
-  const Eigen::MatrixXd& rows = motion.residual.rows;
-  Eigen::MatrixXd columns(rows.rows(), 3);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+int RubbingJoints::stuck(double tip, const Eigen::Vector3d& levers) const {
+  if (!seen) return -1;
+  int joint = 0;
+  for (int i = 1; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    joint = coulomb[k].value > coulomb[static_cast<std::size_t>(joint)].value ? i : joint;
+  }
+  const double own = coulomb[static_cast<std::size_t>(joint)].value;
+  if (!(own > tip * levers[joint])) return -1;
+  for (int i = 0; i < 3; ++i) {
+    if (i != joint && own < kSticks * coulomb[static_cast<std::size_t>(i)].value) return -1;
+  }
+  return joint;
+}
+
+driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const PerMass& fit) {
+  RubbingJoints found;
+  // What a motor with the wrong sign does is no friction.
+  if ((gains(fit).array() <= 0).any()) return found;
+  found.searched = true;
+  found.delay = fit.delay.value;
+  const FittedMotion first(motion, fit);
+  Believed believed;
+  const RubbingRows rows = rows_of(first, turning_of(first.equations, {0, 0, 0}));
+  RubbingFit seen = believe(rows, believed);
+  put_bounds(found, rows, gains(fit));
+  if (!believed.joints) return found;
+  found.seen = true;
+  const double square = first.residual.rest.squaredNorm();
+  // What was found bends the joints where they turn, and that changes what is found.
+  PerMass last = fit;
+  for (int round = 0; round < kRubRounds; ++round) {
+    put(found, seen, gains(last), motion.samples.back().G);
+    const ArmMotion freed = freed_of_rubbing(motion, found, last);
+    const auto again = fit_motion(freed, false);
+    if (!again) return again.error();
+    last = *again;
+    if ((gains(last).array() <= 0).any()) break;
+    found.delay = last.delay.value;
+    const FittedMotion left(freed, last);
+    found.left = left.residual.rest.squaredNorm() / square;
+    // All of the friction once more, now that it is known where the joints turn.
+    RubbingRows all = rows_of(left, turning_of(left.equations, seen.factor.segment<3>(kJointDry)));
     for (int joint = 0; joint < 3; ++joint) {
-      const auto pull = [&](int tick, int axis) {
-        const Eigen::Matrix3d& G = motion.motion().samples[static_cast<std::size_t>(tick)].G;
-        const double turning = G.row(joint).dot(motion.equations.velocity(tick));
-        return turning > 0 ? -G(joint, axis) : turning < 0 ? G(joint, axis) : 0.0;
-      };
-      columns(i, joint) = motion.equations.mean(static_cast<std::size_t>(i), pull);
+      const auto k = static_cast<std::size_t>(joint);
+      all.rest +=
+          gains(last)[joint] * (found.coulomb[k].value * all.further.col(kJointDry + joint) +
+                                found.viscous[k].value * all.further.col(kJointViscous + joint));
+    }
+    seen = believe(all, believed);
+    if (!believed.joints) {
+      RubbingJoints none;
+      none.searched = true;
+      none.coulomb_below = found.coulomb_below;
+      none.viscous_below = found.viscous_below;
+      return none;
     }
   }
-  const FurtherColumns found =
-      fit_further(rows, motion.residual.rest, columns, motion.residual.clusters);
-  RubbingJoints rubbing;
+  found.tip_rubs = believed.tip;
+  put(found, seen, gains(last), motion.samples.back().G);
+  return found;
+}
+
+ArmMotion freed_of_rubbing(const ArmMotion& motion, const RubbingJoints& rubbing,
+                           const PerMass& fit) {
+  ArmMotion freed = motion;
+  if (!rubbing.seen) return freed;
+  Eigen::Vector3d dry, viscous;
   for (int joint = 0; joint < 3; ++joint) {
-    rubbing.coulomb[static_cast<std::size_t>(joint)] = {
-        mass * found.factor[joint], mass * kNormal95 * std::sqrt(found.covariance(joint, joint))};
+    dry[joint] = rubbing.coulomb[static_cast<std::size_t>(joint)].value;
+    viscous[joint] = rubbing.viscous[static_cast<std::size_t>(joint)].value;
   }
-  rubbing.seen = found.better > kRubsBetter && found.left < kRubsLeft;
-  return rubbing;
+  const MotionEquations equations(motion, false);
+  const Turning turning = turning_of(equations, gains(fit).cwiseProduct(dry));
+  const auto torque = [&](std::size_t k) -> Eigen::Vector3d {
+    return dry.cwiseProduct(turning.sign[k]) + viscous.cwiseProduct(turning.rate[k]);
+  };
+  const ActingTick acting(rubbing.delay, motion.dt);
+  for (std::size_t k = 0; k + acting.whole + 1 < freed.samples.size(); ++k) {
+    freed.samples[k].tau -= acting.then(k, torque);
+  }
+  return freed;
+}
+
+RubbingJoints rubbing_left(const FittedMotion& motion) {
+  RubbingJoints found;
+  const RubbingRows rows = rows_of(motion, turning_of(motion.equations, {0, 0, 0}));
+  const RubbingFit fit = fit_of(rows, kOfBoth);
+  const double better = better_with(kOfJoints, fit, rows.rest.size());
+  found.searched = true;
+  put(found, fit, gains(motion.fit), motion.motion().samples.back().G);
+  found.seen = better > kRubsBetter && fit.square < kRubsLeft * rows.square;
+  return found;
 }
 
 }  // namespace thimble::app

@@ -15,7 +15,7 @@ good='^[0-9]{3,} ticks here, 0 not there, 0 out of order; [0-9]{3,} ticks there 
 for kind in dhd:omega3 hd:touch; do
   name=${kind%:*}
   expect 0 'Program +link_client by (DHD|HDAPI): asked for a force' "$thimble" exec --clock virtual --hand hand.txt \
-    --record $name.h5 "$client" $name "$source_dir/app/arms/${kind#*:}.yaml" $name.txt 20000
+    --record $name.h5 "$client" $name "$source_dir/app/arms/${kind#*:}.yaml" $name.txt 10000
   # A Touch is calibrated first, which is a run of its own.
   [ ! -e $name-2.h5 ] || mv $name-2.h5 $name.h5
   expect 0 "$name.csv: [0-9]+ ticks" "$thimble" export $name.h5 --csv $name.csv

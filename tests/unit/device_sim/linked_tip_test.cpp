@@ -201,35 +201,6 @@ TEST(LinkedTip, IsAPointWhereLinksWeighNothing) {
   EXPECT_GT(held, 10);
 }
 
-TEST(LinkedTip, HasFrictionThatNoOtherSolutionIsOf) {
-  support::Random random(9);
-  const auto any = [&] {
-    return Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  };
-  int held = 0, turned = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
-    Eigen::Matrix3d root;
-    root << any(), any(), any();
-    const Eigen::Matrix3d inertia = root * root.transpose() + 0.05 * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d momentum = any();
-    const Eigen::Vector3d before = trial % 3 == 0 ? Eigen::Vector3d(0, 0, 0) : any();
-    constexpr double kMost = 0.3;
-    const Eigen::Vector3d v = velocity_after_friction(inertia, momentum, kMost, before);
-    const Eigen::Vector3d friction = momentum - inertia * v;
-    for (int i = 0; i < 3; ++i) {
-      if (v[i] == 0) {
-        ++held;
-        ASSERT_LE(std::abs(friction[i]), kMost * (1 + 1e-9));
-      } else {
-        ASSERT_NEAR(friction[i], std::copysign(kMost, v[i]), 1e-9);
-        turned += v[i] * before[i] < 0 ? 1 : 0;
-      }
-    }
-  }
-  EXPECT_GT(held, 500);
-  EXPECT_GT(turned, 500);
-}
-
 TEST(LinkedTip, StaysExactlyWhereFrictionCarriesItsLinks) {
   SimulatedArmSettings settings = linked_arm(desk_links(geometry()));
   const Eigen::Vector3d q = support::vintage_home();

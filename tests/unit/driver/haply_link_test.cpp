@@ -63,8 +63,8 @@ class HaplyLinkTest : public ::testing::Test {
     ASSERT_TRUE(device_->activate());
   }
 
-  /// Runs a tick of a millisecond, and lets the service deal with its message. Returns how often the
-  /// servo's part of it asked something of the heap.
+  /// Runs a tick of a millisecond, and lets the service deal with its message. Returns how often
+  /// the servo's part of it asked something of the heap.
   int tick(const Vector3d& f_T_W) {
     const std::uint64_t before = service_ ? service_->dealt_with() : 0;
     clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);

@@ -16,7 +16,7 @@ driver::Result<LinkFit> fit_over(const OverPlaces& over, const scene::ArmFile& f
 
 driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFile& file,
                                             const MotionOrder& order, int places,
-                                            const ArmMotion& first, const MotorWaves& waves,
+                                            const ArmMotion& first, const FreedMotion& freed,
                                             bool stretches, bool held,
                                             const std::atomic<bool>& stop) {
   OverPlaces over;
@@ -42,7 +42,7 @@ driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFil
     over.not_done = "not done. " + motions.error().message;
     return over;
   }
-  for (const ArmMotion& motion : *motions) over.motions.push_back(freed_of_waves(motion, waves));
+  for (const ArmMotion& motion : *motions) over.motions.push_back(freed(motion));
   over.motions.insert(over.motions.begin(), first);
   auto fit = fit_over(over, file);
   if (!fit) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,6 @@
 #include "bringup/identify/arm_motion.h"
 #include "bringup/identify/links/link_fit.h"
 #include "bringup/identify/motion_fit.h"
-#include "bringup/identify/motor_waves/motor_waves.h"
 #include "bringup/identify/record_motion.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
@@ -26,14 +26,18 @@ struct OverPlaces {
   bool links() const { return fit && fit->links; }
 };
 
+/// Frees a motion of what was seen to move the tip beside its mass.
+using FreedMotion = std::function<ArmMotion(const ArmMotion&)>;
+
 /// Leads a bare tip to `places` of its workspace, moves it about each by `order` (`record_places`),
-/// and fits these motions, freed of `waves`, and `first`, which was about its middle. Where `held`
+/// and fits these motions, `freed` of what motors and joints do, and `first`, which was about its
+/// middle and is free of that. Where `held`
 /// (the fit of that one with a spring, of `mass`) says that something holds the tip, where
 /// `stretches`, or where the links of such a build have no model, it stays where it is, and
 /// `not_done` says why. An error is a fault or a stop. Real-time: never from the servo thread.
 driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFile& file,
                                             const MotionOrder& order, int places,
-                                            const ArmMotion& first, const MotorWaves& waves,
+                                            const ArmMotion& first, const FreedMotion& freed,
                                             bool stretches, bool held,
                                             const std::atomic<bool>& stop);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/acting_tick.h"
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/motor_waves/wave_rows.h"
 #include "bringup/identify/motor_waves/wave_search.h"
@@ -185,13 +186,9 @@ Estimate cogging_at_motor(const MotorWaves& waves, std::size_t motor, const Esti
 ArmMotion freed_of_waves(const ArmMotion& motion, const MotorWaves& waves) {
   ArmMotion freed = motion;
   if (!waves.seen()) return freed;
-  // The middle of the tick in which a torque acts.
-  const double ticks = waves.delay / motion.dt + 0.5;
-  const auto whole = static_cast<std::size_t>(std::floor(ticks));
-  const double part = ticks - static_cast<double>(whole);
-  for (std::size_t k = 0; k + whole + 1 < freed.samples.size(); ++k) {
-    const Eigen::Vector3d q =
-        (1 - part) * motion.samples[k + whole].q + part * motion.samples[k + whole + 1].q;
+  const ActingTick acting(waves.delay, motion.dt);
+  for (std::size_t k = 0; k + acting.whole + 1 < freed.samples.size(); ++k) {
+    const Eigen::Vector3d q = acting.then(k, [&](std::size_t at) { return motion.samples[at].q; });
     for (int joint = 0; joint < 3; ++joint) {
       const auto i = static_cast<std::size_t>(joint);
       const MotorWave &cogging = waves.cogging[i], &ripple = waves.ripple[i];

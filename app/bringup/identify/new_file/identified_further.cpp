@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bringup/identify/new_file/file_lines.h"
+#include "bringup/identify/new_file/rubbing_section.h"
 #include "bringup/identify/new_file/waves_section.h"
 #include "math/elementary.h"
 #include "read_scene.h"
@@ -37,7 +38,7 @@ class Further {
         mark_(mark),
         lines_(lines) {}
 
-  bool put() { return put_link() && put_saturation() && tell_friction() && put_motor_waves(); }
+  bool put() { return put_link() && put_saturation() && tell_friction() && put_train(); }
 
   /// Returns whether a file that was read again says what was put.
   bool agrees(const scene::ArmFile& read) const {
@@ -46,7 +47,8 @@ class Further {
     return std::abs(firmware.report_period_ns - ns(period_)) <= 1 &&
            std::abs(firmware.watchdog_ns - ns(watchdog_)) <= ns(1e-5 * watchdog_) + 1 &&
            std::abs(wire.jitter_ns - ns(jitter_)) <= ns(1e-5 * jitter_) + 1 &&
-           (file_.is<driver::DeltaArm>() || reads_waves(read.simulated.drive_train, found_));
+           (file_.is<driver::DeltaArm>() || (reads_waves(read.simulated.drive_train, found_) &&
+                                             reads_rubbing(read.simulated.drive_train, found_)));
   }
 
  private:
@@ -116,9 +118,22 @@ class Further {
                     "A, of all motors the least that was seen (" + all + ")", error);
   }
 
-  /// Puts cogging and ripple. The drive train of a delta arm is not simulated: of these a remark.
-  bool put_motor_waves() {
-    if (!file_.is<driver::DeltaArm>()) return put_waves(simulation_, found_, mark_, lines_);
+  /// Puts cogging, ripple and friction of joints. The drive train of a delta arm is not simulated:
+  /// of these remarks.
+  bool put_train() {
+    if (!file_.is<driver::DeltaArm>()) {
+      const YAML::Node train = simulation_["drive_train"];
+      std::vector<TrainKey> keys = wave_keys(train, found_, mark_);
+      for (TrainKey& key : rubbing_keys(train, found_, mark_)) keys.push_back(std::move(key));
+      return put_train_keys(simulation_, keys, lines_);
+    }
+    for (const TrainKey& key : rubbing_keys({}, found_, mark_)) {
+      if (!lines_.add_behind(simulation_["tip"]["coulomb"], "# " + key.name +
+                                                                " of joints: " + key.value + "  " +
+                                                                key.remark + ": not simulated")) {
+        return false;
+      }
+    }
     for (std::size_t i = 0; found_.waves.told() && i < 3; ++i) {
       if (!found_.waves.cogging[i].seen) continue;
       const Estimate cogging = cogging_at_motor(found_.waves, i, found_.constants.gain[i]);

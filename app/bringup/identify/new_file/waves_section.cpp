@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-#include <vector>
 
 namespace thimble::app {
 namespace {
@@ -16,15 +14,6 @@ struct WaveKey {
   const char* name;
   const char* unit;
   std::array<Estimate, 3> values;
-
-  std::string value() const {
-    return fmt::format("[{:.5g}, {:.5g}, {:.5g}]", values[0].value, values[1].value,
-                       values[2].value);
-  }
-  std::string remark(const IdentifiedMark& mark) const {
-    return fmt::format("{} [I {}, {}, +- {:.2g}, {:.2g}, {:.2g}]", unit, mark.date, mark.arm,
-                       values[0].plus_minus, values[1].plus_minus, values[2].plus_minus);
-  }
 };
 
 /// What the keys say; a wave that was not seen is none, and its interval what would have been.
@@ -53,51 +42,22 @@ bool is_written(const Identified& found, const YAML::Node& train) {
   return waves.searched && !waves.seen() && train && (train["cogging"] || train["ripple"]);
 }
 
-std::string periods_text(const Identified& found) {
-  return fmt::format("{:g}", found.waves.periods);
-}
-
 }  // namespace
 
-bool put_waves(const YAML::Node& simulation, const Identified& found, const IdentifiedMark& mark,
-               FileLines& lines) {
-  const YAML::Node train = simulation["drive_train"];
-  if (!is_written(found, train)) return true;
-  const std::string in_turn = fmt::format("in a turn of the motor [I {}, {}]", mark.date, mark.arm);
-  const bool seen = found.waves.told();
-  if (train && train.Style() == YAML::EmitterStyle::Flow) {
-    YAML::Node changed = YAML::Clone(train);
-    std::string marks;
-    for (const WaveKey& key : keys_of(found)) {
-      changed[key.name] = YAML::Load(key.value());
-      marks += fmt::format("{}{}: {}", marks.empty() ? "" : "; ", key.name, key.remark(mark));
-    }
-    if (seen) {
-      changed["periods_per_turn"] = periods_text(found);
-      marks += "; periods_per_turn: " + in_turn;
-    }
-    changed.SetStyle(YAML::EmitterStyle::Flow);
-    return lines.exchange(train, YAML::Dump(changed) + "  # " + marks);
-  }
-  std::vector<std::string> section;
-  const auto put = [&](const char* name, const std::string& text) {
-    if (train && train[name]) return lines.exchange(train[name], text);
-    section.push_back(fmt::format("{}: {}", name, text));
-    return true;
-  };
-  bool done = true;
+std::vector<TrainKey> wave_keys(const YAML::Node& train, const Identified& found,
+                                const IdentifiedMark& mark) {
+  std::vector<TrainKey> keys;
+  if (!is_written(found, train)) return keys;
   for (const WaveKey& key : keys_of(found)) {
-    done = done && put(key.name, key.value() + "  # " + key.remark(mark));
+    keys.push_back(TrainKey::of(key.name, key.unit, key.values, mark));
   }
-  if (seen) done = done && put("periods_per_turn", periods_text(found) + "  # " + in_turn);
-  if (!done || section.empty()) return done;
-  if (train) return train.size() > 0 && lines.add_before(train.begin()->first, section);
-  for (std::string& line : section) line = "  " + line;
-  section.insert(section.begin(), "drive_train:");
-  for (const auto& entry : simulation) {
-    if (entry.first.as<std::string>() == "tip") return lines.add_before(entry.first, section);
+  if (found.waves.told()) {
+    keys.push_back(
+        {.name = "periods_per_turn",
+         .value = fmt::format("{:g}", found.waves.periods),
+         .remark = fmt::format("in a turn of the motor [I {}, {}]", mark.date, mark.arm)});
   }
-  return false;
+  return keys;
 }
 
 bool reads_waves(const device_sim::DriveTrainSettings& read, const Identified& found) {

@@ -67,13 +67,31 @@ void MotionEquations::find_signs(const Eigen::Vector3d& slowed) {
   sign_.assign(velocity_.size(), Eigen::Vector3d::Zero());
   for (std::size_t k = 1; k + 1 < velocity_.size(); ++k) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double rise = velocity_[k + 1][axis] - velocity_[k - 1][axis];
-      const double v = velocity_[k][axis] + std::copysign(slowed[axis] * mean_distance_, rise);
-      const double half_tick = 0.25 * std::abs(rise);
-      sign_[k][axis] = std::abs(v) < half_tick ? v / half_tick : v > 0 ? 1 : v < 0 ? -1 : 0;
+      sign_[k][axis] = sign_over(velocity_[k - 1][axis], velocity_[k][axis], velocity_[k + 1][axis],
+                                 slowed[axis]);
     }
   }
   sum_frictions();
+}
+
+double MotionEquations::sign_over(double before, double here, double after, double slowed) const {
+  const double rise = after - before;
+  const double v = here + std::copysign(slowed * mean_distance_, rise);
+  const double half_tick = 0.25 * std::abs(rise);
+  return std::abs(v) < half_tick ? v / half_tick : v > 0 ? 1 : v < 0 ? -1 : 0;
+}
+
+bool MotionEquations::stands(int middle, const std::vector<Eigen::Vector3d>& rate) const {
+  for (int joint = 0; joint < 3; ++joint) {
+    int slow = 0;
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      const double least = kSlow * at(middle + j).G.row(joint).norm();
+      const double turning = rate[static_cast<std::size_t>(middle + j)][joint];
+      slow = std::abs(turning) < least ? slow + 1 : 0;
+      if (slow > kSlowMost) return true;
+    }
+  }
+  return false;
 }
 
 void MotionEquations::gather() {

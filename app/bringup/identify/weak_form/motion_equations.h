@@ -43,6 +43,14 @@ class MotionEquations {
   /// Likewise with what dry friction slows each axis by (m/s^2).
   void find_signs(const Eigen::Vector3d& slowed);
 
+  /// Returns the mean sign over a tick of a velocity of which three ticks are seen smoothed, while
+  /// dry friction against it makes it slower by `slowed`, its unit per second.
+  double sign_over(double before, double here, double after, double slowed) const;
+
+  /// Returns whether a joint stands for too long about a tick to know its friction. `rate`: of the
+  /// joints, smoothed, at each tick, rad/s.
+  bool stands(int middle, const std::vector<Eigen::Vector3d>& rate) const;
+
   /// Returns what the constants multiply at a delay (s). Torques stand from tick to tick: within
   /// the tick that they arrive in, the older ones last for the delay's fraction.
   Row row(std::size_t number, double delay) const;

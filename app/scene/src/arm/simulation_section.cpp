@@ -112,14 +112,13 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   if (wavy && train.periods_per_turn == 0) {
     map.reject("", "expected periods_per_turn beside cogging or ripple");
   }
-  const bool masses = !train.inertia.isZero(0) || !train.damping.isZero(0) ||
-                      !train.play.isZero(0) || !train.viscous.isZero(0) || !train.coulomb.isZero(0);
+  const bool masses = !train.inertia.isZero(0) || !train.damping.isZero(0) || !train.play.isZero(0);
   if (train.compliant() &&
       !((train.stiffness.array() > 0).all() && (train.inertia.array() > 0).all())) {
     map.reject("stiffness", "expected each above zero, and each of inertia too");
   }
   if (masses && !train.compliant()) {
-    map.reject("", "expected stiffness beside inertia, damping, play, viscous or coulomb");
+    map.reject("", "expected stiffness beside inertia, damping or play");
   }
   map.finish();
   return train;

@@ -79,12 +79,17 @@ struct DriveTrainSettings {
   Eigen::Vector3d stiffness{0, 0, 0};  ///< Of the cable, N m/rad at the joint. All > 0, or none.
   Eigen::Vector3d damping{0, 0, 0};    ///< Of the cable, N m s/rad.
   Eigen::Vector3d play{0, 0, 0};       ///< Whole width of the backlash, rad at the joint.
-  Eigen::Vector3d viscous{0, 0, 0};    ///< Friction of the motor's side, N m s/rad at the joint.
-  Eigen::Vector3d coulomb{0, 0, 0};    ///< Dry friction of the motor's side, N m at the joint.
-  MotorHeatSettings heat{};            ///< Of the motors; none: their torque never changes.
+  /// Friction of each joint, N m s/rad; behind a cable that stretches that of the motor's side.
+  Eigen::Vector3d viscous{0, 0, 0};
+  Eigen::Vector3d coulomb{0, 0, 0};  ///< Dry friction, likewise, N m at the joint.
+  MotorHeatSettings heat{};          ///< Of the motors; none: their torque never changes.
 
   /// Returns whether the cable stretches, so that motors and links move apart. Real-time: safe.
   bool compliant() const noexcept { return !stiffness.isZero(0); }
+  /// Returns whether joints rub that are one with their motors. Real-time: safe.
+  bool joints_rub() const noexcept {
+    return !compliant() && !(viscous.isZero(0) && coulomb.isZero(0));
+  }
   /// Returns whether there is anything to simulate. Real-time: safe.
   bool named() const noexcept {
     return current_lag != 0 || !cogging.isZero(0) || !ripple.isZero(0) || periods_per_turn != 0 ||
