@@ -31,7 +31,7 @@ TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
   Score dry{"dry", 0.05}, viscous{"viscous", 0.10}, gain{"gains", 0.02}, mass{"mass", 0.03};
   Score delay{"delay", 1e-4};
   // Beside the tip's friction, which turns its sign at much the same time.
-  Score dry_beside{"dry*", 0.2}, viscous_beside{"viscous*", 0.2}, tip{"tip*", 3e-3};
+  Score dry_beside{"dry*", 0.25}, viscous_beside{"viscous*", 0.3}, tip{"tip*", 3e-3};
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(8000 + k);
@@ -87,7 +87,7 @@ TEST(IdentifyRubbing, IsNotInventedWhereTheTipAloneRubs) {
     EXPECT_FALSE(found->rubbing.seen) << "arm " << k;
     EXPECT_TRUE(
         leaves_open(*found, "Dry friction of joints beside that of the tip: none seen above"));
-    for (const double below : found->rubbing.coulomb_below) EXPECT_LT(below, kJointDry);
+    for (const double below : found->rubbing.coulomb_below) EXPECT_LT(below, 2 * kJointDry);
   }
 }
 

@@ -144,8 +144,8 @@ for arm in $arms; do
   watchdog=500
   early=1
   # The Falcon's board dates a message by the frame it was last run in; a plug that was held up for a
-  # few frames makes that too early, never too late.
-  [ $arm = falcon ] && watchdog=100 && early=5
+  # few frames (six were seen) makes that too early, never too late.
+  [ $arm = falcon ] && watchdog=100 && early=10
   awk -v arm=$arm -v stated=$watchdog -v early=$early '
     !/^#/ && NF == 22 {
       forced = $14 != 0 || $15 != 0 || $16 != 0

@@ -26,6 +26,7 @@ constexpr int kRubRounds = 4;  // of finding friction and where it turns the joi
 // N m of it of the viscous [chosen: so that intervals hold 95 % of the truths,
 // identify_rubbing_test].
 constexpr double kMethodDry = 0.004;
+constexpr double kMethodBeside = 0.008;  // likewise, of the tip's dry friction beside it
 constexpr double kMethodViscous = 0.003;
 
 using Vector8 = Eigen::Matrix<double, 8, 1>;
@@ -170,10 +171,11 @@ void put(RubbingJoints& found, const RubbingFit& fit, const Eigen::Vector3d& gai
     const auto k = static_cast<std::size_t>(joint);
     found.coulomb[k] = of(kJointDry + joint, gain[joint]);
     found.viscous[k] = of(kJointViscous + joint, gain[joint]);
-    const double at_joint = std::abs(found.coulomb[k].value) +
-                            std::abs(found.tip_coulomb.value) / (G.row(joint).norm() * gain[joint]);
-    widen(found.coulomb[k], kMethodDry * at_joint);
-    widen(found.viscous[k], kMethodViscous * at_joint);
+    const double own = std::abs(found.coulomb[k].value);
+    const double of_tip =
+        std::abs(found.tip_coulomb.value) / (G.row(joint).norm() * gain[joint]);  // N m
+    widen(found.coulomb[k], kMethodDry * own + kMethodBeside * of_tip);
+    widen(found.viscous[k], kMethodViscous * (own + of_tip));
     dry = std::max(dry, std::abs(fit.factor[kJointDry + joint]) * G.row(joint).norm());
   }
   widen(found.tip_coulomb, kMethodDry * dry);
