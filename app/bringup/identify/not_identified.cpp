@@ -119,7 +119,7 @@ void of_rubbing(const Identified& identified, Sentences& all) {
 
 void of_rotor_friction(const Identified& identified, Sentences& all) {
   const PlayFit& play = identified.play;
-  if (!identified.lines.stretches) return of_rubbing(identified, all);
+  if (!identified.lines.stretches && !play.searched) return of_rubbing(identified, all);
   if (!play.searched) {
     all.emplace_back(
         "Friction of single joints: not looked for; the friction along the axes of the tip is all "

@@ -21,7 +21,8 @@ constexpr double kRubsLeft = 0.5;
 // How many times more than the others a joint rubs that sticks [chosen: those of one arm that are
 // 1/3 to 3 times what is published differ by nine times].
 constexpr double kSticks = 10;
-constexpr int kRubRounds = 4;  // of finding friction and where it turns the joints
+constexpr Eigen::Index kPiecesLeast = 300;  // in which no joint stands [as fit_motion's]
+constexpr int kRubRounds = 4;               // of finding friction and where it turns the joints
 // What the smoothing of signs costs beyond the statistics, of dry friction, and N m s/rad for each
 // N m of it of the viscous [chosen: so that intervals hold 95 % of the truths,
 // identify_rubbing_test].
@@ -229,17 +230,19 @@ int RubbingJoints::stuck(double tip, const Eigen::Vector3d& levers) const {
 }
 
 driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const PerMass& fit) {
-  RubbingJoints found;
+  RubbingJoints none;
   // What a motor with the wrong sign does is no friction.
-  if ((gains(fit).array() <= 0).any()) return found;
-  found.searched = true;
-  found.delay = fit.delay.value;
+  if ((gains(fit).array() <= 0).any()) return none;
   const FittedMotion first(motion, fit);
   Believed believed;
   const RubbingRows rows = rows_of(first, turning_of(first.equations, {0, 0, 0}));
+  if (rows.rest.size() < kPiecesLeast) return none;
   RubbingFit seen = believe(rows, believed);
-  put_bounds(found, rows, gains(fit));
-  if (!believed.joints) return found;
+  none.searched = true;
+  put_bounds(none, rows, gains(fit));
+  if (!believed.joints) return none;
+  RubbingJoints found = none;
+  found.delay = fit.delay.value;
   found.seen = true;
   const double square = first.residual.rest.squaredNorm();
   // What was found bends the joints where they turn, and that changes what is found.
@@ -250,7 +253,7 @@ driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const
     const auto again = fit_motion(freed, false);
     if (!again) return again.error();
     last = *again;
-    if ((gains(last).array() <= 0).any()) break;
+    if ((gains(last).array() <= 0).any()) return none;
     found.delay = last.delay.value;
     const FittedMotion left(freed, last);
     found.left = left.residual.rest.squaredNorm() / square;
@@ -263,17 +266,15 @@ driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const
                                 found.viscous[k].value * all.further.col(kJointViscous + joint));
     }
     seen = believe(all, believed);
-    if (!believed.joints) {
-      RubbingJoints none;
-      none.searched = true;
-      none.coulomb_below = found.coulomb_below;
-      none.viscous_below = found.viscous_below;
-      return none;
-    }
+    if (!believed.joints) return none;
   }
   found.tip_rubs = believed.tip;
   put(found, seen, gains(last), motion.samples.back().G);
-  return found;
+  // What pushes a joint on is something else that looks like friction.
+  const bool pushes =
+      std::any_of(found.coulomb.begin(), found.coulomb.end(),
+                  [](const Estimate& one) { return one.value + one.plus_minus < 0; });
+  return pushes ? none : found;
 }
 
 ArmMotion freed_of_rubbing(const ArmMotion& motion, const RubbingJoints& rubbing,
@@ -300,6 +301,7 @@ ArmMotion freed_of_rubbing(const ArmMotion& motion, const RubbingJoints& rubbing
 RubbingJoints rubbing_left(const FittedMotion& motion) {
   RubbingJoints found;
   const RubbingRows rows = rows_of(motion, turning_of(motion.equations, {0, 0, 0}));
+  if (rows.rest.size() < kPiecesLeast) return found;
   const RubbingFit fit = fit_of(rows, kOfBoth);
   const double better = better_with(kOfJoints, fit, rows.rest.size());
   found.searched = true;
