@@ -15,11 +15,12 @@ namespace {
 constexpr std::int64_t kSubStep_ns = 100'000;
 constexpr double kLagsKept = 20;  // after which a current is forgotten to 2e-9
 
-/// An arm with a drive train: the encoders see the motors, and the tip is behind cables.
-template <class Geometry>
+/// An arm with a drive train: the encoders see the motors, and the tip is behind cables that
+/// stretch or joints that rub.
+template <class Geometry, class Tip>
 class DriveTrainTwin final : public TwinMover {
  public:
-  using Plant = device_sim::DriveTrainPlant<Geometry>;
+  using Plant = device_sim::DriveTrainPlant<Geometry, Tip>;
 
   DriveTrainTwin(const TwinMotion& motion, const scene::ArmFile& file, Plant plant)
       : motion_(motion),
@@ -107,18 +108,26 @@ class DriveTrainTwin final : public TwinMover {
   Plant plant_;
 };
 
-template <class Geometry>
-driver::Result<std::unique_ptr<TwinMover>> make_of(const TwinMotion& motion,
-                                                   const scene::ArmFile& file) {
+template <class Geometry, class Tip>
+driver::Result<std::unique_ptr<TwinMover>> make_with(const TwinMotion& motion,
+                                                     const scene::ArmFile& file) {
   device_sim::SimulatedArmSettings settings = file.simulated;
   settings.hand = {};              // nobody's
   settings.drive_train.heat = {};  // a window warms nothing, and each is moved many times
   const Eigen::Vector3d& p_BT = motion.stretches.front().front().p_BT;
-  auto plant = device_sim::DriveTrainPlant<Geometry>::make(driver::model_as<Geometry>(file.model),
-                                                           settings, p_BT, p_BT, kSubStep_ns);
+  auto plant = device_sim::DriveTrainPlant<Geometry, Tip>::make(
+      driver::model_as<Geometry>(file.model), settings, p_BT, p_BT, kSubStep_ns);
   if (!plant) return plant.error();
   return std::unique_ptr<TwinMover>(
-      std::make_unique<DriveTrainTwin<Geometry>>(motion, file, std::move(plant).value()));
+      std::make_unique<DriveTrainTwin<Geometry, Tip>>(motion, file, std::move(plant).value()));
+}
+
+template <class Geometry>
+driver::Result<std::unique_ptr<TwinMover>> make_of(const TwinMotion& motion,
+                                                   const scene::ArmFile& file) {
+  return file.simulated.drive_train.joints_rub()
+             ? make_with<Geometry, device_sim::LinkedTip>(motion, file)
+             : make_with<Geometry, device_sim::PointTip>(motion, file);
 }
 
 }  // namespace

@@ -19,13 +19,16 @@ class PointTip {
  public:
   using State = std::array<AxisState, 3>;
 
-  /// Makes it at rest at p_BT (m). Fails if a constant is out of range. Real-time: never from the
-  /// servo thread.
+  /// Makes it at rest at p_BT (m). Fails if a constant is out of range, or if joints rub, of which
+  /// it knows nothing. Real-time: never from the servo thread.
   template <class Geometry>
   static driver::Result<PointTip> make(const Geometry&, const SimulatedArmSettings& settings,
                                        const Eigen::Vector3d& p_BT) {
     const auto dynamics = AxisDynamics::make(settings.plant, settings.hand);
     if (!dynamics) return dynamics.error();
+    if (settings.drive_train.joints_rub()) {
+      return driver::Error{"Joints that rub need a tip that knows of them (LinkedTip)."};
+    }
     return PointTip(*dynamics, p_BT);
   }
 

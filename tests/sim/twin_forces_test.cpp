@@ -9,6 +9,7 @@
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
 #include "support/hidden_arm.h"
+#include "support/rigid_rubbing_arm.h"
 
 namespace thimble::app {
 namespace {
@@ -57,6 +58,20 @@ TEST(TwinForces, TellTheHandThatHeldTheTip) {
     EXPECT_NEAR(found.hand.damping, 1, 0.1) << seed;
     EXPECT_NEAR(found.hand.mass, 0.02, 0.003) << seed;
     EXPECT_NE(force_table(found).find("held the tip like a hand"), std::string::npos);
+  }
+}
+
+TEST(TwinForces, KnowTheFrictionOfJoints) {
+  for (std::uint64_t seed = 8000; seed <= 8001; ++seed) {
+    const HiddenArm arm = support::rigid_rubbing_arm(seed);
+    const TwinMotion motion = motion_of(arm, false);
+    const TwinForces found = twin_forces(motion, arm.file);
+    EXPECT_FALSE(found.other_acted()) << seed << "\n" << force_table(found);
+    for (const TwinForceAxis& axis : found.axes) EXPECT_GT(axis.counted, 50U);
+    scene::ArmFile wrong = arm.file;
+    wrong.simulated.drive_train.coulomb.setZero();
+    wrong.simulated.drive_train.viscous.setZero();
+    EXPECT_TRUE(twin_forces(motion, wrong).other_acted()) << seed;
   }
 }
 

@@ -12,9 +12,12 @@
 #include "support/hidden_arm.h"
 #include "support/long_form.h"
 #include "support/refuses.h"
+#include "support/rigid_rubbing_arm.h"
 #include "support/scratch.h"
 #include "twin/compare_twin.h"
+#include "twin/relive.h"
 #include "twin/twin_files.h"
+#include "twin/twin_motion.h"
 
 namespace thimble::app {
 namespace {
@@ -125,6 +128,33 @@ TEST(Twin, NamesTheConstantThatIsWrong) {
       if (!named)
         ADD_FAILURE() << "arm " << seed << ", " << mistake.key << "\n" << twin_table(found);
     }
+  }
+}
+
+TEST(Twin, OfAnArmWhoseJointsRubRelivesItsMotionToTheEncodersSteps) {
+  const HiddenArm arm = support::rigid_rubbing_arm(8000);
+  const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
+  const TwinMotion motion = twin_motion(recording, arm.file).value();
+  auto relive = Relive::make(motion, 0.5);
+  ASSERT_TRUE(relive.ok()) << relive.error().message;
+  EXPECT_LT((*relive)(arm.file)->rms(), 1.5 * motion.step_error);
+  scene::ArmFile wrong = arm.file;
+  wrong.simulated.drive_train.coulomb[1] *= 1.5;
+  EXPECT_GT((*relive)(wrong)->rms(), 3 * motion.step_error);
+}
+
+TEST(Twin, NamesTheJointWhoseFrictionIsWrong) {
+  if (!support::long_form()) GTEST_SKIP() << "3 joints, a minute each: in the long form alone";
+  const HiddenArm arm = support::rigid_rubbing_arm(8000);
+  const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
+  for (int joint = 0; joint < 3; ++joint) {
+    scene::ArmFile wrong = arm.file;
+    wrong.simulated.drive_train.coulomb[joint] *= 1.5;
+    const TwinComparison found = compared(recording, wrong);
+    ASSERT_TRUE(found.has_remedy()) << twin_table(found);
+    EXPECT_EQ(found.remedies.front().key,
+              "simulation.drive_train.coulomb[" + std::to_string(joint + 1) + "]")
+        << twin_table(found);
   }
 }
 

@@ -110,6 +110,11 @@ TEST(DryFriction, OfTipAndJointsIsWhatNoOtherSolutionIsOf) {
   EXPECT_GT(slid, 500);
 }
 
+TEST(DryFriction, OfJointsIsNotForgottenByATipThatKnowsNothingOfIt) {
+  EXPECT_FALSE(SerialDriveTrainPlant::make(
+      support::vintage_model(), rubbing_arm({0, 0.001, 0}, {0, 0, 0}), home_tip(), home_tip()));
+}
+
 TEST(DryFriction, OfAJointTakesTheMomentAboutItEvenlyUntilItStands) {
   constexpr double kTorque = 0.004;
   const SimulatedArmSettings settings = rubbing_arm({kTorque, 0, 0}, {0, 0, 0});
