@@ -21,8 +21,10 @@ constexpr double kRubsLeft = 0.5;
 // How many times more than the others a joint rubs that sticks [chosen: those of one arm that are
 // 1/3 to 3 times what is published differ by nine times].
 constexpr double kSticks = 10;
-constexpr Eigen::Index kPiecesLeast = 300;  // in which no joint stands [as fit_motion's]
-constexpr int kRubRounds = 4;               // of finding friction and where it turns the joints
+// Pieces in which no joint stands, to measure friction [as fit_motion's], and to blame a joint that
+// stands for most of the time [chosen].
+constexpr Eigen::Index kPiecesLeast = 300, kPiecesToBlame = 50;
+constexpr int kRubRounds = 4;  // of finding friction and where it turns the joints
 // What the smoothing of signs costs beyond the statistics, of dry friction, and N m s/rad for each
 // N m of it of the viscous [chosen: so that intervals hold 95 % of the truths,
 // identify_rubbing_test].
@@ -301,7 +303,7 @@ ArmMotion freed_of_rubbing(const ArmMotion& motion, const RubbingJoints& rubbing
 RubbingJoints rubbing_left(const FittedMotion& motion) {
   RubbingJoints found;
   const RubbingRows rows = rows_of(motion, turning_of(motion.equations, {0, 0, 0}));
-  if (rows.rest.size() < kPiecesLeast) return found;
+  if (rows.rest.size() < kPiecesToBlame) return found;
   const RubbingFit fit = fit_of(rows, kOfBoth);
   const double better = better_with(kOfJoints, fit, rows.rest.size());
   found.searched = true;
