@@ -84,18 +84,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       }
     }
   }
-  int held = 0, all = 0;
-  for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness, &resonance}) {
-    score->tell();
-    EXPECT_LT(score->worst, score->most) << score->name;
-    held += score->held;
-    all += score->all;
-    // A single interval, as the tip's in the short form, may miss by chance; all together may not.
-    if (score->all > 1) {
-      EXPECT_GE(score->held, 0.9 * score->all) << score->name;
-    }
-  }
-  EXPECT_GE(held, 0.9 * all);
+  support::expect_scores({&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness, &resonance}, 1);
   std::printf("%d of %d arms refused\n", refused, arms);
   EXPECT_LE(refused, arms / 10);
 }

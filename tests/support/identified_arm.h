@@ -1,9 +1,12 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <string>
 
 #include "bringup/identify/identify.h"
@@ -62,5 +65,22 @@ struct Score {
                 held, all);
   }
 };
+
+/// Tells scores and expects of each that its worst is allowed and, where it has more than `few`,
+/// that nine in ten of its intervals hold; a single one of few may miss by chance, all together may
+/// not.
+inline void expect_scores(std::initializer_list<const Score*> scores, int few) {
+  int held = 0, all = 0;
+  for (const Score* score : scores) {
+    score->tell();
+    EXPECT_LT(score->worst, score->most) << score->name;
+    held += score->held;
+    all += score->all;
+    if (score->all > few) {
+      EXPECT_GE(score->held, 0.9 * score->all) << score->name;
+    }
+  }
+  EXPECT_GE(held, 0.9 * all);
+}
 
 }  // namespace thimble::support

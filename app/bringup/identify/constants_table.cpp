@@ -50,8 +50,7 @@ void add_friction(const FrictionDirections& friction, Rows& rows) {
 /// Adds the friction of a rigid arm's joints, and of their two directions where these differ: what
 /// is more along an axis of the base in one direction is so about the joints that turn with it.
 void add_joints(const Identified& identified, const scene::ArmFile& file, Rows& rows) {
-  const RubbingJoints& rubbing = identified.rubbing;
-  if (!rubbing.seen) return;
+  if (!identified.rubbing.seen) return;
   const auto& train = file.simulated.drive_train;
   const auto named = [&](double value) {
     return file.can_simulate ? std::optional(value) : std::nullopt;
@@ -60,7 +59,7 @@ void add_joints(const Identified& identified, const scene::ArmFile& file, Rows& 
   const Eigen::Matrix3d J = identified.moved.samples.empty()
                                 ? Eigen::Matrix3d::Zero()
                                 : identified.moved.samples.back().G.inverse().eval();
-  for (std::size_t i = 0; rubbing.seen && i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const Estimate dry = identified.joint_coulomb(i);
     rows.add(fmt::format("Coulomb friction, joint {}", i + 1), dry, 1e3, "mN m",
@@ -78,7 +77,7 @@ void add_joints(const Identified& identified, const scene::ArmFile& file, Rows& 
     rows.add(fmt::format("  turning backwards, joint {}", i + 1), {dry.value + uneven, error}, 1e3,
              "mN m, without what is vertical");
   }
-  for (std::size_t i = 0; rubbing.seen && i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     rows.add(fmt::format("viscous friction, joint {}", i + 1), identified.joint_viscous(i), 1e3,
              "mN m s/rad", named(train.viscous[static_cast<Eigen::Index>(i)]));
   }

@@ -29,9 +29,9 @@ constexpr double kMethodDelay = 2e-6;          // s
 constexpr double kPlaceLead = 0.5;  // s, that it moves about a place before it is recorded
 // Half-width of an interval over the value, of mass and gains; what is known worse is not written.
 constexpr double kUnknownMost = 0.03;
-// Share of the residual's square that waves may leave where the fit stays bad with them [chosen as
-// for saturation.cpp].
-constexpr double kWavesLeft = 0.3;
+// Share of the residual's square that waves or joints may leave where the fit stays bad with them
+// [chosen as for saturation.cpp].
+constexpr double kFreedLeft = 0.3;
 // By how much the Bayesian information must prefer cables before they are blamed.
 constexpr double kCablesBlamed = 20;
 
@@ -79,6 +79,22 @@ void put_links(Identified& found, const Eigen::Vector3d& down_B) {
   constants.absolute = fit.absolute;
 }
 
+/// Takes a freed motion, its fit and its lines in place of a motion if what it was freed of is what
+/// made the fit worse; `left`: the share of the residual's square that is left. Returns whether it
+/// did.
+bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmMotion& motion,
+                PerMass& fit, Identified& found) {
+  const LineSpectrum spectrum = line_spectrum(freed);
+  const CableFit lines = fit_cables(spectrum, better, freed.dt);
+  const bool good = speaks_against(better, better, 1).empty();
+  if (lines.stretches || !(good || left < kFreedLeft)) return false;
+  motion = freed;
+  fit = better;
+  found.spectrum = spectrum;
+  found.lines = lines;
+  return true;
+}
+
 /// Looks for cogging and ripple of the motors in the motion of a rigid arm with its bare tip, and
 /// frees the motion of them if they are what made its fit worse: then fit and lines are anew.
 driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motion, PerMass& fit,
@@ -102,18 +118,11 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
   const ArmMotion freed = freed_of_waves(motion, *waves);
   const auto better = fit_motion(freed, false);
   if (!better) return better.error();
-  const LineSpectrum spectrum = line_spectrum(freed);
-  const CableFit lines = fit_cables(spectrum, *better, freed.dt);
-  const bool good = speaks_against(*better, *better, 1).empty();
-  if (lines.stretches || !(good || waves->left < kWavesLeft)) {
+  if (!take_freed(freed, *better, waves->left, motion, fit, found)) {
     found.waves.not_done =
         "not told, for something else makes the fit bad, which looks a little like them.";
     return {};
   }
-  motion = freed;
-  fit = *better;
-  found.spectrum = spectrum;
-  found.lines = lines;
   found.waves = std::move(waves).value();
   return {};
 }
@@ -131,19 +140,11 @@ driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identifie
   if (!better) return better.error();
   if (!held) return held.error();
   const auto mass = arm_constants(*better, motion.down_B, {}, 0);
-  const LineSpectrum spectrum = line_spectrum(freed);
-  const CableFit lines = fit_cables(spectrum, *better, freed.dt);
-  const bool good = speaks_against(*better, *better, 1).empty();
   // A hand looks a little like joints that stick.
   const bool is_held_then = !mass || is_held(*held, mass->mass.value);
-  if (lines.stretches || is_held_then || !(good || found.rubbing.left < kWavesLeft)) {
+  if (is_held_then || !take_freed(freed, *better, found.rubbing.left, motion, fit, found)) {
     found.rubbing = {};
-    return {};
   }
-  motion = freed;
-  fit = *better;
-  found.spectrum = spectrum;
-  found.lines = lines;
   return {};
 }
 

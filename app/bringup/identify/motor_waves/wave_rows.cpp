@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bringup/identify/acting_tick.h"
 #include "math/elementary.h"
 
 namespace thimble::app {
@@ -17,13 +18,12 @@ constexpr double kEndsOfAngles =
 std::vector<Eigen::Vector3d> acting_torques(const ArmMotion& motion, double delay) {
   const auto count = static_cast<std::ptrdiff_t>(motion.samples.size());
   std::vector<Eigen::Vector3d> acting(motion.samples.size(), Eigen::Vector3d::Zero());
-  const double ticks = delay / motion.dt + 0.5;
-  const auto whole = static_cast<std::ptrdiff_t>(std::floor(ticks));
-  const double part = ticks - static_cast<double>(whole);
+  const ActingTick tick(delay, motion.dt);
+  const auto whole = static_cast<std::ptrdiff_t>(tick.whole);
   for (std::ptrdiff_t k = whole + 1; k < count; ++k) {
     acting[static_cast<std::size_t>(k)] =
-        part * motion.samples[static_cast<std::size_t>(k - whole - 1)].tau +
-        (1 - part) * motion.samples[static_cast<std::size_t>(k - whole)].tau;
+        tick.part * motion.samples[static_cast<std::size_t>(k - whole - 1)].tau +
+        (1 - tick.part) * motion.samples[static_cast<std::size_t>(k - whole)].tau;
   }
   return acting;
 }
