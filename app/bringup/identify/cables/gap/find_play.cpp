@@ -20,8 +20,10 @@ constexpr double kFits = 2;
 // What the search costs beyond the statistics, one deviation of it [chosen: so that intervals hold
 // 95 % of the truths of hidden arms, identify_play_test]: of a width, and rad.
 constexpr double kMethodShare = 0.006, kMethodWidth = 3e-6;
-// Likewise of the viscous friction of motors, N m s/rad [identify_joint_friction_test].
-constexpr double kMethodViscous = 5e-5;
+// Likewise half-widths of intervals of the friction of motors, N m s/rad and N m: by statistics
+// alone, arms with wide play that have none are given up to 6e-5 N m [identify_joint_friction_test,
+// identify_play_test].
+constexpr double kMethodViscous = 5e-5, kMethodCoulomb = 3e-5;
 constexpr double kPlayBetter = 20;  // information, before it is believed
 constexpr double kPlayShows = 5;    // deviations, before a number is written
 
@@ -135,7 +137,7 @@ RotorFriction judge_friction(const GapFit& without, const GapFit& with) {
       any = any || shows;
     };
     take(Gap::kRotorViscous, kMethodViscous, found.viscous[k], found.shows_viscous[k]);
-    take(Gap::kRotorCoulomb, 0, found.coulomb[k], found.shows_coulomb[k]);
+    take(Gap::kRotorCoulomb, kMethodCoulomb, found.coulomb[k], found.shows_coulomb[k]);
   }
   // A search that ended in another valley leaves little more, and friction that is far off.
   found.fits = with.misfit < kFitsAlready;
