@@ -32,7 +32,8 @@ Corners corners_of(const Surface& surface, const SearchFrame& frame, std::size_t
 struct Extent {
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
   Vector3d high = -low;
-  double area = 0;  // of all triangles
+  double area = 0;    // of all triangles
+  double widest = 0;  // of one triangle along an axis
 };
 
 template <class Surface>
@@ -40,8 +41,11 @@ Extent extent_of(const Surface& surface, const SearchFrame& frame, std::size_t c
   Extent extent;
   for (std::size_t t = 0; t < count; ++t) {
     const Corners c = corners_of(surface, frame, t);
-    extent.low = extent.low.cwiseMin(c[0].cwiseMin(c[1]).cwiseMin(c[2]));
-    extent.high = extent.high.cwiseMax(c[0].cwiseMax(c[1]).cwiseMax(c[2]));
+    const Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
+    const Vector3d high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    extent.low = extent.low.cwiseMin(low);
+    extent.high = extent.high.cwiseMax(high);
+    extent.widest = std::max(extent.widest, (high - low).maxCoeff());
     extent.area += (c[1] - c[0]).cross(c[2] - c[0]).norm() / 2;
   }
   return extent;
@@ -76,8 +80,7 @@ double estimate_listed(const Surface& surface, const SearchFrame& frame, std::si
 
 template <class Surface>
 void choose_side(VolumeGrid::Parts& parts, const Surface& surface, const SearchFrame& frame,
-                 std::size_t count) {
-  const Extent extent = extent_of(surface, frame, count);
+                 std::size_t count, const Extent& extent) {
   const auto n = static_cast<double>(count);
   const double edge = std::sqrt(extent.area / n * (4 / std::sqrt(3.0)));
   const double widest = (extent.high - extent.low).maxCoeff();
@@ -180,13 +183,55 @@ void visit_volumes(const VolumeGrid::Parts& parts, const Corners& c, List list) 
   }
 }
 
+// Puts the corners of each list's triangles side by side, eight by eight, as seen from the middle
+// of its volume. `widest` is how wide a triangle is at most along an axis.
+template <class CornersOf>
+void put_side_by_side(VolumeGrid::Parts& parts, double widest, const CornersOf& corners_of_one) {
+  constexpr std::size_t kMost = EightTriangles::kMost;
+  const double farthest = parts.side * (0.5 + kGridRoom) + widest;
+  parts.per_unit = EightTriangles::kFarthestUnit / farthest;
+  std::uint32_t eights = 0;
+  for (std::size_t v = 0; v + 1 < parts.begins.size(); ++v) {
+    parts.begins[v].eight = eights;
+    const std::uint32_t count = parts.begins[v + 1].triangle - parts.begins[v].triangle;
+    eights += static_cast<std::uint32_t>((count + kMost - 1) / kMost);
+  }
+  parts.eights.resize(eights);
+  const auto put = [&](std::size_t v, const Vector3d& middle) {
+    const VolumeGrid::ListBegin begin = parts.begins[v];
+    for (std::size_t i = 0; begin.triangle + i < parts.begins[v + 1].triangle; ++i) {
+      Corners corners = corners_of_one(parts.triangles[begin.triangle + i]);
+      for (Vector3d& corner : corners) corner = parts.per_unit * (corner - middle);
+      parts.eights[begin.eight + i / kMost].set(i % kMost, corners);
+    }
+  };
+  std::size_t place = 0;
+  for (std::int32_t z = 0; z < parts.blocks[2]; ++z) {
+    for (std::int32_t y = 0; y < parts.blocks[1]; ++y) {
+      for (std::int32_t x = 0; x < parts.blocks[0]; ++x) {
+        const std::uint32_t word = parts.top[place++];
+        if ((word & VolumeGrid::kEmpty) != 0) continue;
+        const VolumeGrid::Block& block = parts.all_blocks[word];
+        std::size_t v = block.first_volume;
+        for (std::int32_t i = 0; i < 64; ++i) {
+          if (((block.occupied >> i) & 1u) == 0) continue;
+          const Vector3d corner = VolumeGrid::corner_of(
+              parts, {4 * x + (i & 3), 4 * y + ((i >> 2) & 3), 4 * z + (i >> 4)});
+          put(v++, VolumeGrid::middle_of(parts, corner));
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 template <class Surface>
 VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame) {
   const auto count = static_cast<std::size_t>(surface.triangle_count());
   VolumeGrid::Parts parts;
-  choose_side(parts, surface, frame, count);
+  const Extent extent = extent_of(surface, frame, count);
+  choose_side(parts, surface, frame, count, extent);
   const auto nx = static_cast<std::size_t>(parts.blocks[0]);
   const auto ny = static_cast<std::size_t>(parts.blocks[1]);
   parts.top.assign(nx * ny * static_cast<std::size_t>(parts.blocks[2]), VolumeGrid::kEmpty);
@@ -221,20 +266,23 @@ VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame) {
            count_ones(block.occupied & ((std::uint64_t{1} << (volume % 64)) - 1));
   };
   // Counted, summed, and filled from the end of each list: afterwards the sums are the begins.
-  parts.begins.assign(std::size_t{volumes} + 1, 0);
+  parts.begins.assign(std::size_t{volumes} + 1, {});
   for (Listed& entry : listed) {
     entry.volume = place_of(entry.volume);
-    ++parts.begins[entry.volume];
+    ++parts.begins[entry.volume].triangle;
   }
   std::uint32_t sum = 0;
-  for (std::uint32_t& begin : parts.begins) {
-    sum += begin;
-    begin = sum;
+  for (VolumeGrid::ListBegin& begin : parts.begins) {
+    sum += begin.triangle;
+    begin.triangle = sum;
   }
   parts.triangles.resize(listed.size());
   for (auto entry = listed.rbegin(); entry != listed.rend(); ++entry) {
-    parts.triangles[--parts.begins[entry->volume]] = entry->triangle;
+    parts.triangles[--parts.begins[entry->volume].triangle] = entry->triangle;
   }
+  put_side_by_side(parts, extent.widest, [&](std::int32_t t) {
+    return corners_of(surface, frame, static_cast<std::size_t>(t));
+  });
   measure_emptiness(parts);
   return VolumeGrid(std::move(parts));
 }

@@ -3,11 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
 
 #include "search/build_volume_grid.h"
+#include "search/eight_triangles.h"
 #include "search/mesh_segment_test.h"
 #include "search/search_answers.h"
 
@@ -15,8 +17,6 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-using List = std::span<const std::int32_t>;
-
 // A path whose box is this many volumes wide at most is asked about in one go.
 constexpr double kShortVolumes = 6;
 
@@ -69,6 +69,11 @@ class Piece {
   Vector3d middle_, half_, reach_;
 };
 
+template <class Test>
+SegmentInUnits in_units(const Test& segment, const VolumeGrid& grid) noexcept {
+  return segment_in_units(segment.way(), segment.position_rounding(), grid.parts().per_unit);
+}
+
 Vector3d gap_to_box(const Vector3d& p, const Vector3d& corner, double side) noexcept {
   return (corner - p).cwiseMax(p - corner - Vector3d::Constant(side)).cwiseMax(0.0);
 }
@@ -85,7 +90,7 @@ bool GridSearch<Surface>::even() const noexcept {
   double squares = 0;
   std::size_t longest = 0;
   for (std::size_t v = 0; v + 1 < begins.size(); ++v) {
-    const std::size_t length = begins[v + 1] - begins[v];
+    const std::size_t length = begins[v + 1].triangle - begins[v].triangle;
     longest = std::max(longest, length);
     squares += static_cast<double>(length) * static_cast<double>(length);
   }
@@ -93,7 +98,7 @@ bool GridSearch<Surface>::even() const noexcept {
   return squares <= kMeanListMax * all && longest <= kListMax;
 }
 
-// Calls visit(list) for all volumes near the segment.
+// Calls visit(list) for the VolumeList of each volume near the segment.
 template <class Surface>
 template <class Test, class Visit>
 void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const noexcept {
@@ -103,8 +108,7 @@ void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const 
   const double width = (high - low).maxCoeff();
   if (width <= 0.5 * side) {
     grid_.visit_box(
-        low, high, [](const Vector3d&) noexcept { return true; },
-        [&visit](List list) noexcept { visit(list); });
+        low, high, [](const Vector3d&) noexcept { return true; }, visit);
     return;
   }
   const Vector3d& from = segment.from();
@@ -116,8 +120,7 @@ void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const 
     const Piece piece(a, b, room, side);
     grid_.visit_box(
         piece_low, piece_high,
-        [&piece](const Vector3d& corner) noexcept { return piece.meets(corner); },
-        [&](List list) noexcept { visit(list); });
+        [&piece](const Vector3d& corner) noexcept { return piece.meets(corner); }, visit);
   };
   if (width <= kShortVolumes * side) {
     visit_piece(from, from + way, low, high);
@@ -147,13 +150,34 @@ void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const 
   }
 }
 
+// Calls visit(t) for each triangle of a volume that a segment may cross.
+template <class Surface>
+template <class Visit>
+void GridSearch<Surface>::visit_near(const SegmentInUnits& segment, const Vector3d& from,
+                                     const VolumeList& list, Visit visit) const noexcept {
+  constexpr std::size_t kMost = EightTriangles::kMost;
+  const Vector3d seen = grid_.parts().per_unit * (from - list.middle);
+  const std::size_t count = list.triangles.size();
+  for (std::size_t i = 0; i < count; i += kMost) {
+    unsigned near = met_of_eight(segment, seen, list.eights[i / kMost]);
+    if (count - i < kMost) near &= (1u << (count - i)) - 1;
+    for (; near != 0; near &= near - 1) {
+      visit(list.triangles[i + static_cast<std::size_t>(std::countr_zero(near))]);
+    }
+  }
+}
+
 template <class Surface>
 Entry GridSearch<Surface>::first_entry(const Vector3d& p_from,
                                        const Vector3d& p_to) const noexcept {
   if (!within_range(p_from) || !within_range(p_to)) return {};
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
+  const SegmentInUnits units = in_units(segment, grid_);
   FirstEntry first(segment);
-  visit_reached(segment, [&first](List list) noexcept { first.consider(list); });
+  visit_reached(segment, [&](const VolumeList& list) noexcept {
+    visit_near(units, segment.from(), list,
+               [&first](std::int32_t t) noexcept { first.consider(t); });
+  });
   return first.entry();
 }
 
@@ -166,8 +190,9 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   std::array<std::int32_t, 64> crossed;
   std::size_t crossings = 0;
   bool all_kept = true;
-  visit_reached(segment, [&](List list) noexcept {
-    visit_near(segment, list, [&](std::int32_t t) noexcept {
+  const SegmentInUnits units = in_units(segment, grid_);
+  visit_reached(segment, [&](const VolumeList& list) noexcept {
+    visit_near(units, segment.from(), list, [&](std::int32_t t) noexcept {
       double parameter = 0;
       if (segment.cross(t, parameter) == Crossing::kNone) return;
       const auto kept_end = crossed.begin() + static_cast<std::ptrdiff_t>(crossings);
@@ -201,11 +226,11 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
   const auto wanted = [&](const Vector3d& corner) noexcept {
     return gap_to_box(p, corner, side).squaredNorm() <= limit;
   };
-  const auto visit = [&](List list) noexcept {
+  const auto visit = [&](const VolumeList& list) noexcept {
     constexpr std::size_t kAtOnce = 32;
     std::array<std::int32_t, kAtOnce> fresh;
     std::size_t count = 0;
-    for (const std::int32_t t : list) {
+    for (const std::int32_t t : list.triangles) {
       fresh[count] = t;
       count += asked.first_time(t) ? 1 : 0;
       if (count < kAtOnce) continue;

@@ -44,6 +44,9 @@ class GridSearch final : public ContactSearch {
  private:
   template <class Test, class Visit>
   void visit_reached(const Test& segment, Visit visit) const noexcept;
+  template <class Visit>
+  void visit_near(const SegmentInUnits& segment, const Eigen::Vector3d& from,
+                  const VolumeList& list, Visit visit) const noexcept;
 
   const Surface* surface_;
   SearchFrame frame_;

@@ -16,6 +16,7 @@
 #include "packed/packed_surface.h"
 #include "packed/sse2.h"
 #include "search/box_node.h"
+#include "search/eight_triangles.h"
 #include "search/near_list.h"
 #include "search/nearest_so_far.h"
 #include "search/node_stack.h"
@@ -35,6 +36,7 @@
 #include "search/lanes.inc"
 #include "search/tree_lanes.inc"
 
+#include "search/eight_lanes.inc"
 #include "search/segment_lanes.inc"
 
 #include "search/nearest_lanes.inc"
@@ -51,6 +53,7 @@
 #include "search/lanes.inc"
 #include "search/tree_lanes.inc"
 
+#include "search/eight_lanes.inc"
 #include "search/segment_lanes.inc"
 
 #include "search/nearest_lanes.inc"

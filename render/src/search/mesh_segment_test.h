@@ -21,6 +21,7 @@ class MeshSegmentTest {
   MeshSegmentTest(const ContactMesh& mesh, const SearchFrame& frame, const Eigen::Vector3d& p_from,
                   const Eigen::Vector3d& p_to) noexcept
       : mesh_(mesh),
+        frame_(frame),
         p_from_(p_from),
         p_to_(p_to),
         from_(frame.to_steps(p_from)),
@@ -62,6 +63,12 @@ class MeshSegmentTest {
   /// steps is monotone.
   Eigen::Vector3d low() const noexcept { return from_.cwiseMin(to_); }
   Eigen::Vector3d high() const noexcept { return from_.cwiseMax(to_); }
+  /// Tells how far those numbers may be from what `crossing` sees, in steps.
+  double position_rounding() const noexcept {
+    const double size = std::max({p_from_.cwiseAbs().maxCoeff(), p_to_.cwiseAbs().maxCoeff(),
+                                  frame_.origin.cwiseAbs().maxCoeff()});
+    return 0x1p-50 * (size * frame_.per_step + kLatticeHalf);
+  }
 
  private:
   bool meets(std::int32_t t) const noexcept {
@@ -76,6 +83,7 @@ class MeshSegmentTest {
   }
 
   const ContactMesh& mesh_;
+  const SearchFrame& frame_;
   const Eigen::Vector3d& p_from_;
   const Eigen::Vector3d& p_to_;
   Eigen::Vector3d from_, to_;

@@ -38,14 +38,15 @@ class FirstEntry {
   explicit FirstEntry(const Test& segment) noexcept : segment_(segment) {}
 
   void consider(std::span<const std::int32_t> list) noexcept {
-    visit_near(segment_, list, [this](std::int32_t t) noexcept {
-      double parameter = 0;
-      if (segment_.cross(t, parameter) != Crossing::kEnters) return;
-      if (parameter < limit_ || (parameter == limit_ && t < entry_.triangle)) {
-        entry_ = {t, parameter};
-        limit_ = parameter;
-      }
-    });
+    visit_near(segment_, list, [this](std::int32_t t) noexcept { consider(t); });
+  }
+  void consider(std::int32_t t) noexcept {
+    double parameter = 0;
+    if (segment_.cross(t, parameter) != Crossing::kEnters) return;
+    if (parameter < limit_ || (parameter == limit_ && t < entry_.triangle)) {
+      entry_ = {t, parameter};
+      limit_ = parameter;
+    }
   }
 
   const Entry& entry() const noexcept { return entry_; }

@@ -49,6 +49,8 @@ class SegmentTest {
   /// the lattice it is cut.
   Eigen::Vector3d low() const noexcept { return vector(bounds_.low); }
   Eigen::Vector3d high() const noexcept { return vector(bounds_.high); }
+  /// Tells how far those numbers may be from what `crossing` sees, in steps.
+  double position_rounding() const noexcept { return position_rounding_; }
 
  private:
   static Eigen::Vector3d vector(const std::array<std::int32_t, 4>& v) noexcept {

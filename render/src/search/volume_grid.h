@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "search/eight_triangles.h"
+
 namespace thimble::render {
 
 /// Counts the ones of a word without the instruction that not every x86-64 has. Real-time: safe.
@@ -18,6 +20,13 @@ inline std::uint32_t count_ones(std::uint64_t v) noexcept {
   v = (v + (v >> 4)) & 0x0f0f0f0f0f0f0f0fu;
   return static_cast<std::uint32_t>((v * 0x0101010101010101u) >> 56);
 }
+
+/// The triangles that reach into one volume.
+struct VolumeList {
+  std::span<const std::int32_t> triangles;  ///< In rising order.
+  const EightTriangles* eights = nullptr;   ///< The same triangles, eight by eight.
+  Eigen::Vector3d middle;                   ///< Of the volume.
+};
 
 /// Space cut into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes
 /// stand in blocks of 4 x 4 x 4:
@@ -42,16 +51,33 @@ class VolumeGrid {
   /// The most blocks along an axis.
   static constexpr std::int32_t kBlocksMax = 1024;
 
+  /// Where the list of a volume begins.
+  struct ListBegin {
+    std::uint32_t triangle = 0;  ///< In `triangles`.
+    std::uint32_t eight = 0;     ///< In `eights`.
+  };
   /// What a grid is made of; see build_volume_grid.
   struct Parts {
     Eigen::Vector3d low{0, 0, 0};                 ///< The corner where the grid begins.
     double side = 1;                              ///< Of a volume.
+    double per_unit = 1;                          ///< Units of EightTriangles to one step.
     std::array<std::int32_t, 3> blocks{1, 1, 1};  ///< Along each axis.
     std::vector<std::uint32_t> top;               ///< Of each block, or how far the next is.
     std::vector<Block> all_blocks;                ///< Those with something in them.
-    std::vector<std::uint32_t> begins;            ///< Per occupied volume; and one more, the end.
+    std::vector<ListBegin> begins;                ///< Per occupied volume; and one more, the end.
     std::vector<std::int32_t> triangles;          ///< Lists of the volumes, each in rising order.
+    std::vector<EightTriangles> eights;           ///< Their corners; each list begins a new one.
   };
+
+  /// Tells where a volume begins, by its place along each axis.
+  static Eigen::Vector3d corner_of(const Parts& parts,
+                                   const std::array<std::int32_t, 3>& at) noexcept {
+    return parts.low + parts.side * Eigen::Vector3d(at[0], at[1], at[2]);
+  }
+  /// Tells the middle of a volume by where it begins: what its triangles are seen from.
+  static Eigen::Vector3d middle_of(const Parts& parts, const Eigen::Vector3d& corner) noexcept {
+    return corner + Eigen::Vector3d::Constant(parts.side / 2);
+  }
 
   explicit VolumeGrid(Parts parts) noexcept : parts_(std::move(parts)) {
     per_side_ = 1 / parts_.side;
@@ -68,8 +94,9 @@ class VolumeGrid {
   std::size_t bytes() const noexcept {
     return parts_.top.capacity() * sizeof(std::uint32_t) +
            parts_.all_blocks.capacity() * sizeof(Block) +
-           parts_.begins.capacity() * sizeof(std::uint32_t) +
-           parts_.triangles.capacity() * sizeof(std::int32_t);
+           parts_.begins.capacity() * sizeof(ListBegin) +
+           parts_.triangles.capacity() * sizeof(std::int32_t) +
+           parts_.eights.capacity() * sizeof(EightTriangles);
   }
 
   /// Returns the volume a coordinate is in; what lies beside the grid counts to its outermost ones.
@@ -109,10 +136,14 @@ class VolumeGrid {
                static_cast<std::size_t>(parts_.blocks[0]) +
            static_cast<std::size_t>(x);
   }
-  std::span<const std::int32_t> list(const Block& block, std::uint64_t bit) const noexcept {
+  VolumeList list(const Block& block, std::uint64_t bit,
+                  const Eigen::Vector3d& corner) const noexcept {
     const std::size_t v = block.first_volume + count_ones(block.occupied & (bit - 1));
-    const std::uint32_t begin = parts_.begins[v];
-    return {parts_.triangles.data() + begin, parts_.begins[v + 1] - begin};
+    const ListBegin begin = parts_.begins[v];
+    const std::uint32_t count = parts_.begins[v + 1].triangle - begin.triangle;
+    return {{parts_.triangles.data() + begin.triangle, count},
+            parts_.eights.data() + begin.eight,
+            middle_of(parts_, corner)};
   }
 
   Parts parts_;
@@ -158,9 +189,8 @@ void VolumeGrid::visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& hi
         for (; left != 0; left &= left - 1) {
           const auto i = std::countr_zero(left);
           const Eigen::Vector3d corner =
-              parts_.low + parts_.side * Eigen::Vector3d(4 * x + (i & 3), 4 * y + ((i >> 2) & 3),
-                                                         4 * z + (i >> 4));
-          if (wanted(corner)) visit(list(block, left & (~left + 1)));
+              corner_of(parts_, {4 * x + (i & 3), 4 * y + ((i >> 2) & 3), 4 * z + (i >> 4)});
+          if (wanted(corner)) visit(list(block, left & (~left + 1), corner));
         }
       }
     }

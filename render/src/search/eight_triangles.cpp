@@ -1,0 +1,43 @@
+#include "search/eight_triangles.h"
+
+#include <cmath>
+
+#include "packed/wide_lanes.h"
+#include "search/lanes.h"
+
+namespace thimble::render {
+
+using Eigen::Vector3d;
+
+void EightTriangles::set(std::size_t lane, const std::array<Vector3d, 3>& corners) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto unit = [&](int axis) {
+      return static_cast<std::int16_t>(std::lrint(corners[k][axis]));
+    };
+    x[k][lane] = unit(0);
+    y[k][lane] = unit(1);
+    z[k][lane] = unit(2);
+  }
+}
+
+SegmentInUnits segment_in_units(const Vector3d& way, double rounding, double per_step) noexcept {
+  // A corner is half a unit off; that, and where the segment begins, is seen from the middle of a
+  // volume in single precision: less than 2^-8 units within the reach of corners, and beyond it by
+  // a share that met_of_eight knows.
+  constexpr double kCorner = 0.5 + 0x1p-8;
+  const Vector3d units = per_step * way;
+  const double off = per_step * rounding;
+  return {
+      {static_cast<float>(units.x()), static_cast<float>(units.y()), static_cast<float>(units.z())},
+      static_cast<float>(units.cwiseAbs().maxCoeff()),
+      static_cast<float>(2 * off),
+      static_cast<float>(kCorner + off)};
+}
+
+unsigned met_of_eight(const SegmentInUnits& segment, const Vector3d& from,
+                      const EightTriangles& eight) noexcept {
+  return wide_lanes() ? lanes_avx2::met_of_eight(segment, from.data(), eight)
+                      : lanes_plain::met_of_eight(segment, from.data(), eight);
+}
+
+}  // namespace thimble::render
