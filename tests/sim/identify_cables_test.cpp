@@ -14,6 +14,7 @@
 namespace thimble::app {
 namespace {
 
+using support::expect_scores;
 using support::hidden_arm;
 using support::HiddenArm;
 using support::identified;
@@ -39,6 +40,7 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
   const int arms = long_form() ? 20 : 1;
   Score mass{"mass", 0.03}, gain{"gain", 0.02}, delay{"delay", 1e-4}, coulomb{"Coulomb", 0.05};
   Score resonance{"resonance", 0.05}, antiresonance{"antires.", 0.08}, inertia{"motor", 0.06};
+  int refused = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6000 + k);
     const HiddenArm arm = soft_arm(seed);
@@ -46,12 +48,15 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
                                         .play = long_form(),
                                         .known_mass = kKnownMass,
                                         .seed = seed});
-    if (!found || !found->constants.cables || !found->against.empty()) {
-      ADD_FAILURE() << "arm " << k << ": "
-                    << (found ? (found->against.empty() ? "no cables" : found->against.front())
-                              : found.error().message);
+    if (!found) {
+      // Its motor oscillates under the force that holds the tip: nobody sees such a motion well.
+      EXPECT_EQ(found.error().message.find("The joints jumped in"), 0U) << found.error().message;
+      ++refused;
       continue;
     }
+    ASSERT_TRUE(found->constants.cables) << "arm " << k;
+    EXPECT_TRUE(found->against.empty()) << "arm " << k << ": " << found->against.front();
+    EXPECT_EQ(found->play.understood(), long_form()) << "arm " << k;
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     const auto& plant = arm.file.simulated.plant;
     const auto& train = arm.file.simulated.drive_train;
@@ -71,15 +76,9 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
       resonance.add(cable.resonance, std::sqrt(stiffness * (1 / link + 1 / motor)) / turn);
     }
   }
-  int held = 0, all = 0;
-  for (const Score* score :
-       {&mass, &coulomb, &gain, &delay, &resonance, &antiresonance, &inertia}) {
-    score->tell();
-    EXPECT_LT(score->worst, score->most) << score->name;
-    held += score->held;
-    all += score->all;
-  }
-  EXPECT_GT(held, 0.85 * all);
+  EXPECT_LE(refused, arms / 10);
+  constexpr int kFew = 10;
+  expect_scores({&mass, &coulomb, &gain, &delay, &resonance, &antiresonance, &inertia}, kFew);
 }
 
 TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {

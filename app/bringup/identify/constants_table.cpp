@@ -244,16 +244,18 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
 
 std::string fit_text(const Identified& identified) {
   const PerMass& fit = identified.bare;
-  if (identified.play.told()) {
+  if (identified.play.understood()) {
     const PlayFit& play = identified.play;
-    const char* what = !play.seen           ? "friction of the motors"
-                       : play.friction.seen ? "play and friction of the motors"
-                                            : "play";
-    return fmt::format(
-        "Fitted with {} to {} pieces of motion; what is left of the angles is {:.2f} times what "
-        "the encoders' steps leave, without {:.1f} times.{}",
-        what, fit.windows, std::sqrt(play.best().misfit), std::sqrt(play.plain.misfit),
-        rubs_most_text(identified));
+    const char* what = play.seen && play.friction.seen ? " with play and friction of the motors"
+                       : play.seen                     ? " with play"
+                       : play.friction.seen            ? " with friction of the motors"
+                                                       : "";
+    std::string text = fmt::format(
+        "Fitted{} to {} pieces of motion; what is left of the angles is {:.2f} times what the "
+        "encoders' steps leave",
+        what, fit.windows, std::sqrt(play.best().misfit));
+    if (play.told()) text += fmt::format(", without {:.1f} times", std::sqrt(play.plain.misfit));
+    return text + "." + rubs_most_text(identified);
   }
   return fmt::format(
       "Fitted to {} pieces of motion ({} left out, in which an axis stood); {:.3f} % of the "

@@ -317,7 +317,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
       found.play = find_play(*motion, *fit, found.lines);
       if (found.play.like_play) found.against.push_back(like_play_text(found.play));
     }
-    if (found.play.told()) {
+    if (found.play.understood()) {
       const GapFit gap =
           loaded ? fit_play_again(*motion, *fit, rigid, found.play) : found.play.best();
       rigid = *fit;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/cables/gap/gap_constants.h"
@@ -160,16 +161,36 @@ void look_for_friction(const GapPieces& whole, PlayFit& found) {
   if (both.friction.seen) found = both;
 }
 
-}  // namespace
+/// Returns constants from which a motion without play is understood, of springs that give more than
+/// `start` says and lose less: lines mislead where a link oscillates below the lowest of them. None
+/// if it is understood from none.
+std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vector& start) {
+  constexpr double kSofter[] = {0.5, 0.25, 0.125};  // than lines say
+  constexpr double kFade = 3e-4;                    // s, damping of a cable over its stiffness
+  const GapPieces few(motion, 24, kShort);
+  GapFit best;
+  best.misfit = HUGE_VAL;
+  for (const double share : kSofter) {
+    Gap::Vector from = start;
+    from.segment<3>(Gap::kStiffness) *= share;
+    from.segment<3>(Gap::kDamping) = kFade * from.segment<3>(Gap::kStiffness);
+    const GapFit one = fit_gap(few, from, {}, 12);
+    if (one.misfit < best.misfit) best = one;
+  }
+  best = fit_gap(GapPieces(motion, kShortPieces, kShort), best.theta, {}, 15);
+  if (best.misfit < kFitsNearly) return best.theta;
+  return {};
+}
 
-PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit& lines) {
+/// Looks for play and friction of the motors from constants without either.
+PlayFit find_play_from(const ArmMotion& motion, const Gap::Vector& start,
+                       const Eigen::Matrix3d& JTJ) {
   PlayFit found;
   found.searched = true;
-  const Gap::Vector start = gap_constants(rigid, lines);
   const GapPieces brief(motion, kShortPieces, kShort), whole(motion, kLongPieces, kLong);
   const GapFit plain = fit_gap(brief, start, {}, 15);
   // Where friction of the motors is all that is missing, play is looked for beside it.
-  const GapFit rubbed = search_friction(motion, brief, start, lines.JTJ, plain);
+  const GapFit rubbed = search_friction(motion, brief, start, JTJ, plain);
   const bool rubs = rubbed.misfit < kFitsNearly && better_by(plain, rubbed, 6) > kPlayBetter;
   const GapFit& without = rubs ? rubbed : plain;
   const GapFit with = search_play(motion, start, without, rubs);
@@ -203,6 +224,20 @@ PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit&
   found.friction = judge_friction(other, found.best());
   found.plain = found.seen ? fit_gap(whole, plain.theta, {}, 10) : other;
   return found;
+}
+
+}  // namespace
+
+bool PlayFit::understood() const {
+  return told() || (searched && fits && best().misfit < kFitsAlready);
+}
+
+PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit& lines) {
+  const Gap::Vector start = gap_constants(rigid, lines);
+  const PlayFit found = find_play_from(motion, start, lines.JTJ);
+  if (found.fits) return found;
+  const auto softer = softer_start(motion, start);
+  return softer ? find_play_from(motion, *softer, lines.JTJ) : found;
 }
 
 GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMass& rigid_bare,

@@ -38,8 +38,11 @@ struct PlayFit {
   std::array<Estimate, 3> width;
   std::array<bool, 3> shows{};
 
-  /// Returns whether the motion is understood by this fit alone: with play or friction of motors.
+  /// Returns whether play or friction of motors is told, by which alone the motion is understood.
   bool told() const { return seen || friction.seen; }
+  /// Returns whether the better fit leaves the encoders' steps alone: then motors and cables are
+  /// known better by it than by lines, with play or without.
+  bool understood() const;
   const GapFit& best() const { return seen ? with : without; }
 };
 
