@@ -15,7 +15,7 @@ using Corners = std::array<Vector3d, 3>;
 
 // Side of a volume in edges of the equilateral triangle that is as large as the mean one: narrower
 // costs memory, wider costs triangles per question (measured; README.md).
-constexpr double kSideInEdges = 1;
+constexpr double kSideInEdges = 0.8;
 
 // Words of the top and entries of lists per triangle that a surface of whatever shape may take.
 constexpr double kTopMax = 1.5;

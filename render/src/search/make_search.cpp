@@ -10,10 +10,10 @@ namespace thimble::render {
 namespace {
 
 // From here on the tree asks for a free path at least as soon as the grid: 0.9 of its time at
-// 16,384 triangles, 0.7 at 36,864 (`thimble study accuracy --axis search`); below they are alike,
-// and what nothing is remembered of is found in 0.85 of the tree's time at 10,000 (bench_contact
-// --cold).
-constexpr std::int32_t kTreeTrianglesMin = 12000;
+// 16,384 triangles, 0.7 at 36,864 (`thimble study accuracy --axis search`); below they are alike.
+// What nothing is remembered of is found in 0.87 of the tree's time at 6,000 and 1.1 at 10,000
+// (bench_contact --cold): a grid with its corners is as large as the second cache there.
+constexpr std::int32_t kTreeTrianglesMin = 8000;
 
 template <class Surface>
 std::shared_ptr<const ContactSearch> build_search(const Surface& surface,

@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Builds the search that is named; if none is, a grid for fewer than 12,000 triangles that lie
+/// Builds the search that is named; if none is, a grid for fewer than 8,000 triangles that lie
 /// evenly (GridSearch), else a tree. Keeps a reference: the surface must outlive the search.
 /// Real-time: never from the servo thread.
 std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,

@@ -342,7 +342,7 @@ TEST(EverySearch, AnswersWithoutTheHeap) {
   EXPECT_GT(sum, 0);
 }
 
-TEST(MakeSearch, TakesTheTreeFromTwelveThousandTriangles) {
+TEST(MakeSearch, TakesTheTreeFromEightThousandTriangles) {
   const ContactMesh fewer = ContactMesh::build(support::icosphere(4, 0.05)).value();  // 5,120
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(fewer).get()), nullptr);
   const ContactMesh more = ContactMesh::build(support::icosphere(5, 0.05)).value();  // 20,480

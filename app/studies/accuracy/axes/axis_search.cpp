@@ -86,7 +86,7 @@ AccuracyAxis search_axis() {
   axis.cost_over_knob = true;
   axis.default_words =
       "Cheaper are smaller meshes alone, and on this one the grid is as good: it is chosen below "
-      "12,000 triangles that lie evenly, a tree from there on.";
+      "8,000 triangles that lie evenly, a tree from there on.";
   axis.left_out =
       "The error, because there is none: all searches give the same answers, ties included. While "
       "the "
