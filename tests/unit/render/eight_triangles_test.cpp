@@ -115,7 +115,7 @@ TEST(EightTriangles, KeepFewThatATicksPathDoesNotCross) {
   }
   EXPECT_GT(asked.crossings, 500);
   // Those whose plane or edge it passes within their rounding.
-  EXPECT_LT(asked.kept, 0.02 * asked.all);
+  EXPECT_LT(asked.kept, 0.004 * asked.all);
 }
 
 TEST(EightTriangles, LeaveOutNothingByNumbersThatOverflow) {
