@@ -25,8 +25,34 @@ constexpr double kMethodShare = 0.006, kMethodWidth = 3e-6;
 // alone, arms with wide play that have none are given up to 6e-5 N m [identify_joint_friction_test,
 // identify_play_test].
 constexpr double kMethodViscous = 5e-5, kMethodCoulomb = 3e-5;
+// Damping of a cable over its stiffness, s: what loses more is no spring [chosen: at 40 Hz more
+// than 0.6 of the critical damping].
+constexpr double kFadeMost = 5e-3, kFade = 3e-4;
 constexpr double kPlayBetter = 20;  // information, before it is believed
 constexpr double kPlayShows = 5;    // deviations, before a number is written
+
+bool is_spring(const Gap::Vector& theta, int joint) {
+  return theta[Gap::kDamping + joint] < kFadeMost * theta[Gap::kStiffness + joint];
+}
+bool are_springs(const GapFit& fit) {
+  return is_spring(fit.theta, 0) && is_spring(fit.theta, 1) && is_spring(fit.theta, 2);
+}
+
+/// Leaves another valley for what fits better: a motor that mostly stands hides its cable, and one
+/// that is soft and loses much looks alike. From stiffer ones that lose little.
+void leave_valley(const GapPieces& whole, const GapSought& sought, GapFit& fit) {
+  constexpr double kStiffer[] = {2, 6};
+  for (int joint = 0; joint < 3; ++joint) {
+    for (const double stiffer : kStiffer) {
+      if (is_spring(fit.theta, joint)) break;
+      Gap::Vector from = fit.theta;
+      from[Gap::kStiffness + joint] *= stiffer;
+      from[Gap::kDamping + joint] = kFade * from[Gap::kStiffness + joint];
+      const GapFit other = fit_gap(whole, from, sought, 20);
+      if (other.misfit < fit.misfit) fit = other;
+    }
+  }
+}
 
 /// Searches for play from several widths.
 GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapFit& without,
@@ -141,7 +167,7 @@ RotorFriction judge_friction(const GapFit& without, const GapFit& with) {
     take(Gap::kRotorCoulomb, kMethodCoulomb, found.coulomb[k], found.shows_coulomb[k]);
   }
   // A search that ended in another valley leaves little more, and friction that is far off.
-  found.fits = with.misfit < kFitsAlready;
+  found.fits = with.misfit < kFitsAlready && are_springs(with);
   found.seen = any && found.fits && found.better > kPlayBetter;
   return found;
 }
@@ -151,6 +177,7 @@ void look_for_friction(const GapPieces& whole, PlayFit& found) {
   PlayFit both = found;
   GapFit& best = found.seen ? both.with : both.without;
   best = fit_gap(whole, best.theta, {.play = found.seen, .friction = true}, 15);
+  leave_valley(whole, {.play = found.seen, .friction = true}, best);
   if (!found.fits) {
     // What did not fit without friction may be play or none with it.
     both.with = fit_gap(whole, found.with.theta, {.play = true, .friction = true}, 20);
@@ -161,12 +188,12 @@ void look_for_friction(const GapPieces& whole, PlayFit& found) {
   if (both.friction.seen) found = both;
 }
 
-/// Returns constants from which a motion without play is understood, of springs that give more than
-/// `start` says and lose less: lines mislead where a link oscillates below the lowest of them. None
-/// if it is understood from none.
+/// Returns constants by which a motion is understood without play and friction of motors, of
+/// springs that give more than `start` says and lose less: lines mislead where a link oscillates
+/// below the lowest of them. None if it is not: of a motor that mostly stands too little is seen
+/// for that.
 std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vector& start) {
   constexpr double kSofter[] = {0.5, 0.25, 0.125};  // than lines say
-  constexpr double kFade = 3e-4;                    // s, damping of a cable over its stiffness
   const GapPieces few(motion, 24, kShort);
   GapFit best;
   best.misfit = HUGE_VAL;
@@ -178,8 +205,10 @@ std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vect
     if (one.misfit < best.misfit) best = one;
   }
   best = fit_gap(GapPieces(motion, kShortPieces, kShort), best.theta, {}, 15);
-  if (best.misfit < kFitsNearly) return best.theta;
-  return {};
+  if (!(best.misfit < kFitsNearly)) return {};
+  best = fit_gap(GapPieces(motion, kLongPieces, kLong), best.theta, {}, 15);
+  if (!(best.misfit < kFitsAlready)) return {};
+  return best.theta;
 }
 
 /// Looks for play and friction of the motors from constants without either.
@@ -199,11 +228,13 @@ PlayFit find_play_from(const ArmMotion& motion, const Gap::Vector& start,
   if (rubs) {
     const GapFit near = fit_gap(middle, without.theta, {.friction = true}, 15);
     found.without = fit_gap(whole, near.theta, {.friction = true}, 20);
+    leave_valley(whole, {.friction = true}, found.without);
   } else {
     found.without = fit_gap(whole, without.theta, {}, 10);
   }
   const GapFit closer = fit_gap(middle, with.theta, sought, 15);
   found.with = fit_gap(whole, closer.theta, sought, 20);
+  if (rubs) leave_valley(whole, sought, found.with);
   judge_play(found);
   found.plain = found.without;
   if (!rubs) {
@@ -229,7 +260,7 @@ PlayFit find_play_from(const ArmMotion& motion, const Gap::Vector& start,
 }  // namespace
 
 bool PlayFit::understood() const {
-  return told() || (searched && fits && best().misfit < kFitsAlready);
+  return told() || (searched && fits && best().misfit < kFitsAlready && are_springs(best()));
 }
 
 PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit& lines) {
