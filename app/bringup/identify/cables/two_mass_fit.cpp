@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bringup/identify/cables/two_mass_search.h"
+#include "bringup/identify/line_forces.h"
 #include "math/elementary.h"
 
 namespace thimble::app {
@@ -149,7 +150,13 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
   found.rigid.misfit = stiff / static_cast<double>(search.rows() - TwoMass::kRigidCount);
   put_elastic(found, search, elastic, least);
   constexpr double kBetter = 20;
-  found.stretches = found.better > kBetter;
+  double lowest = HUGE_VAL;  // Hz, at which a link oscillates on its cable
+  for (int i = 0; i < 3; ++i) {
+    const double give = std::max(0.0, found.elastic.theta[TwoMass::kCompliance + i]);
+    lowest = std::min(lowest, 1 / std::sqrt(give * spectrum.JTJ(i, i)) / kTurn);
+  }
+  // Beyond all lines it is no cable that is seen but an amplifier that lags.
+  found.stretches = found.better > kBetter && lowest < LineForces::kHighest;
   Eigen::Vector3d give, error;
   search.look_for_give(found.rigid.theta, give, error);
   for (int i = 0; i < 3; ++i) {
