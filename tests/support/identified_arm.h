@@ -45,12 +45,14 @@ struct Score {
   double most;       // allowed, relative or in s
   double worst = 0;  // of |estimate - truth|, in the same unit
   int held = 0, all = 0;
+  int missed = 0;  // neither within `most` of the truth nor with it in the interval
 
   void add(const app::Estimate& estimate, double truth, bool relative = true) {
     const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);
     worst = std::max(worst, off);
     ++all;
     held += estimate.holds(truth) ? 1 : 0;
+    missed += off > most && !estimate.holds(truth) ? 1 : 0;
   }
 
   /// Counts how far it is off only where its interval does not say so.
