@@ -152,7 +152,7 @@ void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
 }
 
 /// Tells how far they were off, and expects of 19 in 20 walls that they were right to a twentieth:
-/// on a stiff one a step of the encoders is more than friction holds, and where it stands decides.
+/// whether a stiff one rests hangs on where it stands between two steps of the encoders.
 void tell(const char* what, int arms, const Worst& worst) {
   EXPECT_LE(20 * worst.walls_off, arms) << what;
   std::printf(

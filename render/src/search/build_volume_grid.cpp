@@ -215,8 +215,7 @@ void put_side_by_side(VolumeGrid::Parts& parts, double widest, const CornersOf& 
         std::size_t v = block.first_volume;
         for (std::int32_t i = 0; i < 64; ++i) {
           if (((block.occupied >> i) & 1u) == 0) continue;
-          const Vector3d corner = VolumeGrid::corner_of(
-              parts, {4 * x + (i & 3), 4 * y + ((i >> 2) & 3), 4 * z + (i >> 4)});
+          const Vector3d corner = VolumeGrid::corner_of(parts, x, y, z, i);
           put(v++, VolumeGrid::middle_of(parts, corner));
         }
       }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "mesh/segment_crossing.h"
 #include "support/random.h"
@@ -25,11 +24,12 @@ EightTriangles packed(const Eight& triangles) {
 }
 
 /// Eight triangles about as large as a volume, whose corners are a third as far as they may be.
-Eight drawn(support::Random& random, double size = 1e4) {
+Eight drawn(support::Random& random) {
+  constexpr double kSize = 1e4;
   Eight triangles;
   for (Corners& corners : triangles) {
-    const Vector3d middle = random.in_box(size);
-    for (Vector3d& corner : corners) corner = middle + random.in_box(size);
+    const Vector3d middle = random.in_box(kSize);
+    for (Vector3d& corner : corners) corner = middle + random.in_box(kSize);
   }
   return triangles;
 }
@@ -38,13 +38,12 @@ bool crossed(const Corners& corners, const Vector3d& from, const Vector3d& to) {
   return crossing(from, to, corners[0], corners[1], corners[2]) != Crossing::kNone;
 }
 
-/// Asks about a segment that is known to `wrong`, and counts what is kept beside what is crossed.
+/// Asks about a segment, and counts what is kept beside what is crossed.
 struct Asked {
   int kept = 0, crossings = 0, all = 0;
 
-  void ask(const Eight& triangles, const Vector3d& from, const Vector3d& to, double wrong = 0) {
-    const unsigned met =
-        met_of_eight(segment_in_units(to - from, wrong, 1), from, packed(triangles));
+  void ask(const Eight& triangles, const Vector3d& from, const Vector3d& to) {
+    const unsigned met = met_of_eight(segment_in_units(to - from, 0, 1), from, packed(triangles));
     for (std::size_t lane = 0; lane < triangles.size(); ++lane) {
       const bool keeps = ((met >> lane) & 1u) != 0;
       const bool crosses = crossed(triangles[lane], from, to);
