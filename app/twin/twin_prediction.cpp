@@ -13,10 +13,11 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kRate = 1000;  // Hz, at which arms are identified and recorded
-constexpr int kTriesMost = 64;  // that a stiffness is tried from [chosen]: half of them is known
-                                // to a sixteenth, which is one deviation
-constexpr int kClear = 8;       // more of one kind than of the other, and no further one is tried
+constexpr double kRate = 1000;   // Hz, at which arms are identified and recorded
+constexpr int kTriesMost = 64;   // that a stiffness is tried from [chosen]: half of them is known
+                                 // to a sixteenth, which is one deviation
+constexpr int kClear = 8;        // more of one kind than of the other, and no further one is tried
+constexpr double kRaise = 1.15;  // of a wall that rests [chosen: within it dips and peaks even out]
 constexpr double kSpeed = 0.2, kSpeedSpan = 0.1;  // m/s of the hand, and how far starts differ
 
 /// Tries walls at home, each from many starts.
@@ -31,7 +32,8 @@ class WallStarts {
   /// Returns the stiffness by the law, N/m.
   double by_law() const { return carried_.stiffness_exact; }
 
-  /// Returns whether the hand comes to rest from more than half of the starts.
+  /// Returns whether the hand comes to rest from more than half of the starts, on walls about as
+  /// stiff as this (N/m).
   driver::Result<bool> mostly_rest(double stiffness) const {
     int more = 0;  // that rest than that do not
     for (int i = 0; i < kTriesMost && std::abs(more) < kClear; ++i) {
@@ -44,19 +46,20 @@ class WallStarts {
 
  private:
   /// Starts are spread evenly however many there are, by multiples of the golden section and of the
-  /// root of 2: where within a step of the encoders the wall stands, and how fast the hand comes.
+  /// roots of 2 and 3: where within a step of the encoders the wall stands, how fast the hand
+  /// comes, and how stiff the wall is, within a step of raising it.
   driver::Result<WallTouch> from(int start, double stiffness) const {
     const auto spread = [start](double by) {
       const double at = by * (start + 0.5);
       return at - std::floor(at);
     };
     const double further = spread(std::numbers::phi - 1) * direction_.step;
-    return press_on_wall(arm_,
-                         {.p_W = direction_.p_WT + further * direction_.n_W,
-                          .n_W = direction_.n_W,
-                          .stiffness = stiffness,
-                          .rate = kRate,
-                          .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
+    return press_on_wall(
+        arm_, {.p_W = direction_.p_WT + further * direction_.n_W,
+               .n_W = direction_.n_W,
+               .stiffness = stiffness * std::pow(kRaise, spread(std::numbers::sqrt3) - 0.5),
+               .rate = kRate,
+               .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
   }
 
   const scene::ArmFile& arm_;
@@ -67,14 +70,20 @@ class WallStarts {
 
 /// Finds the stiffest wall at home to 1 %. Whether a stiff one rests hangs on where it stands
 /// between two steps of the encoders and on how it is met, so that it is the median over these.
+/// Some walls beyond it rest from half of the starts again, and some below it hardly from half: so
+/// it is raised from below, and walls about as stiff count as well.
 driver::Result<double> stiffest_wall(const scene::ArmFile& arm, const ArmDirection& direction) {
   const WallStarts starts(arm, direction);
-  double low = starts.by_law() / 10, high = starts.by_law() * 10;
+  const double most = starts.by_law() * 10;
+  double low = starts.by_law() / 10, high = low * kRaise;
+  bool rising = true;
   while (high > 1.01 * low) {
-    const double middle = std::sqrt(low * high);
+    const double middle = rising ? high : std::sqrt(low * high);
     const auto rest = starts.mostly_rest(middle);
     if (!rest) return rest.error();
     (*rest ? low : high) = middle;
+    if (rising) rising = *rest && low < most;
+    if (rising) high = low * kRaise;
   }
   return low;
 }

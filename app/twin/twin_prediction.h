@@ -13,9 +13,10 @@ namespace thimble::app {
 /// What a twin says of its arm before anybody tries it: a wall and a bounce.
 struct TwinPrediction {
   Eigen::Vector3d n_W{0, 0, 1};  ///< The axis that both are along, the worst one at home.
-  /// On which the hand of the arm's file comes to rest from half of its starts, N/m. A start is
-  /// where between two steps of the encoders the wall stands, and how fast the hand meets it, 0.15
-  /// to 0.25 m/s: of a stiff wall either decides whether it rests, of one arm as of its twin.
+  /// On which the hand of the arm's file comes to rest from half of its starts, N/m: the first that
+  /// does, raised from below. A start is where between two steps of the encoders the wall stands,
+  /// how fast the hand meets it (0.15 to 0.25 m/s), and how stiff the wall is within 7 %: of a
+  /// stiff wall each decides whether it rests, of one arm as of its twin.
   double stiffest_wall = 0;
   DropTrial drop;  ///< The wall that the tip is dropped on.
   Bounce bounce;   ///< Free of the hand.

@@ -7,6 +7,7 @@
 
 #include "bringup/identify/line_forces.h"
 #include "bringup/identify/not_identified.h"
+#include "support/cabled_arm.h"
 #include "support/identified_arm.h"
 #include "support/long_form.h"
 #include "support/random.h"
@@ -14,6 +15,7 @@
 namespace thimble::app {
 namespace {
 
+using support::cabled_arm;
 using support::expect_scores;
 using support::hidden_arm;
 using support::HiddenArm;
@@ -22,20 +24,6 @@ using support::kKnownMass;
 using support::long_form;
 using support::Score;
 
-/// A hidden arm behind cables that stretch, of one to ten times the softest (N m/rad); motors of
-/// 1e-4 to 9e-4 kg m^2.
-HiddenArm soft_arm(std::uint64_t seed, double softest = 20) {
-  HiddenArm arm = hidden_arm(seed);
-  support::Random random(seed + 1000);
-  auto& train = arm.file.simulated.drive_train;
-  for (int i = 0; i < 3; ++i) {
-    train.stiffness[i] = softest * std::pow(10, random.uniform(0, 1));
-    train.inertia[i] = 1e-4 * std::pow(9, random.uniform(0, 1));
-    train.damping[i] = train.stiffness[i] * random.uniform(1e-4, 1e-3);
-  }
-  return arm;
-}
-
 TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
   const int arms = long_form() ? 20 : 1;
   Score mass{"mass", 0.03}, gain{"gain", 0.02}, delay{"delay", 1e-4}, coulomb{"Coulomb", 0.05};
@@ -43,7 +31,7 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6000 + k);
-    const HiddenArm arm = soft_arm(seed);
+    const HiddenArm arm = cabled_arm(seed);
     const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 20.0,
                                         .play = long_form(),
                                         .known_mass = kKnownMass,
@@ -87,7 +75,7 @@ TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
   double worst = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(105 + k);
-    const HiddenArm arm = soft_arm(seed, 200);
+    const HiddenArm arm = cabled_arm(seed, 200);
     const auto found =
         identified(arm, {.seconds = long_form() ? 30.0 : 20.0, .play = long_form(), .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
@@ -123,7 +111,7 @@ TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
   support::Random random(77);
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6004 + k);
-    HiddenArm arm = soft_arm(seed, k % 2 == 0 ? 20 : 200);
+    HiddenArm arm = cabled_arm(seed, k % 2 == 0 ? 20 : 200);
     auto& hand = arm.file.simulated.hand;
     hand.stiffness = 30 * std::pow(30, random.uniform(0, 1));
     hand.damping = random.uniform(0.5, 5);

@@ -151,6 +151,26 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
   }
 }
 
+TEST(IdentifyWaves, ComparesNumbersByTheMotorsThatTurnedFarEnoughByEither) {
+  // The second motor turns through 0.93 periods of 7, the right number, and through 1.06 of 8.
+  constexpr std::uint64_t kSeed = 9;
+  HiddenArm arm = hidden_arm(kSeed);
+  auto& train = arm.file.simulated.drive_train;
+  train.cogging.setConstant(kCogging);
+  train.periods_per_turn = 7;
+  train.cogging_phase = {2.7, -0.6, 0.3};
+  const auto found = identified(arm, {.seconds = 15, .known_mass = kKnownMass, .seed = kSeed});
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  const MotorWaves& waves = found->waves;
+  EXPECT_EQ(waves.periods, 7);
+  EXPECT_TRUE(waves.told());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Estimate cogging = cogging_at_motor(waves, i, found->constants.gain[i]);
+    EXPECT_TRUE(cogging.holds(kCogging)) << "motor " << i + 1 << ": " << cogging.value;
+    EXPECT_FALSE(waves.ripple[i].seen) << "motor " << i + 1;
+  }
+}
+
 TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
   // Arms without any are told so, and those with a little more than what is said to be seen are
   // found: of one motor alone, in turn.

@@ -124,8 +124,11 @@ TEST(Twin, NamesTheConstantThatIsWrong) {
       mistake.make(wrong);
       const TwinComparison found = compared(recording, wrong);
       ASSERT_FALSE(found.remedies.empty());
+      // What the encoders' steps hide is not named, and nothing else is.
+      const bool hidden = all && m == 1 && found.error_rms < 1.01 * found.step_error;
       const bool named = found.has_remedy() && found.remedies.front().key == mistake.key;
-      if (!named)
+      if (hidden) EXPECT_TRUE(named || !found.has_remedy()) << "arm " << seed;
+      if (!named && !hidden)
         ADD_FAILURE() << "arm " << seed << ", " << mistake.key << "\n" << twin_table(found);
     }
   }

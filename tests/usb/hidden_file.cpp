@@ -1,19 +1,30 @@
 #include "usb/hidden_file.h"
 
-#include <array>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <numbers>
 #include <optional>
 #include <sstream>
+#include <variant>
 
+#include "support/cabled_arm.h"
 #include "support/hidden_arm.h"
 #include "thimble/scene/arm_file.h"
+#include "tip_kinematics.h"
 #include "usb/board_checks.h"
 
 namespace thimble::usb_test {
 namespace {
+
+// Cables of a large arm: what 25 to 250 N m/rad and motors of 1e-4 to 9e-4 kg m^2 are to the
+// vintage PHANTOM, whose links are half as long.
+constexpr double kSoftest = 100;    // N m/rad
+constexpr double kLightest = 4e-4;  // kg m^2
 
 std::string text_of(const std::string& file) {
   std::ostringstream text;
@@ -27,6 +38,10 @@ std::string exact(double value) {
   return text;
 }
 
+std::string exact(const Eigen::Vector3d& values) {
+  return "[" + exact(values[0]) + ", " + exact(values[1]) + ", " + exact(values[2]) + "]";
+}
+
 /// Puts another value behind the first key of that name after `from`; false if there is none.
 bool exchange(std::string& text, const std::string& key, const std::string& value,
               std::size_t from = 0) {
@@ -37,12 +52,17 @@ bool exchange(std::string& text, const std::string& key, const std::string& valu
   return true;
 }
 
+/// Puts lines behind the line that begins with `key`, which is there.
+void put_behind(std::string& text, const std::string& key, const std::string& lines) {
+  text.insert(text.find('\n', text.find(key) + 1) + 1, lines);
+}
+
 /// Puts the torque constants into a file, which may leave them, or all joints, to the program.
 void put_torques(std::string& text, const std::string& values) {
   if (exchange(text, "  torque_constant", values)) return;
   const std::string line = "  torque_constant: " + values + "\n";
-  if (const std::size_t joints = text.find("\njoints:"); joints != std::string::npos) {
-    text.insert(text.find('\n', joints + 1) + 1, line);
+  if (text.find("\njoints:") != std::string::npos) {
+    put_behind(text, "\njoints:", line);
   } else {
     text.insert(text.find("\nbase:") + 1, "joints:\n" + line + "\n");
   }
@@ -72,25 +92,41 @@ struct Compared {
     const double off = std::abs(found - truth);
     const bool held = interval && off <= *interval;
     const bool good = found * truth >= 0 && (off <= allowed || (interval_will_do && held));
-    char text[200];
-    std::snprintf(text, sizeof text, "%.6g %s +- %.2g, true %.6g: %.3g off (%.2f %%), allowed %.3g",
-                  found, unit.c_str(), interval.value_or(0), truth, off,
+    char text[200], held_by[30] = "";
+    if (interval) std::snprintf(held_by, sizeof held_by, "+- %.2g", *interval);
+    std::snprintf(text, sizeof text, "%.6g %s%s, true %.6g: %.3g off (%.2f %%), allowed %.3g",
+                  found, (unit.empty() ? unit : unit + " ").c_str(), held_by, truth, off,
                   100 * off / std::abs(truth), allowed);
     const bool in_ms = unit == "ms";
     std::printf("FIGURE %s.identified_%s_off %.4g %s\n", arm.c_str(), name.c_str(),
                 in_ms ? off : 100 * off / std::abs(truth), in_ms ? "ms" : "%");
     return verdict(good, arm + " identified: " + name,
-                   text + std::string(held ? "; its interval holds it" : "; outside its interval"));
+                   text + std::string(!interval ? ""
+                                      : held    ? "; its interval holds it"
+                                                : "; outside its interval"));
   }
 };
 
+/// Returns at which frequencies (Hz) the motors of a simulated arm oscillate against its links,
+/// each with the other joints held and the tip at the world's origin.
+Eigen::Vector3d resonances(const scene::ArmFile& file) {
+  const Eigen::Vector3d p_BT = file.R_WB.transpose() * -file.p_WB;
+  const auto pose = device_sim::tip_pose(std::get<driver::SerialArm>(file.model.geometry), p_BT);
+  if (!pose) return Eigen::Vector3d::Constant(NAN);
+  const Eigen::Vector3d link =
+      file.simulated.plant.mass * pose->G.inverse().colwise().squaredNorm().transpose();
+  const auto& train = file.simulated.drive_train;
+  return (train.stiffness.array() * (1 / link.array() + 1 / train.inertia.array())).sqrt() /
+         (2 * std::numbers::pi);
+}
+
 }  // namespace
 
-int print_hidden_file(const std::string& file, const std::string& seed) {
+int print_hidden_file(const std::string& file, const std::string& seed, bool cables) {
   auto known = scene::load_arm(file);
   if (!known) return verdict(false, file, known.error().message);
-  const support::HiddenArm arm =
-      support::hidden_arm_of(std::move(*known), std::strtoull(seed.c_str(), nullptr, 10));
+  const std::uint64_t number = std::strtoull(seed.c_str(), nullptr, 10);
+  support::HiddenArm arm = support::hidden_arm_of(std::move(*known), number);
   std::string text = text_of(file);
   const std::size_t tip = text.find("\n  tip:");
   const auto& plant = arm.file.simulated.plant;
@@ -98,12 +134,18 @@ int print_hidden_file(const std::string& file, const std::string& seed) {
                      exchange(text, "viscous", exact(plant.viscous), tip) &&
                      exchange(text, "coulomb", exact(plant.coulomb), tip);
   if (!whole) return verdict(false, file, "has no constants of a simulated tip");
-  std::string torques;
+  Eigen::Vector3d torques;
   for (std::size_t i = 0; i < 3; ++i) {
-    torques +=
-        (i == 0 ? "[" : ", ") + exact(arm.gain[i] * arm.file.model.drives[i].torque_constant);
+    torques[static_cast<Eigen::Index>(i)] = arm.gain[i] * arm.file.model.drives[i].torque_constant;
   }
-  put_torques(text, torques + "]");
+  put_torques(text, exact(torques));
+  if (cables) {
+    support::put_cables(arm, number, kSoftest, kLightest);
+    const auto& train = arm.file.simulated.drive_train;
+    put_behind(text, "\nsimulation:",
+               "  drive_train:\n    stiffness: " + exact(train.stiffness) + "\n    inertia: " +
+                   exact(train.inertia) + "\n    damping: " + exact(train.damping) + "\n");
+  }
   std::printf("%s", text.c_str());
   return 0;
 }
@@ -143,6 +185,13 @@ int check_identified(const std::string& arm, const std::string& believed, const 
   const auto interval = stated(text, "\nsimulation:", key);
   all.push_back({"delay", "ms", 1e3 * delay, std::strtod(delay_ms.c_str(), nullptr), 0.1,
                  interval ? std::optional(1e3 * *interval) : std::nullopt});
+  if (is.drive_train.compliant()) {
+    const Eigen::Vector3d true_ones = resonances(*truth), found_ones = resonances(*found);
+    for (int i = 0; i < 3; ++i) {
+      all.push_back({"resonance_" + std::to_string(i + 1), "Hz", found_ones[i], true_ones[i],
+                     0.05 * true_ones[i], std::nullopt});
+    }
+  }
   int bad = 0;
   for (const Compared& one : all) bad += one.say(arm);
   return bad;

@@ -69,13 +69,14 @@ hold_mass() { # ARM
   echo "hand off" >$control
 }
 
-# One arm, drawn by SEED.
+# One arm, drawn by SEED; NAME_cables: NAME with cables that stretch.
 identify() { # ARM SEED
-  arm=$1
+  named=$1 arm=${1%_cables} cables=
+  [ $named = $arm ] || cables=cables
   file=/data/app/arms/$arm.yaml
   options="--arm $file"
   [ $arm != falcon ] || options="$options --firmware /etc/falcon.bin"
-  usb_check hide $file $2 >/tmp/hidden.yaml || { cat /tmp/hidden.yaml; return; } # a FAIL line
+  usb_check hide $file $2 $cables >/tmp/hidden.yaml || { cat /tmp/hidden.yaml; return; } # a FAIL line
   begun=$(uptime)
   plug $arm /tmp/device.trace --hand rest --arm /tmp/hidden.yaml
   options="--device $(usb_check name $arm) $options"
@@ -88,21 +89,21 @@ identify() { # ARM SEED
   lead $arm 0 0 0
   sleep 1
   if feel_check $arm "$options"; then
-    echo "PASS $arm of hidden constants passes its feel check"
+    echo "PASS $named of hidden constants passes its feel check"
     echo "hand off" >$control
     as tester "exec thimble identify $options --known-mass $known --seconds $seconds \
       --places 0 --record /tmp/motion.h5 --output /tmp/identified.yaml" <$keys >/tmp/identify.log 2>&1 &
     asking=$!
     press /tmp/identify.log 1 && prompted /tmp/identify.log 2 && hold_mass $arm
-    wait $asking && echo "PASS $arm of hidden constants is identified" ||
-      echo "FAIL $arm of hidden constants is identified: $(tr '\n' ' ' </tmp/identify.log)"
+    wait $asking && echo "PASS $named of hidden constants is identified" ||
+      echo "FAIL $named of hidden constants is identified: $(tr '\n' ' ' </tmp/identify.log)"
     cat /tmp/identify.log
   else
-    echo "FAIL $arm of hidden constants passes its feel check: $(tr '\n' ' ' </tmp/feel.log)"
+    echo "FAIL $named of hidden constants passes its feel check: $(tr '\n' ' ' </tmp/feel.log)"
   fi
   exec 8>&-
   unplug
-  sed -n 's/^Unplugged\. /NOTE '$arm': /p' /tmp/plug.log
+  sed -n 's/^Unplugged\. /NOTE '$named': /p' /tmp/plug.log
   as tester "thimble export /tmp/motion.h5 --csv /tmp/motion.csv"
   # What stood in each tick, as usb_check keeps it, in the arm's base.
   awk -F, -v falcon=$([ $arm = falcon ] && echo 1 || echo 0) '
@@ -112,9 +113,9 @@ identify() { # ARM SEED
       print $at["fresh"], $at["counts.1"], $at["counts.2"], $at["counts.3"], x, y, z }' \
     /tmp/motion.csv >/tmp/driver.trace
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace >/tmp/compare.log
-  sed 's/^\(PASS\|FAIL\) '$arm'/& identified:/; s/^FIGURE '$arm'\./&identify_/' /tmp/compare.log
+  sed 's/^\(PASS\|FAIL\) '$arm'/\1 '$named' identified:/; s/^FIGURE '$arm'\./FIGURE '$named'.identify_/' /tmp/compare.log
   delay=$(sed -n "s/^FIGURE $arm.delay_median \([0-9.]*\).*/\1/p" /tmp/compare.log)
-  usb_check identified $arm $file /tmp/hidden.yaml /tmp/identified.yaml ${delay:-0}
-  echo "FIGURE $arm.identify_time $(echo "$(uptime) $begun" | awk '{ print $1 - $2 }') s"
+  usb_check identified $named $file /tmp/hidden.yaml /tmp/identified.yaml ${delay:-0}
+  echo "FIGURE $named.identify_time $(echo "$(uptime) $begun" | awk '{ print $1 - $2 }') s"
   rm -f /tmp/motion.* /tmp/identified.yaml /tmp/*.trace
 }

@@ -196,10 +196,10 @@ done
 
 . /identify.sh
 seed=1
-for arm in $(setting identify | tr , ' '); do
-  identify $arm $seed
+for hidden in $(setting identify | tr , ' '); do
+  identify $hidden $seed
   seed=$((seed + 1))
-  echo "NOTE $arm identified after $(uptime) s"
+  echo "NOTE $hidden identified after $(uptime) s"
 done
 
 # The second way: the kernel's own HID gadget on its own virtual bus, with no USB/IP in between.

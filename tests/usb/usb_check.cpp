@@ -15,7 +15,7 @@
 //   usb_check program ARM LOG AXES CSV TRACE      what a program under `thimble exec` asked for, as
 //   a trace usb_check descriptor ARM                      the HID report descriptor, as bytes
 //   usb_check gadget ARM NODE                     is the arm behind a HID gadget
-//   usb_check hide FILE SEED                      an arm file of other constants
+//   usb_check hide FILE SEED [cables]             an arm file of other constants
 //   usb_check identified ARM FILE HIDDEN WRITTEN DELAY    what was identified beside what is true
 #include <dirent.h>
 
@@ -375,7 +375,7 @@ int run(const std::vector<std::string>& words) {
   if (what == "descriptor") return print_report_descriptor(arm.name);
   if (what == "gadget") return be_gadget(arm.name, word(2));
   if (what == "compare") return compare_traces(arm, word(2), word(3));
-  if (what == "hide") return print_hidden_file(word(1), word(2));
+  if (what == "hide") return print_hidden_file(word(1), word(2), word(3) == "cables");
   if (what == "identified") {
     return check_identified(word(1), word(2), word(3), word(4), word(5));
   }

@@ -61,8 +61,15 @@ class Recorder {
   driver::Error why() const {
     const driver::Fault fault = bench_.device().fault();
     if (fault == driver::Fault::kNone) return driver::Error{"It was stopped; nothing was kept."};
-    return driver::Error{std::string(driver::describe(fault)) +
-                         " The motors are off; nothing was kept."};
+    std::string said =
+        std::string(driver::describe(fault)) + " The motors are off; nothing was kept.";
+    if (fault == driver::Fault::kCountsUnchanged) {
+      said += fmt::format(
+          " If encoders count when you move the tip, its friction is too high for the {:g} N that "
+          "are allowed (--force-most).",
+          force_most_);
+    }
+    return driver::Error{said};
   }
 
   /// Finds how strong the motors are, and that none pulls the wrong way.
@@ -157,13 +164,19 @@ class Recorder {
     return (p_WT - p_WM_).norm() < Excitation::kFar && file_.workspace.holds(p_WT);
   }
 
-  static driver::Error went_away() {
-    return driver::Error{
+  driver::Error went_away() const {
+    std::string said =
         "The tip left the space that it may move in, 4 cm about where it began and inside the "
-        "workspace of the arm file, so the motors went off and nothing was kept: something pulls "
-        "at "
-        "it, or its motors are far stronger than the arm file says. "
-        "Begin in the middle of the workspace, without a hand on the grip."};
+        "workspace of the arm file, so the motors went off and nothing was kept: something pulls at "
+        "it, or its motors are far stronger than the arm file says. Begin in the middle of the "
+        "workspace, without a hand on the grip.";
+    if (!carried_W_.isZero(0)) {
+      said += fmt::format(
+          " Or its motors are too weak to carry the known mass with {:g} N: take a lighter one, or "
+          "allow more (--force-most).",
+          force_most_);
+    }
+    return driver::Error{said};
   }
 
   /// Returns a force (W, N) of which each motor gives its share, with what it carries on top; G as

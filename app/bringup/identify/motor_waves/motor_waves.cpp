@@ -87,7 +87,7 @@ class WavesOfMotion {
     const Eigen::MatrixXd columns = rows.columns(found_.periods);
     const Eigen::Vector3d turned = rows.turned(found_.periods);
     for (Eigen::Index wave = 0; wave < kWavesOfArm; ++wave) {
-      wave_of(found_, wave).seen = turned[wave / 2] >= kPeriodsTurned;
+      wave_of(found_, wave).seen = turned[wave / 2] >= kPeriodsTurnedOnceKnown;
     }
     while (found_.seen()) {
       const FurtherColumns fit = further(motion, columns);

@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace thimble::app {
@@ -17,6 +19,15 @@ constexpr int kTicksInWaves = 2;
 // 99.9 % of a normal distribution.
 constexpr std::size_t kNumbersCompared = 8;
 constexpr double kClearlyBetter = 3.09;
+
+/// Some of an arm's motors.
+using Motors = std::array<bool, 3>;
+
+/// Returns which motors turned far enough for waves of a number of periods to be seen.
+Motors turned_enough(const WaveRows& rows, double periods) {
+  const Eigen::Vector3d turned = rows.turned(periods);
+  return {turned[0] >= kPeriodsTurned, turned[1] >= kPeriodsTurned, turned[2] >= kPeriodsTurned};
+}
 
 /// What a fit leaves of one equation in some, with directions that its own constants can take up.
 class UnexplainedRest {
@@ -39,13 +50,12 @@ class UnexplainedRest {
     rest_ -= taken_ * (taken_.transpose() * rest_);
   }
 
-  /// Returns what waves leave of it; those that turned too little explain nothing.
-  Eigen::VectorXd with(const WaveRows& rows, const WaveRows::Phases& phases, double periods,
+  /// Returns what waves of some motors leave of it.
+  Eigen::VectorXd with(const WaveRows& rows, const WaveRows::Phases& phases, const Motors& motors,
                        int every) const {
     Eigen::MatrixXd waves = rows.columns(phases, stride_, every);
-    const Eigen::Vector3d turned = rows.turned(periods);
     for (int joint = 0; joint < 3; ++joint) {
-      if (turned[joint] >= kPeriodsTurned) continue;
+      if (motors[static_cast<std::size_t>(joint)]) continue;
       waves.middleCols<WaveRows::kPerJoint>(WaveRows::kPerJoint * joint).setZero();
     }
     waves -= taken_ * (taken_.transpose() * waves);
@@ -82,6 +92,37 @@ double clearer(const Eigen::VectorXd& best, const Eigen::VectorXd& other,
   return variance > 0 ? sum / std::sqrt(variance) : HUGE_VAL;
 }
 
+/// Compares numbers of periods by what their waves leave of all equations: two by the motors that
+/// turned far enough by either, for with one motor more the wrong number explains more than the
+/// right one.
+class ComparedNumbers {
+ public:
+  ComparedNumbers(const FittedMotion& motion, const WaveRows& rows)
+      : rows_(rows), clusters_(motion.residual.clusters), rest_(motion, 1) {}
+
+  bool better(double one, double other) {
+    const Motors motors = turned_enough(rows_, std::min(one, other));
+    return left(one, motors).squaredNorm() < left(other, motors).squaredNorm();
+  }
+
+  bool clearly_better(double one, double other) {
+    const Motors motors = turned_enough(rows_, std::min(one, other));
+    return clearer(left(one, motors), left(other, motors), clusters_) > kClearlyBetter;
+  }
+
+ private:
+  const Eigen::VectorXd& left(double periods, const Motors& motors) {
+    const auto [known, added] = left_.try_emplace({periods, motors});
+    if (added) known->second = rest_.with(rows_, rows_.phases(periods), motors, 1);
+    return known->second;
+  }
+
+  const WaveRows& rows_;
+  const std::vector<int>& clusters_;
+  UnexplainedRest rest_;
+  std::map<std::pair<double, Motors>, Eigen::VectorXd> left_;
+};
+
 /// Makes the phases of one period more.
 void turn_on(WaveRows::Phases& phases, const WaveRows::Phases& once) {
   for (std::size_t k = 0; k < phases.size(); ++k) {
@@ -105,23 +146,21 @@ WavePeriods find_periods(const FittedMotion& motion, const WaveRows& rows, doubl
     if (periods * farthest < kPeriodsTurned) continue;
     if (found.least == 0) found.least = periods;
     found.most = periods;
-    tried.emplace_back(some.with(rows, phases, periods, kTicksInWaves).squaredNorm(), periods);
+    tried.emplace_back(
+        some.with(rows, phases, turned_enough(rows, periods), kTicksInWaves).squaredNorm(),
+        periods);
   }
   if (tried.empty()) return found;
   std::sort(tried.begin(), tried.end());
   if (tried.size() > kNumbersCompared) tried.resize(kNumbersCompared);
-  const UnexplainedRest all(motion, 1);
-  std::vector<Eigen::VectorXd> left;
-  std::size_t best = 0;
-  for (std::size_t k = 0; k < tried.size(); ++k) {
-    left.push_back(all.with(rows, rows.phases(tried[k].second), tried[k].second, 1));
-    if (left[k].squaredNorm() < left[best].squaredNorm()) best = k;
+  ComparedNumbers compared(motion, rows);
+  found.best = tried.front().second;
+  for (const auto& [left, periods] : tried) {
+    if (compared.better(periods, found.best)) found.best = periods;
   }
-  found.best = tried[best].second;
-  for (std::size_t k = 0; k < tried.size(); ++k) {
-    if (k == best || clearer(left[best], left[k], motion.residual.clusters) > kClearlyBetter)
-      continue;
-    found.rivals.push_back(tried[k].second);
+  for (const auto& [left, periods] : tried) {
+    if (periods == found.best || compared.clearly_better(found.best, periods)) continue;
+    found.rivals.push_back(periods);
   }
   return found;
 }

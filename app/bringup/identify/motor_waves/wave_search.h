@@ -14,6 +14,9 @@ inline constexpr double kWavePeriodsLeast = 6, kWavePeriodsMost = 264;
 /// Periods that a motor must have turned through for its waves to be told from weight and springs
 /// [chosen: of a whole sine a straight line leaves 40 % of the square].
 inline constexpr double kPeriodsTurned = 1;
+/// The same once another motor has told how many periods they have [chosen: of three quarters of a
+/// sine a straight line leaves 10 % of the square].
+inline constexpr double kPeriodsTurnedOnceKnown = 0.75;
 
 /// The number of periods in a turn that explains most of what a fit leaves.
 struct WavePeriods {

@@ -38,6 +38,11 @@ bool are_springs(const GapFit& fit) {
   return is_spring(fit.theta, 0) && is_spring(fit.theta, 1) && is_spring(fit.theta, 2);
 }
 
+/// Takes another fit if it leaves less.
+void keep_better(GapFit& best, const GapFit& other) {
+  if (other.misfit < best.misfit) best = other;
+}
+
 /// Leaves another valley for what fits better: a motor that mostly stands hides its cable, and one
 /// that is soft and loses much looks alike. From stiffer ones that lose little.
 void leave_valley(const GapPieces& whole, const GapSought& sought, GapFit& fit) {
@@ -48,8 +53,7 @@ void leave_valley(const GapPieces& whole, const GapSought& sought, GapFit& fit) 
       Gap::Vector from = fit.theta;
       from[Gap::kStiffness + joint] *= stiffer;
       from[Gap::kDamping + joint] = kFade * from[Gap::kStiffness + joint];
-      const GapFit other = fit_gap(whole, from, sought, 20);
-      if (other.misfit < fit.misfit) fit = other;
+      keep_better(fit, fit_gap(whole, from, sought, 20));
     }
   }
 }
@@ -69,13 +73,11 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
   constexpr double kStiffer = 2;  // than with the play in it
   const GapPieces few(motion, 24, kShort);
   GapFit best;
-  best.misfit = HUGE_VAL;
   for (const double width : kWidths) {
     from = start;
     from.segment<3>(Gap::kStiffness) *= kStiffer;
     from.segment<3>(Gap::kPlay) = width * motion.step;
-    GapFit one = fit_gap(few, from, sought, 5);
-    if (one.misfit < best.misfit) best = one;
+    keep_better(best, fit_gap(few, from, sought, 5));
   }
   best = fit_gap(pieces, best.theta, sought, 25);
   // Where one joint is caught in another valley: elsewhere with it.
@@ -86,8 +88,7 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
         from = best.theta;
         from[Gap::kPlay + joint] = wider * std::max(from[Gap::kPlay + joint], motion.step[joint]);
         const GapFit other = fit_gap(few, from, sought, 6);
-        const GapFit more = fit_gap(pieces, other.theta, sought, 6);
-        if (more.misfit < best.misfit) best = more;
+        keep_better(best, fit_gap(pieces, other.theta, sought, 6));
       }
     }
   }
@@ -103,18 +104,16 @@ GapFit search_friction(const ArmMotion& motion, const GapPieces& pieces, const G
   if (best.misfit < kFitsAlready) return best;
   const GapPieces few(motion, 24, kShort);
   GapFit other;
-  other.misfit = HUGE_VAL;
   for (const double share : {0.3, 0.6}) {
     Gap::Vector from = start;
     from[Gap::kCoulomb] *= 1 - share;
     for (int i = 0; i < 3; ++i) {
       from[Gap::kRotorCoulomb + i] = share * start[Gap::kCoulomb] * std::sqrt(JTJ(i, i));
     }
-    const GapFit one = fit_gap(few, from, sought, 8);
-    if (one.misfit < other.misfit) other = one;
+    keep_better(other, fit_gap(few, from, sought, 8));
   }
-  other = fit_gap(pieces, other.theta, sought, 15);
-  return other.misfit < best.misfit ? other : best;
+  keep_better(best, fit_gap(pieces, other.theta, sought, 15));
+  return best;
 }
 
 /// Returns by how much the Bayesian information prefers a fit with `count` constants more.
@@ -196,13 +195,11 @@ std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vect
   constexpr double kSofter[] = {0.5, 0.25, 0.125};  // than lines say
   const GapPieces few(motion, 24, kShort);
   GapFit best;
-  best.misfit = HUGE_VAL;
   for (const double share : kSofter) {
     Gap::Vector from = start;
     from.segment<3>(Gap::kStiffness) *= share;
     from.segment<3>(Gap::kDamping) = kFade * from.segment<3>(Gap::kStiffness);
-    const GapFit one = fit_gap(few, from, {}, 12);
-    if (one.misfit < best.misfit) best = one;
+    keep_better(best, fit_gap(few, from, {}, 12));
   }
   best = fit_gap(GapPieces(motion, kShortPieces, kShort), best.theta, {}, 15);
   if (!(best.misfit < kFitsNearly)) return {};
@@ -245,8 +242,7 @@ PlayFit find_play_from(const ArmMotion& motion, const Gap::Vector& start,
     // Whatever play is too small to be seen makes nothing better: another valley does.
     Gap::Vector tight = found.with.theta;
     tight.segment<3>(Gap::kPlay).setZero();
-    const GapFit again = fit_gap(whole, tight, {.friction = true}, 20);
-    if (again.misfit < found.without.misfit) found.without = again;
+    keep_better(found.without, fit_gap(whole, tight, {.friction = true}, 20));
     judge_play(found);
   }
   Gap::Vector smooth = found.best().theta;

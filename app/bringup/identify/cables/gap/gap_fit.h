@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
 
 #include "bringup/identify/cables/gap/gap_pieces.h"
 
@@ -18,11 +20,11 @@ struct GapFit {
   /// Zero where a constant was not searched for.
   Eigen::Matrix<double, GapTheta::kCount, GapTheta::kCount> covariance =
       Eigen::Matrix<double, GapTheta::kCount, GapTheta::kCount>::Zero();
-  double chi2 = 0;         ///< Squares of what is left, over the variance of the encoders' steps.
-  double misfit = 0;       ///< chi^2 per degree of freedom.
-  double samples = 0;      ///< Angles that were fitted.
-  std::size_t pieces = 0;  ///< That they are of.
-  double lost = 0;         ///< Share of the pieces that lost the track and were left out.
+  double chi2 = 0;           ///< Squares of what is left, over the variance of the encoders' steps.
+  double misfit = HUGE_VAL;  ///< chi^2 per degree of freedom; infinite if nothing was fitted.
+  double samples = 0;        ///< Angles that were fitted.
+  std::size_t pieces = 0;    ///< That they are of.
+  double lost = 0;           ///< Share of the pieces that lost the track and were left out.
 };
 
 /// Fits GapTheta to the motors' angles (output error) by multiple shooting: the model moves over
