@@ -103,6 +103,9 @@ TEST(Identify, FindsTheConstantsOfHiddenArmsOrSaysThatTheirFrictionIsTooHigh) {
   std::printf("%d of %d arms refused\n", refused, arms);
   for (const Score* score : {&mass, &coulomb, &gain, &delay, &viscous, &weight}) {
     score->tell();
+    if (long_form()) {
+      EXPECT_GE(score->held, 0.9 * score->all) << score->name;
+    }
     held += score->held;
     all += score->all;
   }

@@ -20,13 +20,12 @@ namespace {
 
 // What the smoothing of velocities' signs and torques that are held for a tick cost beyond the
 // statistics [chosen: so that intervals hold 95 % of the truths of hidden arms, identify_test].
-constexpr double kMethodMass = 0.0004;         // of mass
-constexpr double kMethodCoulomb = 0.0012;      // of Coulomb friction
-constexpr double kMethodViscous = 0.003;       // N s/m for each N of Coulomb friction
-constexpr double kMethodViscousWaves = 0.006;  // likewise of motors that cog [identify_waves_test]
-constexpr double kMethodGain = 0.0002;         // of a gain
-constexpr double kMethodDelay = 2e-6;          // s
-constexpr double kPlaceLead = 0.5;  // s, that it moves about a place before it is recorded
+constexpr double kMethodMass = 0.0004;     // of mass
+constexpr double kMethodCoulomb = 0.0012;  // of Coulomb friction
+constexpr double kMethodViscous = 0.006;   // N s/m for each N of Coulomb friction
+constexpr double kMethodGain = 0.0002;     // of a gain
+constexpr double kMethodDelay = 2e-6;      // s
+constexpr double kPlaceLead = 0.5;         // s, that it moves about a place before it is recorded
 // Half-width of an interval over the value, of mass and gains; what is known worse is not written.
 constexpr double kUnknownMost = 0.03;
 // Share of the residual's square that waves or joints may leave where the fit stays bad with them
@@ -35,11 +34,10 @@ constexpr double kFreedLeft = 0.3;
 // By how much the Bayesian information must prefer cables before they are blamed.
 constexpr double kCablesBlamed = 20;
 
-void widen(ArmConstants& constants, bool cogs) {
+void widen(ArmConstants& constants) {
   widen(constants.mass, kMethodMass * constants.mass.value);
   widen(constants.coulomb, kMethodCoulomb * constants.coulomb.value);
-  const double per_coulomb = cogs ? kMethodViscousWaves : kMethodViscous;
-  widen(constants.viscous, per_coulomb * constants.coulomb.value);
+  widen(constants.viscous, kMethodViscous * constants.coulomb.value);
   for (Estimate& gain : constants.gain) widen(gain, kMethodGain * gain.value);
   widen(constants.delay, kMethodDelay);
 }
@@ -410,7 +408,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   }
   found.constants.links_sought = found.over.fit.has_value();
   if (found.over.links()) put_links(found, down_B);
-  widen(found.constants, found.waves.seen());
+  widen(found.constants);
   put_rubbing(found);
   if (found.lines.stretches) put_cables(found);
   look_at_intervals(found);
