@@ -74,16 +74,17 @@ class WallStarts {
 /// it is raised from below, and walls about as stiff count as well.
 driver::Result<double> stiffest_wall(const scene::ArmFile& arm, const ArmDirection& direction) {
   const WallStarts starts(arm, direction);
-  const double most = starts.by_law() * 10;
-  double low = starts.by_law() / 10, high = low * kRaise;
-  bool rising = true;
-  while (high > 1.01 * low) {
-    const double middle = rising ? high : std::sqrt(low * high);
+  double low = starts.by_law() / 10;
+  for (; low < 10 * starts.by_law(); low *= kRaise) {
+    const auto rest = starts.mostly_rest(low * kRaise);
+    if (!rest) return rest.error();
+    if (!*rest) break;
+  }
+  for (double high = low * kRaise; high > 1.01 * low;) {
+    const double middle = std::sqrt(low * high);
     const auto rest = starts.mostly_rest(middle);
     if (!rest) return rest.error();
     (*rest ? low : high) = middle;
-    if (rising) rising = *rest && low < most;
-    if (rising) high = low * kRaise;
   }
   return low;
 }
