@@ -168,8 +168,7 @@ class Recorder {
     std::string said =
         "The tip left the space that it may move in, 4 cm about where it began and inside the "
         "workspace of the arm file, so the motors went off and nothing was kept: something pulls "
-        "at "
-        "it, or its motors are far stronger than the arm file says. Begin in the middle of the "
+        "at it, or its motors are far stronger than the arm file says. Begin in the middle of the "
         "workspace, without a hand on the grip.";
     if (!carried_W_.isZero(0)) {
       said += fmt::format(
