@@ -57,7 +57,7 @@ class WallStarts {
     return press_on_wall(
         arm_, {.p_W = direction_.p_WT + further * direction_.n_W,
                .n_W = direction_.n_W,
-               .stiffness = stiffness * std::pow(kRaise, spread(std::numbers::sqrt3) - 0.5),
+               .stiffness = stiffness * (1 + (kRaise - 1) * (spread(std::numbers::sqrt3) - 0.5)),
                .rate = kRate,
                .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
   }
