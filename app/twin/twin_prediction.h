@@ -15,7 +15,7 @@ struct TwinPrediction {
   Eigen::Vector3d n_W{0, 0, 1};  ///< The axis that both are along, the worst one at home.
   /// On which the hand of the arm's file comes to rest from half of its starts, N/m: the first that
   /// does, raised from below. A start is where between two steps of the encoders the wall stands,
-  /// how fast the hand meets it (0.15 to 0.25 m/s), and how stiff the wall is within 7 %: of a
+  /// how fast the hand meets it (0.15 to 0.25 m/s), and how stiff the wall is within 7.5 %: of a
   /// stiff wall each decides whether it rests, of one arm as of its twin.
   double stiffest_wall = 0;
   DropTrial drop;  ///< The wall that the tip is dropped on.

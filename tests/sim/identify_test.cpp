@@ -30,24 +30,26 @@ using support::random_hand;
 using support::Score;
 using support::wide_hidden_arm;
 
+/// Returns what of the torque that it is asked for the weakest motor of an arm gives.
+double weakest(const HiddenArm& arm) {
+  return *std::min_element(arm.gain.begin(), arm.gain.end());
+}
+
 /// Returns whether an arm's friction is too much for its motors to be told by 0.95 N along all
 /// axes.
 bool is_too_stiff(const HiddenArm& arm) {
-  const double weakest = *std::min_element(arm.gain.begin(), arm.gain.end());
-  return 6 * arm.file.simulated.plant.coulomb > weakest;
+  return 6 * arm.file.simulated.plant.coulomb > weakest(arm);
 }
 
 /// Returns whether 0.95 N of an arm's weakest motor carry less than one and a half times the known
 /// mass.
 bool is_too_weak(const HiddenArm& arm) {
-  const double weakest = *std::min_element(arm.gain.begin(), arm.gain.end());
-  return 0.95 * weakest < 1.5 * kKnownMass * kStandardGravity;
+  return 0.95 * weakest(arm) < 1.5 * kKnownMass * kStandardGravity;
 }
 
 /// Returns whether an arm's strongest motor is six times as strong as its weakest.
 bool is_uneven(const HiddenArm& arm) {
-  const auto [weakest, strongest] = std::minmax_element(arm.gain.begin(), arm.gain.end());
-  return *strongest > 6 * *weakest;
+  return *std::max_element(arm.gain.begin(), arm.gain.end()) > 6 * weakest(arm);
 }
 
 TEST(Identify, FindsTheConstantsOfHiddenArmsOrSaysThatTheirFrictionIsTooHigh) {

@@ -143,7 +143,7 @@ fi
 # Identifying computes more in a tick than a touch, and the board's side as well, all on one processor. At
 # 4 ns an instruction a third of the messages come a frame later than the others, and the fit says that the
 # motion is not understood. At 1 ns, which is still slow for a computer, none does.
-# What is behind cables takes half an hour of its computing, most of it the search for play afterwards.
+# An arm behind cables takes half an hour of a processor, most of it after its motions.
 if [ -n "$identified" ]; then
   boot identified 0 $((3 * limit)) ticks=$ticks identify="$identified"
   logs="$logs $work/identified.log"
