@@ -18,7 +18,7 @@ class RigidTwin final : public TwinMover {
  public:
   RigidTwin(const TwinMotion& motion, const scene::ArmFile& file,
             const device_sim::AxisDynamics& dynamics)
-      : motion_(motion), delay_(file, motion.dt), dynamics_(dynamics) {
+      : delay_(file, motion.dt), dynamics_(dynamics) {
     const TwinMotors motors(file);
     for (const auto& stretch : motion.stretches) {
       std::vector<Pull> pulls(stretch.size());
@@ -55,7 +55,6 @@ class RigidTwin final : public TwinMover {
     Eigen::Vector3d older{0, 0, 0}, newer{0, 0, 0};
   };
 
-  const TwinMotion& motion_;
   TwinDelay delay_;
   device_sim::AxisDynamics dynamics_;
   std::vector<std::vector<Pull>> pulls_;  // of each stretch, tick by tick

@@ -77,7 +77,7 @@ LineSpectrum line_spectrum(const ArmMotion& motion) {
           static_cast<std::size_t>(std::llround(hz * static_cast<double>(count) * motion.dt));
       found.lines.push_back(at(bin));
       // A window widens a line by one bin to either side; the next line is five away at least.
-      for (const std::size_t away : {2, 3, 4, 5}) {
+      for (std::size_t away = 2; away <= 5; ++away) {
         found.beside.push_back(at(bin - away));
         found.beside.push_back(at(bin + away));
       }

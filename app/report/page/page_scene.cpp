@@ -64,11 +64,13 @@ bool is_flat(const render::TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return false;
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
-  const auto& [a, b, c] = mesh.triangles.front();
-  const auto at = [&](std::int32_t v) { return mesh.vertices[static_cast<std::size_t>(v)]; };
-  const Eigen::Vector3d n = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+  const auto corner = [&](std::size_t k) {
+    return mesh.vertices[static_cast<std::size_t>(mesh.triangles.front()[k])];
+  };
+  const Eigen::Vector3d a = corner(0);
+  const Eigen::Vector3d n = (corner(1) - a).cross(corner(2) - a).normalized();
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Eigen::Vector3d& v) {
-    return std::abs((v - at(a)).dot(n)) < 1e-9 * (1 + box.diagonal().norm());
+    return std::abs((v - a).dot(n)) < 1e-9 * (1 + box.diagonal().norm());
   });
 }
 

@@ -145,7 +145,8 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
   }
   std::string names = arm_name(0);
   for (std::size_t i = 1; i < arms(); ++i) names += ", " + arm_name(i);
-  for (const auto& [name, use] : options.real_arms) {
+  for (const auto& real : options.real_arms) {
+    const std::string& name = real.first;
     const auto same = [&name](const scene::SceneArm& arm) { return arm.name == name; };
     if (name != scene_->arm_name &&
         std::none_of(scene_->more_arms.begin(), scene_->more_arms.end(), same)) {

@@ -24,10 +24,10 @@ void make_depths(const GlTexture& texture, const GlFramebuffer& frame) {
 ShadowMap::ShadowMap() {
   make_depths(map_, map_frame_);
   make_depths(kept_, kept_frame_);
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+  for (const GLenum filter : {GLenum{GL_TEXTURE_MIN_FILTER}, GLenum{GL_TEXTURE_MAG_FILTER}}) {
     glSamplerParameteri(*texels_, filter, GL_NEAREST);
   }
-  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) {
+  for (const GLenum wrap : {GLenum{GL_TEXTURE_WRAP_S}, GLenum{GL_TEXTURE_WRAP_T}}) {
     glSamplerParameteri(*texels_, wrap, GL_CLAMP_TO_EDGE);
   }
   glSamplerParameteri(*texels_, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
@@ -35,7 +35,7 @@ ShadowMap::ShadowMap() {
 
 void ShadowMap::bind() const {
   glBindSampler(4, *texels_);
-  for (const GLenum unit : {GL_TEXTURE4, GL_TEXTURE0}) {
+  for (const GLenum unit : {GLenum{GL_TEXTURE4}, GLenum{GL_TEXTURE0}}) {
     glActiveTexture(unit);
     glBindTexture(GL_TEXTURE_2D, *map_);
   }

@@ -124,7 +124,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   const std::uint64_t stood = viewer->counters().ticks;
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_EQ(viewer->counters().ticks, stood) << "simulated time stands";
-  for (const std::uint64_t ticks : {1, 10, 100}) {
+  for (const std::uint64_t ticks : {1u, 10u, 100u}) {
     const std::uint64_t before = viewer->counters().ticks;
     EXPECT_TRUE(viewer->ask_steps(ticks));
     wait_for([&] { return viewer->counters().ticks >= before + ticks; });

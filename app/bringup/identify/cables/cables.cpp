@@ -131,17 +131,17 @@ std::array<CableConstants, 3> cable_constants(const CableFit& fit,
   const auto& covariance = fit.elastic.covariance;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    using Slope = Eigen::Matrix<double, TwoMass::kCount, 1>;
+    using TwoMassSlope = Eigen::Matrix<double, TwoMass::kCount, 1>;
     // Each is a product of powers, so that its relative error is a sum of theirs.
-    const auto estimate = [&](double value, const Slope& relative, double of_gain) {
-      Slope slope = relative;
+    const auto estimate = [&](double value, const TwoMassSlope& relative, double of_gain) {
+      TwoMassSlope slope = relative;
       for (int j = 0; j < TwoMass::kCount; ++j) slope[j] /= theta[j] != 0 ? theta[j] : 1;
       const double error = kNormal95 * std::sqrt(slope.dot(covariance * slope));
       return Estimate{value, std::abs(value) *
                                  math::hypot(error, of_gain * gain[k].plus_minus / gain[k].value)};
     };
     const auto power = [](std::initializer_list<std::pair<int, double>> powers) {
-      Slope slope = Slope::Zero();
+      TwoMassSlope slope = TwoMassSlope::Zero();
       for (const auto& [index, by] : powers) slope[index] = by;
       return slope;
     };

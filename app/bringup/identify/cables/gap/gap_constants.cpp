@@ -8,38 +8,36 @@
 
 namespace thimble::app {
 
-using Gap = GapTheta;
-
-Gap::Vector gap_constants(const PerMass& rigid, const CableFit& lines) {
+GapTheta::Vector gap_constants(const PerMass& rigid, const CableFit& lines) {
   const Eigen::Matrix<double, TwoMass::kCount, 1>& seen = lines.elastic.theta;
-  Gap::Vector theta = Gap::Vector::Zero();
+  GapTheta::Vector theta = GapTheta::Vector::Zero();
   for (int i = 0; i < 3; ++i) {
     const double fast = seen[TwoMass::kGain + i] / seen[TwoMass::kInertia + i];
     const double slow = rigid.theta[PerMass::kGain + i];
     const double inertia = slow / std::max(0.05 * fast, fast - slow / lines.JTJ(i, i));
     const double stiffness = 1 / seen[TwoMass::kCompliance + i];
-    theta[Gap::kGain + i] = fast * inertia;
-    theta[Gap::kInertia + i] = inertia;
-    theta[Gap::kStiffness + i] = stiffness;
-    theta[Gap::kDamping + i] = stiffness * std::max(1e-5, seen[TwoMass::kFade + i]);
-    theta[Gap::kWeight + i] = rigid.theta[PerMass::kWeight + i];
+    theta[GapTheta::kGain + i] = fast * inertia;
+    theta[GapTheta::kInertia + i] = inertia;
+    theta[GapTheta::kStiffness + i] = stiffness;
+    theta[GapTheta::kDamping + i] = stiffness * std::max(1e-5, seen[TwoMass::kFade + i]);
+    theta[GapTheta::kWeight + i] = rigid.theta[PerMass::kWeight + i];
   }
-  theta[Gap::kDelay] = seen[TwoMass::kDelay];
-  theta[Gap::kViscous] = std::max(0.0, rigid.theta[PerMass::kViscous]);
-  theta[Gap::kCoulomb] = std::max(0.0, rigid.theta[PerMass::kCoulomb]);
+  theta[GapTheta::kDelay] = seen[TwoMass::kDelay];
+  theta[GapTheta::kViscous] = std::max(0.0, rigid.theta[PerMass::kViscous]);
+  theta[GapTheta::kCoulomb] = std::max(0.0, rigid.theta[PerMass::kCoulomb]);
   return theta;
 }
 
 PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion) {
-  constexpr std::pair<int, int> kSame[] = {{PerMass::kGain, Gap::kGain},
-                                           {PerMass::kGain + 1, Gap::kGain + 1},
-                                           {PerMass::kGain + 2, Gap::kGain + 2},
-                                           {PerMass::kViscous, Gap::kViscous},
-                                           {PerMass::kCoulomb, Gap::kCoulomb},
-                                           {PerMass::kWeight, Gap::kWeight},
-                                           {PerMass::kWeight + 1, Gap::kWeight + 1},
-                                           {PerMass::kWeight + 2, Gap::kWeight + 2},
-                                           {PerMass::kStiffness, Gap::kSpring}};
+  constexpr std::pair<int, int> kSame[] = {{PerMass::kGain, GapTheta::kGain},
+                                           {PerMass::kGain + 1, GapTheta::kGain + 1},
+                                           {PerMass::kGain + 2, GapTheta::kGain + 2},
+                                           {PerMass::kViscous, GapTheta::kViscous},
+                                           {PerMass::kCoulomb, GapTheta::kCoulomb},
+                                           {PerMass::kWeight, GapTheta::kWeight},
+                                           {PerMass::kWeight + 1, GapTheta::kWeight + 1},
+                                           {PerMass::kWeight + 2, GapTheta::kWeight + 2},
+                                           {PerMass::kStiffness, GapTheta::kSpring}};
   PerMass found;
   for (const auto& [to, from] : kSame) {
     found.theta[to] = fit.theta[from];
@@ -47,8 +45,8 @@ PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion) {
       found.covariance(to, other_to) = fit.covariance(from, other_from);
     }
   }
-  found.delay = {fit.theta[Gap::kDelay],
-                 kNormal95 * std::sqrt(fit.covariance(Gap::kDelay, Gap::kDelay))};
+  found.delay = {fit.theta[GapTheta::kDelay],
+                 kNormal95 * std::sqrt(fit.covariance(GapTheta::kDelay, GapTheta::kDelay))};
   found.windows = fit.pieces;
   found.left_out = static_cast<std::size_t>(fit.lost * static_cast<double>(found.windows));
   // Of the angles, for a fit of which no accelerations are known.
@@ -67,25 +65,26 @@ PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion) {
 
 TwoMass two_mass_of(const GapFit& fit, const TwoMass& before) {
   TwoMass found = before;
-  Eigen::Matrix<double, TwoMass::kCount, Gap::kCount> slope;
+  Eigen::Matrix<double, TwoMass::kCount, GapTheta::kCount> slope;
   slope.setZero();
   const auto take = [&](int to, int from) {
     found.theta[to] = fit.theta[from];
     slope(to, from) = 1;
   };
-  take(TwoMass::kDelay, Gap::kDelay);
-  take(TwoMass::kViscous, Gap::kViscous);
+  take(TwoMass::kDelay, GapTheta::kDelay);
+  take(TwoMass::kViscous, GapTheta::kViscous);
   for (int i = 0; i < 3; ++i) {
-    take(TwoMass::kGain + i, Gap::kGain + i);
-    take(TwoMass::kInertia + i, Gap::kInertia + i);
+    take(TwoMass::kGain + i, GapTheta::kGain + i);
+    take(TwoMass::kInertia + i, GapTheta::kInertia + i);
     // Of dry friction lines see what they were fitted with.
     if (fit.theta.tail<6>().isZero(0)) found.theta[TwoMass::kRotorViscous + i] = 0;
-    const double stiffness = fit.theta[Gap::kStiffness + i], damping = fit.theta[Gap::kDamping + i];
+    const double stiffness = fit.theta[GapTheta::kStiffness + i],
+                 damping = fit.theta[GapTheta::kDamping + i];
     found.theta[TwoMass::kCompliance + i] = 1 / stiffness;
     found.theta[TwoMass::kFade + i] = damping / stiffness;
-    slope(TwoMass::kCompliance + i, Gap::kStiffness + i) = -1 / (stiffness * stiffness);
-    slope(TwoMass::kFade + i, Gap::kDamping + i) = 1 / stiffness;
-    slope(TwoMass::kFade + i, Gap::kStiffness + i) = -damping / (stiffness * stiffness);
+    slope(TwoMass::kCompliance + i, GapTheta::kStiffness + i) = -1 / (stiffness * stiffness);
+    slope(TwoMass::kFade + i, GapTheta::kDamping + i) = 1 / stiffness;
+    slope(TwoMass::kFade + i, GapTheta::kStiffness + i) = -damping / (stiffness * stiffness);
   }
   found.covariance = slope * fit.covariance * slope.transpose();
   found.misfit = fit.misfit;
