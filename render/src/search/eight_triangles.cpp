@@ -20,11 +20,12 @@ void EightTriangles::set(std::size_t lane, const std::array<Vector3d, 3>& corner
   }
 }
 
+// A corner is half a unit off; that, and where a question stands, is seen from the middle of a
+// volume in single precision: less than 2^-8 units within the reach of corners, and beyond it by a
+// share that the questions to eight know.
+constexpr double kCorner = 0.5 + 0x1p-8;
+
 SegmentInUnits segment_in_units(const Vector3d& way, double rounding, double per_step) noexcept {
-  // A corner is half a unit off; that, and where the segment begins, is seen from the middle of a
-  // volume in single precision: less than 2^-8 units within the reach of corners, and beyond it by
-  // a share that met_of_eight knows.
-  constexpr double kCorner = 0.5 + 0x1p-8;
   const Vector3d units = per_step * way;
   const double off = per_step * rounding;
   return {
@@ -32,6 +33,21 @@ SegmentInUnits segment_in_units(const Vector3d& way, double rounding, double per
       static_cast<float>(units.cwiseAbs().maxCoeff()),
       static_cast<float>(2 * off),
       static_cast<float>(kCorner + off)};
+}
+
+NearestInUnits nearest_in_units(const NearestSoFar& best, double rounding,
+                                double per_step) noexcept {
+  const Vector3d to = per_step * best.to;
+  return {{static_cast<float>(to.x()), static_cast<float>(to.y()), static_cast<float>(to.z())},
+          static_cast<float>(std::abs(to.x()) + std::abs(to.y()) + std::abs(to.z())),
+          static_cast<float>(per_step * per_step * best.squared),
+          static_cast<float>(kCorner + per_step * rounding)};
+}
+
+unsigned nearer_of_eight(const NearestInUnits& nearest, const Vector3d& from,
+                         const EightTriangles& eight) noexcept {
+  return wide_lanes() ? lanes_avx2::nearer_of_eight(nearest, from.data(), eight)
+                      : lanes_plain::nearer_of_eight(nearest, from.data(), eight);
 }
 
 unsigned met_of_eight(const SegmentInUnits& segment, const Vector3d& from,

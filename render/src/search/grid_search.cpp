@@ -10,6 +10,7 @@
 
 #include "search/build_volume_grid.h"
 #include "search/eight_triangles.h"
+#include "search/lanes.h"
 #include "search/mesh_segment_test.h"
 #include "search/search_answers.h"
 
@@ -101,16 +102,26 @@ bool GridSearch<Surface>::even() const noexcept {
 // Calls visit(list) for the VolumeList of each volume near the segment.
 template <class Surface>
 template <class Test, class Visit>
-void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const noexcept {
+inline void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const noexcept {
+  const Vector3d low = segment.low();
+  const Vector3d high = segment.high();
+  if (!((high - low).maxCoeff() <= 0.5 * grid_.side())) return visit_far(segment, visit);
+  if (!grid_.meets(low, high)) return;
+  const VolumeGrid::Place first = grid_.place_of(low), last = grid_.place_of(high);
+  // Most paths of a tick stay in one volume.
+  if (first == last) return grid_.visit_one(first, visit);
+  grid_.visit_between(
+      first, last, [](const Vector3d&) noexcept { return true; }, visit);
+}
+
+// The same for a segment that meets many volumes.
+template <class Surface>
+template <class Test, class Visit>
+void GridSearch<Surface>::visit_far(const Test& segment, const Visit& visit) const noexcept {
   const Vector3d low = segment.low();
   const Vector3d high = segment.high();
   const double side = grid_.side();
   const double width = (high - low).maxCoeff();
-  if (width <= 0.5 * side) {
-    grid_.visit_box(
-        low, high, [](const Vector3d&) noexcept { return true; }, visit);
-    return;
-  }
   const Vector3d& from = segment.from();
   const Vector3d& way = segment.way();
   const double size = std::max(from.cwiseAbs().maxCoeff(), (from + way).cwiseAbs().maxCoeff());
@@ -150,16 +161,19 @@ void GridSearch<Surface>::visit_reached(const Test& segment, Visit visit) const 
   }
 }
 
-// Calls visit(t) for each triangle of a volume that a segment may cross.
+// Calls visit(t) for each triangle of a volume that a segment may cross, by `met`, a met_of_eight.
 template <class Surface>
 template <class Visit>
-void GridSearch<Surface>::visit_near(const SegmentInUnits& segment, const Vector3d& from,
-                                     const VolumeList& list, Visit visit) const noexcept {
+inline void GridSearch<Surface>::visit_near(MetOfEight met, const SegmentInUnits& segment,
+                                            const Vector3d& from, const VolumeList& list,
+                                            Visit visit) const noexcept {
   constexpr std::size_t kMost = EightTriangles::kMost;
   const Vector3d seen = grid_.parts().per_unit * (from - list.middle);
   const std::size_t count = list.triangles.size();
+  // Asked for while the corners are looked at.
+  __builtin_prefetch(list.triangles.data());
   for (std::size_t i = 0; i < count; i += kMost) {
-    unsigned near = met_of_eight(segment, seen, list.eights[i / kMost]);
+    unsigned near = met(segment, seen.data(), list.eights[i / kMost]);
     if (count - i < kMost) near &= (1u << (count - i)) - 1;
     for (; near != 0; near &= near - 1) {
       visit(list.triangles[i + static_cast<std::size_t>(std::countr_zero(near))]);
@@ -168,17 +182,31 @@ void GridSearch<Surface>::visit_near(const SegmentInUnits& segment, const Vector
 }
 
 template <class Surface>
-Entry GridSearch<Surface>::first_entry(const Vector3d& p_from,
-                                       const Vector3d& p_to) const noexcept {
-  if (!within_range(p_from) || !within_range(p_to)) return {};
+template <bool kWide>
+inline Entry GridSearch<Surface>::find_entry(const Vector3d& p_from,
+                                             const Vector3d& p_to) const noexcept {
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
   const SegmentInUnits units = in_units(segment, grid_);
+  constexpr MetOfEight met = kWide ? lanes_avx2::met_of_eight : lanes_plain::met_of_eight;
   FirstEntry first(segment);
   visit_reached(segment, [&](const VolumeList& list) noexcept {
-    visit_near(units, segment.from(), list,
+    visit_near(met, units, segment.from(), list,
                [&first](std::int32_t t) noexcept { first.consider(t); });
   });
   return first.entry();
+}
+
+template <class Surface>
+Entry GridSearch<Surface>::find_entry_wide(const Vector3d& p_from,
+                                           const Vector3d& p_to) const noexcept {
+  return find_entry<true>(p_from, p_to);
+}
+
+template <class Surface>
+Entry GridSearch<Surface>::first_entry(const Vector3d& p_from,
+                                       const Vector3d& p_to) const noexcept {
+  if (!within_range(p_from) || !within_range(p_to)) return {};
+  return wide_ ? find_entry_wide(p_from, p_to) : find_entry<false>(p_from, p_to);
 }
 
 template <class Surface>
@@ -191,8 +219,9 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   std::size_t crossings = 0;
   bool all_kept = true;
   const SegmentInUnits units = in_units(segment, grid_);
+  const MetOfEight met = wide_ ? lanes_avx2::met_of_eight : lanes_plain::met_of_eight;
   visit_reached(segment, [&](const VolumeList& list) noexcept {
-    visit_near(units, segment.from(), list, [&](std::int32_t t) noexcept {
+    visit_near(met, units, segment.from(), list, [&](std::int32_t t) noexcept {
       double parameter = 0;
       if (segment.cross(t, parameter) == Crossing::kNone) return;
       const auto kept_end = crossed.begin() + static_cast<std::ptrdiff_t>(crossings);
@@ -208,50 +237,70 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   // More layers than anyone keeps in mind: every triangle once.
   unsigned all = 0;
   for (std::int32_t t = 0; t < surface_->triangle_count(); ++t) {
-    all += count_crossings(segment, {&t, 1});
+    double parameter = 0;
+    all += segment.cross(t, parameter) != Crossing::kNone;
   }
   return all % 2 == 1;
 }
 
 template <class Surface>
-SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) const noexcept {
-  if (!within_range(p_W) || !(radius >= 0)) return {};
+template <bool kWide>
+inline SurfacePoint GridSearch<Surface>::find_closest(const Vector3d& p_W,
+                                                      double radius) const noexcept {
   const Vector3d p = frame_.to_steps(p_W);
   const double reach = reach_of(frame_, radius);
-  const double side = grid_.side();
+  const double side = grid_.side(), per_unit = grid_.parts().per_unit;
   const double room = kGridRoom * side + 0x1p-48 * p.cwiseAbs().maxCoeff();
   NearestPoint<Surface> best(*surface_, frame_, p, reach);
   Asked asked;
   double limit = (reach + room) * (reach + room);
-  const auto wanted = [&](const Vector3d& corner) noexcept {
-    return gap_to_box(p, corner, side).squaredNorm() <= limit;
-  };
   const auto visit = [&](const VolumeList& list) noexcept {
-    constexpr std::size_t kAtOnce = 32;
-    std::array<std::int32_t, kAtOnce> fresh;
-    std::size_t count = 0;
-    for (const std::int32_t t : list.triangles) {
-      fresh[count] = t;
-      count += asked.first_time(t) ? 1 : 0;
-      if (count < kAtOnce) continue;
-      best.consider(fresh);
-      count = 0;
+    constexpr std::size_t kMost = EightTriangles::kMost;
+    const Vector3d seen = per_unit * (p - list.middle);
+    const std::size_t count = list.triangles.size();
+    __builtin_prefetch(list.triangles.data());
+    for (std::size_t i = 0; i < count; i += kMost) {
+      unsigned near = count - i < kMost ? (1u << (count - i)) - 1 : 0xffu;
+      if (best.found()) {
+        const EightTriangles& eight = list.eights[i / kMost];
+        const NearestInUnits nearest = nearest_in_units(best.so_far(), room, per_unit);
+        near &= kWide ? lanes_avx2::nearer_of_eight(nearest, seen.data(), eight)
+                      : lanes_plain::nearer_of_eight(nearest, seen.data(), eight);
+      }
+      std::array<std::int32_t, kMost> fresh;
+      std::size_t left = 0;
+      for (; near != 0; near &= near - 1) {
+        const std::int32_t t = list.triangles[i + static_cast<std::size_t>(std::countr_zero(near))];
+        fresh[left] = t;
+        left += asked.first_time(t) ? 1 : 0;
+      }
+      const std::span<const std::int32_t> asks(fresh.data(), left);
+      if constexpr (kWide) {
+        lanes_avx2::consider_list(*surface_, frame_, asks, p.data(), best.so_far());
+      } else {
+        lanes_plain::consider_list(*surface_, frame_, asks, p.data(), best.so_far());
+      }
     }
-    best.consider({fresh.data(), count});
     const double ball = std::sqrt(best.squared()) + room;
     limit = ball * ball;
   };
-  const auto ask_within = [&](double r) noexcept {
-    const Vector3d grown = Vector3d::Constant(r + room);
-    grid_.visit_box(p - grown, p + grown, wanted, visit);
-  };
   // The volume that the point is in, then wider and wider boxes until one has a triangle within
   // reach; then the ball up to that one.
-  const double clear = grid_.clearance(p);
-  double width = clear > 0 ? clear + side : 0;
-  ask_within(std::min(width, reach));
+  const VolumeGrid::Place own = grid_.place_of(p);
+  const Vector3d own_corner = grid_.corner_of(own);
+  grid_.visit_one(own, visit);
+  const auto ask_within = [&](double r) noexcept {
+    const Vector3d grown = Vector3d::Constant(r + room);
+    grid_.visit_box(
+        p - grown, p + grown,
+        [&](const Vector3d& corner) noexcept {
+          return corner != own_corner && gap_to_box(p, corner, side).squaredNorm() <= limit;
+        },
+        visit);
+  };
+  double width = 0;
   while (!best.found() && width < reach) {
-    width = std::max(2 * width, side);
+    width = width > 0 ? 2 * width : grid_.clearance(p) + side;
     ask_within(std::min(width, reach));
   }
   const double distance = std::sqrt(best.squared());
@@ -259,6 +308,18 @@ SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) co
   // Near in the middle of a large volume everything else is farther.
   if (width > 0 || distance + room > grid_.within_volume(p)) ask_within(distance);
   return best.point();
+}
+
+template <class Surface>
+SurfacePoint GridSearch<Surface>::find_closest_wide(const Vector3d& p_W,
+                                                    double radius) const noexcept {
+  return find_closest<true>(p_W, radius);
+}
+
+template <class Surface>
+SurfacePoint GridSearch<Surface>::closest(const Vector3d& p_W, double radius) const noexcept {
+  if (!within_range(p_W) || !(radius >= 0)) return {};
+  return wide_ ? find_closest_wide(p_W, radius) : find_closest<false>(p_W, radius);
 }
 
 template <class Surface>

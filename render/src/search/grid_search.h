@@ -5,6 +5,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "packed/packed_surface.h"
+#include "packed/wide_lanes.h"
 #include "search/contact_search.h"
 #include "search/search_frame.h"
 #include "search/volume_grid.h"
@@ -42,15 +43,30 @@ class GridSearch final : public ContactSearch {
   const VolumeGrid& grid() const noexcept { return grid_; }  ///< Shows its grid.
 
  private:
+  // Made twice for different processors (wide_lanes).
+  template <bool kWide>
+  Entry find_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
+  [[gnu::noinline]] THIMBLE_FOR_AVX2 Entry
+  find_entry_wide(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
+  template <bool kWide>
+  SurfacePoint find_closest(const Eigen::Vector3d& p_W, double radius) const noexcept;
+  [[gnu::noinline]] THIMBLE_FOR_AVX2 SurfacePoint find_closest_wide(const Eigen::Vector3d& p_W,
+                                                                    double radius) const noexcept;
+
   template <class Test, class Visit>
   void visit_reached(const Test& segment, Visit visit) const noexcept;
+  template <class Test, class Visit>
+  [[gnu::noinline]] void visit_far(const Test& segment, const Visit& visit) const noexcept;
+  using MetOfEight = unsigned (*)(const SegmentInUnits& segment, const double* from,
+                                  const EightTriangles& eight) noexcept;
   template <class Visit>
-  void visit_near(const SegmentInUnits& segment, const Eigen::Vector3d& from,
+  void visit_near(MetOfEight met, const SegmentInUnits& segment, const Eigen::Vector3d& from,
                   const VolumeList& list, Visit visit) const noexcept;
 
   const Surface* surface_;
   SearchFrame frame_;
   VolumeGrid grid_;
+  bool wide_ = wide_lanes();
 };
 
 extern template class GridSearch<ContactMesh>;

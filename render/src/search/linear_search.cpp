@@ -104,9 +104,10 @@ Entry LinearSearchOver<Surface>::first_entry(const Vector3d& p_from,
                                              const Vector3d& p_to) const noexcept {
   if (!within_range(p_from) || !within_range(p_to)) return {};
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
+  const auto sieve = sieve_of(segment);
   FirstEntry first(segment);
-  visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept {
-    first.consider({&t, 1});
+  visit_reached(segment.low(), segment.high(), [&](std::int32_t reached) noexcept {
+    visit_near(sieve, {&reached, 1}, [&](std::int32_t t) noexcept { first.consider(t); });
   });
   return first.entry();
 }
@@ -116,9 +117,10 @@ bool LinearSearchOver<Surface>::inside(const Vector3d& p_W) const noexcept {
   if (!within_range(p_W) || !in_frame(frame_.to_steps(p_W))) return false;
   const Vector3d p_far = far_along_x(frame_, p_W);
   const auto segment = segment_test(*surface_, frame_, p_W, p_far);
+  const auto sieve = sieve_of(segment);
   unsigned crossings = 0;
   visit_reached(segment.low(), segment.high(), [&](std::int32_t t) noexcept {
-    crossings += count_crossings(segment, {&t, 1});
+    crossings += count_crossings(segment, sieve, {&t, 1});
   });
   return crossings % 2 == 1;
 }

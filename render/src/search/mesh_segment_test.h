@@ -27,17 +27,6 @@ class MeshSegmentTest {
         from_(frame.to_steps(p_from)),
         to_(frame.to_steps(p_to)) {}
 
-  /// Writes to `near` those of a list of triangles whose boxes meet the segment's, and gives their
-  /// number. Precondition: `near` has room for the whole list.
-  std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept {
-    std::size_t count = 0;
-    for (const std::int32_t t : list) {
-      near[count] = t;
-      count += meets(t) ? 1 : 0;
-    }
-    return count;
-  }
-
   /// Returns the way in which the segment crosses triangle `t`, and where (0 at its begin, 1 at its
   /// end).
   Crossing cross(std::int32_t t, double& parameter) const noexcept {
@@ -70,7 +59,7 @@ class MeshSegmentTest {
     return 0x1p-50 * (size * frame_.per_step + kLatticeHalf);
   }
 
- private:
+  /// Returns whether the boxes of a triangle and of the segment meet.
   bool meets(std::int32_t t) const noexcept {
     const Eigen::Vector3d& a = mesh_.position(t, 0);
     const Eigen::Vector3d& b = mesh_.position(t, 1);
@@ -82,6 +71,7 @@ class MeshSegmentTest {
     return true;
   }
 
+ private:
   const ContactMesh& mesh_;
   const SearchFrame& frame_;
   const Eigen::Vector3d& p_from_;
@@ -89,7 +79,27 @@ class MeshSegmentTest {
   Eigen::Vector3d from_, to_;
 };
 
-// Makes the test that goes with a surface.
+/// Drops triangles whose boxes do not meet the segment's. Real-time: safe.
+class MeshSegmentSieve {
+ public:
+  explicit MeshSegmentSieve(const MeshSegmentTest& segment) noexcept : segment_(segment) {}
+
+  /// Writes to `near` those of a list of triangles that are left, and gives their number.
+  /// Precondition: `near` has room for the whole list.
+  std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept {
+    std::size_t count = 0;
+    for (const std::int32_t t : list) {
+      near[count] = t;
+      count += segment_.meets(t) ? 1 : 0;
+    }
+    return count;
+  }
+
+ private:
+  const MeshSegmentTest& segment_;
+};
+
+// Makes the test that goes with a surface, and the sieve that goes with a test.
 inline MeshSegmentTest segment_test(const ContactMesh& mesh, const SearchFrame& frame,
                                     const Eigen::Vector3d& p_from,
                                     const Eigen::Vector3d& p_to) noexcept {
@@ -99,6 +109,12 @@ inline SegmentTest segment_test(const PackedSurface& surface, const SearchFrame&
                                 const Eigen::Vector3d& p_from,
                                 const Eigen::Vector3d& p_to) noexcept {
   return {surface, p_from, p_to};
+}
+inline MeshSegmentSieve sieve_of(const MeshSegmentTest& segment) noexcept {
+  return MeshSegmentSieve(segment);
+}
+inline SegmentSieve sieve_of(const SegmentTest& segment) noexcept {
+  return SegmentSieve(segment);
 }
 
 }  // namespace thimble::render

@@ -18,14 +18,15 @@ namespace thimble::render {
 // What all searches do with the triangles that they come upon, in whatever order, so that their
 // answers are the same. Real-time: safe.
 
-/// Calls visit(t) for each triangle of a list, of whatever length, that a segment may cross.
-template <class Test, class Visit>
-void visit_near(const Test& segment, std::span<const std::int32_t> list, Visit visit) noexcept {
+/// Calls visit(t) for each triangle of a list, of whatever length, that the segment of a sieve may
+/// cross.
+template <class Sieve, class Visit>
+void visit_near(const Sieve& sieve, std::span<const std::int32_t> list, Visit visit) noexcept {
   constexpr std::size_t kAtOnce = 16;
   std::array<std::int32_t, kAtOnce> near;
   while (!list.empty()) {
     const auto part = list.first(std::min(list.size(), kAtOnce));
-    const std::size_t count = segment.select_near(part, near.data());
+    const std::size_t count = sieve.select_near(part, near.data());
     for (std::size_t i = 0; i < count; ++i) visit(near[i]);
     list = list.subspan(part.size());
   }
@@ -37,9 +38,6 @@ class FirstEntry {
  public:
   explicit FirstEntry(const Test& segment) noexcept : segment_(segment) {}
 
-  void consider(std::span<const std::int32_t> list) noexcept {
-    visit_near(segment_, list, [this](std::int32_t t) noexcept { consider(t); });
-  }
   void consider(std::int32_t t) noexcept {
     double parameter = 0;
     if (segment_.cross(t, parameter) != Crossing::kEnters) return;
@@ -60,10 +58,11 @@ class FirstEntry {
 };
 
 /// Counts how many triangles of a list a segment crosses.
-template <class Test>
-unsigned count_crossings(const Test& segment, std::span<const std::int32_t> list) noexcept {
+template <class Test, class Sieve>
+unsigned count_crossings(const Test& segment, const Sieve& sieve,
+                         std::span<const std::int32_t> list) noexcept {
   unsigned crossings = 0;
-  visit_near(segment, list, [&](std::int32_t t) noexcept {
+  visit_near(sieve, list, [&](std::int32_t t) noexcept {
     double parameter = 0;
     crossings += segment.cross(t, parameter) != Crossing::kNone;
   });

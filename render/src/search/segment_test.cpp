@@ -17,10 +17,6 @@ using Eigen::Vector3d;
 constexpr double kRounding = 0x1p-48;
 constexpr double kSpread = 16;
 
-double largest(const Vector3d& v) noexcept {
-  return std::max(std::max(std::abs(v.x()), std::abs(v.y())), std::abs(v.z()));
-}
-
 // Two coordinates of a vector of three: x and y, or z and 0.
 __m128d half_of(const double* v, std::size_t half) noexcept {
   return half == 0 ? _mm_loadu_pd(v) : _mm_load_sd(v + 2);
@@ -39,38 +35,29 @@ int sign_beyond(double value, double bound) noexcept {
 
 }  // namespace
 
-SegmentTest::SegmentTest(const PackedSurface& surface, const Vector3d& p_from,
-                         const Vector3d& p_to) noexcept
-    : surface_(surface),
-      p_from_(p_from),
-      p_to_(p_to),
-      from_(surface.to_lattice(p_from)),
-      way_(surface.to_lattice(p_to) - from_),
-      way_size_(largest(way_)) {
-  // What `crossing` sees are positions in W, rounded at the size of their coordinates.
-  const double size = std::max(std::max(largest(p_from), largest(p_to)), largest(surface.origin()));
-  position_rounding_ = 0x1p-50 * (size * surface.per_step() + kLatticeHalf);
-  const __m128d room = _mm_set1_pd(2 + 4 * position_rounding_);
+SegmentSieve::SegmentSieve(const SegmentTest& segment) noexcept
+    : triangles_(segment.surface().triangles().data()) {
+  const Vector3d &from = segment.from(), &way = segment.way();
+  const __m128d room = _mm_set1_pd(segment.room());
   for (std::size_t half = 0; half < 2; ++half) {
-    const __m128d begin = half_of(from_.data(), half);
-    const __m128d end = _mm_add_pd(begin, half_of(way_.data(), half));
+    const __m128d begin = half_of(from.data(), half);
+    const __m128d end = _mm_add_pd(begin, half_of(way.data(), half));
     store_whole(_mm_sub_pd(_mm_min_pd(begin, end), room), half, bounds_.low);
     store_whole(_mm_add_pd(_mm_max_pd(begin, end), room), half, bounds_.high);
     store_whole(begin, half, bounds_.from);
   }
-  bounds_.way = {static_cast<float>(way_.x()), static_cast<float>(way_.y()),
-                 static_cast<float>(way_.z())};
-  bounds_.way_size = static_cast<float>(way_size_);
-  bounds_.from_wrong = static_cast<float>(position_rounding_ + 1);
+  bounds_.way = {static_cast<float>(way.x()), static_cast<float>(way.y()),
+                 static_cast<float>(way.z())};
+  bounds_.way_size = static_cast<float>(segment.way_size());
+  bounds_.from_wrong = static_cast<float>(segment.position_rounding() + 1);
   // Differences of corners and begin fit into 32 bits, and triple products into a float.
-  bounds_.single = largest(from_) < kLatticeHalf && way_size_ <= 4 * kLatticeHalf;
+  bounds_.single = largest(from) < kLatticeHalf && segment.way_size() <= 4 * kLatticeHalf;
 }
 
-std::size_t SegmentTest::select_near(std::span<const std::int32_t> list,
-                                     std::int32_t* near) const noexcept {
-  const PackedTriangle* const triangles = surface_.triangles().data();
-  return wide_lanes() ? lanes_avx2::select_near(bounds_, triangles, list, near)
-                      : lanes_plain::select_near(bounds_, triangles, list, near);
+std::size_t SegmentSieve::select_near(std::span<const std::int32_t> list,
+                                      std::int32_t* near) const noexcept {
+  return wide_lanes() ? lanes_avx2::select_near(bounds_, triangles_, list, near)
+                      : lanes_plain::select_near(bounds_, triangles_, list, near);
 }
 
 Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {

@@ -1,17 +1,74 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "mesh/segment_crossing.h"
 #include "packed/packed_surface.h"
-#include "packed/sse2.h"
 #include "search/contact_search.h"
 
 namespace thimble::render {
+
+/// Returns the largest part of a vector, without its sign. Real-time: safe.
+inline double largest(const Eigen::Vector3d& v) noexcept {
+  return std::max(std::max(std::abs(v.x()), std::abs(v.y())), std::abs(v.z()));
+}
+
+/// Decides how one segment passes the packed triangles of a surface: in double precision on the
+/// lattice where that is beyond doubt, else by `crossing`. Real-time: safe; about 10 ns where there
+/// is no doubt.
+class SegmentTest {
+ public:
+  /// Precondition: both points (W, m) are `within_range`, and outlive the test.
+  SegmentTest(const PackedSurface& surface, const Eigen::Vector3d& p_from,
+              const Eigen::Vector3d& p_to) noexcept
+      : surface_(surface),
+        p_from_(p_from),
+        p_to_(p_to),
+        from_(surface.to_lattice(p_from)),
+        way_(surface.to_lattice(p_to) - from_),
+        way_size_(largest(way_)) {
+    // What `crossing` sees are positions in W, rounded at the size of their coordinates.
+    const double size =
+        std::max(std::max(largest(p_from), largest(p_to)), largest(surface.origin()));
+    position_rounding_ = 0x1p-50 * (size * surface.per_step() + kLatticeHalf);
+  }
+
+  /// Returns the way in which the segment crosses packed triangle `t`, and where (0 at its begin, 1
+  /// at its end).
+  Crossing cross(std::int32_t t, double& parameter) const noexcept;
+
+  const PackedSurface& surface() const noexcept { return surface_; }  ///< Shows what it passes.
+  /// Gives the segment in steps of the lattice.
+  const Eigen::Vector3d& from() const noexcept { return from_; }
+  const Eigen::Vector3d& way() const noexcept { return way_; }
+  double way_size() const noexcept { return way_size_; }  ///< Tells its largest part.
+
+  /// Gives the box around the segment in steps of the lattice, with room for rounding.
+  Eigen::Vector3d low() const noexcept {
+    return from_.cwiseMin(from_ + way_) - Eigen::Vector3d::Constant(room());
+  }
+  Eigen::Vector3d high() const noexcept {
+    return from_.cwiseMax(from_ + way_) + Eigen::Vector3d::Constant(room());
+  }
+  /// Gives the room around that box, in steps.
+  double room() const noexcept { return 2 + 4 * position_rounding_; }
+  /// Tells how far those numbers may be from what `crossing` sees, in steps.
+  double position_rounding() const noexcept { return position_rounding_; }
+
+ private:
+  const PackedSurface& surface_;
+  const Eigen::Vector3d& p_from_;
+  const Eigen::Vector3d& p_to_;
+  Eigen::Vector3d from_, way_;
+  double way_size_;
+  double position_rounding_;
+};
 
 /// A segment in numbers that tell fast that it does not cross a packed triangle, in steps.
 struct SegmentBounds {
@@ -23,45 +80,18 @@ struct SegmentBounds {
   bool single;       ///< Whether single precision says anything.
 };
 
-/// Decides how one segment passes the packed triangles of a surface: in double precision on the
-/// lattice where that is beyond doubt, else by `crossing`. Real-time: safe; about 10 ns where there
-/// is no doubt.
-class SegmentTest {
+/// Drops packed triangles that a segment does not cross. Real-time: safe; about 5 ns per triangle.
+class SegmentSieve {
  public:
-  /// Precondition: both points (W, m) are `within_range`.
-  SegmentTest(const PackedSurface& surface, const Eigen::Vector3d& p_from,
-              const Eigen::Vector3d& p_to) noexcept;
+  explicit SegmentSieve(const SegmentTest& segment) noexcept;
 
   /// Writes to `near` those of a list of packed triangles that the segment may cross, and gives
   /// their number: what is left out is certain, by boxes and by the sides that the segment passes
   /// the edges on in single precision. Precondition: `near` has room for the whole list.
   std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept;
 
-  /// Returns the way in which the segment crosses packed triangle `t`, and where (0 at its begin, 1
-  /// at its end).
-  Crossing cross(std::int32_t t, double& parameter) const noexcept;
-
-  /// Gives the segment in steps of the lattice.
-  const Eigen::Vector3d& from() const noexcept { return from_; }
-  const Eigen::Vector3d& way() const noexcept { return way_; }
-
-  /// Gives the box around the segment in steps of the lattice, with room for rounding; beyond twice
-  /// the lattice it is cut.
-  Eigen::Vector3d low() const noexcept { return vector(bounds_.low); }
-  Eigen::Vector3d high() const noexcept { return vector(bounds_.high); }
-  /// Tells how far those numbers may be from what `crossing` sees, in steps.
-  double position_rounding() const noexcept { return position_rounding_; }
-
  private:
-  static Eigen::Vector3d vector(const std::array<std::int32_t, 4>& v) noexcept {
-    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-  }
-
-  const PackedSurface& surface_;
-  Eigen::Vector3d p_from_, p_to_;
-  Eigen::Vector3d from_, way_;
-  double way_size_;
-  double position_rounding_;
+  const PackedTriangle* triangles_;
   SegmentBounds bounds_;
 };
 

@@ -45,9 +45,10 @@ Entry TreeSearch<Surface>::first_entry(const Vector3d& p_from,
                                        const Vector3d& p_to) const noexcept {
   if (!within_range(p_from) || !within_range(p_to)) return {};
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
+  const auto sieve = sieve_of(segment);
   FirstEntry first(segment);
   visit_reached(segment.from(), segment.way(), [&](std::span<const std::int32_t> list) noexcept {
-    first.consider(list);
+    visit_near(sieve, list, [&](std::int32_t t) noexcept { first.consider(t); });
     return first.limit();
   });
   return first.entry();
@@ -58,9 +59,10 @@ bool TreeSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   if (!within_range(p_W) || !in_frame(frame_.to_steps(p_W))) return false;
   const Vector3d p_far = far_along_x(frame_, p_W);
   const auto segment = segment_test(*surface_, frame_, p_W, p_far);
+  const auto sieve = sieve_of(segment);
   unsigned crossings = 0;
   visit_reached(segment.from(), segment.way(), [&](std::span<const std::int32_t> list) noexcept {
-    crossings += count_crossings(segment, list);
+    crossings += count_crossings(segment, sieve, list);
     return 2.0;
   });
   return crossings % 2 == 1;

@@ -83,9 +83,9 @@ class VolumeGrid {
 
   explicit VolumeGrid(Parts parts) noexcept : parts_(std::move(parts)) {
     per_side_ = 1 / parts_.side;
-    for (std::size_t i = 0; i < 3; ++i) last_[i] = 4 * parts_.blocks[i] - 1;
     for (int i = 0; i < 3; ++i) {
-      high_[i] = parts_.low[i] + parts_.side * (last_[static_cast<std::size_t>(i)] + 1);
+      last_[i] = 4 * parts_.blocks[static_cast<std::size_t>(i)] - 1;
+      high_[i] = parts_.low[i] + parts_.side * (last_[i] + 1);
     }
   }
 
@@ -105,16 +105,43 @@ class VolumeGrid {
   /// Monotone. NaN is in the first. Real-time: safe.
   std::int32_t volume_of(double u, int axis) const noexcept {
     const double v = (u - parts_.low[axis]) * per_side_;
-    const auto last = static_cast<double>(last_[static_cast<std::size_t>(axis)]);
-    return static_cast<std::int32_t>(v > 0 ? std::min(v, last) : 0.0);
+    // Nothing branches.
+    return static_cast<std::int32_t>(std::min(v > 0 ? v : 0.0, last_[axis]));
   }
 
-  /// Calls visit(list) for each occupied volume that meets a box and for which wanted(corner) is
-  /// true; corner is where the volume begins. A triangle may be in several lists.
-  /// Real-time: safe; its time grows with the blocks in the box.
+  /// A volume by its place along each axis.
+  using Place = std::array<std::int32_t, 3>;
+  /// Returns the volume a point is in (volume_of). Real-time: safe.
+  Place place_of(const Eigen::Vector3d& p) const noexcept {
+    return {volume_of(p.x(), 0), volume_of(p.y(), 1), volume_of(p.z(), 2)};
+  }
+  /// Returns where a volume begins. Real-time: safe.
+  Eigen::Vector3d corner_of(const Place& place) const noexcept {
+    const auto [x, y, z] = place;
+    return corner_of(parts_, x >> 2, y >> 2, z >> 2, number_in_block(place));
+  }
+  /// Returns whether a box meets the grid; one with a NaN does not. Real-time: safe.
+  bool meets(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const noexcept {
+    bool all = true;
+    for (int i = 0; i < 3; ++i) all &= (low[i] <= high_[i]) & (high[i] >= parts_.low[i]);
+    return all;
+  }
+
+  /// Calls visit(list) for a volume, if it is occupied. Real-time: safe.
+  template <class Visit>
+  void visit_one(const Place& place, Visit visit) const noexcept;
+  /// Calls visit(list) for each occupied volume from one place to another along each axis for which
+  /// wanted(corner) is true; corner is where the volume begins. A triangle may be in several lists.
+  /// Real-time: safe; its time grows with the blocks between.
+  template <class Wanted, class Visit>
+  void visit_between(const Place& first, const Place& last, Wanted wanted,
+                     Visit visit) const noexcept;
+  /// The same for the volumes that meet a box.
   template <class Wanted, class Visit>
   void visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Wanted wanted,
-                 Visit visit) const noexcept;
+                 Visit visit) const noexcept {
+    if (meets(low, high)) visit_between(place_of(low), place_of(high), wanted, visit);
+  }
 
   /// Returns how far a point is from the border of the volume it is in; not above 0 beside the
   /// grid. Real-time: safe.
@@ -132,6 +159,9 @@ class VolumeGrid {
   double clearance(const Eigen::Vector3d& p) const noexcept;
 
  private:
+  static std::int32_t number_in_block(const Place& place) noexcept {
+    return (place[0] & 3) | (place[1] & 3) << 2 | (place[2] & 3) << 4;
+  }
   std::size_t top_place(std::int32_t x, std::int32_t y, std::int32_t z) const noexcept {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(parts_.blocks[1]) +
             static_cast<std::size_t>(y)) *
@@ -150,7 +180,7 @@ class VolumeGrid {
 
   Parts parts_;
   double per_side_ = 1;
-  std::array<std::int32_t, 3> last_{};
+  Eigen::Vector3d last_{0, 0, 0};  // place of the outermost volume along each axis
   Eigen::Vector3d high_{0, 0, 0};
 };
 
@@ -158,21 +188,23 @@ class VolumeGrid {
 /// of places in the grid (2^-52 of 2^12 volumes) by far.
 inline constexpr double kGridRoom = 0x1p-16;
 
+template <class Visit>
+inline void VolumeGrid::visit_one(const Place& place, Visit visit) const noexcept {
+  const auto [x, y, z] = place;
+  const std::uint32_t word = parts_.top[top_place(x >> 2, y >> 2, z >> 2)];
+  if ((word & kEmpty) != 0) return;
+  const Block& block = parts_.all_blocks[word];
+  const std::uint64_t bit = std::uint64_t{1} << number_in_block(place);
+  if ((block.occupied & bit) != 0) visit(list(block, bit, corner_of(place)));
+}
+
 template <class Wanted, class Visit>
-void VolumeGrid::visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Wanted wanted,
-                           Visit visit) const noexcept {
-  std::array<std::int32_t, 3> first, last;
-  for (int i = 0; i < 3; ++i) {
-    // Written so that a box with a NaN meets nothing.
-    if (!(low[i] <= high_[i] && high[i] >= parts_.low[i])) return;
-    first[static_cast<std::size_t>(i)] = volume_of(low[i], i);
-    last[static_cast<std::size_t>(i)] = volume_of(high[i], i);
-  }
+inline void VolumeGrid::visit_between(const Place& first, const Place& last, Wanted wanted,
+                                      Visit visit) const noexcept {
   // The ones of all places between two along an axis of a block, with `shift` bits per place.
   const auto between = [](std::int32_t from, std::int32_t to, int shift) noexcept {
     const int end = (to + 1) << shift, begin = from << shift;
-    return (end == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << end) - 1) &
-           (~std::uint64_t{0} << begin);
+    return (~std::uint64_t{0} >> (64 - end)) & (~std::uint64_t{0} << begin);
   };
   const auto part = [&](std::size_t axis, std::int32_t block, int shift) noexcept {
     const std::int32_t from = std::max(first[axis] - 4 * block, 0);

@@ -1,12 +1,15 @@
-// Eight triangles against a segment at once: none that it crosses is left out, and few others stay.
+// Eight triangles at once against a segment and a nearest point: none that counts is left out, and
+// few others stay.
 #include "search/eight_triangles.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "mesh/closest_point.h"
 #include "mesh/segment_crossing.h"
 #include "support/random.h"
 
@@ -128,6 +131,99 @@ TEST(EightTriangles, LeaveOutNothingByNumbersThatOverflow) {
           met_of_eight(segment_in_units(way, 0x1p-50 * size, 1), on - 0.5 * way, packed(triangles));
       EXPECT_TRUE((met >> (&at - triangles.data())) & 1u) << size;
     }
+  }
+}
+
+/// The nearest point of one of eight triangles, and which of the others are kept beside it.
+struct Nearest {
+  Vector3d p;
+  std::array<double, EightTriangles::kMost> squared;
+  std::array<bool, EightTriangles::kMost> kept;
+
+  Nearest(const Eight& triangles, std::size_t known, const Vector3d& asked, double wrong,
+          const Vector3d& seen)
+      : p(asked) {
+    const auto way_to = [&](std::size_t lane) -> Vector3d {
+      const Corners& c = triangles[lane];
+      return closest_point(p, c[0], c[1], c[2]) - p;
+    };
+    const Vector3d to = way_to(known);
+    const unsigned near = nearer_of_eight(
+        nearest_in_units({.squared = to.squaredNorm(), .to = to, .triangle = 0}, wrong, 1), seen,
+        packed(triangles));
+    for (std::size_t lane = 0; lane < triangles.size(); ++lane) {
+      squared[lane] = way_to(lane).squaredNorm();
+      kept[lane] = ((near >> lane) & 1u) != 0;
+    }
+  }
+};
+
+TEST(EightTriangles, LeaveOutNoneThatIsAsNearAsTheNearestPointKnown) {
+  support::Random random(6);
+  int nearer = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Eight triangles = drawn(random);
+    // Some share a corner, as around a vertex, and are equally near there.
+    triangles[1][0] = triangles[0][0];
+    triangles[2][1] = triangles[0][0];
+    const Vector3d p = std::pow(10, random.uniform(1, 5)) * random.direction();
+    const std::size_t known = random.bits() % triangles.size();
+    const Nearest nearest(triangles, known, p, 0, p);
+    for (std::size_t lane = 0; lane < triangles.size(); ++lane) {
+      const bool counts = nearest.squared[lane] <= nearest.squared[known];
+      ASSERT_TRUE(nearest.kept[lane] || !counts) << "lane " << lane << ", " << p.transpose();
+      nearer += counts && lane != known;
+    }
+  }
+  EXPECT_GT(nearer, 50000);
+}
+
+TEST(EightTriangles, KeepFewBesideTheNearest) {
+  support::Random random(9);
+  int kept = 0, farther = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eight triangles = drawn(random);
+    const Vector3d p = random.in_box(2e4);
+    const Nearest first(triangles, 0, p, 0, p);
+    const auto least = std::min_element(first.squared.begin(), first.squared.end());
+    const auto known = static_cast<std::size_t>(least - first.squared.begin());
+    const Nearest nearest(triangles, known, p, 0, p);
+    for (std::size_t lane = 0; lane < triangles.size(); ++lane) {
+      if (lane == known) continue;
+      kept += nearest.kept[lane];
+      ++farther;
+    }
+  }
+  // Those that reach over the plane across the way to the nearest point, but farther beside it.
+  EXPECT_LT(kept, 0.5 * farther) << kept << " of " << farther;
+}
+
+TEST(EightTriangles, LeaveOutNoneThatIsNearOfAPointThatIsWrongAsFarAsItSays) {
+  support::Random random(7);
+  constexpr double kWrong = 300;
+  int nearer = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eight triangles = drawn(random);
+    const Vector3d p = random.in_box(2e4);
+    const Nearest nearest(triangles, 0, p, kWrong, p + random.in_box(kWrong));
+    for (std::size_t lane = 1; lane < triangles.size(); ++lane) {
+      if (nearest.squared[lane] > nearest.squared[0]) continue;
+      ASSERT_TRUE(nearest.kept[lane]) << "lane " << lane << ", " << p.transpose();
+      ++nearer;
+    }
+  }
+  EXPECT_GT(nearer, 20000);
+}
+
+TEST(EightTriangles, LeaveOutNothingNearByNumbersThatOverflow) {
+  support::Random random(8);
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const double size : {1e20, 1e30, 1e300, kNaN}) {
+    const Eight triangles = drawn(random);
+    const Vector3d to = size * Vector3d(0.6, -0.64, 0.48);
+    const NearestInUnits nearest =
+        nearest_in_units({.squared = to.squaredNorm(), .to = to, .triangle = 0}, 0, 1);
+    EXPECT_EQ(nearer_of_eight(nearest, -to, packed(triangles)), 0xffu) << size;
   }
 }
 

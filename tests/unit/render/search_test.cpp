@@ -93,7 +93,7 @@ void expect_same_on_random_segments(const Surface& surface, const Vector3d& midd
     const Vector3d to = from + random.in_box(reach);
     searches.expect_same_entry(from, to);
     if (i % 16 == 0) searches.expect_same_side(from);
-    if (i % 64 == 0) searches.expect_same_closest(from, i % 128 == 0 ? 0.02 * half : 10 * half);
+    if (i % 8 == 0) searches.expect_same_closest(from, i % 16 == 0 ? 0.02 * half : 10 * half);
     if (::testing::Test::HasFatalFailure()) return;
   }
   EXPECT_GT(searches.entries, count / 200);
