@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Fails if a function of 16-byte lanes is called that sse2_elsewhere.h has not: what calls it builds on x86-64 alone.
+# Lanes of 32 bytes stand where x86-64 alone reads them.
+#   other_processors.sh SOURCE_DIR
+set -euo pipefail
+cd "$1"
+elsewhere=render/src/packed/sse2_elsewhere.h
+bad=0
+while read -r name; do
+  grep -qE "[ (]$name\)?\(" $elsewhere && continue
+  echo "$name is not in $elsewhere, but called:"
+  grep -rnE "\b$name\b" driver device_sim render app | sed 's/^/  /'
+  bad=1
+done < <(grep -rhoE '\b_mm_[a-z0-9_]+' driver device_sim render app | sort -u)
+exit $bad
