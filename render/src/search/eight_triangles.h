@@ -53,8 +53,7 @@ NearestInUnits nearest_in_units(const NearestSoFar& best, double rounding,
 
 /// Returns bit i for each lane whose triangle may be as near to `from` (seen from the middle, in
 /// units) as the nearest point known; what is left out is certain: all its corners lie beyond the
-/// plane across the way to that point. Lanes without a triangle may be set. Real-time: safe; about
-/// 10 ns.
+/// plane across the way to that point. Lanes without a triangle may be set. Real-time: safe.
 unsigned nearer_of_eight(const NearestInUnits& nearest, const Eigen::Vector3d& from,
                          const EightTriangles& eight) noexcept;
 

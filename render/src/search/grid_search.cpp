@@ -75,6 +75,20 @@ SegmentInUnits in_units(const Test& segment, const VolumeGrid& grid) noexcept {
   return segment_in_units(segment.way(), segment.position_rounding(), grid.parts().per_unit);
 }
 
+// Calls visit(eight, there, triangles) for the triangles of a list, eight by eight: there has a bit
+// for each lane with a triangle, whose numbers are triangles[lane].
+template <class Visit>
+inline void visit_eights(const VolumeList& list, Visit visit) noexcept {
+  constexpr std::size_t kMost = EightTriangles::kMost;
+  // Asked for while the corners are looked at.
+  __builtin_prefetch(list.triangles.data());
+  const std::size_t count = list.triangles.size();
+  for (std::size_t i = 0; i < count; i += kMost) {
+    const unsigned there = count - i < kMost ? (1u << (count - i)) - 1 : 0xffu;
+    visit(list.eights[i / kMost], there, list.triangles.data() + i);
+  }
+}
+
 Vector3d gap_to_box(const Vector3d& p, const Vector3d& corner, double side) noexcept {
   return (corner - p).cwiseMax(p - corner - Vector3d::Constant(side)).cwiseMax(0.0);
 }
@@ -161,24 +175,18 @@ void GridSearch<Surface>::visit_far(const Test& segment, const Visit& visit) con
   }
 }
 
-// Calls visit(t) for each triangle of a volume that a segment may cross, by `met`, a met_of_eight.
+// Calls visit(t) for each triangle of a volume that a segment may cross.
 template <class Surface>
-template <class Visit>
-inline void GridSearch<Surface>::visit_near(MetOfEight met, const SegmentInUnits& segment,
-                                            const Vector3d& from, const VolumeList& list,
-                                            Visit visit) const noexcept {
-  constexpr std::size_t kMost = EightTriangles::kMost;
+template <bool kWide, class Visit>
+inline void GridSearch<Surface>::visit_near(const SegmentInUnits& segment, const Vector3d& from,
+                                            const VolumeList& list, Visit visit) const noexcept {
   const Vector3d seen = grid_.parts().per_unit * (from - list.middle);
-  const std::size_t count = list.triangles.size();
-  // Asked for while the corners are looked at.
-  __builtin_prefetch(list.triangles.data());
-  for (std::size_t i = 0; i < count; i += kMost) {
-    unsigned near = met(segment, seen.data(), list.eights[i / kMost]);
-    if (count - i < kMost) near &= (1u << (count - i)) - 1;
-    for (; near != 0; near &= near - 1) {
-      visit(list.triangles[i + static_cast<std::size_t>(std::countr_zero(near))]);
-    }
-  }
+  visit_eights(list, [&](const EightTriangles& eight, unsigned there,
+                         const std::int32_t* triangles) noexcept {
+    unsigned near = kWide ? lanes_avx2::met_of_eight(segment, seen.data(), eight)
+                          : met_of_eight(segment, seen, eight);
+    for (near &= there; near != 0; near &= near - 1) visit(triangles[std::countr_zero(near)]);
+  });
 }
 
 template <class Surface>
@@ -187,11 +195,10 @@ inline Entry GridSearch<Surface>::find_entry(const Vector3d& p_from,
                                              const Vector3d& p_to) const noexcept {
   const auto segment = segment_test(*surface_, frame_, p_from, p_to);
   const SegmentInUnits units = in_units(segment, grid_);
-  constexpr MetOfEight met = kWide ? lanes_avx2::met_of_eight : lanes_plain::met_of_eight;
   FirstEntry first(segment);
   visit_reached(segment, [&](const VolumeList& list) noexcept {
-    visit_near(met, units, segment.from(), list,
-               [&first](std::int32_t t) noexcept { first.consider(t); });
+    visit_near<kWide>(units, segment.from(), list,
+                      [&first](std::int32_t t) noexcept { first.consider(t); });
   });
   return first.entry();
 }
@@ -219,9 +226,8 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   std::size_t crossings = 0;
   bool all_kept = true;
   const SegmentInUnits units = in_units(segment, grid_);
-  const MetOfEight met = wide_ ? lanes_avx2::met_of_eight : lanes_plain::met_of_eight;
   visit_reached(segment, [&](const VolumeList& list) noexcept {
-    visit_near(met, units, segment.from(), list, [&](std::int32_t t) noexcept {
+    visit_near<false>(units, segment.from(), list, [&](std::int32_t t) noexcept {
       double parameter = 0;
       if (segment.cross(t, parameter) == Crossing::kNone) return;
       const auto kept_end = crossed.begin() + static_cast<std::ptrdiff_t>(crossings);
@@ -255,32 +261,27 @@ inline SurfacePoint GridSearch<Surface>::find_closest(const Vector3d& p_W,
   Asked asked;
   double limit = (reach + room) * (reach + room);
   const auto visit = [&](const VolumeList& list) noexcept {
-    constexpr std::size_t kMost = EightTriangles::kMost;
     const Vector3d seen = per_unit * (p - list.middle);
-    const std::size_t count = list.triangles.size();
-    __builtin_prefetch(list.triangles.data());
-    for (std::size_t i = 0; i < count; i += kMost) {
-      unsigned near = count - i < kMost ? (1u << (count - i)) - 1 : 0xffu;
+    visit_eights(list, [&](const EightTriangles& eight, unsigned near,
+                           const std::int32_t* triangles) noexcept {
       if (best.found()) {
-        const EightTriangles& eight = list.eights[i / kMost];
         const NearestInUnits nearest = nearest_in_units(best.so_far(), room, per_unit);
         near &= kWide ? lanes_avx2::nearer_of_eight(nearest, seen.data(), eight)
-                      : lanes_plain::nearer_of_eight(nearest, seen.data(), eight);
+                      : nearer_of_eight(nearest, seen, eight);
       }
-      std::array<std::int32_t, kMost> fresh;
+      std::array<std::int32_t, EightTriangles::kMost> fresh;
       std::size_t left = 0;
       for (; near != 0; near &= near - 1) {
-        const std::int32_t t = list.triangles[i + static_cast<std::size_t>(std::countr_zero(near))];
-        fresh[left] = t;
-        left += asked.first_time(t) ? 1 : 0;
+        fresh[left] = triangles[std::countr_zero(near)];
+        left += asked.first_time(fresh[left]) ? 1 : 0;
       }
       const std::span<const std::int32_t> asks(fresh.data(), left);
       if constexpr (kWide) {
         lanes_avx2::consider_list(*surface_, frame_, asks, p.data(), best.so_far());
       } else {
-        lanes_plain::consider_list(*surface_, frame_, asks, p.data(), best.so_far());
+        best.consider(asks);
       }
-    }
+    });
     const double ball = std::sqrt(best.squared()) + room;
     limit = ball * ball;
   };

@@ -43,7 +43,7 @@ class GridSearch final : public ContactSearch {
   const VolumeGrid& grid() const noexcept { return grid_; }  ///< Shows its grid.
 
  private:
-  // Made twice for different processors (wide_lanes).
+  // Made twice for different processors (wide_lanes): what is wide is made for AVX2 in one piece.
   template <bool kWide>
   Entry find_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
   [[gnu::noinline]] THIMBLE_FOR_AVX2 Entry
@@ -57,10 +57,8 @@ class GridSearch final : public ContactSearch {
   void visit_reached(const Test& segment, Visit visit) const noexcept;
   template <class Test, class Visit>
   [[gnu::noinline]] void visit_far(const Test& segment, const Visit& visit) const noexcept;
-  using MetOfEight = unsigned (*)(const SegmentInUnits& segment, const double* from,
-                                  const EightTriangles& eight) noexcept;
-  template <class Visit>
-  void visit_near(MetOfEight met, const SegmentInUnits& segment, const Eigen::Vector3d& from,
+  template <bool kWide, class Visit>
+  void visit_near(const SegmentInUnits& segment, const Eigen::Vector3d& from,
                   const VolumeList& list, Visit visit) const noexcept;
 
   const Surface* surface_;

@@ -11,8 +11,9 @@ namespace {
 
 // From here on the tree asks for a free path at least as soon as the grid: 0.9 of its time at
 // 16,384 triangles, 0.7 at 36,864 (`thimble study accuracy --axis search`); below they are alike.
-// What nothing is remembered of is found in 0.87 of the tree's time at 6,000 and 1.1 at 10,000
-// (bench_contact --cold): a grid with its corners is as large as the second cache there.
+// Where nothing is remembered, the grid takes 0.6 of the tree's time for a segment at 5,000 and 1.0
+// to 1.1 at 10,000, for a nearest point 1.0 and 1.2 to 1.5 (bench_contact --cold): with its corners
+// it is larger than the second cache there.
 constexpr std::int32_t kTreeTrianglesMin = 8000;
 
 template <class Surface>

@@ -80,7 +80,7 @@ struct SegmentBounds {
   bool single;       ///< Whether single precision says anything.
 };
 
-/// Drops packed triangles that a segment does not cross. Real-time: safe; about 5 ns per triangle.
+/// Drops packed triangles that a segment does not cross. Real-time: safe.
 class SegmentSieve {
  public:
   explicit SegmentSieve(const SegmentTest& segment) noexcept;
