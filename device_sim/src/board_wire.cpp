@@ -55,8 +55,7 @@ woody::InputReport woody_report(const BoardReport& report) noexcept {
   return input;
 }
 
-BoardMessage message_of(const hfab::OutputReport& output) noexcept {
-  BoardMessage message;
+void take(const hfab::OutputReport& output, BoardMessage& message) noexcept {
   if (output.command == static_cast<std::int16_t>(hfab::Command::kPreset)) {
     auto& counters = message.counters.emplace();
     std::copy_n(output.attributes.begin(), 3, counters.begin());
@@ -64,7 +63,6 @@ BoardMessage message_of(const hfab::OutputReport& output) noexcept {
   } else {
     std::copy_n(output.current_mA.begin(), 3, message.current_mA.begin());
   }
-  return message;
 }
 
 }  // namespace
@@ -78,26 +76,27 @@ std::size_t encode_report(const BoardReport& report, const FirmwareSettings& set
     return hfab::encode_arm_line(hfab_line(report, settings.line_model),
                                  bytes.first<hfab::kLineCapacity>());
   }
-  return place(hfab::encode_input(hfab_report(report, settings.ideal_encoders)), bytes);
+  hfab::write_input(hfab_report(report, settings.ideal_encoders), bytes.first<hfab::kReportSize>());
+  return hfab::kReportSize;
 }
 
-std::optional<BoardMessage> decode_message(std::span<const std::byte> bytes,
-                                           const FirmwareSettings& settings) noexcept {
+bool decode_message(std::span<const std::byte> bytes, const FirmwareSettings& settings,
+                    BoardMessage& message) noexcept {
   if (!settings.ideal_encoders && settings.speaks == ArmKind::kWoody) {
     const auto output = woody::decode_output(bytes);
-    if (!output) return {};
-    BoardMessage message;
+    if (!output) return false;
     std::copy_n(output->current_mA.begin(), 3, message.current_mA.begin());
-    return message;
+    return true;
   }
   if (!settings.ideal_encoders && settings.speaks == ArmKind::kHfabLine) {
     const auto line = hfab::decode_host_line(bytes);
-    if (!line) return {};
-    return BoardMessage{.current_mA = line->current_mA};
+    if (!line) return false;
+    message.current_mA = line->current_mA;
+    return true;
   }
-  const auto output = hfab::decode_output(bytes);
-  if (!output) return {};
-  return message_of(*output);
+  if (!hfab::is_report_size(bytes.size())) return false;
+  take(hfab::read_output(bytes), message);
+  return true;
 }
 
 }  // namespace thimble::device_sim

@@ -33,8 +33,9 @@ struct BoardMessage {
 std::size_t encode_report(const BoardReport& report, const FirmwareSettings& settings,
                           std::span<std::byte, driver::kReportCapacity> bytes) noexcept;
 
-/// Decodes a message; empty if it has a form that the board does not know.
-std::optional<BoardMessage> decode_message(std::span<const std::byte> bytes,
-                                           const FirmwareSettings& settings) noexcept;
+/// Writes to `message`, which says nothing yet, what a board was told; false, and the message left
+/// alone, where the bytes have a form that the board does not know.
+bool decode_message(std::span<const std::byte> bytes, const FirmwareSettings& settings,
+                    BoardMessage& message) noexcept;
 
 }  // namespace thimble::device_sim

@@ -136,20 +136,20 @@ void Firmware::report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimb
 
 std::optional<BoardCounters> Firmware::receive(std::span<const std::byte> message,
                                                std::int64_t time_ns) noexcept {
-  const auto decoded = decode_message(message, settings_);
-  if (!decoded) {
+  BoardMessage decoded;
+  if (!decode_message(message, settings_, decoded)) {
     ++counters_.malformed;
     return {};
   }
   ++counters_.messages;
   watchdog_due_ns_ = time_ns + settings_.watchdog_ns;
-  if (decoded->counters) {
+  if (decoded.counters) {
     amperes_.setZero();
-    return decoded->counters;
+    return decoded.counters;
   }
   Eigen::Vector3d outputs;
   for (std::size_t i = 0; i < 3; ++i) {
-    const int mA = decoded->current_mA[i];
+    const int mA = decoded.current_mA[i];
     const bool in_range = std::abs(mA) <= settings_.current_range_mA;
     if (!in_range) ++counters_.over_range;
     outputs[static_cast<int>(i)] = in_range ? mA * 1e-3 : 0;

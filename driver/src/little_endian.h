@@ -1,7 +1,9 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace thimble::driver {
@@ -9,17 +11,17 @@ namespace thimble::driver {
 /// Reads the 16-bit word number `word` of a report, low byte first. Precondition: the report holds
 /// it. Real-time: safe.
 inline std::int16_t get_word(std::span<const std::byte> bytes, std::size_t word) noexcept {
-  const auto low = std::to_integer<unsigned>(bytes[2 * word]);
-  const auto high = std::to_integer<unsigned>(bytes[2 * word + 1]);
-  return static_cast<std::int16_t>(static_cast<std::uint16_t>(low | (high << 8)));
+  static_assert(std::endian::native == std::endian::little);
+  std::int16_t value = 0;
+  std::memcpy(&value, bytes.data() + 2 * word, sizeof(value));
+  return value;
 }
 
 /// Writes the 16-bit word number `word` of a report, low byte first. Precondition: the report has
 /// room for it. Real-time: safe.
 inline void put_word(std::span<std::byte> bytes, std::size_t word, std::int16_t value) noexcept {
-  const auto bits = static_cast<std::uint16_t>(value);
-  bytes[2 * word] = static_cast<std::byte>(bits & 0xff);
-  bytes[2 * word + 1] = static_cast<std::byte>(bits >> 8);
+  static_assert(std::endian::native == std::endian::little);
+  std::memcpy(bytes.data() + 2 * word, &value, sizeof(value));
 }
 
 }  // namespace thimble::driver

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "observers/prefetch_to_write.h"
+
 namespace thimble::session {
 
 BlackBox::BlackBox(double rate)
@@ -16,6 +18,7 @@ void BlackBox::take(const driver::TickRecord& tick) noexcept {
   if (full_.load(std::memory_order_acquire)) return;
   ticks_[next_] = tick;
   if (++next_ == ticks_.size()) next_ = 0;
+  prefetch_to_write(ticks_[next_]);
   ++taken_;
   if (begins && !fault_came_) {
     fault_came_ = true;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "observers/prefetch_to_write.h"
+
 namespace thimble::session {
 
 Trace::Trace(std::uint64_t expected_ticks, std::size_t rows_max) {
@@ -22,6 +24,7 @@ void Trace::take(const driver::TickRecord& record) noexcept {
   until_next_ = stride_ - 1;
   if (kept_ < rows_.size()) {
     rows_[kept_++] = record;
+    if (kept_ < rows_.size()) prefetch_to_write(rows_[kept_]);
   } else {
     ++dropped_;
   }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+
+#include "little_endian.h"
 
 namespace thimble::driver::hfab {
 
@@ -40,20 +43,68 @@ struct OutputReport {
   friend bool operator==(const OutputReport&, const OutputReport&) = default;
 };
 
-/// Decodes what the arm sent; empty unless it is 14 bytes, or 64 of which the first 14 count.
-std::optional<InputReport> decode_input(std::span<const std::byte> bytes) noexcept;
+/// Returns whether as many bytes may be a report. Real-time: safe.
+constexpr bool is_report_size(std::size_t size) noexcept {
+  return size == kReportSize || size == kPaddedReportSize;
+}
 
-/// Encodes what the arm sends (used by the simulated arm).
-std::array<std::byte, kReportSize> encode_input(const InputReport& report) noexcept;
+// All of it is known where it is called, so that what is read or written stays in registers and
+// does not go through memory word by word, to be read there as a whole, for which a processor
+// waits.
 
-/// Decodes what the host sent (used by the simulated arm); lengths as in `decode_input`.
-std::optional<OutputReport> decode_output(std::span<const std::byte> bytes) noexcept;
+/// Reads what the arm sent. Precondition: the bytes may be a report (is_report_size).
+inline InputReport read_input(std::span<const std::byte> bytes) noexcept {
+  return {.counts = {get_word(bytes, 0), get_word(bytes, 1), get_word(bytes, 2), get_word(bytes, 3),
+                     get_word(bytes, 4), get_word(bytes, 5)},
+          .info = get_word(bytes, 6)};
+}
+/// Reads what the host sent. Precondition: the bytes may be a report (is_report_size).
+inline OutputReport read_output(std::span<const std::byte> bytes) noexcept {
+  return {.current_mA = {get_word(bytes, 0), get_word(bytes, 1), get_word(bytes, 2)},
+          .command = get_word(bytes, 3),
+          .attributes = {get_word(bytes, 4), get_word(bytes, 5), get_word(bytes, 6)}};
+}
+/// Writes what the arm sends.
+inline void write_input(const InputReport& report,
+                        std::span<std::byte, kReportSize> bytes) noexcept {
+  for (std::size_t i = 0; i < 6; ++i) put_word(bytes, i, report.counts[i]);
+  put_word(bytes, 6, report.info);
+}
+/// Writes what the host sends.
+inline void write_output(const OutputReport& report,
+                         std::span<std::byte, kReportSize> bytes) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) put_word(bytes, i, report.current_mA[i]);
+  put_word(bytes, 3, report.command);
+  for (std::size_t i = 0; i < 3; ++i) put_word(bytes, 4 + i, report.attributes[i]);
+}
 
-/// Encodes what the host sends.
-std::array<std::byte, kReportSize> encode_output(const OutputReport& report) noexcept;
+/// The same as reports of their own: what is read is empty unless it is 14 bytes, or 64 of which
+/// the first 14 count.
+inline std::optional<InputReport> decode_input(std::span<const std::byte> bytes) noexcept {
+  if (!is_report_size(bytes.size())) return std::nullopt;
+  return read_input(bytes);
+}
+inline std::optional<OutputReport> decode_output(std::span<const std::byte> bytes) noexcept {
+  if (!is_report_size(bytes.size())) return std::nullopt;
+  return read_output(bytes);
+}
+inline std::array<std::byte, kReportSize> encode_input(const InputReport& report) noexcept {
+  std::array<std::byte, kReportSize> bytes;
+  write_input(report, bytes);
+  return bytes;
+}
+inline std::array<std::byte, kReportSize> encode_output(const OutputReport& report) noexcept {
+  std::array<std::byte, kReportSize> bytes;
+  write_output(report, bytes);
+  return bytes;
+}
 
 /// Pads a report of either direction with zeros, as boards built on the Teensy send and take it.
-std::array<std::byte, kPaddedReportSize> pad(
-    const std::array<std::byte, kReportSize>& report) noexcept;
+inline std::array<std::byte, kPaddedReportSize> pad(
+    const std::array<std::byte, kReportSize>& report) noexcept {
+  std::array<std::byte, kPaddedReportSize> padded{};
+  std::copy(report.begin(), report.end(), padded.begin());
+  return padded;
+}
 
 }  // namespace thimble::driver::hfab

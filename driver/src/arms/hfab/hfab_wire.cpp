@@ -21,31 +21,31 @@ std::size_t LineWire::encode(const std::array<std::int16_t, 3>& mA,
 }
 
 bool ReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
-  const auto report = decode_input(bytes);
-  if (!report) return false;
-  std::copy_n(report->counts.begin(), 3, reading.counts.begin());
-  std::copy_n(report->counts.begin() + 3, 3, reading.auxiliary.begin());
-  reading.buttons = static_cast<std::uint16_t>(report->info & 1);
+  if (!is_report_size(bytes.size())) return false;
+  const InputReport report = read_input(bytes);
+  std::copy_n(report.counts.begin(), 3, reading.counts.begin());
+  std::copy_n(report.counts.begin() + 3, 3, reading.auxiliary.begin());
+  reading.buttons = static_cast<std::uint16_t>(report.info & 1);
   return true;
 }
 
 std::size_t ReportWire::encode(const std::array<std::int16_t, 3>& mA,
                                std::span<std::byte, kReportCapacity> bytes) noexcept {
-  const auto report = encode_output(
-      {.current_mA = mA, .command = static_cast<std::int16_t>(Command::kDrive), .attributes = {}});
-  std::copy(report.begin(), report.end(), bytes.begin());
-  return report.size();
+  write_output(
+      {.current_mA = mA, .command = static_cast<std::int16_t>(Command::kDrive), .attributes = {}},
+      bytes.first<kReportSize>());
+  return kReportSize;
 }
 
 bool FineReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
-  const auto report = decode_input(bytes);
-  if (!report) return false;
+  if (!is_report_size(bytes.size())) return false;
+  const InputReport report = read_input(bytes);
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto low = static_cast<std::uint16_t>(report->counts[3 + i]);
-    reading.counts[i] = report->counts[i] * 65536 + low;
+    const auto low = static_cast<std::uint16_t>(report.counts[3 + i]);
+    reading.counts[i] = report.counts[i] * 65536 + low;
   }
   reading.auxiliary = {};
-  reading.buttons = static_cast<std::uint16_t>(report->info & 1);
+  reading.buttons = static_cast<std::uint16_t>(report.info & 1);
   return true;
 }
 
