@@ -74,9 +74,11 @@ SerialPose ArmPlant::pose_after(double time) const noexcept {
 
 Eigen::Vector3d ArmPlant::q_about() noexcept {
   Eigen::Vector3d q;
-  if (pose_.angles_near(pose_near_, q_near_, q)) return q;
-  pose_near_ = pose_;
-  return q_near_ = pose_.angles();
+  if (!pose_.angles_near(pose_near_, q_near_, q)) {
+    pose_near_ = pose_;
+    q = q_near_ = pose_.angles();
+  }
+  return q;
 }
 
 void ArmPlant::step(const Eigen::Vector3d& p_BH, std::int64_t dt_ns) noexcept {

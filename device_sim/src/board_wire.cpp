@@ -22,21 +22,18 @@ std::int32_t low_half(std::int64_t value) noexcept {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(value & 0xffffffff));
 }
 
-template <std::size_t N, std::size_t M>
-std::size_t place(const std::array<std::byte, N>& report, std::span<std::byte, M> bytes) noexcept {
-  static_assert(N <= M);
-  std::copy(report.begin(), report.end(), bytes.begin());
-  return N;
+hfab::InputReport hfab_report(const BoardReport& report) noexcept {
+  const auto& [a, b, c] = report.counts;
+  const auto& [d, e, f] = report.gimbal;
+  return {.counts = {low_word(a), low_word(b), low_word(c), low_word(d), low_word(e), low_word(f)},
+          .info = static_cast<std::int16_t>(report.button)};
 }
 
-hfab::InputReport hfab_report(const BoardReport& report, bool ideal_encoders) noexcept {
-  hfab::InputReport input;
-  for (std::size_t i = 0; i < 3; ++i) {
-    input.counts[i] = low_word(ideal_encoders ? report.counts[i] >> 16 : report.counts[i]);
-    input.counts[3 + i] = low_word(ideal_encoders ? report.counts[i] : report.gimbal[i]);
-  }
-  input.info = report.button ? 1 : 0;
-  return input;
+hfab::InputReport fine_hfab_report(const BoardReport& report) noexcept {
+  const auto& [a, b, c] = report.counts;
+  return {.counts = {low_word(a >> 16), low_word(b >> 16), low_word(c >> 16), low_word(a),
+                     low_word(b), low_word(c)},
+          .info = static_cast<std::int16_t>(report.button)};
 }
 
 hfab::ArmLine hfab_line(const BoardReport& report, std::int32_t model) noexcept {
@@ -69,15 +66,22 @@ void take(const hfab::OutputReport& output, BoardMessage& message) noexcept {
 
 std::size_t encode_report(const BoardReport& report, const FirmwareSettings& settings,
                           std::span<std::byte, driver::kReportCapacity> bytes) noexcept {
-  if (!settings.ideal_encoders && settings.speaks == ArmKind::kWoody) {
-    return place(woody::encode_input(woody_report(report)), bytes);
+  const auto hfab_bytes = bytes.first<hfab::kReportSize>();
+  if (settings.ideal_encoders) {
+    hfab::write_input(fine_hfab_report(report), hfab_bytes);
+    return hfab_bytes.size();
   }
-  if (!settings.ideal_encoders && settings.speaks == ArmKind::kHfabLine) {
+  if (settings.speaks == ArmKind::kWoody) {
+    const auto words = woody::encode_input(woody_report(report));
+    std::copy(words.begin(), words.end(), bytes.begin());
+    return words.size();
+  }
+  if (settings.speaks == ArmKind::kHfabLine) {
     return hfab::encode_arm_line(hfab_line(report, settings.line_model),
                                  bytes.first<hfab::kLineCapacity>());
   }
-  hfab::write_input(hfab_report(report, settings.ideal_encoders), bytes.first<hfab::kReportSize>());
-  return hfab::kReportSize;
+  hfab::write_input(hfab_report(report), hfab_bytes);
+  return hfab_bytes.size();
 }
 
 bool decode_message(std::span<const std::byte> bytes, const FirmwareSettings& settings,

@@ -15,22 +15,4 @@ driver::Result<void> WiringSettings::check() const {
       "joints are 0, 1 and 2."};
 }
 
-Eigen::Vector3d WiringSettings::inputs(const Eigen::Vector3d& counts) const noexcept {
-  Eigen::Vector3d seen;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    seen[k] = encoder_gain[k] * counts[encoder_of[i]];
-  }
-  return seen;
-}
-
-Eigen::Vector3d WiringSettings::motors(const Eigen::Vector3d& outputs) const noexcept {
-  Eigen::Vector3d amperes(0, 0, 0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    amperes[motor_of[i]] += motor_gain[k] * outputs[k];
-  }
-  return amperes;
-}
-
 }  // namespace thimble::device_sim

@@ -142,10 +142,20 @@ struct WiringSettings {
   /// never from the servo thread.
   driver::Result<void> check() const;
   /// Turns the encoders' counts, joint by joint, into those that the inputs see. Real-time: safe.
-  Eigen::Vector3d inputs(const Eigen::Vector3d& counts) const noexcept;
+  Eigen::Vector3d inputs(const Eigen::Vector3d& counts) const noexcept {
+    return {encoder_gain[0] * counts[encoder_of[0]], encoder_gain[1] * counts[encoder_of[1]],
+            encoder_gain[2] * counts[encoder_of[2]]};
+  }
   /// Turns the currents of the outputs into those of the motors, joint by joint, A. Real-time:
   /// safe.
-  Eigen::Vector3d motors(const Eigen::Vector3d& outputs) const noexcept;
+  Eigen::Vector3d motors(const Eigen::Vector3d& outputs) const noexcept {
+    Eigen::Vector3d amperes(0, 0, 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      amperes[motor_of[i]] += motor_gain[k] * outputs[k];
+    }
+    return amperes;
+  }
 };
 
 /// Describes the firmware. Sources of the defaults: device_sim/README.md.

@@ -20,13 +20,15 @@ inline std::int32_t round_half_away(double x) noexcept {
 
 /// Rounds currents to the whole mA of the wire, halves away from zero, within 16 bits.
 /// Precondition: they are finite, which MotorCurrents guarantees. Real-time: safe.
-inline std::array<std::int16_t, 3> whole_mA(const MotorCurrents& currents) noexcept {
-  std::array<std::int16_t, 3> mA{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double exact = currents.amperes()[static_cast<Eigen::Index>(i)] * 1e3;
-    mA[i] = static_cast<std::int16_t>(round_half_away(std::clamp(exact, -32767.0, 32767.0)));
-  }
-  return mA;
+[[gnu::always_inline]] inline std::array<std::int16_t, 3> whole_mA(
+    const MotorCurrents& currents) noexcept {
+  // Nothing branches.
+  const auto whole = [](double amperes) noexcept {
+    const double kept = std::min(std::max(amperes * 1e3, -32767.0), 32767.0);
+    return static_cast<std::int16_t>(round_half_away(kept));
+  };
+  const Eigen::Vector3d& amperes = currents.amperes();
+  return {whole(amperes.x()), whole(amperes.y()), whole(amperes.z())};
 }
 
 /// An arm made of two parts: a wire format and a geometry.

@@ -67,14 +67,17 @@ inline OutputReport read_output(std::span<const std::byte> bytes) noexcept {
 /// Writes what the arm sends.
 inline void write_input(const InputReport& report,
                         std::span<std::byte, kReportSize> bytes) noexcept {
-  for (std::size_t i = 0; i < 6; ++i) put_word(bytes, i, report.counts[i]);
+  const auto& [a, b, c, d, e, f] = report.counts;
+  put_four_words(bytes, 0, {a, b, c, d});
+  put_word(bytes, 4, e);
+  put_word(bytes, 5, f);
   put_word(bytes, 6, report.info);
 }
 /// Writes what the host sends.
 inline void write_output(const OutputReport& report,
                          std::span<std::byte, kReportSize> bytes) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) put_word(bytes, i, report.current_mA[i]);
-  put_word(bytes, 3, report.command);
+  const auto& [a, b, c] = report.current_mA;
+  put_four_words(bytes, 0, {a, b, c, report.command});
   for (std::size_t i = 0; i < 3; ++i) put_word(bytes, 4 + i, report.attributes[i]);
 }
 

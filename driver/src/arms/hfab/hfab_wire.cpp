@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "arms/hfab/hfab_report.h"
-
 namespace thimble::driver::hfab {
 
 bool LineWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
@@ -27,14 +25,6 @@ bool ReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) n
   std::copy_n(report.counts.begin() + 3, 3, reading.auxiliary.begin());
   reading.buttons = static_cast<std::uint16_t>(report.info & 1);
   return true;
-}
-
-std::size_t ReportWire::encode(const std::array<std::int16_t, 3>& mA,
-                               std::span<std::byte, kReportCapacity> bytes) noexcept {
-  write_output(
-      {.current_mA = mA, .command = static_cast<std::int16_t>(Command::kDrive), .attributes = {}},
-      bytes.first<kReportSize>());
-  return kReportSize;
 }
 
 bool FineReportWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {

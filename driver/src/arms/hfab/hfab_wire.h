@@ -1,6 +1,7 @@
 #pragma once
 
 #include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_report.h"
 #include "frame_finder.h"
 #include "thimble/driver/serial_arm.h"
 #include "thimble/driver/wire_arm.h"
@@ -24,7 +25,12 @@ struct LineWire {
 struct ReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
-                            std::span<std::byte, kReportCapacity> bytes) noexcept;
+                            std::span<std::byte, kReportCapacity> bytes) noexcept {
+    write_output(
+        {.current_mA = mA, .command = static_cast<std::int16_t>(Command::kDrive), .attributes = {}},
+        bytes.first<kReportSize>());
+    return kReportSize;
+  }
 };
 
 /// The same with counts of 32 bits in two words each: encoders d to f carry the lower halves of a
