@@ -9,10 +9,11 @@
 
 namespace thimble::driver {
 
+static_assert(std::endian::native == std::endian::little, "Words are taken as they lie.");
+
 /// Reads the 16-bit word number `word` of a report, low byte first. Precondition: the report holds
 /// it. Real-time: safe.
 inline std::int16_t get_word(std::span<const std::byte> bytes, std::size_t word) noexcept {
-  static_assert(std::endian::native == std::endian::little, "Words are taken as they lie.");
   std::int16_t value = 0;
   std::memcpy(&value, bytes.data() + 2 * word, sizeof(value));
   return value;
@@ -21,7 +22,6 @@ inline std::int16_t get_word(std::span<const std::byte> bytes, std::size_t word)
 /// Writes the 16-bit word number `word` of a report, low byte first. Precondition: the report has
 /// room for it. Real-time: safe.
 inline void put_word(std::span<std::byte> bytes, std::size_t word, std::int16_t value) noexcept {
-  static_assert(std::endian::native == std::endian::little, "Words are taken as they lie.");
   std::memcpy(bytes.data() + 2 * word, &value, sizeof(value));
 }
 
