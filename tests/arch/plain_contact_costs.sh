@@ -34,17 +34,17 @@ count() {
   echo "$tag: instructions per tick"
   bound "whole tick" "$whole" "$2"
   bound "force law" "$(instructions_of "$folder/$tag.calls" 'SceneTouch&)::{lambda')" "$3"
-  bound "observers of the run" "$(instructions_of "$folder/$tag.calls" 'RunLoop&)::{lambda')" 491
-  bound "simulated arm, reading" "$(instructions_of "$folder/$tag.calls" 'SimTransport::read_latest')" 2820
+  bound "observers of the run" "$(instructions_of "$folder/$tag.calls" 'RunLoop&)::{lambda')" 702
+  bound "simulated arm, reading" "$(instructions_of "$folder/$tag.calls" 'SimTransport::read_latest')" 1969
   if awk -v share="$contact" 'BEGIN { exit share > 0.95 }'; then
     echo "  in contact in $contact of the ticks only: this counts something else"
     bad=1
   fi
 }
 
-count "$source/tests/data/scenes/plain_ball.yaml" 6397 477
+count "$source/tests/data/scenes/plain_ball.yaml" 5464 477
 if [ -f "$meshes/elephant.off" ]; then
-  count "$source/tests/data/scenes/stroke.yaml" 6884 880
+  count "$source/tests/data/scenes/stroke.yaml" 5917 880
 else
   echo "NOTE: no elephant.off in $meshes; its ticks were not counted."
 fi

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 #include "support/elephant.h"
 #include "thimble/render/scene_touch.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 #include "setup.h"
 #include "support/contact_walk.h"
 #include "support/elephant.h"

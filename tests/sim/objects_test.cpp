@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 #include "report/report.h"
 #include "setup.h"
 #include "studies/ring_pages.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 #include "mesh/adjacency.h"
 #include "run_records.h"
 #include "setup.h"

@@ -6,7 +6,7 @@
 
 #include "bent_mesh.h"
 #include "events/event_log.h"
-#include "figures_of.h"
+#include "figures/figures_of.h"
 #include "log/logger.h"
 #include "more_arms.h"
 #include "observers/page_server.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "observers/prefetch_to_write.h"
+#include "prefetch_to_write.h"
 
 namespace thimble::session {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "observers/prefetch_to_write.h"
+#include "prefetch_to_write.h"
 
 namespace thimble::session {
 

@@ -1,6 +1,6 @@
-#include "figures_of.h"
+#include "figures/figures_of.h"
 
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 
 namespace thimble::session {
 

@@ -1,4 +1,4 @@
-#include "lost_contacts.h"
+#include "figures/lost_contacts.h"
 
 #include <Eigen/Core>
 #include <algorithm>
