@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stability/raised_edge.h"
 #include "stability/wall_bench.h"
 #include "thimble/scene/arm_simulation.h"
 
@@ -89,14 +90,12 @@ bool comes_to_rest(const WallTouch& touch, double quiet) {
 
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet) {
-  double low = guess / 10, high = guess * 10;
-  while (high > 1.01 * low) {
-    trial.stiffness = std::sqrt(low * high);
+  return raised_edge(guess / 10, 10 * guess, [&](double stiffness) -> driver::Result<bool> {
+    trial.stiffness = stiffness;
     const auto touch = press_on_wall(arm, trial);
     if (!touch) return touch.error();
-    (comes_to_rest(*touch, quiet) ? low : high) = trial.stiffness;
-  }
-  return low;
+    return comes_to_rest(*touch, quiet);
+  });
 }
 
 }  // namespace thimble::app

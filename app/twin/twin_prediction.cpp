@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stability/raised_edge.h"
 #include "stability/tuning.h"
 #include "stability/wall_bench.h"
 #include "stability/wall_trial.h"
@@ -13,11 +14,10 @@
 namespace thimble::app {
 namespace {
 
-constexpr double kRate = 1000;   // Hz, at which arms are identified and recorded
-constexpr int kTriesMost = 64;   // that a stiffness is tried from [chosen]: half of them is known
-                                 // to a sixteenth, which is one deviation
-constexpr int kClear = 8;        // more of one kind than of the other, and no further one is tried
-constexpr double kRaise = 1.15;  // of a wall that rests [chosen: within it dips and peaks even out]
+constexpr double kRate = 1000;  // Hz, at which arms are identified and recorded
+constexpr int kTriesMost = 64;  // that a stiffness is tried from [chosen]: half of them is known
+                                // to a sixteenth, which is one deviation
+constexpr int kClear = 8;       // more of one kind than of the other, and no further one is tried
 constexpr double kSpeed = 0.2, kSpeedSpan = 0.1;  // m/s of the hand, and how far starts differ
 
 /// Tries walls at home, each from many starts.
@@ -55,11 +55,12 @@ class WallStarts {
     };
     const double further = spread(std::numbers::phi - 1) * direction_.step;
     return press_on_wall(
-        arm_, {.p_W = direction_.p_WT + further * direction_.n_W,
-               .n_W = direction_.n_W,
-               .stiffness = stiffness * (1 + (kRaise - 1) * (spread(std::numbers::sqrt3) - 0.5)),
-               .rate = kRate,
-               .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
+        arm_,
+        {.p_W = direction_.p_WT + further * direction_.n_W,
+         .n_W = direction_.n_W,
+         .stiffness = stiffness * (1 + (kWallRaised - 1) * (spread(std::numbers::sqrt3) - 0.5)),
+         .rate = kRate,
+         .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
   }
 
   const scene::ArmFile& arm_;
@@ -71,22 +72,11 @@ class WallStarts {
 /// Finds the stiffest wall at home to 1 %. Whether a stiff one rests hangs on where it stands
 /// between two steps of the encoders and on how it is met, so that it is the median over these.
 /// Some walls beyond it rest from half of the starts again, and some below it hardly from half: so
-/// it is raised from below, and walls about as stiff count as well.
+/// walls about as stiff count as well.
 driver::Result<double> stiffest_wall(const scene::ArmFile& arm, const ArmDirection& direction) {
   const WallStarts starts(arm, direction);
-  double low = starts.by_law() / 10;
-  for (; low < 10 * starts.by_law(); low *= kRaise) {
-    const auto rest = starts.mostly_rest(low * kRaise);
-    if (!rest) return rest.error();
-    if (!*rest) break;
-  }
-  for (double high = low * kRaise; high > 1.01 * low;) {
-    const double middle = std::sqrt(low * high);
-    const auto rest = starts.mostly_rest(middle);
-    if (!rest) return rest.error();
-    (*rest ? low : high) = middle;
-  }
-  return low;
+  return raised_edge(starts.by_law() / 10, 10 * starts.by_law(),
+                     [&starts](double stiffness) { return starts.mostly_rest(stiffness); });
 }
 
 }  // namespace
