@@ -25,17 +25,25 @@ bound() {
   printf '  %-34s %6d, at most %6d%s\n' "$1" "$2" "$3" "$said"
 }
 
-# count SCENE WHOLE LAW: with the most that the whole tick and its force law may take.
+# count SCENE WHOLE LAW: with the most that the whole tick and its force law may take. The parts add up to the whole.
 count() {
-  local tag contact whole
+  local tag contact whole law observers arm_read arm_write link_read read write
   tag=$(basename "$1" .yaml)
   tick_calls "$program" "$1" "$folder" "$tag"
   read -r whole contact <"$folder/$tag.ticks"
+  part() { instructions_of "$folder/$tag.calls" "$1"; }
+  law=$(part 'SceneTouch&)::{lambda') observers=$(part 'RunLoop&)::{lambda')
+  arm_read=$(part 'SimTransport::read_latest(') arm_write=$(part 'SimTransport::write(')
+  link_read=$(part 'WireLink::read(') read=$(part 'Device::read(') write=$(part 'Device::write(')
   echo "$tag: instructions per tick"
   bound "whole tick" "$whole" "$2"
-  bound "force law" "$(instructions_of "$folder/$tag.calls" 'SceneTouch&)::{lambda')" "$3"
-  bound "observers of the run" "$(instructions_of "$folder/$tag.calls" 'RunLoop&)::{lambda')" 702
-  bound "simulated arm, reading" "$(instructions_of "$folder/$tag.calls" 'SimTransport::read_latest')" 1969
+  bound "simulated arm, both ends of a wire" $((arm_read + arm_write)) 2103
+  bound "decode, kinematics, Jacobian" $((link_read - arm_read)) 548
+  bound "what a report must pass, velocity" $((read - link_read)) 259
+  bound "force law" "$law" "$3"
+  bound "gate, currents, guards, books" $((write - arm_write)) 1078
+  bound "observers of the run" "$observers" 702
+  bound "loop" $((whole - read - law - write - observers)) 327
   if awk -v share="$contact" 'BEGIN { exit share > 0.95 }'; then
     echo "  in contact in $contact of the ticks only: this counts something else"
     bad=1
