@@ -123,7 +123,10 @@ class VolumeGrid {
   /// Returns whether a box meets the grid; one with a NaN does not. Real-time: safe.
   bool meets(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const noexcept {
     bool all = true;
-    for (int i = 0; i < 3; ++i) all &= (low[i] <= high_[i]) & (high[i] >= parts_.low[i]);
+    for (int i = 0; i < 3; ++i) {
+      all &= low[i] <= high_[i];
+      all &= high[i] >= parts_.low[i];
+    }
     return all;
   }
 
