@@ -58,14 +58,24 @@ grep -q 'touched as a sheet of 4 triangles' said || { echo "FAILED: nothing is t
 bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||
   { echo "FAILED: app/guide/pages/keys.md is old; app/guide/keys.sh writes it" >&2 && exit 1; }
 
-# What the guide tells of peers is what the folders of the source have measured.
-rows() { sed -nE 's/^\| (10\^[0-9])[^|]*\| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \|.*/| \1 | \2 | \3 | \4 | \5 |/p'; }
-rows <"$source/render/src/packed/README.md" >measured
+# What the guide tells of peers is what the folders of the source have measured: ticks that are hot and in the loop, and
+# the peer's times of searches.
+compare=$source/app/guide/pages/compare.md packed=$source/render/src/packed/README.md
+hot() { sed -nE 's/^\| (10\^[0-9])[^|]*\| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \|.*/| \1 | \2 | \3 | \4 | \5 |/p'; }
+in_the_loop() { grep -E '^\| 10\^[0-9] (\| [0-9]+, [0-9]+ ){3}\| [0-9.]+, [0-9.]+ \|$'; }
+peers_of() { grep -E "^\| $1" "$2" | grep -oE '\([0-9]+\)'; } # ROW FILE
+hot <"$packed" >measured
 [ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/packed/README.md has no table of peers" >&2 && exit 1; }
-grep -E '^\| 10\^[0-9] \|' "$source/app/guide/pages/compare.md" | diff - measured ||
+grep -E '^\| 10\^[0-9] (\| [0-9]+ ){4}\|$' "$compare" | diff - measured ||
   { echo "FAILED: compare.md tells other times of ticks than render/src/packed/README.md" >&2 && exit 1; }
-for row in 'segment: grid, tree (Embree)' 'nearest point: grid, tree (Embree)'; do
-  grep -qxF "$(grep -F "| $row" "$source/render/src/search/README.md")" "$source/app/guide/pages/compare.md" ||
+in_the_loop <"$packed" >measured
+[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/packed/README.md has no table of the loop" >&2 && exit 1; }
+in_the_loop <"$compare" | diff - measured ||
+  { echo "FAILED: compare.md tells other times in the loop than render/src/packed/README.md" >&2 && exit 1; }
+for row in 'ball, segment' 'torus, segment' 'ball, nearest point' 'torus, nearest point'; do
+  peers_of "$row" "$source/render/src/search/README.md" >measured
+  [ "$(wc -l <measured)" = 4 ] || { echo "FAILED: render/src/search/README.md has no row: $row" >&2 && exit 1; }
+  peers_of "$row" "$compare" | diff - measured ||
     { echo "FAILED: compare.md tells other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
 done
 
