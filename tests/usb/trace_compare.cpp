@@ -214,17 +214,23 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                  std::to_string(best.left_out) + " of " + std::to_string(driven.refused) +
                  " refused ones left out");
 
-  // Delay: where the counts say which report it was. One that the trace lacks may have had the same
-  // as a later one, which then seems to be answered too early: one in a hundred may.
-  std::vector<double> delays;  // ms
-  std::size_t early = 0;       // answered within the frame of their report
+  // Delay: where the counts say which report it was, for no other near it had the same. Otherwise
+  // one that the trace lacks is taken for a later one of the same counts, and so may be all after
+  // it while the arm moves to and fro: they seem to be answered too early. One in a hundred may all
+  // the same.
+  constexpr std::size_t kNear = 25;  // reports either way [chosen]
+  std::vector<double> delays;        // ms
+  std::size_t early = 0;             // answered within the frame of their report
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const std::size_t k = seen[i];
-    if (k == SIZE_MAX || k == 0 || k + 1 >= trace.reports.size()) continue;
-    const Report &before = trace.reports[k - 1], &report = trace.reports[k],
-                 &after = trace.reports[k + 1];
-    const bool sure = before.counts != report.counts && after.counts != report.counts &&
-                      before.number + 1 == report.number && report.number + 1 == after.number;
+    if (k == SIZE_MAX || k < kNear || k + kNear >= trace.reports.size()) continue;
+    const Report& report = trace.reports[k];
+    std::size_t alike = 0;
+    for (std::size_t j = k - kNear; j <= k + kNear; ++j) {
+      alike += trace.reports[j].counts == report.counts ? 1 : 0;
+    }
+    const bool sure = alike == 1 && trace.reports[k - 1].number + 1 == report.number &&
+                      report.number + 1 == trace.reports[k + 1].number;
     const auto message = trace.messages.find(best.message_of[i]);
     if (!sure || message == trace.messages.end()) continue;
     early += message->second.frame <= report.sampled_frame ? 1 : 0;
