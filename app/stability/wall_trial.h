@@ -46,7 +46,7 @@ inline constexpr double kQuietSteps = 5;  ///< See kQuietAtRest.
 bool comes_to_rest(const WallTouch& touch, double quiet);
 
 /// Finds the stiffest wall on which the tip comes to rest (`comes_to_rest`), as on those it is
-/// raised over (`raised_edge`), N/m, between a tenth and ten times `guess`, to 1 %;
+/// raised over (`raised_edge`), N/m, between a tenth and some ten times `guess`, to 1 %;
 /// `trial.stiffness` is not looked at. Fails as `press_on_wall`.
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet);

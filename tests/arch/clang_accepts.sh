@@ -12,7 +12,7 @@ cd "$1"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# Folder, source and options of each source, without what is GCC's own or would be written.
+# Each source and its options, without what is GCC's own or would be written.
 /usr/bin/python3 - >"$folder/sources" <<'EOF'
 import json, shlex
 

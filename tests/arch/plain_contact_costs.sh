@@ -37,7 +37,8 @@ count() {
   link_read=$(part 'WireLink::read(') read=$(part 'Device::read(') write=$(part 'Device::write(')
   echo "$tag: instructions per tick"
   bound "whole tick" "$whole" "$2"
-  bound "simulated arm, both ends of a wire" $((arm_read + arm_write)) 2103
+  bound "simulated arm, reading" "$arm_read" 1969
+  bound "simulated arm, writing" "$arm_write" 134
   bound "decode, kinematics, Jacobian" $((link_read - arm_read)) 548
   bound "what a report must pass, velocity" $((read - link_read)) 259
   bound "force law" "$law" "$3"

@@ -34,9 +34,9 @@ TEST(RaisedEdge, GoesAsFarAsAskedWhereAllRest) {
 }
 
 TEST(RaisedEdge, PassesOnWhyAWallWasNotTried) {
-  for (const double out_of_reach : {500.0, 1010.0}) {  // while it is raised, and while it is halved
+  for (const double out_of_reach : {535.0, 1003.0}) {  // while it is raised, and while it is halved
     const auto edge = raised_edge(100, 10'000, [&](double stiffness) -> driver::Result<bool> {
-      if (std::abs(stiffness - out_of_reach) < 0.08 * out_of_reach) return driver::Error{"too far"};
+      if (std::abs(stiffness - out_of_reach) < 0.02 * out_of_reach) return driver::Error{"too far"};
       return stiffness < 1000;
     });
     ASSERT_FALSE(edge);
