@@ -27,7 +27,7 @@ constexpr double kMassUnknown = 0.1;   // kg, where the file names none [chosen]
 
 /// How far something went to and fro: a tip that dry friction holds away from the wall's place has
 /// no width.
-struct Swing {
+struct Oscillation {
   double least = HUGE_VAL, most = -HUGE_VAL;
 
   void add(double x) {
@@ -121,10 +121,10 @@ class Trial {
   double kick_ = 0, window_ = 0, watched_ = 0;  // s
   HoldPlace hold_;
   bool walled_ = false, over_ = false, grew_ = false;
-  double place_ = 0;       // of the wall along the axis, m
-  double given_ = 0;       // J
-  double given_most_ = 0;  // J
-  Swing first_, last_;     // in the first and in the last window
+  double place_ = 0;          // of the wall along the axis, m
+  double given_ = 0;          // J
+  double given_most_ = 0;     // J
+  Oscillation first_, last_;  // in the first and in the last window
   Vector3d p_last_W_{0, 0, 0};
 };
 

@@ -74,7 +74,7 @@ struct Channel {
   std::atomic<std::uint64_t> magic{0};     ///< kMagic once the rest is ready.
   std::int32_t server = 0;                 ///< Process of `thimble exec`.
   std::int32_t arm_count = 0;              ///< 1 to kArmsMost.
-  std::atomic<std::uint32_t> requests{0};  ///< A futex; grows with each wish of the program.
+  std::atomic<std::uint32_t> requests{0};  ///< A futex; grows with each request of the program.
   std::array<ArmChannel, kArmsMost> arms;
   std::atomic<std::uint32_t> wrong_calls_used{0};
   std::array<WrongCall, kWrongCallsMost> wrong_calls;

@@ -34,7 +34,7 @@ class ArmServer {
   /// Does what was asked for, waiting up to `wait_ns` for it, and looks after the arms. Call it
   /// again and again.
   void step(std::int64_t wait_ns);
-  /// Ends all runs; later wishes are refused.
+  /// Ends all runs; later requests are refused.
   void end();
 
   /// Returns what there is to say of all runs that are over, and of wrong calls.

@@ -23,7 +23,7 @@ struct LargePages {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kPage) return static_cast<T*>(::operator new(bytes, std::align_val_t(alignof(T))));
     void* memory = ::operator new(bytes, std::align_val_t(kPage));
-    // A wish: where it is not granted everything works, a little slower.
+    // A hint: where it is not granted everything works, a little slower.
     (void)madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);
     return static_cast<T*>(memory);
   }

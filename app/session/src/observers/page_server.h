@@ -6,8 +6,8 @@
 
 namespace thimble::session {
 
-/// The loader of pages in virtual time, in which a tick lasts as long as it computes: the disk is
-/// as fast as one could wish, and every run is the same. In real time threads load them.
+/// The loader of pages in virtual time, in which a tick lasts as long as it computes: no page is
+/// late, and every run is the same. In real time threads load them.
 class PageServer final : public TickObserver {
  public:
   /// Serves the objects, which must outlive it. Real-time: never from the servo thread.

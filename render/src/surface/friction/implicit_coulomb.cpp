@@ -13,8 +13,8 @@ Eigen::Vector3d ImplicitCoulombLaw::pull(const SlideTick& tick) noexcept {
   const double total = settings_.stiffness + damping;
   if (!(total > 0)) return Eigen::Vector3d::Zero();
   // If the point stays, the bend grows by the whole way.
-  const Eigen::Vector3d wish = settings_.stiffness * (bend_ + tick.slip) + damping * tick.slip;
-  Eigen::Vector3d pull = shortened(wish, settings_.coulomb.sliding * tick.load);
+  const Eigen::Vector3d held = settings_.stiffness * (bend_ + tick.slip) + damping * tick.slip;
+  Eigen::Vector3d pull = shortened(held, settings_.coulomb.sliding * tick.load);
   // Else it follows until spring and damper pull with just that force.
   bend_ = (pull + damping * bend_) / total;
   return pull;
