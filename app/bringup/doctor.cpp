@@ -12,8 +12,8 @@
 #include "bringup/doctor_links.h"
 #include "bringup/doctor_timing.h"
 #include "files/data_folders.h"
-#include "node_lock.h"
 #include "thimble/driver/discovery.h"
+#include "transports/node_lock.h"
 
 namespace thimble::app {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
-#include "node_lock.h"
 #include "thimble/driver/discovery.h"
+#include "transports/node_lock.h"
 
 namespace thimble::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "drive_train_plant.h"
 #include "math/elementary.h"
+#include "plant/drive_train_plant.h"
 #include "twin/twin_motors.h"
 
 namespace thimble::app {

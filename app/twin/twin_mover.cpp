@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 #include "twin/drive_train_twin.h"
 #include "twin/twin_motors.h"
 

@@ -6,20 +6,20 @@
 #include <span>
 #include <variant>
 
-#include "arm_plant.h"
-#include "axis_dynamics.h"
-#include "drive_train_plant.h"
-#include "firmware.h"
-#include "hand.h"
-#include "hand_path.h"
-#include "inverse_plant.h"
-#include "loaded_tip.h"
+#include "board/firmware.h"
+#include "board/wire_queue.h"
+#include "operator/hand.h"
+#include "operator/hand_path.h"
+#include "operator/tremor.h"
+#include "plant/arm_plant.h"
+#include "plant/axis_dynamics.h"
+#include "plant/drive_train_plant.h"
+#include "plant/inverse_plant.h"
+#include "plant/loaded_tip.h"
 #include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
 #include "thimble/driver/result.h"
-#include "tremor.h"
-#include "wire_queue.h"
 
 namespace thimble::device_sim {
 

@@ -6,7 +6,7 @@
 
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
-#include "hid_descriptor.h"
+#include "transports/hid_descriptor.h"
 
 namespace thimble::driver {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "arm_table.h"
 #include "board_identity.h"
-#include "hid_descriptor.h"
 #include "links/linked_arms.h"
+#include "transports/hid_descriptor.h"
 
 namespace thimble::driver {
 namespace {

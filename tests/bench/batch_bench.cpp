@@ -17,7 +17,7 @@
 
 #include "report/figure.h"
 #include "studies/resident_memory.h"
-#include "support/bench_meshes.h"
+#include "support/meshes/bench_meshes.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/session/session_batch.h"
 

@@ -17,8 +17,8 @@
 #include "body/spring/spring_motion.h"
 #include "mesh/surface_weights.h"
 #include "report/figure.h"
-#include "support/body_meshes.h"
-#include "support/shapes.h"
+#include "support/meshes/body_meshes.h"
+#include "support/meshes/shapes.h"
 #include "thimble/render/build_object_touch.h"
 
 // What the dynamics of bodies cost: per node and step, or per step of one body.

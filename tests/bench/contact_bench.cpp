@@ -18,7 +18,7 @@
 #include "bench/peers.h"
 #include "report/figure.h"
 #include "search/make_search.h"
-#include "support/bench_meshes.h"
+#include "support/meshes/bench_meshes.h"
 #include "support/random.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/render/build_object_touch.h"

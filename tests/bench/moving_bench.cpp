@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "support/bench_meshes.h"
+#include "support/meshes/bench_meshes.h"
 #include "support/random.h"
 #include "track/moving_mesh.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "support/shapes.h"
+#include "support/meshes/shapes.h"
 #include "view/gl/offscreen_context.h"
 #include "view/scene_painter.h"
 

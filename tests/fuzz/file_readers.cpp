@@ -92,7 +92,8 @@ bool read_scene_file(Bytes bytes) {
     state.v_WT = (Eigen::Vector3d(0.001, 0.002, z) - state.p_WT) / state.dt;
     state.p_WT = {0.001, 0.002, z};
     const driver::ForceCommand command = touch(state);
-    // An infinite wish is the gate's business; what a tick costs and touches is this fuzzer's.
+    // An infinite requested force is the gate's business; what a tick costs and touches is this
+    // fuzzer's.
     static_cast<void>(command);
   }
   return true;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "simulated_arm.h"
-#include "support/elephant.h"
+#include "support/meshes/elephant.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/scene/arm_simulation.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "support/elephant.h"
 #include "support/heap_guard.h"
+#include "support/meshes/elephant.h"
 
 // The guard covers whole ticks of the demo's scene: simulated arm, codec, kinematics, contact,
 // gate, snapshot, statistics and trace.

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "figures/lost_contacts.h"
-#include "support/elephant.h"
+#include "support/meshes/elephant.h"
 #include "thimble/render/scene_touch.h"
 
 // The demo's stroke with every way of contact that a scene can name, from the wire up.

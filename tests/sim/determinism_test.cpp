@@ -4,8 +4,8 @@
 #include <string>
 #include <thread>
 
-#include "support/elephant.h"
 #include "support/hard_case.h"
+#include "support/meshes/elephant.h"
 #include "support/run_hash.h"
 #include "support/shipped_scene.h"
 

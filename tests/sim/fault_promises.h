@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "sim/fault_rig.h"
-#include "support/deaf_board.h"
+#include "support/boards/deaf_board.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::fault_test {

@@ -16,7 +16,7 @@
 #include "arms/hfab/hfab_models.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
-#include "support/line_arm.h"
+#include "support/boards/line_arm.h"
 #include "support/scratch.h"
 #include "thimble/driver/wire_link.h"
 #include "thimble/scene/device_settings.h"

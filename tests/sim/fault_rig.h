@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "recording/recorder.h"
-#include "support/bus_wire.h"
+#include "support/boards/bus_wire.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/driver/clock.h"

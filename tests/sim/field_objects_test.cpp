@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "arm_table.h"
+#include "board/sim_transport.h"
 #include "field/primitive_contact.h"
-#include "sim_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"

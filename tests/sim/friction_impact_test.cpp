@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 #include "support/hard_case.h"
-#include "support/rubbing.h"
+#include "support/identify/rubbing.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/render/surface/spring_damper.h"
 

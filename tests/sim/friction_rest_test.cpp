@@ -18,8 +18,8 @@
 #include "studies/friction/friction_cases.h"
 #include "studies/friction/friction_rig.h"
 #include "support/hard_case.h"
+#include "support/identify/rubbing.h"
 #include "support/long_form.h"
-#include "support/rubbing.h"
 #include "surface/friction/bristle.h"
 #include "surface/friction/friction_settings.h"
 

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <string>
 
-#include "support/elephant.h"
 #include "support/heap_guard.h"
-#include "support/rubbing.h"
+#include "support/identify/rubbing.h"
+#include "support/meshes/elephant.h"
 #include "support/scratch.h"
 
 namespace thimble {

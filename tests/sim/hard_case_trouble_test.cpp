@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "arms/hfab/hfab_report.h"
+#include "board/sim_transport.h"
 #include "body/shape/snap_base.h"
-#include "sim_transport.h"
 #include "support/dense_algebra.h"
 #include "support/hard_case.h"
 #include "support/random.h"

@@ -13,8 +13,8 @@
 #include <string>
 
 #include "arm_table.h"
+#include "board/firmware.h"
 #include "energy_choice.h"
-#include "firmware.h"
 #include "stability/stability_laws.h"
 #include "support/hard_case.h"
 #include "support/long_form.h"

@@ -15,8 +15,8 @@
 
 #include "stability/tuning.h"
 #include "support/contact_walk.h"
-#include "support/hollows.h"
 #include "support/long_form.h"
+#include "support/meshes/hollows.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/mesh_file.h"

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 #include "support/hard_case.h"
 #include "support/random.h"
 #include "thimble/driver/safety_gate.h"

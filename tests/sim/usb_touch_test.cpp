@@ -7,10 +7,10 @@
 
 #include "arms/falcon/falcon_boot.h"
 #include "arms/falcon/falcon_packet.h"
-#include "support/deaf_board.h"
+#include "support/boards/deaf_board.h"
 #include "support/long_form.h"
-#include "support/usb_host_line.h"
-#include "support/usb_host_transport.h"
+#include "support/boards/usb_host_line.h"
+#include "support/boards/usb_host_transport.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_link.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim_transport.h"
+#include "board/sim_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/servo_loop.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "support/hidden_arm.h"
+#include "support/identify/hidden_arm.h"
 #include "support/random.h"
 #include "thimble/driver/serial_arm.h"
 

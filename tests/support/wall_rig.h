@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 
 namespace thimble::support {
 

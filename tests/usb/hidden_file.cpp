@@ -12,10 +12,10 @@
 #include <sstream>
 #include <variant>
 
-#include "support/cabled_arm.h"
-#include "support/hidden_arm.h"
+#include "plant/tip_kinematics.h"
+#include "support/identify/cabled_arm.h"
+#include "support/identify/hidden_arm.h"
 #include "thimble/scene/arm_file.h"
-#include "tip_kinematics.h"
 #include "usb/board_checks.h"
 
 namespace thimble::usb_test {

@@ -9,8 +9,8 @@
 #include "arms/hfab/hfab_models.h"
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_wire.h"
-#include "ftdi_line.h"
 #include "thimble/driver/transports.h"
+#include "transports/ftdi_line.h"
 
 namespace thimble::usb_test {
 namespace {

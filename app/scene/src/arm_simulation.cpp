@@ -4,8 +4,8 @@
 
 #include "arm_table.h"
 #include "arms/falcon/falcon_boot.h"
+#include "board/sim_transport.h"
 #include "hand/place_text.h"
-#include "sim_transport.h"
 #include "thimble/driver/wire_link.h"
 #include "usb/simulated_falcon.h"
 

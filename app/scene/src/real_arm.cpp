@@ -12,7 +12,6 @@
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_proof.h"
 #include "arms/woody/woody_report.h"
-#include "ftdi_line.h"
 #include "interrupt.h"
 #include "links/dhd/dhd_link.h"
 #include "links/haply/haply_link.h"
@@ -20,6 +19,7 @@
 #include "log/logger.h"
 #include "thimble/driver/transports.h"
 #include "thimble/driver/wire_link.h"
+#include "transports/ftdi_line.h"
 
 namespace thimble::scene {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "arm_table.h"
-#include "sim_transport.h"
+#include "board/sim_transport.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"

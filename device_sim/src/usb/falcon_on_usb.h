@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "axis_dynamics.h"
-#include "hand.h"
-#include "hand_path.h"
-#include "inverse_plant.h"
-#include "loaded_tip.h"
+#include "operator/hand.h"
+#include "operator/hand_path.h"
+#include "operator/tremor.h"
+#include "plant/axis_dynamics.h"
+#include "plant/inverse_plant.h"
+#include "plant/loaded_tip.h"
 #include "thimble/device_sim/usb/usb_arm.h"
-#include "tremor.h"
 #include "usb/falcon_board.h"
 #include "usb/ftdi_chip.h"
 #include "usb/homing_hand.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ftdi_packet.h"
+#include "transports/ftdi_packet.h"
 #include "usb/ftdi_chip.h"
 #include "usb/setup_packet.h"
 

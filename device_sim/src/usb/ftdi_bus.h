@@ -5,11 +5,11 @@
 #include <deque>
 #include <span>
 
-#include "frame_finder.h"
-#include "serial_line.h"
 #include "thimble/device_sim/usb/usb_device.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/transport.h"
+#include "transports/frame_finder.h"
+#include "transports/serial_line.h"
 #include "usb/usbip_session.h"
 
 namespace thimble::device_sim::usb {

@@ -4,7 +4,7 @@
     driver/src/math/make_tables.py > driver/src/math/tables.h
 
 Nothing but Python's own decimal arithmetic is needed. arch.math_tables compares the file with what this writes, and
-tests/unit/driver/elementary_test.cpp both with MPFR.
+tests/unit/driver/math/elementary_test.cpp both with MPFR.
 """
 from decimal import Decimal, getcontext
 from fractions import Fraction

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "sim_transport.h"
+#include "board/sim_transport.h"
 #include "support/heap_guard.h"
 #include "vintage_simulation.h"
 

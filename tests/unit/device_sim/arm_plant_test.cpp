@@ -1,4 +1,4 @@
-#include "arm_plant.h"
+#include "plant/arm_plant.h"
 
 #include <gtest/gtest.h>
 

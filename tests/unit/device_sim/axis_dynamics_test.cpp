@@ -1,4 +1,4 @@
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 
 namespace thimble::device_sim {
 

@@ -1,4 +1,4 @@
-#include "axis_response.h"
+#include "plant/axis_response.h"
 
 #include <gtest/gtest.h>
 

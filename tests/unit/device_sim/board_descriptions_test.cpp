@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "support/usb_host.h"
+#include "support/boards/usb_host.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "usb/usb_description.h"
 

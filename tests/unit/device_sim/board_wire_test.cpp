@@ -7,7 +7,7 @@
 #include "arms/hfab/hfab_line.h"
 #include "arms/hfab/hfab_models.h"
 #include "arms/woody/woody_report.h"
-#include "sim_transport.h"
+#include "board/sim_transport.h"
 #include "simulated_arm.h"
 #include "support/refuses.h"
 #include "support/vintage_arm.h"

@@ -1,4 +1,4 @@
-#include "drive_train_plant.h"
+#include "plant/drive_train_plant.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dry_friction.h"
+#include "plant/dry_friction.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drive_train_plant.h"
+#include "plant/drive_train_plant.h"
 #include "support/random.h"
 #include "vintage_simulation.h"
 

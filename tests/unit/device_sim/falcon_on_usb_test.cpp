@@ -8,7 +8,7 @@
 
 #include "arms/falcon/falcon_arm.h"
 #include "arms/falcon/falcon_boot.h"
-#include "support/usb_host_line.h"
+#include "support/boards/usb_host_line.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 
 namespace thimble::device_sim::usb {

@@ -1,4 +1,4 @@
-#include "firmware.h"
+#include "board/firmware.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "hand_path.h"
+#include "operator/hand_path.h"
 
 #include <gtest/gtest.h>
 

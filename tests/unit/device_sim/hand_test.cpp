@@ -1,4 +1,4 @@
-#include "hand.h"
+#include "operator/hand.h"
 
 #include <cmath>
 #include <limits>

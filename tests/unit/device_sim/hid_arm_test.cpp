@@ -6,7 +6,7 @@
 
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
-#include "support/usb_host.h"
+#include "support/boards/usb_host.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim_transport.h"
+#include "board/sim_transport.h"
 #include "simulated_arm.h"
 #include "support/refuses.h"
 #include "thimble/driver/clock.h"

@@ -1,4 +1,4 @@
-#include "linked_tip.h"
+#include "plant/linked_tip.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <functional>
 
-#include "drive_train_plant.h"
+#include "plant/drive_train_plant.h"
+#include "support/identify/rigid_links.h"
 #include "support/random.h"
 #include "support/refuses.h"
-#include "support/rigid_links.h"
 #include "vintage_simulation.h"
 
 namespace thimble::device_sim {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "support/motion_rig.h"
+#include "support/identify/motion_rig.h"
 
 namespace thimble {
 namespace {

@@ -1,4 +1,4 @@
-#include "motor_heat.h"
+#include "plant/motor_heat.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "drive_train_plant.h"
+#include "plant/drive_train_plant.h"
 #include "support/random.h"
 #include "support/refuses.h"
 #include "thimble/driver/heat_guard.h"

@@ -1,4 +1,4 @@
-#include "serial_pose.h"
+#include "plant/serial_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "plant.h"
+#include "plant/plant.h"
 #include "support/random.h"
 
 namespace thimble::device_sim {

@@ -1,4 +1,4 @@
-#include "sim_transport.h"
+#include "board/sim_transport.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 
 namespace thimble::device_sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "tremor.h"
+#include "operator/tremor.h"
 #include "support/refuses.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "support/usb_host.h"
+#include "support/boards/usb_host.h"
 #include "thimble/device_sim/usb/vhci.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"

@@ -8,7 +8,7 @@
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
 #include "arms/woody/woody_wire.h"
-#include "support/scripted_transport.h"
+#include "support/boards/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/wire_link.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "support/fake_usb.h"
+#include "support/mock/fake_usb.h"
 
 namespace thimble::driver {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "arms/hfab/hfab_report.h"
-#include "support/scripted_transport.h"
+#include "support/boards/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"

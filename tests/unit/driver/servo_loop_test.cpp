@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "arms/hfab/hfab_report.h"
-#include "support/scripted_transport.h"
+#include "support/boards/scripted_transport.h"
 #include "support/vintage_arm.h"
 
 namespace thimble::driver {

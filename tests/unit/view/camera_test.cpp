@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "support/meshes/shapes.h"
 #include "support/random.h"
-#include "support/shapes.h"
 
 namespace thimble::app::view {
 namespace {

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "mesh/vertex_normals.h"
+#include "support/meshes/shapes.h"
 #include "support/random.h"
-#include "support/shapes.h"
 
 namespace thimble::app::view {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "body/dent/bendable_polygon.h"
 #include "mesh/surface_weights.h"
+#include "support/meshes/shapes.h"
 #include "support/random.h"
-#include "support/shapes.h"
 
 namespace thimble::app::view {
 namespace {

@@ -8,7 +8,7 @@
 #include "gl_or_skip.h"
 #include "mesh/surface_weights.h"
 #include "picture_difference.h"
-#include "support/shapes.h"
+#include "support/meshes/shapes.h"
 #include "view/scene_painter.h"
 
 namespace thimble::app::view {

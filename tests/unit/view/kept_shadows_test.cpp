@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "gl_or_skip.h"
-#include "support/shapes.h"
+#include "support/meshes/shapes.h"
 #include "view/scene_painter.h"
 
 namespace thimble::app::view {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "support/fake_hidapi.h"
+#include "support/mock/fake_hidapi.h"
 
 namespace thimble::app::view {
 namespace {

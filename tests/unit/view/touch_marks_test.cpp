@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/shapes.h"
+#include "support/meshes/shapes.h"
 
 namespace thimble::app::view {
 namespace {

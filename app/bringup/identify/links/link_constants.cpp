@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "link_mechanics.h"
+#include "plant/link_mechanics.h"
 
 namespace thimble::app {
 namespace {

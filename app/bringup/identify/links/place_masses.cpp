@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 
 #include "bringup/identify/record_motion.h"
-#include "link_mechanics.h"
+#include "plant/link_mechanics.h"
 
 namespace thimble::app {
 

@@ -8,7 +8,7 @@
 
 #include "arm/nanoseconds.h"
 #include "link_gravity.h"
-#include "link_mechanics.h"
+#include "plant/link_mechanics.h"
 
 namespace thimble::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "axis_dynamics.h"
+#include "plant/axis_dynamics.h"
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/pushed_arm.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "arms/falcon/falcon_packet.h"
-#include "serial_line.h"
 #include "thimble/driver/result.h"
+#include "transports/serial_line.h"
 
 namespace thimble::driver::falcon {
 

@@ -2,9 +2,9 @@
 
 #include "arms/hfab/hfab_line.h"
 #include "arms/hfab/hfab_report.h"
-#include "frame_finder.h"
 #include "thimble/driver/serial_arm.h"
 #include "thimble/driver/wire_arm.h"
+#include "transports/frame_finder.h"
 
 namespace thimble::driver::hfab {
 

@@ -1,0 +1,191 @@
+#include "board/firmware.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "board/board_wire.h"
+
+namespace thimble::device_sim {
+namespace {
+
+constexpr int kFine = 65536;  // ideal encoders: parts of a count
+
+// Counters far beyond their 16 bits wrap as the real ones do; beyond this they are cut, so that the
+// conversion to an integer is defined for any number.
+constexpr double kCounterMax = 1e15;
+
+std::int64_t rounded(double counts) noexcept {
+  if (!(std::abs(counts) <= kCounterMax)) return 0;
+  const double above = counts + 0.5;
+  const auto whole = static_cast<std::int64_t>(above);
+  return whole - (static_cast<double>(whole) > above ? 1 : 0);
+}
+
+// Counts below kCountable are exact to 2^-20 after a few operations: where one is farther than
+// kCountRounding from the next half, only the angle's own error can make it another.
+constexpr double kCountable = 0x1p31, kCountRounding = 0x1p-10;
+
+bool rounds_surely(double counts, double error) noexcept {
+  if (!(std::abs(counts) < kCountable)) return false;
+  const double beyond_whole =
+      std::abs(counts - static_cast<double>(static_cast<std::int64_t>(counts)));
+  return std::abs(beyond_whole - 0.5) > error + kCountRounding;
+}
+
+}  // namespace
+
+driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
+                                        const FirmwareSettings& settings) {
+  driver::ArmModel model = settings.ideal_encoders ? with_fine_counts(real, kFine) : real;
+  if (settings.ideal_encoders) model.gimbal.reset();
+  if (auto wired = settings.wiring.check(); !wired) return wired.error();
+  if (settings.speaks == driver::ArmKind::kFalcon ||
+      settings.speaks == driver::ArmKind::kUnsupported) {
+    return driver::Error{
+        "The simulated firmware speaks what a board says by itself: 14-byte reports, 8-byte "
+        "reports "
+        "or text lines."};
+  }
+  if (!(settings.missed_edges >= 0 && settings.missed_edges <= 1)) {
+    return driver::Error{"The simulated firmware's missed_edges must be a chance from 0 to 1."};
+  }
+  if (settings.report_period_ns <= 0) {
+    return driver::Error{"The simulated firmware's report period must be above zero (ns)."};
+  }
+  if (settings.watchdog_ns <= 0) {
+    return driver::Error{"The simulated firmware's watchdog must be above zero (ns)."};
+  }
+  if (settings.current_range_mA < 0) {
+    return driver::Error{"The simulated firmware's current range must not be negative (mA)."};
+  }
+  for (int joint = 0; joint < 3; ++joint) {
+    const double step = model.step(static_cast<std::size_t>(joint));
+    if (step > 0 && step < HUGE_VAL) continue;
+    return driver::Error{
+        "The simulated arm's encoders need counts and ratios above zero; set them in the arm "
+        "file."};
+  }
+  return Firmware(model, settings);
+}
+
+Firmware::Firmware(const driver::ArmModel& model, const FirmwareSettings& settings) noexcept
+    : settings_(settings), gimbal_(model.gimbal) {
+  for (int joint = 0; joint < 3; ++joint) {
+    const driver::JointEncoder& encoder = model.encoders[static_cast<std::size_t>(joint)];
+    counts_per_radian_[joint] = encoder.sign / model.step(static_cast<std::size_t>(joint));
+    home_counts_[joint] = static_cast<double>(encoder.home_counts);
+  }
+  counts_per_radian_most_ = counts_per_radian_.cwiseAbs().maxCoeff();
+  countable_ = countable();
+}
+
+Eigen::Vector3d Firmware::counts_at(const Eigen::Vector3d& q) const noexcept {
+  return settings_.wiring.inputs(q.cwiseProduct(counts_per_radian_) - home_counts_);
+}
+
+void Firmware::miss_edges(const Eigen::Vector3d& q, SplitMix& chance) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const std::int64_t now = rounded(q[k] * counts_per_radian_[k]);
+    const std::int64_t passed = looked_ ? now - edges_[i] : 0;
+    edges_[i] = now;
+    const double step = passed > 0 ? 1 : -1;
+    for (std::int64_t edge = std::min(std::abs(passed), kEdgesMost); edge > 0; --edge) {
+      if (!(chance.uniform() < settings_.missed_edges)) continue;
+      home_counts_[k] += step;
+      ++counters_.missed_edges;
+    }
+  }
+  looked_ = true;
+}
+
+Eigen::Vector3d Firmware::gimbal_counts_at(const Eigen::Vector3d& gimbal) const noexcept {
+  return gimbal_ ? gimbal_->exact_counts(gimbal) : Eigen::Vector3d(0, 0, 0);
+}
+
+BoardBytes Firmware::sample(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal,
+                            std::uint16_t number) const noexcept {
+  BoardBytes bytes;
+  report(counts_at(q) + preset_counts_, gimbal, number, bytes);
+  return bytes;
+}
+
+bool Firmware::sample_about(const Eigen::Vector3d& q, double error, const Eigen::Vector3d& gimbal,
+                            std::uint16_t number, BoardBytes& bytes) const noexcept {
+  const Eigen::Vector3d counts = counts_at(q) + preset_counts_;
+  const double counts_error = error * counts_per_radian_most_;
+  const bool sure = countable_ && rounds_surely(counts[0], counts_error) &&
+                    rounds_surely(counts[1], counts_error) &&
+                    rounds_surely(counts[2], counts_error);
+  if (sure) report(counts, gimbal, number, bytes);
+  return sure;
+}
+
+void Firmware::report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimbal,
+                      std::uint16_t number, BoardBytes& bytes) const noexcept {
+  BoardReport report{.counts = {}, .gimbal = {}, .number = number, .button = button_};
+  for (std::size_t i = 0; i < 3; ++i) report.counts[i] = rounded(counts[static_cast<int>(i)]);
+  // Where none is mounted, its counters stay at what the last preset made them.
+  if (gimbal_ || counters_.presets > 0) {
+    const Eigen::Vector3d turns = gimbal_counts_at(gimbal) + preset_gimbal_;
+    for (std::size_t i = 0; i < 3; ++i) report.gimbal[i] = rounded(turns[static_cast<int>(i)]);
+  }
+  bytes.size = encode_report(report, settings_, bytes.bytes);
+}
+
+std::optional<BoardCounters> Firmware::receive(std::span<const std::byte> message,
+                                               std::int64_t time_ns) noexcept {
+  BoardMessage decoded;
+  if (!decode_message(message, settings_, decoded)) {
+    ++counters_.malformed;
+    return {};
+  }
+  ++counters_.messages;
+  watchdog_due_ns_ = time_ns + settings_.watchdog_ns;
+  if (decoded.counters) {
+    amperes_.setZero();
+    return decoded.counters;
+  }
+  Eigen::Vector3d outputs;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int mA = decoded.current_mA[i];
+    const bool in_range = std::abs(mA) <= settings_.current_range_mA;
+    if (!in_range) ++counters_.over_range;
+    outputs[static_cast<int>(i)] = in_range ? mA * 1e-3 : 0;
+  }
+  amperes_ = settings_.wiring.motors(outputs);
+  return {};
+}
+
+void Firmware::preset(const BoardCounters& counters, const Eigen::Vector3d& q,
+                      const Eigen::Vector3d& gimbal) noexcept {
+  ++counters_.presets;
+  button_ = false;
+  const Eigen::Vector3d counts = counts_at(q), turns = gimbal_counts_at(gimbal);
+  const double parts = settings_.ideal_encoders ? kFine : 1;
+  for (int i = 0; i < 3; ++i) {
+    // A preset moves the counter by whole counts: where the edges of the encoder's slots lie is
+    // given by its disc.
+    const auto k = static_cast<std::size_t>(i);
+    preset_counts_[i] = parts * counters[k] - std::floor(counts[i] + 0.5);
+    preset_gimbal_[i] = counters[3 + k] - std::floor(turns[i] + 0.5);
+  }
+  countable_ = countable();
+}
+
+bool Firmware::countable() const noexcept {
+  const double gain_most = settings_.wiring.encoder_gain.cwiseAbs().maxCoeff();
+  return !misses_edges() && gain_most <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
+         preset_counts_.cwiseAbs().maxCoeff() < kCountable;
+}
+
+void Firmware::watch(std::int64_t time_ns) noexcept {
+  if (time_ns < watchdog_due_ns_) return;
+  if (watchdog_due_ns_ == kNever_ns) return;
+  ++counters_.watchdog_fired;
+  amperes_.setZero();
+  watchdog_due_ns_ = kNever_ns;
+}
+
+}  // namespace thimble::device_sim

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "plant/axis_dynamics.h"
+#include "plant/tip_kinematics.h"
+#include "thimble/device_sim/settings.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::device_sim {
+
+/// A tip without links: a mass with friction, each axis of which moves by its exact map. Frame B:
+/// base. All functions but `make` are Real-time: safe.
+class PointTip {
+ public:
+  using State = std::array<AxisState, 3>;
+
+  /// Makes it at rest at p_BT (m). Fails if a constant is out of range, or if joints rub, of which
+  /// it knows nothing. Real-time: never from the servo thread.
+  template <class Geometry>
+  static driver::Result<PointTip> make(const Geometry&, const SimulatedArmSettings& settings,
+                                       const Eigen::Vector3d& p_BT) {
+    const auto dynamics = AxisDynamics::make(settings.plant, settings.hand);
+    if (!dynamics) return dynamics.error();
+    if (settings.drive_train.joints_rub()) {
+      return driver::Error{"Joints that rub need a tip that knows of them (LinkedTip)."};
+    }
+    return PointTip(*dynamics, p_BT);
+  }
+
+  /// Lets dt_ns pass under a held force (N), the hand's point moving evenly from p_BH (m).
+  void step(const std::optional<TipPose>&, const Eigen::Vector3d& force,
+            const Eigen::Vector3d& p_BH, const Eigen::Vector3d& v_BH, std::int64_t dt_ns) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      dynamics_.step(axes_[static_cast<std::size_t>(i)],
+                     {.force = force[i], .anchor = p_BH[i], .anchor_speed = v_BH[i]}, dt_ns);
+    }
+  }
+
+  /// Takes other constants of mass, friction and hand; how it moves stays as it is.
+  void take(const AxisDynamics& dynamics) noexcept { dynamics_ = dynamics; }
+
+  Eigen::Vector3d p_BT() const noexcept { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
+  Eigen::Vector3d v_BT() const noexcept { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
+  const State& state() const noexcept { return axes_; }
+  /// Puts it elsewhere (m), moving (m/s).
+  void put(const Eigen::Vector3d& p_BT, const Eigen::Vector3d& v_BT) noexcept {
+    for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)] = {p_BT[i], v_BT[i]};
+  }
+  /// Puts it back to where it was, at rest.
+  void stop_at(const State& before) noexcept {
+    axes_ = before;
+    for (AxisState& axis : axes_) axis.v = 0;
+  }
+
+ private:
+  PointTip(const AxisDynamics& dynamics, const Eigen::Vector3d& p_BT) noexcept
+      : dynamics_(dynamics),
+        axes_{AxisState{p_BT.x(), 0}, AxisState{p_BT.y(), 0}, AxisState{p_BT.z(), 0}} {}
+
+  AxisDynamics dynamics_;
+  State axes_;
+};
+
+}  // namespace thimble::device_sim

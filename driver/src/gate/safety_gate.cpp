@@ -1,0 +1,133 @@
+#include "thimble/driver/safety_gate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gate/rise_limit.h"
+
+namespace thimble::driver {
+
+SafetyGate::SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy) noexcept
+    : limits_(limits), opening_(limits.soft_start), energy_(energy), observer_(energy) {}
+
+void SafetyGate::restart() noexcept {
+  fault_ = Fault::kNone;
+  since_start_ = 0;
+  opening_ = limits_.soft_start;
+  f_last_W_.setZero();
+  observer_.restart();
+}
+
+void SafetyGate::resume_from(const Eigen::Vector3d& f_W) noexcept {
+  f_last_W_ = f_W.squaredNorm() < HUGE_VAL ? f_W : Eigen::Vector3d(0, 0, 0);
+}
+
+void SafetyGate::trip(Fault fault) noexcept {
+  if (fault_ == Fault::kNone) fault_ = fault;
+}
+
+// Every comparison is written so that NaN takes the safe branch.
+
+/// Checks everything that switches the force off, and lets the time of the tick pass.
+inline bool SafetyGate::admit(double magnitude, const Eigen::Vector3d& v_WT, double dt) noexcept {
+  if (!(magnitude < HUGE_VAL)) trip(Fault::kForceNotFinite);
+  const double speed = v_WT.norm();
+  if (!(speed < HUGE_VAL)) trip(Fault::kStateNotFinite);
+  if (!(speed <= limits_.speed_max)) trip(Fault::kOverSpeed);
+  if (!(dt >= 0 && dt * 1e9 < static_cast<double>(limits_.watchdog_ns))) {
+    trip(dt >= 0 && dt < HUGE_VAL ? Fault::kLoopStalled : Fault::kTimeNotMonotonic);
+  }
+  if (fault_ != Fault::kNone) {
+    f_last_W_.setZero();
+    return false;
+  }
+  if (dt * 1e9 >= static_cast<double>(limits_.stall_ns)) {
+    ++counters_.stalls;
+    // A first soft start that was not over stays as slow as it was.
+    if (since_start_ >= opening_) opening_ = limits_.reopen;
+    since_start_ = 0;
+    f_last_W_.setZero();
+    dt = 0;
+  }
+  since_start_ += dt;
+  rise_ = limits_.rise_max * dt;
+  return true;
+}
+
+/// Returns the force that the soft start lets through now, N.
+inline double SafetyGate::force_open() const noexcept {
+  return limits_.force_max * since_start_ / opening_;
+}
+
+/// Returns the requested force, cut to the arm's limit as far as the soft start has opened it.
+inline Eigen::Vector3d SafetyGate::limit_length(const Eigen::Vector3d& f_T_W,
+                                                double magnitude) noexcept {
+  double allowed = magnitude;
+  if (allowed > limits_.force_max) {
+    allowed = limits_.force_max;
+    ++counters_.limited;
+  }
+  if (since_start_ < opening_) {
+    const double open = force_open();
+    if (allowed > open) {
+      allowed = open;
+      ++counters_.soft_started;
+    }
+  }
+  return magnitude > allowed ? Eigen::Vector3d(f_T_W * (allowed / magnitude)) : f_T_W;
+}
+
+/// Makes the force that goes out, no further from the last one than the rise limit allows.
+inline GatedForce SafetyGate::limit_change(const Eigen::Vector3d& f_W,
+                                           const Eigen::Vector3d& v_WT) noexcept {
+  // A usual tick ends here. A shorter force of the same direction may be further away.
+  if ((f_W - f_last_W_).squaredNorm() <= rise_ * rise_) {
+    f_last_W_ = f_W;
+    return GatedForce(f_W);
+  }
+  f_last_W_ = limit_rise(f_W, f_last_W_, v_WT, rise_, energy_.speed_floor);
+  if (f_last_W_ != f_W) ++counters_.rise_limited;
+  return GatedForce(f_last_W_);
+}
+
+GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
+                            double dt) noexcept {
+  const double magnitude = f_T_W.norm();
+  if (!admit(magnitude, v_WT, dt)) return GatedForce();
+  return limit_change(limit_length(f_T_W, magnitude), v_WT);
+}
+
+GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
+                                    double dt, const EnergyFlow& flow) noexcept {
+  // What was given is given, whatever becomes of this tick.
+  observer_.book(flow.work, flow.held);
+  if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
+  const double requested = f_T_W.norm();
+  if (!admit(requested, v_WT, dt)) return GatedForce();
+  Eigen::Vector3d f_W = limit_length(f_T_W, requested);
+  if (energy_.stage == EnergyStage::kBounding) {
+    const double bound = bounded_force(flow, energy_.slope);
+    const double magnitude = f_W.norm();
+    if (!(magnitude <= bound)) {
+      f_W *= bound / magnitude;
+      ++counters_.bounded;
+    }
+  } else if (energy_.stage == EnergyStage::kPassivity) {
+    counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
+    const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
+    // A damper within its bounds cannot hold a wall that pushes on and on, slowly. So beyond the
+    // onset the force fades with the debt, whatever the velocity seems to be, and at twice the
+    // onset there is none left that could give energy. What the hand brings in brings it back.
+    const double share = observer_.share(dt);
+    if (share < 1 || !damping_W.isZero(0)) {
+      f_W = share * f_W + damping_W;
+      ++counters_.damped;
+      const double open = std::min(limits_.force_max, force_open());
+      const double magnitude = f_W.norm();
+      if (magnitude > open) f_W *= open / magnitude;
+    }
+  }
+  return limit_change(f_W, v_WT);
+}
+
+}  // namespace thimble::driver

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "thimble/driver/clock.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/transport.h"
+#include "thimble/driver/transports.h"
+#include "transports/serial_line.h"
+
+namespace thimble::driver {
+
+/// An arm behind an FTDI converter: a serial line for the set-up, then a transport.
+class FtdiLine : public SerialLine {
+ public:
+  /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it,
+  /// which only one program can. Fails with the name of the program that has it.
+  static Result<std::unique_ptr<FtdiLine>> open(const UsbAddress& address);
+
+  /// Turns the line into a transport; the line is of no use afterwards. All transfers are made here
+  /// and used again and again; libusb itself allocates a request block per transfer and takes its
+  /// own (uncontended) locks. FTDI's two status bytes per packet are taken out.
+  virtual Result<std::unique_ptr<Transport>> into_transport(const Framing& framing,
+                                                            const Clock& clock) = 0;
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,100 @@
+// What is looked for beside the constants of the arm file: friction by axis and direction, and
+// amplifiers that saturate.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "bringup/identify/not_identified.h"
+#include "support/identify/identified_arm.h"
+#include "support/long_form.h"
+#include "support/random.h"
+
+namespace thimble::app {
+namespace {
+
+using support::hidden_arm;
+using support::HiddenArm;
+using support::identified;
+using support::kKnownMass;
+using support::long_form;
+using support::Random;
+
+TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
+  // c+ one way and c- the other is to the last bit their mean and a constant force of half their
+  // difference, so that is how such an arm is simulated.
+  const int arms = long_form() ? 60 : 1;
+  int told = 0, held = 0, all = 0;
+  double worst = 0;
+  for (int k = 0; k < arms; ++k) {
+    const auto seed = static_cast<std::uint64_t>(11'000 + k);
+    HiddenArm arm = hidden_arm(seed);
+    Random random(seed);
+    const double coulomb = arm.file.simulated.plant.coulomb;
+    Eigen::Vector3d uneven_W(0, 0, 0);
+    for (int axis = 0; axis < 2; ++axis) {
+      const double share = random.uniform(0.1, 0.4);
+      uneven_W[axis] = (random.bits() % 2 == 0 ? 1 : -1) * share * coulomb;
+    }
+    // Nothing else pulls, so that the tip stays where it is put.
+    arm.file.simulated.weight_B = arm.file.R_WB.transpose() * uneven_W;
+    const auto found = identified(
+        arm, {.seconds = long_form() ? 30.0 : 15.0, .known_mass = kKnownMass, .seed = seed});
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    const FrictionDirections& friction = found->friction;
+    told += friction.directions_differ ? 1 : 0;
+    const Eigen::Vector3d uneven_B = arm.file.R_WB.transpose() * uneven_W;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!friction.tells(axis)) continue;
+      const Estimate& one = friction.uneven[static_cast<std::size_t>(axis)];
+      worst = std::max(worst, std::abs(one.value - uneven_B[axis]) / coulomb);
+      held += one.holds(uneven_B[axis]) ? 1 : 0;
+      ++all;
+    }
+  }
+  std::printf("%d of %d arms told; worst %.3g of the friction; %d of %d intervals hold\n", told,
+              arms, worst, held, all);
+  EXPECT_EQ(told, arms);
+  EXPECT_LT(worst, 0.05);
+  EXPECT_GT(held, 0.85 * all);
+}
+
+TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
+  const int arms = long_form() ? 30 : 1;
+  int held = 0, all = 0;
+  double worst = 0;
+  for (int k = 0; k < arms; ++k) {
+    const auto seed = static_cast<std::uint64_t>(13'000 + k);
+    HiddenArm arm = hidden_arm(seed);
+    // Half of what is asked of the first motor at the most.
+    const auto& first = arm.file.model.drives[0];
+    arm.file.simulated.motors.current_max = 0.07 / std::abs(first.ratio * first.torque_constant);
+    const auto found = identified(arm, {.seconds = 12, .seed = seed});
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    int seen = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Saturation& one = found->saturation[i];
+      if (!one.seen) continue;
+      ++seen;
+      const auto& drive = arm.file.model.drives[i];
+      const double truth = arm.file.simulated.motors.current_max / arm.gain[i] *
+                           std::abs(drive.ratio * drive.torque_constant);
+      std::printf("motor %zu: %.4g +- %.2g N m, true %.4g\n", i + 1, one.most.value,
+                  one.most.plus_minus, truth);
+      worst = std::max(worst, std::abs(one.most.value / truth - 1));
+      held += one.most.holds(truth) ? 1 : 0;
+      ++all;
+    }
+    EXPECT_GE(seen, 1);
+    ASSERT_FALSE(found->against.empty());
+    EXPECT_NE(found->against.front().find("gives no more than"), std::string::npos);
+  }
+  std::printf("worst %.3g, %d of %d intervals hold\n", worst, held, all);
+  EXPECT_LT(worst, 0.12);
+  // Of three intervals one may miss by chance.
+  EXPECT_GE(held, std::min(0.85 * all, all - 1.0));
+}
+
+}  // namespace
+}  // namespace thimble::app

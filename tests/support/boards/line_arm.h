@@ -1,0 +1,98 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "arms/hfab/hfab_line.h"
+#include "arms/hfab/hfab_wire.h"
+#include "simulated_arm.h"
+#include "thimble/device_sim/usb/usb_arm.h"
+#include "transports/frame_finder.h"
+#include "usb/setup_packet.h"
+#include "usb/usb_description.h"
+
+namespace thimble::support {
+
+/// A simulated arm that speaks text lines, on USB serial: the board says nothing by itself and
+/// answers every message with its counters. The answer to a message that it does not understand
+/// repeats the last counters, with the error that the published firmware gives.
+class LineArm final : public device_sim::usb::UsbArm {
+ public:
+  static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
+
+  /// Takes an arm whose firmware speaks text lines.
+  explicit LineArm(device_sim::SimulatedArm arm) : arm_(std::move(arm)) {}
+
+  const device_sim::usb::UsbDescription& description() const noexcept override {
+    return description_;
+  }
+  void advance_to(std::int64_t time_ns) noexcept override { arm_.advance_to(time_ns); }
+  device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket&,
+                                        std::span<std::byte>) noexcept override {
+    return {device_sim::usb::Answer::kDone, 0};
+  }
+  device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
+    if (waiting_ == 0) return {device_sim::usb::Answer::kNak, 0};
+    const std::size_t size = std::min({waiting_, packet.size(), kPacketMax});
+    std::copy_n(said_.begin(), size, packet.begin());
+    std::copy(said_.begin() + static_cast<std::ptrdiff_t>(size),
+              said_.begin() + static_cast<std::ptrdiff_t>(waiting_), said_.begin());
+    waiting_ -= size;
+    return {device_sim::usb::Answer::kDone, size};
+  }
+  device_sim::usb::PacketResult out(std::uint8_t,
+                                    std::span<const std::byte> packet) noexcept override {
+    heard_.push(packet);
+    std::array<std::byte, driver::hfab::kLineCapacity> line{};
+    std::uint32_t skipped = 0;
+    if (const std::size_t size = heard_.take(line, skipped); size > 0) {
+      answer(std::span<const std::byte>(line).first(size));
+    }
+    return {device_sim::usb::Answer::kDone, packet.size()};
+  }
+  device_sim::usb::ArmTruth truth() const noexcept override {
+    device_sim::usb::ArmTruth truth;
+    truth.currents = arm_.plant().currents();
+    truth.p_BT = arm_.plant().p_BT();
+    truth.motors_on = arm_.firmware().motors_on();
+    return truth;
+  }
+  void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { arm_.hand().lead(p_BH); }
+  void hold_tip(bool held) noexcept override { arm_.hold_tip(held); }
+  driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override {
+    return arm_.fix_mass(mass, gravity_B);
+  }
+
+ private:
+  void answer(std::span<const std::byte> line) noexcept {
+    answer_.error = driver::hfab::kErrorParse;
+    if (driver::hfab::decode_host_line(line)) {
+      arm_.put_message(line);
+      std::array<std::byte, driver::hfab::kLineCapacity> report{};
+      std::uint32_t skipped = 0;
+      const std::size_t size = arm_.take_report(report, skipped);
+      const auto now =
+          driver::hfab::decode_arm_line(std::span<const std::byte>(report).first(size));
+      if (now) answer_ = *now;
+      answer_.error = 0;
+    }
+    std::array<std::byte, driver::hfab::kLineCapacity> bytes{};
+    const std::size_t size = driver::hfab::encode_arm_line(answer_, bytes);
+    if (waiting_ + size > said_.size()) return;  // nobody listens
+    std::copy_n(bytes.begin(), size, said_.begin() + static_cast<std::ptrdiff_t>(waiting_));
+    waiting_ += size;
+  }
+
+  device_sim::usb::UsbDescription description_;
+  device_sim::SimulatedArm arm_;
+  driver::FrameFinder heard_{driver::hfab::kLineFraming};
+  driver::hfab::ArmLine answer_;
+  std::array<std::byte, 4 * driver::hfab::kLineCapacity> said_{};
+  std::size_t waiting_ = 0;
+};
+
+}  // namespace thimble::support

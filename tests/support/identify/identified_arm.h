@@ -1,0 +1,88 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <string>
+
+#include "bringup/identify/identify.h"
+#include "bringup/identify/not_identified.h"
+#include "bringup/identify/simulated_bench.h"
+#include "support/identify/hidden_arm.h"
+
+namespace thimble::support {
+
+inline constexpr double kKnownMass = 0.025;  // kg
+
+/// Identifies one, whose file names no periods of cogging; `hold_it` leaves the hand on it that its
+/// file names.
+inline driver::Result<app::Identified> identified(const HiddenArm& arm,
+                                                  const app::IdentifyOptions& options,
+                                                  bool hold_it = false) {
+  const app::OpenBench open = [&](bool loaded) {
+    return app::simulated_bench(arm.file, loaded ? options.known_mass : 0, hold_it);
+  };
+  scene::ArmFile named = arm.file;
+  named.simulated.drive_train.periods_per_turn = 0;
+  const std::atomic<bool> never{false};
+  return app::identify(open, named, options, never);
+}
+
+/// Returns whether what was not identified names this.
+inline bool leaves_open(const app::Identified& found, const std::string& what) {
+  const auto sentences = app::not_identified(found);
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& one) { return one.find(what) != std::string::npos; });
+}
+
+/// How far estimates of one constant were off, and how often their intervals held it.
+struct Score {
+  const char* name;
+  double most;       // allowed, relative or in s
+  double worst = 0;  // of |estimate - truth|, in the same unit
+  int held = 0, all = 0;
+  int missed = 0;  // neither within `most` of the truth nor with it in the interval
+
+  void add(const app::Estimate& estimate, double truth, bool relative = true) {
+    const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);
+    worst = std::max(worst, off);
+    ++all;
+    held += estimate.holds(truth) ? 1 : 0;
+    missed += off > most && !estimate.holds(truth) ? 1 : 0;
+  }
+
+  /// Counts how far it is off only where its interval does not say so.
+  void add_beside_interval(const app::Estimate& estimate, double truth, bool relative = true) {
+    const double before = worst;
+    add(estimate, truth, relative);
+    if (estimate.holds(truth)) worst = before;
+  }
+
+  void tell() const {
+    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", name, worst, most,
+                held, all);
+  }
+};
+
+/// Tells scores and expects of each that its worst is allowed and, where it has more than `few`,
+/// that nine in ten of its intervals hold; a single one of few may miss by chance, all together may
+/// not.
+inline void expect_scores(std::initializer_list<const Score*> scores, int few) {
+  int held = 0, all = 0;
+  for (const Score* score : scores) {
+    score->tell();
+    EXPECT_LT(score->worst, score->most) << score->name;
+    held += score->held;
+    all += score->all;
+    if (score->all > few) {
+      EXPECT_GE(score->held, 0.9 * score->all) << score->name;
+    }
+  }
+  EXPECT_GE(held, 0.9 * all);
+}
+
+}  // namespace thimble::support

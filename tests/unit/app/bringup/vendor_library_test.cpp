@@ -1,0 +1,154 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "bringup/doctor.h"
+#include "real_arm_terms_home.h"
+#include "support/mock/fake_usb.h"
+#include "support/mock/mock_dhd.h"
+#include "support/mock/mock_hd.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/device_settings.h"
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/real_arm_file.h"
+
+namespace thimble::app {
+namespace {
+
+using driver::ArmKind;
+using driver::BoardKind;
+using driver::Certainty;
+using driver::FoundArm;
+
+/// Names the libraries before anybody looks for them: they are looked for once.
+const bool kNamed = [] {
+  setenv("THIMBLE_DHD_LIBRARY", THIMBLE_MOCK_DHD, 1);
+  setenv("THIMBLE_HD_LIBRARY", THIMBLE_MOCK_HD, 1);
+  return true;
+}();
+
+/// Arms on USB whose makers' libraries are on this computer.
+class VendorLibraryTest : public RealArmTermsTest {
+ protected:
+  VendorLibraryTest()
+      : usb_(std::string("vendor_") +
+             testing::UnitTest::GetInstance()->current_test_info()->name()) {}
+
+  template <class Mock>
+  static Mock& mock(const char* file, const char* name) {
+    void* const handle = dlopen(file, RTLD_LAZY);
+    return *reinterpret_cast<Mock* (*)()>(dlsym(handle, name))();
+  }
+
+  FoundArm only() const {
+    const auto arms = driver::find_arms(usb_.root());
+    return arms && arms->size() == 1 ? arms->front() : FoundArm{};
+  }
+
+  /// Opens an arm as a run does, and returns what became of it.
+  driver::Result<std::unique_ptr<driver::Device>> open(const FoundArm& arm,
+                                                       const std::string& file) {
+    auto found = scene::find_real_arm_file(arm, {.arm_file = kArms / (file + ".yaml")});
+    if (!found) return found.error();
+    auto link = scene::open_link(arm, found->file, {}, clock_);
+    if (!link) return link.error();
+    return driver::Device::open(std::move(link).value(), scene::device_settings(found->file, 1000),
+                                clock_.now_ns());
+  }
+
+  support::FakeUsb usb_;
+  driver::WallClock clock_{0};
+};
+
+TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
+  ASSERT_TRUE(kNamed);
+  usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
+  const FoundArm arm = only();
+  EXPECT_EQ(arm.kind, ArmKind::kDhd);
+  EXPECT_EQ(arm.board, BoardKind::kDhdLibrary);
+  EXPECT_EQ(arm.certainty, Certainty::kKnown);
+  EXPECT_EQ(arm.software, "libdrd 3.17.5");
+  // The library drives several arms, so the user says which.
+  const auto unnamed = scene::find_real_arm_file(arm);
+  ASSERT_FALSE(unnamed);
+  EXPECT_TRUE(holds(unnamed.error().message, "--arm NAME (installed are: omega3)"))
+      << unnamed.error().message;
+  auto& dhd = mock<support::MockDhd>(THIMBLE_MOCK_DHD, "mock_dhd");
+  dhd.reset();
+  {
+    const auto device = open(arm, "omega3");
+    ASSERT_TRUE(device) << device.error().message;
+    EXPECT_EQ((*device)->state().p_WT.norm() < 1e-3, true);
+  }
+  EXPECT_EQ(dhd.closed, 1);
+  for (const std::string& wrong : dhd.wrong) ADD_FAILURE() << wrong;
+  EXPECT_FALSE(open(arm, "touch")) << "another library's file";
+}
+
+TEST_F(VendorLibraryTest, MakesAnArmOfATouch) {
+  usb_.plug("1-1", "2988", "0302", "TT1", 1, 2);
+  usb_.add_tty("1-1", 0, "ttyACM0");
+  const FoundArm arm = only();
+  EXPECT_EQ(arm.kind, ArmKind::kHd);
+  EXPECT_EQ(arm.board, BoardKind::kHdLibrary);
+  EXPECT_EQ(arm.software, THIMBLE_MOCK_HD);
+  auto& hd = mock<support::MockHd>(THIMBLE_MOCK_HD, "mock_hd");
+  hd.reset();
+  {
+    const auto device = open(arm, "touch");
+    ASSERT_TRUE(device) << device.error().message;
+  }
+  EXPECT_EQ(hd.closed, 1);
+  for (const std::string& wrong : hd.wrong) ADD_FAILURE() << wrong;
+  EXPECT_FALSE(open(arm, "omega3")) << "another library's file";
+}
+
+TEST_F(VendorLibraryTest, TheDoctorNamesTheLibrary) {
+  usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
+  SystemInfo system;
+  system.root = usb_.root();
+  bool said = false;
+  for (const Finding& found : examine(system)) {
+    said = said || (holds(found.what, "FD1: its vendor's library is here (libdrd 3.17.5)") &&
+                    found.health == Health::kGood);
+  }
+  EXPECT_TRUE(said);
+}
+
+TEST_F(VendorLibraryTest, TheDoctorSaysHowAVendorsLibraryGetsToItsArm) {
+  usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
+  usb_.plug("1-2", "2988", "0302", "TT1", 1, 3);
+  usb_.add_tty("1-2", 0, "ttyACM0");
+  usb_.plug("1-3", "2988", "0304", "TX1", 1, 4);
+  // Whoever is root may open all that is there.
+  std::filesystem::remove(usb_.root() / "dev/bus/usb/001/002");
+  std::filesystem::remove(usb_.root() / "dev/ttyACM0");
+  SystemInfo system;
+  system.root = usb_.root();
+  const auto mend = [&](const std::string& words) {
+    for (const Finding& found : examine(system)) {
+      if (holds(found.what, words)) return found.mend;
+    }
+    return std::string("nobody says: " + words);
+  };
+  // Nobody has published what the vendors' set-ups do, and our own rule is not for their arms.
+  const std::string touch = mend("TT1: you may not open /dev/ttyACM0");
+  EXPECT_TRUE(holds(touch, "is not published")) << touch;
+  EXPECT_TRUE(holds(touch, R"(SUBSYSTEM=="tty", ATTRS{idVendor}=="2988", TAG+="uaccess")"))
+      << touch;
+  EXPECT_TRUE(holds(touch, "ID_MM_DEVICE_IGNORE")) << touch;
+  const std::string omega = mend("FD1: you may not open /dev/bus/usb/001/002");
+  EXPECT_TRUE(holds(omega, R"(ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="1451")")) << omega;
+  EXPECT_TRUE(holds(mend("TX1: no kernel driver has it"), "usbhid"));
+  for (const Finding& found : examine(system)) {
+    EXPECT_FALSE(holds(found.what, "T1: ") && holds(found.mend, "70-thimble")) << found.mend;
+  }
+  const auto chosen = scene::choose_arm(*driver::find_arms(usb_.root()), "TT1");
+  ASSERT_FALSE(chosen);
+  EXPECT_TRUE(holds(chosen.error().message, "`thimble doctor` says what to do"));
+  EXPECT_FALSE(holds(chosen.error().message, "70-thimble"));
+}
+
+}  // namespace
+}  // namespace thimble::app

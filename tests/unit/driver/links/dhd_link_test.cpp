@@ -1,0 +1,220 @@
+#include "links/dhd/dhd_link.h"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "support/heap_guard.h"
+#include "support/boards/link_fault.h"
+#include "support/mock/mock_dhd.h"
+#include "support/vintage_arm.h"
+#include "thimble/driver/device.h"
+
+namespace thimble::driver {
+namespace {
+
+using Eigen::Vector3d;
+
+/// An arm of Force Dimension's library, over a strict one that stands in for it.
+class DhdLinkTest : public ::testing::Test {
+ protected:
+  DhdLinkTest() {
+    auto library = dhd::load(THIMBLE_MOCK_DHD);
+    EXPECT_TRUE(library) << library.error().message;
+    library_ = std::move(library).value();
+    void* const handle = dlopen(THIMBLE_MOCK_DHD, RTLD_LAZY | RTLD_NOLOAD);
+    mock_ = reinterpret_cast<support::MockDhd* (*)()>(dlsym(handle, "mock_dhd"))();
+    mock_->reset();
+  }
+  ~DhdLinkTest() override {
+    device_.reset();
+    EXPECT_EQ(mock_->opened, mock_->closed);
+    EXPECT_FALSE(mock_->force_on);
+    for (const std::string& wrong : mock_->wrong) ADD_FAILURE() << wrong;
+  }
+
+  static DeviceSettings settings(std::int64_t silence_ns) {
+    DeviceSettings settings = support::vintage_settings();
+    settings.R_WB.setIdentity();
+    settings.p_WB.setZero();
+    settings.motion = {.mass = 0.1, .delay_ticks = 0};
+    settings.silence_limit_ns = silence_ns;
+    settings.limits.stall_ns = 900'000'000;
+    settings.limits.watchdog_ns = 1'000'000'000;
+    settings.limits.speed_max = 20;
+    return settings;
+  }
+
+  void open(std::int64_t silence_ns = 2'000'000'000) {
+    auto link = dhd::open_link(library_, clock_);
+    ASSERT_TRUE(link) << link.error().message;
+    auto device = Device::open(std::move(link).value(), settings(silence_ns), clock_.now_ns());
+    ASSERT_TRUE(device) << device.error().message;
+    device_ = std::move(device).value();
+    ASSERT_TRUE(device_->activate());
+  }
+
+  template <class Done>
+  bool ticks_until(const Vector3d& f_T_W, Done&& done) {
+    for (int i = 0; i < 5'000; ++i) {
+      clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);
+      device_->read(clock_.now_ns(), 0);
+      device_->write({.f_T_W = f_T_W, .touch = {}});
+      if (done()) return true;
+    }
+    return false;
+  }
+
+  Vector3d force_of_arm() const {
+    const std::lock_guard lock(mock_->mutex);
+    return mock_->arm.f_T_B;
+  }
+  void with_mock(const std::function<void(support::MockDhd&)>& change) const {
+    const std::lock_guard lock(mock_->mutex);
+    change(*mock_);
+  }
+
+  WallClock clock_{0};
+  dhd::Library library_;
+  support::MockDhd* mock_ = nullptr;
+  std::unique_ptr<Device> device_;
+};
+
+TEST_F(DhdLinkTest, TellsPoseGripperAndButtonsAndGivesTheGatedForce) {
+  EXPECT_EQ(library_.version, "3.17.5");
+  mock_->wrist = mock_->gripper = true;
+  mock_->arm.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  mock_->arm.buttons = 3;
+  ASSERT_NO_FATAL_FAILURE(open());
+  ASSERT_TRUE(ticks_until({0, 0.6, 0}, [&] {
+    return device_->wire_counters().reports > 400 &&
+           (device_->f_sent_W() - Vector3d(0, 0.6, 0)).norm() < 1e-9;
+  }));
+  EXPECT_LT((force_of_arm() - Vector3d(0, 0.6, 0)).norm(), 1e-9);
+  EXPECT_LT((device_->state().p_WT - Vector3d(0, 0.002, 0)).norm(), 4e-4) << "0.6 N at 300 N/m";
+  EXPECT_LT((device_->state().R_WT - mock_->arm.R_BT).norm(), 1e-5);
+  EXPECT_FLOAT_EQ(device_->state().gripper, 0.012F);
+  EXPECT_EQ(device_->state().buttons, 3);
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+  device_.reset();
+  EXPECT_EQ(mock_->taken.back(), Vector3d(0, 0, 0));
+  EXPECT_EQ(mock_->stopped, 1);
+  EXPECT_EQ(mock_->found_zero, 0) << "nobody said that it may move";
+}
+
+TEST_F(DhdLinkTest, AnArmThatDoesNotKnowItsZeroGetsNoForceAndDoesNotMoveUnasked) {
+  mock_->initialised = false;
+  const auto link = dhd::open_link(library_, clock_);
+  ASSERT_FALSE(link);
+  EXPECT_NE(link.error().message.find("thimble calibrate"), std::string::npos);
+  EXPECT_EQ(mock_->found_zero, 0);
+  EXPECT_TRUE(mock_->taken.empty());
+  ASSERT_TRUE(dhd::find_zero(library_));
+  EXPECT_EQ(mock_->found_zero, 1);
+  ASSERT_NO_FATAL_FAILURE(open());
+}
+
+TEST_F(DhdLinkTest, SaysWhyAnArmCannotBeOpened) {
+  const auto message = [&] {
+    const auto link = dhd::open_link(library_, clock_);
+    return link ? std::string() : link.error().message;
+  };
+  mock_->arms = 0;
+  EXPECT_NE(message().find("finds no arm"), std::string::npos);
+  mock_->arms = 2;
+  EXPECT_NE(message().find("finds 2 arms"), std::string::npos);
+  mock_->arms = 1;
+  mock_->held = true;
+  EXPECT_NE(message().find("told to fail"), std::string::npos);
+  mock_->held = false;
+  for (const char* step :
+       {"dhdSetWatchdog", "dhdSetGravityCompensation", "dhdSetBrakes", "dhdEnableForce"}) {
+    mock_->fails = step;
+    EXPECT_NE(message().find("did not"), std::string::npos) << step;
+    EXPECT_TRUE(mock_->taken.empty()) << step;
+  }
+  const auto absent = dhd::load("/nowhere/libdrd.so.3");
+  ASSERT_FALSE(absent);
+  EXPECT_NE(absent.error().message.find("/nowhere/libdrd.so.3"), std::string::npos);
+  const auto other = dhd::load("libm.so.6");
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("has no function dhdGetDeviceCount"), std::string::npos);
+}
+
+TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
+  using Mock = support::MockDhd;
+  const auto failing = [](const char* function) {
+    return [function](Mock& mock) { mock.fails = function; };
+  };
+  const auto nan = [](Mock& mock) { mock.tells_nan = true; };
+  const auto late = [](Mock& mock) { mock.late = true; };
+  const auto trip = [](Mock& mock) { mock.tripped = true; };
+  struct Row {
+    const char* name;
+    std::function<void(Mock&)> begin;
+    Fault fault;
+    int more;
+  };
+  const Row rows[] = {
+      {"library says error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
+      {"library says error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
+      {"NaN from the library", nan, Fault::kNoReports, 1},
+      {"library answers 60 ms late", late, Fault::kNoReports, 3},
+      {"library takes no force", failing("dhdSetForce"), Fault::kTransportLost, 0},
+      // It is asked every 32nd time, and what it takes meanwhile goes to no motor.
+      {"library switched the forces off", trip, Fault::kRefused, 200}};
+  for (const Row& row : rows) {
+    mock_->reset();
+    ASSERT_NO_FATAL_FAILURE(open(30'000'000));
+    ASSERT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
+    const support::LinkFaultRow promised(row.name, "libdrd", row.fault, row.more);
+    std::size_t before = 0;
+    with_mock([&](Mock& mock) {
+      row.begin(mock);
+      before = mock.taken.size();
+    });
+    EXPECT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->fault() != Fault::kNone; }));
+    EXPECT_EQ(device_->fault(), row.fault) << row.name << ": " << name(device_->fault());
+    EXPECT_TRUE(device_->state().p_WT.allFinite());
+    with_mock([&](Mock& mock) {
+      mock.fails.clear();
+      mock.tells_nan = mock.late = false;
+    });
+    int more = 50;
+    ticks_until({1, 0, 0}, [&] { return --more <= 0; });
+    EXPECT_EQ(device_->fault(), row.fault) << row.name;
+    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.name;
+    device_.reset();
+    with_mock([&](const Mock& mock) {
+      EXPECT_LE(support::forces_since(mock.taken, before), row.more) << row.name;
+      EXPECT_EQ(mock.arm.f_T_B, Vector3d(0, 0, 0)) << row.name;
+      for (const std::string& wrong : mock.wrong) ADD_FAILURE() << row.name << ": " << wrong;
+    });
+  }
+}
+
+TEST_F(DhdLinkTest, ALoopThatStandsStillLosesItsForce) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(force_of_arm(), Vector3d(0, 0, 0));
+}
+
+TEST_F(DhdLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  int calls = 0, ticks = 100;
+  ticks_until({0.1, 0, 0}, [&] {
+    calls += support::heap_calls_of([&] {
+      device_->read(clock_.now_ns(), 0);
+      device_->write({.f_T_W = {0.1, 0, 0}, .touch = {}});
+    });
+    return --ticks <= 0;
+  });
+  EXPECT_EQ(calls, 0);
+}
+
+}  // namespace
+}  // namespace thimble::driver
