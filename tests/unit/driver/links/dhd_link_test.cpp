@@ -1,86 +1,42 @@
 #include "links/dhd/dhd_link.h"
 
-#include <dlfcn.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <functional>
 #include <thread>
 
 #include "support/heap_guard.h"
-#include "support/boards/link_fault.h"
 #include "support/mock/mock_dhd.h"
-#include "support/vintage_arm.h"
-#include "thimble/driver/device.h"
+#include "unit/driver/links/vendor_link_test.h"
 
 namespace thimble::driver {
 namespace {
 
 using Eigen::Vector3d;
 
-/// An arm of Force Dimension's library, over a strict one that stands in for it.
-class DhdLinkTest : public ::testing::Test {
- protected:
-  DhdLinkTest() {
-    auto library = dhd::load(THIMBLE_MOCK_DHD);
-    EXPECT_TRUE(library) << library.error().message;
-    library_ = std::move(library).value();
-    void* const handle = dlopen(THIMBLE_MOCK_DHD, RTLD_LAZY | RTLD_NOLOAD);
-    mock_ = reinterpret_cast<support::MockDhd* (*)()>(dlsym(handle, "mock_dhd"))();
-    mock_->reset();
+/// An arm of Force Dimension's library.
+struct ForceDimension {
+  using Library = dhd::Library;
+  using Mock = support::MockDhd;
+  static constexpr const char* kFile = THIMBLE_MOCK_DHD;
+  static constexpr const char* kMock = "mock_dhd";
+  static constexpr const char* kName = "libdrd";
+  static constexpr std::int64_t kPeriod_ns = 1'000'000;
+  static constexpr int kTicksAfter = 50;
+  static auto load(const char* file) { return dhd::load(file); }
+  static auto open_link(const Library& library, Clock& clock) {
+    return dhd::open_link(library, clock);
   }
+  static void heal(Mock& mock) {
+    mock.fails.clear();
+    mock.tells_nan = mock.late = false;
+  }
+};
+
+class DhdLinkTest : public VendorLinkTest<ForceDimension> {
+ protected:
   ~DhdLinkTest() override {
     device_.reset();
-    EXPECT_EQ(mock_->opened, mock_->closed);
     EXPECT_FALSE(mock_->force_on);
-    for (const std::string& wrong : mock_->wrong) ADD_FAILURE() << wrong;
   }
-
-  static DeviceSettings settings(std::int64_t silence_ns) {
-    DeviceSettings settings = support::vintage_settings();
-    settings.R_WB.setIdentity();
-    settings.p_WB.setZero();
-    settings.motion = {.mass = 0.1, .delay_ticks = 0};
-    settings.silence_limit_ns = silence_ns;
-    settings.limits.stall_ns = 900'000'000;
-    settings.limits.watchdog_ns = 1'000'000'000;
-    settings.limits.speed_max = 20;
-    return settings;
-  }
-
-  void open(std::int64_t silence_ns = 2'000'000'000) {
-    auto link = dhd::open_link(library_, clock_);
-    ASSERT_TRUE(link) << link.error().message;
-    auto device = Device::open(std::move(link).value(), settings(silence_ns), clock_.now_ns());
-    ASSERT_TRUE(device) << device.error().message;
-    device_ = std::move(device).value();
-    ASSERT_TRUE(device_->activate());
-  }
-
-  template <class Done>
-  bool ticks_until(const Vector3d& f_T_W, Done&& done) {
-    for (int i = 0; i < 5'000; ++i) {
-      clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);
-      device_->read(clock_.now_ns(), 0);
-      device_->write({.f_T_W = f_T_W, .touch = {}});
-      if (done()) return true;
-    }
-    return false;
-  }
-
-  Vector3d force_of_arm() const {
-    const std::lock_guard lock(mock_->mutex);
-    return mock_->arm.f_T_B;
-  }
-  void with_mock(const std::function<void(support::MockDhd&)>& change) const {
-    const std::lock_guard lock(mock_->mutex);
-    change(*mock_);
-  }
-
-  WallClock clock_{0};
-  dhd::Library library_;
-  support::MockDhd* mock_ = nullptr;
-  std::unique_ptr<Device> device_;
 };
 
 TEST_F(DhdLinkTest, TellsPoseGripperAndButtonsAndGivesTheGatedForce) {
@@ -145,20 +101,13 @@ TEST_F(DhdLinkTest, SaysWhyAnArmCannotBeOpened) {
 }
 
 TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
-  using Mock = support::MockDhd;
   const auto failing = [](const char* function) {
     return [function](Mock& mock) { mock.fails = function; };
   };
   const auto nan = [](Mock& mock) { mock.tells_nan = true; };
   const auto late = [](Mock& mock) { mock.late = true; };
   const auto trip = [](Mock& mock) { mock.tripped = true; };
-  struct Row {
-    const char* name;
-    std::function<void(Mock&)> begin;
-    Fault fault;
-    int more;
-  };
-  const Row rows[] = {
+  const FaultRow rows[] = {
       {"library says error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
       {"library says error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
       {"NaN from the library", nan, Fault::kNoReports, 1},
@@ -166,34 +115,7 @@ TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
       {"library takes no force", failing("dhdSetForce"), Fault::kTransportLost, 0},
       // It is asked every 32nd time, and what it takes meanwhile goes to no motor.
       {"library switched the forces off", trip, Fault::kRefused, 200}};
-  for (const Row& row : rows) {
-    mock_->reset();
-    ASSERT_NO_FATAL_FAILURE(open(30'000'000));
-    ASSERT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
-    const support::LinkFaultRow promised(row.name, "libdrd", row.fault, row.more);
-    std::size_t before = 0;
-    with_mock([&](Mock& mock) {
-      row.begin(mock);
-      before = mock.taken.size();
-    });
-    EXPECT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->fault() != Fault::kNone; }));
-    EXPECT_EQ(device_->fault(), row.fault) << row.name << ": " << name(device_->fault());
-    EXPECT_TRUE(device_->state().p_WT.allFinite());
-    with_mock([&](Mock& mock) {
-      mock.fails.clear();
-      mock.tells_nan = mock.late = false;
-    });
-    int more = 50;
-    ticks_until({1, 0, 0}, [&] { return --more <= 0; });
-    EXPECT_EQ(device_->fault(), row.fault) << row.name;
-    EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.name;
-    device_.reset();
-    with_mock([&](const Mock& mock) {
-      EXPECT_LE(support::forces_since(mock.taken, before), row.more) << row.name;
-      EXPECT_EQ(mock.arm.f_T_B, Vector3d(0, 0, 0)) << row.name;
-      for (const std::string& wrong : mock.wrong) ADD_FAILURE() << row.name << ": " << wrong;
-    });
-  }
+  expect_latched_zero(rows, 30'000'000);
 }
 
 TEST_F(DhdLinkTest, ALoopThatStandsStillLosesItsForce) {

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "support/boards/link_fault.h"
+#include "support/vintage_arm.h"
+#include "thimble/driver/clock.h"
+#include "thimble/driver/device.h"
+
+namespace thimble::driver {
+
+/// A device behind a vendor's library, over a strict one that stands in for it. Vendor says which:
+/// types `Library` and `Mock`; `kFile`, `kMock` and `kName`, the stand-in's file, its function that
+/// gives the mock, and the name in the table of faults; `kPeriod_ns`, a tick of the vendor's own
+/// loop; `kTicksAfter`, how long a fault is watched; `load`, `open_link`, and `heal`, which ends
+/// what a fault began.
+template <class Vendor>
+class VendorLinkTest : public ::testing::Test {
+ protected:
+  using Mock = typename Vendor::Mock;
+  /// What goes wrong, the fault that it latches, and how many forces may still go out with it.
+  struct FaultRow {
+    const char* name;
+    std::function<void(Mock&)> begin;
+    Fault fault;
+    int more;
+  };
+
+  VendorLinkTest() {
+    auto library = Vendor::load(Vendor::kFile);
+    EXPECT_TRUE(library) << library.error().message;
+    library_ = std::move(library).value();
+    void* const handle = dlopen(Vendor::kFile, RTLD_LAZY | RTLD_NOLOAD);
+    mock_ = reinterpret_cast<Mock* (*)()>(dlsym(handle, Vendor::kMock))();
+    mock_->reset();
+  }
+  ~VendorLinkTest() override {
+    device_.reset();
+    EXPECT_EQ(mock_->opened, mock_->closed);
+    for (const std::string& wrong : mock_->wrong) ADD_FAILURE() << wrong;
+  }
+
+  static DeviceSettings settings(std::int64_t silence_ns) {
+    DeviceSettings settings = support::vintage_settings();
+    settings.R_WB.setIdentity();
+    settings.p_WB.setZero();
+    settings.motion = {.mass = 0.1, .delay_ticks = 0};
+    settings.silence_limit_ns = silence_ns;
+    settings.limits.stall_ns = 900'000'000;
+    settings.limits.watchdog_ns = 1'000'000'000;
+    settings.limits.speed_max = 20;
+    return settings;
+  }
+
+  void open(std::int64_t silence_ns = 2'000'000'000) {
+    auto link = Vendor::open_link(library_, clock_);
+    ASSERT_TRUE(link) << link.error().message;
+    auto device = Device::open(std::move(link).value(), settings(silence_ns), clock_.now_ns());
+    ASSERT_TRUE(device) << device.error().message;
+    device_ = std::move(device).value();
+    ASSERT_TRUE(device_->activate());
+  }
+
+  /// Asks for the force (world, N) in up to 5,000 ticks and returns whether `done` was said.
+  template <class Done>
+  bool ticks_until(const Eigen::Vector3d& f_T_W, Done&& done) {
+    for (int i = 0; i < 5'000; ++i) {
+      clock_.sleep_until_ns(clock_.now_ns() + Vendor::kPeriod_ns);
+      device_->read(clock_.now_ns(), 0);
+      device_->write({.f_T_W = f_T_W, .touch = {}});
+      if (done()) return true;
+    }
+    return false;
+  }
+
+  Eigen::Vector3d force_of_arm() const {
+    const std::lock_guard lock(mock_->mutex);
+    return mock_->arm.f_T_B;
+  }
+  void with_mock(const std::function<void(Mock&)>& change) const {
+    const std::lock_guard lock(mock_->mutex);
+    change(*mock_);
+  }
+
+  /// Expects that each row's fault is named under force, and that zero is what goes out for good.
+  void expect_latched_zero(std::span<const FaultRow> rows, std::int64_t silence_ns) {
+    const Eigen::Vector3d zero(0, 0, 0);
+    for (const FaultRow& row : rows) {
+      mock_->reset();
+      ASSERT_NO_FATAL_FAILURE(open(silence_ns));
+      ASSERT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
+      const support::LinkFaultRow promised(row.name, Vendor::kName, row.fault, row.more);
+      std::size_t before = 0;
+      with_mock([&](Mock& mock) {
+        row.begin(mock);
+        before = mock.taken.size();
+      });
+      EXPECT_TRUE(ticks_until({1, 0, 0}, [&] { return device_->fault() != Fault::kNone; }));
+      EXPECT_EQ(device_->fault(), row.fault) << row.name << ": " << name(device_->fault());
+      EXPECT_TRUE(device_->state().p_WT.allFinite());
+      with_mock(Vendor::heal);
+      int more = Vendor::kTicksAfter;
+      ticks_until({1, 0, 0}, [&] { return --more <= 0; });
+      EXPECT_EQ(device_->fault(), row.fault) << row.name;
+      EXPECT_EQ(device_->f_sent_W(), zero) << row.name;
+      device_.reset();
+      with_mock([&](const Mock& mock) {
+        EXPECT_LE(support::forces_since(mock.taken, before), row.more) << row.name;
+        EXPECT_EQ(mock.arm.f_T_B, zero) << row.name;
+        for (const std::string& wrong : mock.wrong) ADD_FAILURE() << row.name << ": " << wrong;
+      });
+    }
+  }
+
+  WallClock clock_{0};
+  typename Vendor::Library library_;
+  Mock* mock_ = nullptr;
+  std::unique_ptr<Device> device_;
+};
+
+}  // namespace thimble::driver
