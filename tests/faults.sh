@@ -3,13 +3,49 @@
 # column per phase. What runs in simulated time is the same on every machine; of what runs on the
 # wall clock the table says only whether the promise was kept.
 #   tests/faults.sh [BUILD_DIR [OUTPUT]]    default: build/release and tests/FAULTS.md
+#   tests/faults.sh --check LINES           LINES: what FaultMatrix left (THIMBLE_FAULTS); fails where
+#                                           tests/FAULTS.md says otherwise; writes nothing
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+simulated_rows() {  # simulated_rows LINES
+  awk -F'|' '
+    $3 == "process" || $4 == "link" || $4 == "identify" { next }
+    {
+      key = $2 "|" $3
+      if (!(key in seen)) { seen[key] = 1; order[++n] = key }
+      if ($4 != "opening") { promise[key] = $5; limit[key] = $7 }
+      value = $6
+      sub(/goes on/, "-", value)
+      cell[key "|" $4] = value
+    }
+    END {
+      split("opening free contact sliding deforming recording", phases, " ")
+      for (i = 1; i <= n; ++i) {
+        split(order[i], part, "|")
+        line = "| " part[1] " | " part[2] " | " promise[order[i]] " | " limit[order[i]] " |"
+        for (p = 1; p <= 6; ++p) line = line " " cell[order[i] "|" phases[p]] " |"
+        print line
+      }
+    }' "$1" | sort -t'|' -s -k2,2
+}
+
+if [ "${1:-}" = --check ]; then
+  [ $# = 2 ] || { echo "Usage: tests/faults.sh --check LINES" >&2; exit 2; }
+  sed -n '/^## In simulated time/,/^## While/p' tests/FAULTS.md | sed -n '/^| fault/d; /^|-/d; /^|/p' | sort >"$2.stored"
+  simulated_rows "$2" | sort >"$2.now"
+  diff "$2.stored" "$2.now" >&2 || {
+    echo "FAILED: tests/FAULTS.md (<) is not what the matrix measured (>): write it anew by tests/faults.sh, and look at what changed" >&2
+    exit 1
+  }
+  echo "$(wc -l <"$2.now") rows of faults as tests/FAULTS.md has them"
+  exit 0
+fi
 build=${1:-build/release}
 output=${2:-tests/FAULTS.md}
 lines=$(mktemp)
 trap 'rm -f "$lines"' EXIT
-THIMBLE_FAULTS=$lines "$build/tests/sim/test_hard_cases" --gtest_filter="*FaultMatrix*" >/dev/null
+THIMBLE_FAULTS=$lines "$build/tests/sim/test_faults" --gtest_filter="*FaultMatrix*" >/dev/null
 THIMBLE_FAULTS=$lines "$build/tests/sim/test_identify" --gtest_filter='IdentifyBounds.*' >/dev/null
 [ ! -e "$build/tests/unit/driver/test_links" ] ||
   THIMBLE_FAULTS=$lines "$build/tests/unit/driver/test_links" --gtest_filter='*Link*Names*' >/dev/null
@@ -38,25 +74,7 @@ checksum. Forces on the way out that a cable has changed are the board's busines
 | fault | arm | promise | limit | opening | free | contact | sliding | deforming | recording |
 |---|---|---|---|---|---|---|---|---|---|
 TEXT
-  awk -F'|' '
-    $3 == "process" || $4 == "link" || $4 == "identify" { next }
-    {
-      key = $2 "|" $3
-      if (!(key in seen)) { seen[key] = 1; order[++n] = key }
-      if ($4 != "opening") { promise[key] = $5; limit[key] = $7 }
-      value = $6
-      sub(/goes on/, "-", value)
-      cell[key "|" $4] = value
-    }
-    END {
-      split("opening free contact sliding deforming recording", phases, " ")
-      for (i = 1; i <= n; ++i) {
-        split(order[i], part, "|")
-        line = "| " part[1] " | " part[2] " | " promise[order[i]] " | " limit[order[i]] " |"
-        for (p = 1; p <= 6; ++p) line = line " " cell[order[i] "|" phases[p]] " |"
-        print line
-      }
-    }' "$lines" | sort -t'|' -s -k2,2
+  simulated_rows "$lines"
   cat <<'TEXT'
 
 ## While an arm is identified, in simulated time
