@@ -1,6 +1,7 @@
 # A screen in memory for the rest of a test, which is its DISPLAY. Source it after expect.sh, where Xvfb is.
 #   $work/Xvfb_screen0: what it shows
-Xvfb -displayfd 3 -screen 0 1300x820x24 -fbdir "$work" 3>display.txt 2>/dev/null &
+# Its number is this shell's: two that look for a free one at the same moment may take the same.
+Xvfb :$((100 + $$ % 50000)) -displayfd 3 -screen 0 1300x820x24 -fbdir "$work" 3>display.txt 2>/dev/null &
 xvfb=$!
 trap 'kill $xvfb' EXIT
 for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done

@@ -46,11 +46,7 @@ expect 1 'cannot be written' "$thimble" shot "$scene" --at 1 --size 160x120 --ou
 expect 1 'screen' env -u DISPLAY -u WAYLAND_DISPLAY "$thimble" view --for 1
 
 if command -v Xvfb >/dev/null; then
-  Xvfb -displayfd 3 -screen 0 1300x820x24 3>display.txt 2>/dev/null &
-  xvfb=$!
-  for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
-  DISPLAY=:$(cat display.txt)
-  export DISPLAY
+  source "$(dirname "$0")/screen.sh"
   "$thimble" run "$scene" --clock wall --name shot_test_$$ --no-view --duration 60 >run.txt 2>&1 &
   run=$!
   for _ in $(seq 100); do
@@ -79,7 +75,6 @@ if command -v Xvfb >/dev/null; then
   kill -9 "$viewer"
   expect 0 '' timeout 30 tail --pid=$run -f /dev/null
   kill -9 $run 2>/dev/null
-  kill $xvfb
 else
   leave_out 'the window, for want of Xvfb (as root: apt-get install xvfb)'
 fi

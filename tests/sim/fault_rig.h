@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,10 @@ struct TestedArm {
   std::string_view file;  ///< in app/arms
   driver::ArmKind kind;   ///< what it speaks
 };
+/// Names it in lists of tests, where its bytes would stand.
+inline void PrintTo(const TestedArm& arm, std::ostream* out) {
+  *out << arm.name;
+}
 inline constexpr std::array<TestedArm, 6> kTestedArms{{
     {"vintage_phantom", "vintage_phantom", driver::ArmKind::kPolhem},
     {"vintage_text", "vintage_phantom", driver::ArmKind::kHfabLine},

@@ -7,8 +7,8 @@ namespace thimble::support {
 
 /// Returns whether tests shall run at full length (THIMBLE_LONG=1) or in their short form.
 inline bool long_form() {
-  const char* const wish = std::getenv("THIMBLE_LONG");
-  return wish != nullptr && std::string_view(wish) == "1";
+  const char* const asked = std::getenv("THIMBLE_LONG");
+  return asked != nullptr && std::string_view(asked) == "1";
 }
 
 }  // namespace thimble::support

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "thimble/device_sim/usb/arm_shelf.h"
+#include "support/boards/shelf_entry.h"
 #include "usb/hid_arm.h"
 
 namespace thimble::device_sim::usb {

@@ -154,6 +154,9 @@ struct Miswired {
   void (*break_it)(device_sim::FirmwareSettings&);
   const char* sentence;
 };
+void PrintTo(const Miswired& mistake, std::ostream* out) {
+  *out << mistake.name;
+}
 
 const Miswired kMiswired[] = {
     {"EncoderBackwards", [](auto& f) { f.wiring.encoder_gain[1] = -1; },
