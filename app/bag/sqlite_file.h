@@ -20,11 +20,11 @@ class SqliteStatement {
  public:
   /// Goes to the next row; false if there is none. The error is SQLite's.
   driver::Result<bool> next();
-  /// Gives a number of the row; 0 if it is none.
+  /// Returns a number of the row; 0 if it is none.
   std::int64_t number(int column) const;
-  /// Gives a text of the row, until the next one.
+  /// Returns a text of the row, until the next one.
   std::string_view text(int column) const;
-  /// Gives bytes of the row, until the next one.
+  /// Returns bytes of the row, until the next one.
   std::span<const unsigned char> bytes(int column) const;
 
   /// Puts a value for a `?` (from 1). What it names must stay until `next`.

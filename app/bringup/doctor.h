@@ -6,7 +6,7 @@
 
 namespace thimble::app {
 
-/// Says how bad a finding is.
+/// How bad a finding is.
 enum class Health {
   kGood,     ///< As it should be.
   kAdvice,   ///< Works, but touch may suffer.

@@ -35,7 +35,7 @@ using Prompt = std::function<bool(const std::string& what)>;
 std::vector<CheckResult> feel_check(BenchArm& bench, const scene::ArmFile& file,
                                     const Prompt& prompt, const std::atomic<bool>& stop);
 
-/// Gives the way of a simulated hand that does what the prompts ask, without pauses between them
+/// Returns the way of a simulated hand that does what the prompts ask, without pauses between them
 /// (seconds and points in the world, m). `p_WT` is where it begins.
 std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT);
 

@@ -29,8 +29,8 @@ void for_each_wiring(const std::function<void(const WiringGuess&)>& visit);
 WiringGuess guess_wiring(const Eigen::Matrix3d& seen,
                          const std::function<Eigen::Matrix3d(const WiringGuess&)>& expected);
 
-/// Says in sentences what is wrong, "" if nothing is. `what`: "Encoder" or "Motor"; `backwards` and
-/// `dead` are what it does then ("counts backwards", "does not count").
+/// Returns what is wrong in sentences, "" if nothing is. `what`: "Encoder" or "Motor"; `backwards`
+/// and `dead` are what it does then ("counts backwards", "does not count").
 std::string describe_wiring(const WiringGuess& guess, const std::string& what,
                             const std::string& backwards, const std::string& dead);
 

@@ -21,12 +21,12 @@ bool has_marks(const render::MeshFindings& found);
 std::string fault_table(const render::MeshFindings& found, const render::TriangleMesh& mesh,
                         const MeshView& view, double tolerance);
 
-/// Gives the gnuplot clauses (each beginning with a comma) that draw the blocks of a fault_table in
-/// the file `data`: what is hidden thin and pale, what is in sight on a white ground.
+/// Returns the gnuplot clauses (each beginning with a comma) that draw the blocks of a fault_table
+/// in the file `data`: what is hidden thin and pale, what is in sight on a white ground.
 std::string fault_clauses(const render::MeshFindings& found, const std::string& data);
 
-/// Gives the gnuplot commands of a legend on the line at screen height `y`: a sign and a count for
-/// each kind, from `x` on. Objects and labels are numbered from 100.
+/// Returns the gnuplot commands of a legend on the line at screen height `y`: a sign and a count
+/// for each kind, from `x` on. Objects and labels are numbered from 100.
 std::string fault_legend(const render::MeshFindings& found, double x, double y);
 
 /// Gives the gnuplot commands that take the legend's labels and arrows away again.

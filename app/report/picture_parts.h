@@ -25,7 +25,7 @@ inline constexpr const char* kContactFill = "#eef3f8";
 /// Quotes a text for gnuplot, which then takes it as it is.
 std::string quote(const std::string& text);
 
-/// Gives a number the way gnuplot reads it.
+/// Returns a number the way gnuplot reads it.
 std::string number(double value);
 
 /// Sets borders, tics and grid to the quiet style of all pictures.
@@ -40,8 +40,8 @@ struct NamedTics {
   double width = 0;  ///< Of the widest number, pixels.
 };
 
-/// Gives the multiples of a tic distance from `low` to `high` (> low), about `count` of them, each
-/// written times `sign`.
+/// Returns the multiples of a tic distance from `low` to `high` (> low), about `count` of them,
+/// each written times `sign`.
 NamedTics named_tics(double low, double high, double sign, int count);
 
 /// Returns how wide a text (UTF-8) in the pictures' font of so many points is at most about,

@@ -39,8 +39,8 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
 /// Returns the times of a loop of `rate` (Hz) with this arm, without jitter.
 scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double period_spread = 0);
 
-/// Says in one sentence for each object of a scene that asks for more than arm, loop and hand can
-/// carry what it asks, what can be had, and what to change; nothing for a scene that is in order.
+/// Returns a sentence for each object of a scene that asks for more than arm, loop and hand can
+/// carry: what it asks, what can be had, and what to change; nothing for a scene that is in order.
 std::vector<std::string> stability_warnings(const scene::Scene& scene);
 
 /// What `thimble tune` tells.
@@ -55,7 +55,7 @@ struct AnswerAges {
   double most = 0;  ///< that 99 % do not exceed
 };
 
-/// Says how thorough a tuning is.
+/// How thorough a tuning is.
 struct TuneOptions {
   double period_spread = 0;  ///< Standard deviation of the loop's period, s.
   int places_per_side = 2;   ///< Walls are tried at so many places per side of the workspace.

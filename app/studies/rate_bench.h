@@ -42,7 +42,7 @@ RateVerdict verdict_of(const RateBench& bench);
 /// Returns the share of K_max that ticks of uneven length cost: 1 - E[T]^2 / E[T^2] [PHYSICS 1.1].
 double stiffness_lost(const session::Histogram& period);
 
-/// Gives it as figures.
+/// Returns it as figures.
 std::vector<Figure> figures_of(const RateBench& bench, const RateVerdict& verdict);
 
 }  // namespace thimble::app

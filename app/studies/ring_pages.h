@@ -26,7 +26,7 @@ struct BumpyRing {
   double half_size() const noexcept { return ring_radius + tube_radius * (1 + amplitude); }
 };
 
-/// Says what a written ring is made of.
+/// What a written ring is made of.
 struct RingGrid {
   std::int32_t around = 0;  ///< Squares around the ring, a multiple of 32.
   std::int32_t across = 0;  ///< Squares around the tube, a multiple of 16.

@@ -20,7 +20,7 @@ struct Study {
   driver::Result<std::vector<Figure>> (*run)(const std::filesystem::path& folder);
 };
 
-/// Gives every study. To add one: write its file under study/, add its line here.
+/// Returns every study. To add one: write its file under study/, add its line here.
 std::span<const Study> studies();
 
 }  // namespace thimble::app

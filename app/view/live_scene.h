@@ -13,7 +13,7 @@ class LiveScene {
   /// Keeps the reader, which must outlive this. Real-time: never from the servo thread.
   explicit LiveScene(const session::SharedReader& reader);
 
-  /// Gives what does not change.
+  /// Returns what does not change.
   const DrawnScene& scene() const { return scene_; }
 
   /// Brings a moment to what is newest; what the run has not told stays as it is. Tells whether

@@ -26,13 +26,13 @@ enum class Edges {
   kOn,
 };
 
-/// Says how dents are drawn.
+/// How dents are drawn.
 enum class DentNormals {
   kSplit,  ///< New corners keep what was shown at their place (DentSurface).
   kNaive,  ///< As any mesh is: each vertex has the mean of its polygons. To compare.
 };
 
-/// Says how a scene is drawn.
+/// How a scene is drawn.
 struct PaintChoice {
   Shading shading = Shading::kPhong;
   Edges edges = Edges::kAuto;

@@ -22,7 +22,7 @@ class Screen {
   GLFWwindow* window() { return window_; }
   /// Returns how much larger than usual everything is to be.
   float scale() const { return scale_; }
-  /// Gives the keys pressed since it was asked last, but those typed into a field.
+  /// Returns the keys pressed since it was asked last, but those typed into a field.
   std::vector<int> take_keys();
 
   /// Scales text and panel by this from now on; 0: as the monitor is.

@@ -49,7 +49,7 @@ class PlayedScene {
 driver::Result<double> strongest_moment(const std::filesystem::path& scene,
                                         const session::SessionOptions& options);
 
-/// Says what a picture of a scene is like.
+/// What a picture of a scene is like.
 struct ShotChoice {
   int width = 960, height = 640;  ///< pixels
   PaintChoice paint;

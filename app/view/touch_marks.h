@@ -37,7 +37,7 @@ double size_of(const DrawnScene& scene);
 /// Returns how long the arrow of a force (N) is drawn, m: its limit is as long as half the scene.
 double arrow_length(double force, const DrawnScene& scene);
 
-/// Says which marks are wanted.
+/// Which marks are wanted.
 struct MarkChoice {
   bool arm = true;
   bool tip = true;

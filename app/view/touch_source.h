@@ -29,7 +29,7 @@ class TouchSource {
   /// Returns whether there was a tick so far.
   virtual bool has_moment() const = 0;
   virtual const Plots& plots() const = 0;
-  /// Says why nothing moves; empty if it does.
+  /// Returns why nothing moves; empty if it does.
   virtual const std::string& notice() const = 0;
   /// Returns what pictures of it are named by.
   virtual std::string name() const = 0;
@@ -39,9 +39,9 @@ class TouchSource {
   /// Returns when the moment is that lies `steps` single steps after the one looked at, s: of a
   /// recording ticks, of a run pictures that are kept.
   virtual double beside(int steps) const = 0;
-  /// Tells what of the time is kept, in a sentence.
+  /// Returns what of the time is kept, in a sentence.
   virtual std::string kept() const = 0;
-  /// Tells of a recording what it is and what it does not know, a sentence each; none of a run.
+  /// Returns what a recording is and what it does not know, a sentence each; none of a run.
   virtual const std::vector<std::string>& about() const = 0;
 };
 

@@ -11,7 +11,7 @@
 
 namespace thimble::app::view {
 
-/// Says what a window begins with, and when it closes by itself, for tests.
+/// What a window begins with, and when it closes by itself, for tests.
 struct WindowChoice {
   HandSource hand = HandSource::kMouse;  ///< Leads the simulated hand, where a run lets a viewer.
   FeltChoice felt;

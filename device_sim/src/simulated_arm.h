@@ -70,7 +70,7 @@ class SimulatedArm {
   /// Hands the host's bytes to the wire at the present time.
   void put_message(std::span<const std::byte> bytes) noexcept;
 
-  /// Gives the hand, to be led or held by whoever lets time pass.
+  /// Returns the hand, to be led or held by whoever lets time pass.
   Hand& hand() noexcept { return hand_; }
 
   /// Lets the hand take the tip (which it does from the beginning) or let go of it: then nothing

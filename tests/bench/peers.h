@@ -27,7 +27,7 @@ class Peer {
   /// Follows the tip from one tick to the next and gives its depth (m); NaN if contact is lost.
   virtual double follow(const Eigen::Vector3d& p) = 0;
 
-  /// Says which of the questions the library answers.
+  /// Returns which of the questions the library answers.
   virtual bool has_first_hit() const { return false; }
   virtual bool has_closest() const { return false; }
   virtual bool has_follow() const { return false; }

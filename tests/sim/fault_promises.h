@@ -10,7 +10,7 @@
 
 namespace thimble::fault_test {
 
-/// Says what is promised of a fault.
+/// What is promised of a fault.
 enum class Promise {
   kOff,     ///< The driver sees it: the force goes off, stays off, and the cause is named.
   kArmOff,  ///< The arm's own watchdog switches the motors off; the driver may not know.
@@ -20,7 +20,7 @@ enum class Promise {
               ///< driver names the cause if it can see one; of the motors nothing is promised.
 };
 
-/// Says where a fault comes from.
+/// Where a fault comes from.
 enum class Place { kCable, kWiring, kHost };
 
 /// One kind of fault.

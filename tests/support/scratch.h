@@ -9,7 +9,7 @@
 
 namespace thimble::support {
 
-/// Gives a folder of this process alone, empty at first and gone at its end: tests run side by
+/// Returns a folder of this process alone, empty at first and gone at its end: tests run side by
 /// side.
 inline const std::filesystem::path& scratch_folder() {
   struct Folder {

@@ -9,7 +9,7 @@ namespace thimble::usb_test {
 // What is true of a board before anybody touches it. Each says PASS or FAIL and returns how many
 // checks failed.
 
-/// Says how a check went; returns 0 if it passed, else 1.
+/// Prints how a check went; returns 0 if it passed, else 1.
 int verdict(bool pass, const std::string& what, const std::string& detail);
 
 /// Compares ids, strings, interfaces and report descriptors, as the kernel shows them, with those

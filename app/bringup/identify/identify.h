@@ -112,7 +112,7 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
 /// Opens the bench for one motion: with the known mass on the tip, or without it.
 using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool loaded)>;
 
-/// Says why a largest force and a known mass do not go together, or not with the file's limits.
+/// Returns why a largest force and a known mass do not go together, or not with the file's limits.
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options);
 
 /// Moves a free arm, with and without a known mass, and finds its constants. No force beyond

@@ -39,7 +39,7 @@ TipLimits tip_limits(const Eigen::Matrix3d& J_BT, const Eigen::Matrix3d& mass,
 /// base, as its driver has it. Empty out of reach.
 std::optional<Eigen::Matrix3d> jacobian_at(const ArmFile& arm, const Eigen::Vector3d& p_WT);
 
-/// Gives a grid of `per_side`^3 points over the workspace, those that the arm reaches, m, world.
+/// Returns a grid of `per_side`^3 points over the workspace, those that the arm reaches, m, world.
 std::vector<Eigen::Vector3d> points_of_workspace(const ArmFile& arm, int per_side);
 
 /// Finds the worst directions over the workspace, of what the arm's file says of its tip (the same

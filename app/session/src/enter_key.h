@@ -2,7 +2,7 @@
 
 namespace thimble::session {
 
-/// Says what the user did at the terminal since the last look.
+/// What the user did at the terminal since the last look.
 enum class EnterKey {
   kNothing,
   kPressed,

@@ -69,7 +69,7 @@ struct AxisMaker {
   AccuracyAxis (*make)();
 };
 
-/// Gives every axis, in the order of the page. To add one: write its file, add its line there.
+/// Returns every axis, in the order of the page. To add one: write its file, add its line there.
 std::span<const AxisMaker> accuracy_axes();
 
 }  // namespace thimble::app

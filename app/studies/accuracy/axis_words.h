@@ -16,20 +16,20 @@ std::string three_digits(double value);
 /// Names a point with its line: "Verlet, 62.5 us".
 std::string name_of(const MeasuredAxis& axis, const MeasuredPoint& point);
 
-/// Says beyond which point more accuracy cannot be felt, and where the default stands to it.
+/// Returns beyond which point more accuracy cannot be felt, and where the default stands to it.
 std::string felt_sentence(const MeasuredAxis& axis);
 
-/// Says whether the default is on the front of its axis, and if not, why it is the default; of what
-/// an arm brings, where a PHANTOM-like arm stands.
+/// Returns whether the default is on the front of its axis, and if not, why it is the default; of
+/// what an arm brings, where a PHANTOM-like arm stands.
 std::string default_sentence(const MeasuredAxis& axis);
 
-/// Says which slope each line shows and which theory asks for; empty if none asks for any.
+/// Returns which slope each line shows and which theory asks for; empty if none asks for any.
 std::string order_sentence(const MeasuredAxis& axis);
 
-/// Gives what the axis found as figures.
+/// Returns what the axis found as figures.
 std::vector<Figure> figures_of(const MeasuredAxis& axis);
 
-/// Gives all points as a table with commas.
+/// Returns all points as a table with commas.
 std::string csv_of(const MeasuredAxis& axis);
 
 }  // namespace thimble::app

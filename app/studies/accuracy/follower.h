@@ -11,7 +11,7 @@
 
 namespace thimble::app {
 
-/// Says how a study follows a tip below a surface: by one of the product's trackers, or by one of
+/// How a study follows a tip below a surface: by one of the product's trackers, or by one of
 /// what they are compared with.
 struct FollowerChoice {
   std::optional<render::TrackerChoice> tracker = {};

@@ -9,8 +9,8 @@ struct LineMotion {
   double x = 0, v = 0;
 };
 
-/// Gives the exact way of a mass (kg) with viscous friction (N s/m, above 0) under a force (N) that
-/// is held for `time` s. Real-time: safe.
+/// Returns the exact way of a mass (kg) with viscous friction (N s/m, above 0) under a force (N)
+/// that is held for `time` s. Real-time: safe.
 inline LineMotion moved_by_held_force(const LineMotion& at, double mass, double viscous,
                                       double force, double time) noexcept {
   const double rate = viscous / mass;

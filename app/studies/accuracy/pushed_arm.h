@@ -20,14 +20,14 @@ struct PushedArm {
   static constexpr double kHandDamping = 3;      ///< N s/m
 };
 
-/// Gives the force of each tick, N: steps of up to 0.25 N around 0, each held for 20 to 60 ms.
+/// Returns the force of each tick, N: steps of up to 0.25 N around 0, each held for 20 to 60 ms.
 const std::vector<double>& pushing_forces();
 
-/// Gives place and speed at the end of each tick with dry friction: the closed form of each slide,
-/// with the time of its stop, in long double. Shares no code with the simulator.
+/// Returns place and speed at the end of each tick with dry friction: the closed form of each
+/// slide, with the time of its stop, in long double. Shares no code with the simulator.
 std::vector<LineMotion> pushed_with_dry_friction();
 
-/// Gives the same without dry friction, in the hand's spring and damper: the closed form of the
+/// Returns the same without dry friction, in the hand's spring and damper: the closed form of the
 /// damped oscillator by its complex root.
 std::vector<LineMotion> pushed_in_hand();
 

@@ -21,14 +21,14 @@ struct RingTouch {
   Eigen::Vector3d p_W{0, 0, 0};  ///< Where the ring's centre is, m.
 };
 
-/// Gives the states of the stroke, one per ms, at 1 kHz.
+/// Returns the states of the stroke, one per ms, at 1 kHz.
 std::vector<driver::DeviceState> ring_states(const Eigen::Vector3d& p_W = {0, 0, 0});
 
 /// Builds the force law. Precondition: the choice goes together (the caller's duty; otherwise
 /// Result::value throws).
 std::unique_ptr<render::ObjectTouch> build_ring(const RingTouch& ring);
 
-/// Gives the force (N) at each state.
+/// Returns the force (N) at each state.
 std::vector<Eigen::Vector3d> forces_on(const RingTouch& ring);
 
 /// How far the force is from that on the ring itself, where the tip is 0.2 mm deep or more.

@@ -32,8 +32,8 @@ inline constexpr render::SpringDamper kCostSpring{.stiffness = 800, .damping = 1
 /// The subject that has no effect; effects are measured as what they add to it.
 inline constexpr const char* kBareSubject = "bare";
 
-/// Gives every way of contact and every effect that a scene can name, effects with the settings of
-/// a plain scene. Real-time: never from the servo thread.
+/// Returns every way of contact and every effect that a scene can name, effects with the settings
+/// of a plain scene. Real-time: never from the servo thread.
 std::vector<CostSubject> cost_subjects();
 
 }  // namespace thimble::app

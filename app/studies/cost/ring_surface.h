@@ -20,7 +20,7 @@ struct RingSurface {
   /// Finds how deep `p_W` lies below the ring's surface, m; negative outside.
   double depth(const Eigen::Vector3d& p_W) const noexcept;
 
-  /// Gives a point at `height` (m) over the surface; angles in rad, `across` from the outer
+  /// Returns a point at `height` (m) over the surface; angles in rad, `across` from the outer
   /// equator.
   Eigen::Vector3d at(double around, double across, double height) const noexcept;
 
@@ -28,7 +28,7 @@ struct RingSurface {
   render::TriangleMesh mesh(int around, int across) const;
 };
 
-/// Gives the states of a tip that strokes the ring for `ticks` ticks of `dt` (s): it comes from
+/// Returns the states of a tip that strokes the ring for `ticks` ticks of `dt` (s): it comes from
 /// outside, strokes forth and back at up to 80 mm/s, 0.5 to 1.5 mm deep, winding over the whole
 /// tube, stops at each turn, and leaves. Without noise: the same each time.
 /// Real-time: never from the servo thread.

@@ -20,7 +20,7 @@ struct FrictionCase {
   double stiffness = 0;           ///< N/m, past the check of its settings; 0: as the arm allows.
 };
 
-/// Gives the frictions of the study, in the order of its table.
+/// Returns the frictions of the study, in the order of its table.
 const std::vector<FrictionCase>& friction_cases();
 
 /// Builds a friction for a rig. Precondition: it is one of friction_cases and the arm of the rig

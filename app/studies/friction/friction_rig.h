@@ -10,7 +10,7 @@
 
 namespace thimble::app {
 
-/// Says what hand, arm, wire and surface a friction is tried on. The defaults are the PHANTOM-like
+/// What hand, arm, wire and surface a friction is tried on. The defaults are the PHANTOM-like
 /// set with a hand in pinch grip at 1 kHz [PHYSICS 0].
 struct FrictionRigSettings {
   double encoder_step = 3e-5;  ///< At the tip along x, m; 0: ideal encoders.

@@ -24,7 +24,7 @@ struct StabilitySetup {
   double delay() const { return static_cast<double>(delay_ns()) * 1e-9; }
 };
 
-/// Says which sweep a cell is of, and what its numbers are.
+/// Which sweep a cell is of, and what its numbers are.
 enum class StabilityPart {
   kLinearMap,  ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
   kArmMap,     ///< a: stiffness, b: damping -> last oscillation of the arm without energy stage, m.
@@ -67,8 +67,8 @@ inline constexpr double kCycleStep = 2e-4;
 inline constexpr double kReleaseSpeed = 0.1;  // m/s, at which an oscillation begins
 inline constexpr int kLatePeriods = 3;        // a late tick comes so many periods late
 
-/// Gives the times of a loop in which a share of ticks comes late, and of one whose period spreads
-/// evenly by +-spread.
+/// Returns the times of a loop in which a share of ticks comes late, and of one whose period
+/// spreads evenly by +-spread.
 scene::LoopTimes late_times(double period, double share);
 scene::LoopTimes spread_times(double period, double spread);
 

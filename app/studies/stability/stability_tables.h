@@ -22,7 +22,7 @@ struct StabilityRow {
 /// Puts the numbers of a sweep beside their laws.
 std::vector<StabilityRow> stability_rows(const StabilitySetup& setup, const CellNumbers& numbers);
 
-/// Gives the rows of one sweep.
+/// Returns the rows of one sweep.
 std::vector<StabilityRow> part_of(const std::vector<StabilityRow>& rows, StabilityPart part);
 
 /// What the region of the K-B map measures [PHYSICS 1.6].

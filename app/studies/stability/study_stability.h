@@ -14,7 +14,7 @@
 
 namespace thimble::app {
 
-/// Says what a study of stability is asked for.
+/// What a study of stability is asked for.
 struct StabilityOptions {
   std::filesystem::path arm_file;
   double rate = 1000;             ///< Hz

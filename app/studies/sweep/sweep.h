@@ -28,7 +28,7 @@ struct Sweep {
   std::function<driver::Result<std::vector<double>>(std::size_t cell)> measure;
 };
 
-/// Says how a sweep is run.
+/// How a sweep is run.
 struct SweepOptions {
   std::filesystem::path folder;  ///< Where the journal lies; exists.
   int jobs = 0;                  ///< Threads in this process; 0: one per core that it may use.
@@ -36,7 +36,7 @@ struct SweepOptions {
   SweepTeam* team = nullptr;     ///< The processes that share the work; nullptr: this one alone.
 };
 
-/// Says how a sweep ended.
+/// How a sweep ended.
 enum class SweepEnd {
   kDone,     ///< All numbers are there.
   kStopped,  ///< Somebody set the stop flag; the journal holds what was done.

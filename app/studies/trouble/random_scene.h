@@ -8,7 +8,7 @@
 
 namespace thimble::app {
 
-/// Says between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
+/// Between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
 /// can carry by the laws, so that any trouble is a mistake of the program or of a law. What a law
 /// foretells a small limit cycle of (facets, textures, light bodies) is drawn all the same, and
 /// `rest_causes` must name it.

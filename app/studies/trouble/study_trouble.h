@@ -12,7 +12,7 @@
 
 namespace thimble::app {
 
-/// Says how far trouble is searched for.
+/// How far trouble is searched for.
 struct TroubleOptions {
   std::filesystem::path arm_file;
   std::size_t count = 1000;

@@ -23,7 +23,7 @@ class TouchThread {
   /// Plays the runs of this name from now on. Once.
   void follow(const std::string& run);
 
-  /// Says what was left out and what to do; empty if nothing was.
+  /// Returns what was left out and what to do; empty if nothing was.
   const std::string& trouble() const { return trouble_; }
 
  private:

@@ -19,7 +19,7 @@ class ColourTable {
 
   const std::vector<Rgb>& colours() const { return colours_; }
 
-  /// Gives the number of the nearest colour for each pixel. Neighbours in a fine slope of colour
+  /// Returns the number of the nearest colour for each pixel. Neighbours in a fine slope of colour
   /// are mixed by a fixed pattern of 4 x 4, so that no steps are seen; it stands still in
   /// animations.
   std::vector<std::uint8_t> numbers(const Picture& picture) const;

@@ -9,7 +9,7 @@
 
 namespace thimble::app::view {
 
-/// Says how much each polygon counts in the normal of a vertex.
+/// How much each polygon counts in the normal of a vertex.
 enum class NormalWeights {
   kAngle,  ///< As wide as its angle there: cutting up a flat polygon changes no normal.
   kEqual,  ///< All the same, as it was done when triangles were few [BP].

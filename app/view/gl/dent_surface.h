@@ -34,7 +34,7 @@ class DentSurface {
   void set(const render::BodyPatch& patch);
   void clear();
 
-  /// Gives three corners for each triangle.
+  /// Returns three corners for each triangle.
   const std::vector<DentVertex>& vertices() const { return vertices_; }
   /// Lists the mesh's triangles that are not drawn meanwhile, in order, each once.
   const std::vector<std::uint32_t>& hidden() const { return hidden_; }

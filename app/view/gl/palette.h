@@ -27,7 +27,7 @@ inline constexpr Colour kTextColour = colour_of(0x1F2933);
 inline constexpr Colour kQuietTextColour = colour_of(0x616E7C);
 inline constexpr Colour kDepthColour = colour_of(0x0072B2);  // blue, in plots
 
-/// Says what is behind everything: paper, or night.
+/// What is behind everything: paper, or night.
 enum class Theme { kLight, kDark };
 
 /// What differs between the themes.

@@ -7,7 +7,7 @@
 
 namespace thimble::app::view {
 
-/// Says how many colours a PNG holds.
+/// How many colours a PNG holds.
 enum class PngColours {
   kAll,  ///< As drawn, for comparing.
   k256,  ///< The 256 that fit best: a third of the size, and hardly seen.

@@ -4,7 +4,7 @@
 
 namespace thimble::app::view {
 
-/// Says where the light on a surface is reckoned.
+/// Where the light on a surface is reckoned.
 enum class Shading {
   kPhong,    ///< In every pixel, of the interpolated normal.
   kGouraud,  ///< In every corner, and interpolated.

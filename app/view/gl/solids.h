@@ -8,7 +8,7 @@
 
 namespace thimble::app::view {
 
-/// Says what a solid is.
+/// What a solid is.
 enum class SolidKind { kBall, kRod, kCone };
 
 /// One of the simple solids that show arm, tip and force.

@@ -28,7 +28,7 @@ class SpaceMouse {
   /// Takes the reports that have come, and returns how it stands; nothing if there is none.
   std::optional<SpaceMouseState> read();
 
-  /// Says what to do where there is none; empty where there is.
+  /// Returns what to do where there is none; empty where there is.
   const std::string& trouble() const { return trouble_; }
 
  private:

@@ -21,7 +21,7 @@ struct Legend {
   double strongest = 0;  ///< N, at the end of the scale of forces; 0: no scale.
 };
 
-/// Says what the marks that are chosen mean. Real-time: never from the servo thread.
+/// Returns what the marks that are chosen mean. Real-time: never from the servo thread.
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice);
 
 /// Writes a legend at the upper left of a part. To be called between ImGui's

@@ -33,7 +33,7 @@ struct ShownUnit {
   double per_si;
 };
 
-/// Says what is measured: in which units it is told.
+/// What is measured: in which units it is told.
 enum class Quantity { kForce, kLength, kTime, kSpeed };
 
 /// Returns the unit in which numbers up to `most` (SI) are read best: N or mN; mm or um; s, ms or

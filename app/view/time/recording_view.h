@@ -38,7 +38,7 @@ class RecordingView {
   /// there is none.
   double beside(double time, int steps) const;
   const Plots& plots() const { return plots_; }
-  /// Says what it is and what of it cannot be known, a sentence each.
+  /// Returns what it is and what of it cannot be known, a sentence each.
   const std::vector<std::string>& about() const { return about_; }
 
   /// Brings `moment` to a time, s: to the last tick that is no later, or to the first. Objects are

@@ -22,7 +22,7 @@ class TimeLine {
   static bool take_key(int key, TouchSource& source, bool arrows = true);
 };
 
-/// Says which moment is looked at: "2.431 of 8.000 s", "now", "12.4 s behind".
+/// Returns which moment is looked at: "2.431 of 8.000 s", "now", "12.4 s behind".
 std::string words_of(const PlayHead& head);
 
 }  // namespace thimble::app::view

@@ -39,7 +39,7 @@ class FalconOnUsb final : public UsbArm {
   /// Lets the hand home the arm from now on whenever a host asks for it; its own way waits
   /// meanwhile. A hand that has let go takes the tip for that long. Real-time: safe.
   void home_when_asked() noexcept { homes_ = true; }
-  /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
+  /// Returns the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return hand_; }
   /// Lets a hand of other constants take the place of the one on the tip; it homes the arm no
   /// longer. Fails if they are out of range. Real-time: never from the servo thread.

@@ -36,11 +36,11 @@ class SimulatedFalcon {
 
   /// Lets the hand home the arm from now on whenever a host asks for it. Real-time: safe.
   void home_when_asked() noexcept { falcon_->home_when_asked(); }
-  /// Gives the hand, to be led or held by whoever lets time pass. Real-time: safe.
+  /// Returns the hand, to be led or held by whoever lets time pass. Real-time: safe.
   Hand& hand() noexcept { return falcon_->hand(); }
   /// Sets the guessed watchdog of the board, ns; 0: none (FalconBoard). Real-time: safe.
   void set_watchdog(std::int64_t time_ns) noexcept { falcon_->set_watchdog(time_ns); }
-  /// Gives the arm to another bus than `wire` makes. Real-time: safe.
+  /// Returns the arm, for another bus than `wire` makes. Real-time: safe.
   UsbArm& on_bus() noexcept { return *falcon_; }
   /// Returns the arm's own time (ns) at which its hand begins. Real-time: safe.
   std::int64_t begin_ns() const noexcept { return begin_ns_; }

@@ -8,7 +8,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Says how an endpoint moves data (bmAttributes of its descriptor [USB 2.0, 9.6.6]).
+/// How an endpoint moves data (bmAttributes of its descriptor [USB 2.0, 9.6.6]).
 enum class TransferKind : std::uint8_t { kBulk = 2, kInterrupt = 3 };
 
 /// Describes one endpoint besides the control pipe.

@@ -30,7 +30,7 @@ class UsbipSession {
   /// How many transfers may wait; a client that hands over more is hung up on.
   static constexpr std::size_t kPendingMax = 256;
 
-  /// Says what a connection is good for.
+  /// What a connection is good for.
   enum class State : std::uint8_t {
     kAsking,    ///< Not attached yet.
     kAttached,  ///< Transfers flow.

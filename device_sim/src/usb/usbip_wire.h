@@ -24,7 +24,7 @@ inline constexpr std::size_t kTransferMax = 1U << 16;  ///< Larger transfers are
 
 /// What a client asks before a device is attached.
 struct UsbipRequest {
-  /// Says what a client asks.
+  /// What a client asks.
   enum class Kind : std::uint8_t { kList, kImport };
   Kind kind = Kind::kList;  ///< What is asked.
   std::string bus_id;       ///< For kImport: the device it wants.
@@ -33,7 +33,7 @@ struct UsbipRequest {
 
 /// One transfer that the host's controller hands over, or takes back.
 struct UsbipCommand {
-  /// Says what the host asks.
+  /// What the host asks.
   enum class Kind : std::uint8_t { kSubmit, kUnlink };
   Kind kind = Kind::kSubmit;         ///< What is asked.
   std::uint32_t sequence = 0;        ///< Number of the command.
@@ -47,7 +47,7 @@ struct UsbipCommand {
                          ///< they go to the device.
 };
 
-/// Says how far a decoder came.
+/// How far a decoder came.
 enum class Decode : std::uint8_t {
   kWhole,    ///< A whole message.
   kPartial,  ///< More bytes are needed.

@@ -29,11 +29,11 @@ class EntryFaceContact {
   /// the next tick a first one. Real-time: safe; a few ns.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   const Box& shape() const noexcept { return box_; }
-  /// Gives what answers `inside`, as the searches of meshes do. Real-time: safe.
+  /// Returns what answers `inside`, as the searches of meshes do. Real-time: safe.
   const Box& search() const noexcept { return box_; }
 
  private:

@@ -28,7 +28,7 @@ class Gravity {
   Gravity(const Settings& settings, const EffectContext&)
       : weight_W_(settings.mass * settings.acceleration) {}
 
-  /// Gives the force on the hand, N in W. Real-time: safe.
+  /// Returns the force on the hand, N in W. Real-time: safe.
   Eigen::Vector3d force(const driver::DeviceState&) const noexcept { return weight_W_; }
 
  private:

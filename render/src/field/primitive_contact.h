@@ -66,7 +66,7 @@ class PrimitiveContact {
     return state_;
   }
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   /// Returns the place on the surface below the tip and how it moves with the tip
@@ -82,7 +82,7 @@ class PrimitiveContact {
   }
 
   const Shape& shape() const noexcept { return shape_; }
-  /// Gives what answers `inside`, as the searches of meshes do. Real-time: safe.
+  /// Returns what answers `inside`, as the searches of meshes do. Real-time: safe.
   const Shape& search() const noexcept { return shape_; }
 
  private:

@@ -67,13 +67,13 @@ struct ContactMeshOptions {
   std::size_t triangles_max = 0;
 };
 
-/// Says where a vertex goes.
+/// Where a vertex goes.
 struct VertexMove {
   std::int32_t vertex = 0;       ///< Its number.
   Eigen::Vector3d p_W{0, 0, 0};  ///< m
 };
 
-/// Says what became of an edge that was split in its middle, with the two triangles at it. Each
+/// What became of an edge that was split in its middle, with the two triangles at it. Each
 /// keeps its number and the half at the first of the edge's ends; numbers of the other halves are
 /// new.
 struct EdgeSplit {
@@ -149,13 +149,13 @@ class ContactMesh {
     return position(corners(triangle)[k]);
   }
 
-  /// Gives the face and the neighbours of a triangle, relative to `origin`.
+  /// Returns the face and the neighbours of a triangle, relative to `origin`.
   const TriangleCell& cell(std::int32_t triangle) const noexcept {
     return cells_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Gives the planes over the edges of a triangle from corner k to k + 1, positive on its side [BP
-  /// 4b], relative to `origin`. Precondition: `keeps_planes`.
+  /// Returns the planes over the edges of a triangle from corner k to k + 1, positive on its side
+  /// [BP 4b], relative to `origin`. Precondition: `keeps_planes`.
   const std::array<Plane, 3>& edge_planes(std::int32_t triangle) const noexcept {
     return edges_[static_cast<std::size_t>(triangle)];
   }

@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Says how a segment passes a triangle.
+/// How a segment passes a triangle.
 enum class Crossing : std::uint8_t {
   kNone,    ///< It does not cross the triangle.
   kEnters,  ///< From outside (where a, b, c run counter-clockwise) to inside.

@@ -53,7 +53,7 @@ class SmoothNormals {
   /// `prepare_refit` was called with the same mesh. Its time does not grow with the mesh.
   void refit(const ContactMesh& mesh, std::span<const std::int32_t> triangles) noexcept;
 
-  /// Gives the normals at the three corners of a triangle.
+  /// Returns the normals at the three corners of a triangle.
   const std::array<Eigen::Vector3d, 3>& corners(std::int32_t triangle) const noexcept {
     return corners_[static_cast<std::size_t>(triangle)];
   }

@@ -4,10 +4,10 @@
 
 namespace thimble::render {
 
-/// Says what of a surface a point lies on: the inside of a face, an edge with its two faces, or a
+/// What of a surface a point lies on: the inside of a face, an edge with its two faces, or a
 /// corner with all faces around it.
 struct SurfacePlace {
-  /// Says what a point lies on.
+  /// What a point lies on.
   enum class On : std::uint8_t { kFace, kEdge, kCorner };
 
   std::int32_t triangle = -1;  ///< One of those that hold the point.

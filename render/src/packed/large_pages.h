@@ -18,7 +18,7 @@ struct LargePages {
   template <class U>
   LargePages(const LargePages<U>&) noexcept {}  ///< Takes nothing over.
 
-  /// Gives memory for `count` elements; throws std::bad_alloc.
+  /// Returns memory for `count` elements; throws std::bad_alloc.
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kPage) return static_cast<T*>(::operator new(bytes, std::align_val_t(alignof(T))));

@@ -62,7 +62,7 @@ class alignas(64) OffsetTriangle {
   std::uint32_t creases() const noexcept { return creases_; }
   /// Returns which triangle of the input this is.
   std::int32_t source() const noexcept { return source_; }
-  /// Gives the triangle's own unit normal.
+  /// Returns the triangle's own unit normal.
   Eigen::Vector3d face() const noexcept { return {-h_[0], -h_[1], -h_[2]}; }
 
  private:

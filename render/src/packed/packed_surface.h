@@ -89,7 +89,7 @@ class PackedSurface {
   std::int32_t triangle_count() const noexcept {
     return static_cast<std::int32_t>(triangles_.size());
   }
-  /// Gives the packed triangle of a triangle. Real-time: safe.
+  /// Returns the packed triangle of a triangle. Real-time: safe.
   const PackedTriangle& triangle(std::int32_t t) const noexcept {
     return triangles_[static_cast<std::size_t>(t)];
   }

@@ -59,7 +59,7 @@ class PagedStore {
 
 extern template class PackedContact<PagedStore>;
 
-/// Says where a paged mesh M stands in the world: a point of it is at p_WM + scale R_WM p_M.
+/// Where a paged mesh M stands in the world: a point of it is at p_WM + scale R_WM p_M.
 struct PagedPlace {
   double scale = 1;                                    ///< Metres in W per metre of the file; > 0.
   Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();  ///< Rotation of the file's frame.
@@ -87,7 +87,7 @@ class PagedContact {
   /// PackedContact::update. Real-time: safe; never waits.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   /// Returns the place on the triangles that the tip at `p_WT` (W, m) belongs to

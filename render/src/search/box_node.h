@@ -44,7 +44,7 @@ struct alignas(64) BoxNode {
   /// Sets the boxes of the first children. Precondition: one to `kChildrenMax`, none empty.
   /// Real-time: safe.
   void set_boxes(std::span<const LatticeAabb> boxes) noexcept;
-  /// Gives the box around all children, as rounded. Real-time: safe.
+  /// Returns the box around all children, as rounded. Real-time: safe.
   LatticeAabb box() const noexcept;
 
   bool operator==(const BoxNode&) const noexcept = default;  ///< Compares all. Real-time: safe.

@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Says where a segment first enters a mesh.
+/// Where a segment first enters a mesh.
 struct Entry {
   std::int32_t triangle = -1;  ///< Triangle entered, -1 for none.
   double parameter = 0;        ///< 0 at the segment's begin, 1 at its end.

@@ -44,15 +44,15 @@ class MeshSegmentTest {
     return way;
   }
 
-  /// Gives the segment in steps of the frame.
+  /// Returns the segment in steps of the frame.
   const Eigen::Vector3d& from() const noexcept { return from_; }
   Eigen::Vector3d way() const noexcept { return to_ - from_; }
 
-  /// Gives the box around the segment in steps of the frame. Needs no room: turning points into
+  /// Returns the box around the segment in steps of the frame. Needs no room: turning points into
   /// steps is monotone.
   Eigen::Vector3d low() const noexcept { return from_.cwiseMin(to_); }
   Eigen::Vector3d high() const noexcept { return from_.cwiseMax(to_); }
-  /// Tells how far those numbers may be from what `crossing` sees, in steps.
+  /// Returns how far those numbers may be from what `crossing` sees, in steps.
   double position_rounding() const noexcept {
     const double size = std::max({p_from_.cwiseAbs().maxCoeff(), p_to_.cwiseAbs().maxCoeff(),
                                   frame_.origin.cwiseAbs().maxCoeff()});

@@ -23,7 +23,7 @@ struct SearchFrame {
   }
 };
 
-/// Gives the frame of a surface. Real-time: safe.
+/// Returns the frame of a surface. Real-time: safe.
 SearchFrame frame_of(const PackedSurface& surface) noexcept;
 SearchFrame frame_of(const ContactMesh& mesh) noexcept;
 

@@ -44,21 +44,21 @@ class SegmentTest {
   Crossing cross(std::int32_t t, double& parameter) const noexcept;
 
   const PackedSurface& surface() const noexcept { return surface_; }  ///< Shows what it passes.
-  /// Gives the segment in steps of the lattice.
+  /// Returns the segment in steps of the lattice.
   const Eigen::Vector3d& from() const noexcept { return from_; }
   const Eigen::Vector3d& way() const noexcept { return way_; }
-  double way_size() const noexcept { return way_size_; }  ///< Tells its largest part.
+  double way_size() const noexcept { return way_size_; }  ///< Returns the largest part of the path.
 
-  /// Gives the box around the segment in steps of the lattice, with room for rounding.
+  /// Returns the box around the segment in steps of the lattice, with room for rounding.
   Eigen::Vector3d low() const noexcept {
     return from_.cwiseMin(from_ + way_) - Eigen::Vector3d::Constant(room());
   }
   Eigen::Vector3d high() const noexcept {
     return from_.cwiseMax(from_ + way_) + Eigen::Vector3d::Constant(room());
   }
-  /// Gives the room around that box, in steps.
+  /// Returns the room around that box, in steps.
   double room() const noexcept { return 2 + 4 * position_rounding_; }
-  /// Tells how far those numbers may be from what `crossing` sees, in steps.
+  /// Returns how far those numbers may be from what `crossing` sees, in steps.
   double position_rounding() const noexcept { return position_rounding_; }
 
  private:

@@ -49,7 +49,7 @@ class TreeNodes {
 
   /// Names the node above all. Real-time: safe.
   Name root() const noexcept { return static_cast<Name>(levels_ - 1) << kNumberBits; }
-  /// Gives a node. Real-time: safe.
+  /// Returns a node. Real-time: safe.
   const BoxNode& node(Name name) const noexcept { return nodes_[place_of(name)]; }
   /// Returns whether the children of a node are things, not nodes. Real-time: safe.
   static bool lowest(Name name) noexcept { return name <= kNumber; }

@@ -69,14 +69,14 @@ class VolumeGrid {
     std::vector<EightTriangles> eights;           ///< Their corners; each list begins a new one.
   };
 
-  /// Tells where volume `i` of a block begins, x + 4 y + 16 z as in Block::occupied, by the block's
-  /// place along each axis.
+  /// Returns where volume `i` of a block begins, x + 4 y + 16 z as in Block::occupied, by the
+  /// block's place along each axis.
   static Eigen::Vector3d corner_of(const Parts& parts, std::int32_t x, std::int32_t y,
                                    std::int32_t z, std::int32_t i) noexcept {
     return parts.low +
            parts.side * Eigen::Vector3d(4 * x + (i & 3), 4 * y + ((i >> 2) & 3), 4 * z + (i >> 4));
   }
-  /// Tells the middle of a volume by where it begins: what its triangles are seen from.
+  /// Returns the middle of a volume by where it begins: what its triangles are seen from.
   static Eigen::Vector3d middle_of(const Parts& parts, const Eigen::Vector3d& corner) noexcept {
     return corner + Eigen::Vector3d::Constant(parts.side / 2);
   }
@@ -89,7 +89,7 @@ class VolumeGrid {
     }
   }
 
-  double side() const noexcept { return parts_.side; }    ///< Tells a volume's, m.
+  double side() const noexcept { return parts_.side; }    ///< Returns a volume's, m.
   const Parts& parts() const noexcept { return parts_; }  ///< Shows what it is made of.
 
   /// Counts the bytes of memory held.

@@ -60,7 +60,7 @@ class Blended {
   /// Passes on where the free tip is examined from (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to, with the felt

@@ -98,7 +98,7 @@ class GodObjectContact {
     return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   /// Returns the place that the proxy rests on and how it moves with the tip: over a face, along an

@@ -73,7 +73,7 @@ class TrackedContact {
   /// far from the mesh, else one question to the search.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   /// Takes in that the surface has moved since the last `update`, and which triangle has swept over

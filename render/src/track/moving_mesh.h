@@ -26,7 +26,7 @@ struct MovingMeshOptions {
   double hollow_crease_angle = kHollowCreaseAngle;
 };
 
-/// Says what moving vertices has met.
+/// What moving vertices has met.
 struct SurfaceMoved {
   std::int32_t swept_over =
       -1;                    ///< Triangle that has swept over the tip from outside, -1 for none.
@@ -67,7 +67,7 @@ class MovingMesh {
 
   const ContactMesh& mesh() const noexcept { return mesh_; }
   const ContactSearch& search() const noexcept { return *search_; }
-  /// Gives the normals; null if none are kept.
+  /// Returns the normals; null if none are kept.
   const SmoothNormals* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
 
  private:

@@ -35,7 +35,7 @@ class NormalProjectionTracker {
 
   std::int32_t active() const noexcept { return active_; }
 
-  /// Gives the unit normal of the active triangle, W.
+  /// Returns the unit normal of the active triangle, W.
   const Eigen::Vector3d& normal() const noexcept { return mesh_->cell(active_).face.n; }
 
   /// Finds where on the active triangle the tip belongs (surface_weights.h).

@@ -14,7 +14,7 @@
 
 namespace thimble::render {
 
-/// Says where a tip belongs on a triangle whose corners sink along their normals.
+/// Where a tip belongs on a triangle whose corners sink along their normals.
 struct OffsetFoot {
   Eigen::Vector3d weights{0, 0, 0};  ///< Of the corners; negative beyond a side.
   double depth = 0;                  ///< How far the corners have sunk, m; negative outside.
@@ -70,7 +70,7 @@ class OffsetTracker {
 
   std::int32_t active() const noexcept { return active_; }
 
-  /// Gives the unit normal at the tip's place on the surface, W, as of the last step.
+  /// Returns the unit normal at the tip's place on the surface, W, as of the last step.
   const Eigen::Vector3d& normal() const noexcept { return n_W_; }
 
   /// Returns the edge or corner of a hollow that holds the tip as of the last step; its triangle is
@@ -97,7 +97,7 @@ class OffsetTracker {
 
   TrackerCounters counters() const noexcept;
 
-  /// Gives the normals of the mesh, for stages that share them.
+  /// Returns the normals of the mesh, for stages that share them.
   const std::shared_ptr<const SmoothNormals>& smooth_normals() const noexcept { return normals_; }
 
  private:

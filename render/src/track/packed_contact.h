@@ -57,7 +57,7 @@ class PackedContact {
   /// triangles, `kPatchMax` more and two questions to the search.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
-  /// Gives the result of the last `update`. Real-time: safe.
+  /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept {
     if constexpr (Store::kComplete) return state_;
     return felt_;

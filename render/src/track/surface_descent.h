@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kFeetMax = 1024;
 /// [PHYSICS 6].
 inline constexpr double kDirectionMin = 64;
 
-/// Says where a descent ended.
+/// Where a descent ended.
 struct Rest {
   Foot foot;
   std::uint16_t hops = 0;  ///< Triangles gone on to.

@@ -32,7 +32,7 @@ struct TrackerCounters {
   std::uint64_t nearer = 0;       ///< Faces around that were nearer than the cell's own.
 };
 
-/// Says where the tip stands with respect to the surface after one tick.
+/// Where the tip stands with respect to the surface after one tick.
 struct TrackerStep {
   bool touching = false;   ///< Whether it still touches.
   double depth = 0;        ///< Below the active triangle's plane, m; at least 0 if touching.

@@ -7,7 +7,7 @@
 
 namespace thimble::render {
 
-/// Says where the outside is, as seen from a point of the surface.
+/// Where the outside is, as seen from a point of the surface.
 struct WayOut {
   Eigen::Vector3d n_O{0, 0, 0};  ///< Unit direction away from all faces around.
   double length = 0;             ///< How far to go along it to be outside, m.

@@ -27,7 +27,7 @@ namespace thimble::support {
 ///   in the first 50 ms, linux/drivers/hid/usbhid/hid-core.c, usbhid_open).
 class BusWire final : public driver::Transport {
  public:
-  /// Says how bytes come over.
+  /// How bytes come over.
   struct Way {
     std::uint8_t in = 0x81, out = 0x01;      ///< endpoints
     std::size_t report_size = 0;             ///< of a HID arm; 0: bytes without borders

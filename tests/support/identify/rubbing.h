@@ -43,7 +43,7 @@ inline std::unique_ptr<render::AnyStage> make_friction(
   return build();
 }
 
-/// Gives the names of all frictions of the table.
+/// Returns the names of all frictions of the table.
 inline std::vector<std::string> friction_names() {
   std::vector<std::string> names;
   for (const render::EffectKind& kind : render::effect_table()) {
@@ -52,7 +52,7 @@ inline std::vector<std::string> friction_names() {
   return names;
 }
 
-/// Gives the complaints about the settings of a friction.
+/// Returns the complaints about the settings of a friction.
 inline std::vector<std::string> complaints_of(
     std::string_view name, MapSettings settings,
     const render::EffectContext& context = phantom_context()) {

@@ -10,7 +10,7 @@
 
 namespace thimble::support {
 
-/// Gives moves that press a dent of `depth` (m) into a mesh around vertex `centre`, along `way`
+/// Returns moves that press a dent of `depth` (m) into a mesh around vertex `centre`, along `way`
 /// (unit), fading to nothing at `radius` (m), with a tenth of it at random.
 inline std::vector<render::VertexMove> dent(const render::ContactMesh& mesh, std::int32_t centre,
                                             const Eigen::Vector3d& way, double depth, double radius,
@@ -37,7 +37,7 @@ inline std::vector<render::VertexMove> back_to(const std::vector<Eigen::Vector3d
   return back;
 }
 
-/// Gives the mean of the faces' normals around a vertex, unit.
+/// Returns the mean of the faces' normals around a vertex, unit.
 inline Eigen::Vector3d outwards_at(const render::ContactMesh& mesh, std::int32_t vertex) {
   Eigen::Vector3d sum{0, 0, 0};
   for (const std::int32_t t : mesh.fan(vertex)) sum += mesh.cell(t).face.n;

@@ -78,7 +78,7 @@ Vector3d onto(const Surface& surface, Vector3d p) {
   return p;
 }
 
-/// Gives the outward unit normal of a surface at a point of it.
+/// Returns the outward unit normal of a surface at a point of it.
 template <class Surface>
 Vector3d unit_normal(const Surface& surface, const Vector3d& p) {
   return surface.gradient(p).normalized();

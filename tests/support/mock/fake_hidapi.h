@@ -35,7 +35,7 @@ struct FakeHidapi {
   int open = 0;
 };
 
-/// Gives the only one.
+/// Returns the only one.
 FakeHidapi& fake_hidapi();
 
 }  // namespace thimble::support

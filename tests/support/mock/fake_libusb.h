@@ -60,7 +60,7 @@ class FakeLibusb {
   std::size_t chat_begin_ = 0, chat_end_ = 0;
 };
 
-/// Gives the only one.
+/// Returns the only one.
 FakeLibusb& fake_libusb();
 
 }  // namespace thimble::support

@@ -163,10 +163,10 @@ class YamlFile {
   static driver::Result<YamlFile> parse(const std::string& text, const std::string& name,
                                         KeyLog* keys = nullptr);
 
-  /// Gives the outermost map.
+  /// Returns the outermost map.
   YamlMap& root() { return root_; }
 
-  /// Says whether everything read so far was right. Call `YamlMap::finish` on each map before.
+  /// Returns whether everything read so far was right. Call `YamlMap::finish` on each map before.
   /// Warns the user of keys that have got another name, once in a process.
   driver::Result<void> finish() const;
 

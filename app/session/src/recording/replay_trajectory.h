@@ -13,7 +13,7 @@
 
 namespace thimble::session {
 
-/// Says how the forces of a scene compare with those that a trajectory was recorded with, as
+/// How the forces of a scene compare with those that a trajectory was recorded with, as
 /// Ruffaldi and others evaluate renderers (Haptics Symposium 2006).
 struct TrajectoryComparison {
   std::size_t ticks = 0;

@@ -16,7 +16,7 @@ struct TrajectoryPoint {
   Eigen::Vector3d f{0, 0, 0};  ///< On the probe, N, in the same frame; zero if the file has none.
 };
 
-/// Says how the lines of a trajectory file are to be read: published ones differ.
+/// How the lines of a trajectory file are to be read: published ones differ.
 struct TrajectoryForm {
   std::string columns = "t x y z";  ///< t x y z fx fy fz in any order; - for one that is left out.
   double metres = 1;                ///< Metres per unit of length.

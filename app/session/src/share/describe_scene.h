@@ -10,10 +10,10 @@
 
 namespace thimble::session {
 
-/// Says of an arm what a viewer needs to draw it. Real-time: never from the servo thread.
+/// Returns what a viewer needs to draw an arm. Real-time: never from the servo thread.
 SharedScene::Arm describe_arm(const scene::ArmFile& arm, const std::string& device);
 
-/// Says of a loaded scene what its viewers need to draw it; the knobs are left out. `device` is
+/// Returns what viewers need to draw a loaded scene; the knobs are left out. `device` is
 /// "sim" or the name of the arm on the desk. Real-time: never from the servo thread.
 SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
                            const std::string& device);

@@ -37,7 +37,7 @@ class LiveControl final : public TickObserver {
   /// thread.
   void add_simulation(scene::ArmSimulation* simulation);
 
-  /// Gives the knobs, to be described. Real-time: never from the servo thread.
+  /// Returns the knobs, to be described. Real-time: never from the servo thread.
   const LiveKnobs& knobs() const { return knobs_; }
   /// Joins it to what viewers see. Real-time: never from the servo thread.
   /// `pace`: the clock whose speed viewers choose; null if it has none.

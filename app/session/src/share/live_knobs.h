@@ -30,7 +30,7 @@ class LiveKnobs {
   /// Real-time: never from the servo thread.
   LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch);
 
-  /// Says what they are. Real-time: never from the servo thread.
+  /// Returns the knobs. Real-time: never from the servo thread.
   std::vector<SharedScene::Knob> described() const;
 
   /// Moves on by a tick of `dt` (s), towards what is wanted; `last` is the tick before. Returns

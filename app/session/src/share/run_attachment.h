@@ -19,15 +19,15 @@ class RunAttachment {
   /// per picture. Tells whether `reader` is another one now.
   bool step();
 
-  /// Gives the run that is watched, also after its end; null before the first.
+  /// Returns the run that is watched, also after its end; null before the first.
   SharedReader* reader() noexcept { return reader_.get(); }
   const std::string& name() const noexcept { return name_; }
 
   /// Returns whether the run has ended for good: one that is just being begun anew has not.
   bool over() const;
 
-  /// Says what a person must know: that a run is waited for, has ended or died, or why it cannot be
-  /// watched. Empty while all is well.
+  /// Returns what a person must know: that a run is waited for, has ended or died, or why it cannot
+  /// be watched. Empty while all is well.
   std::string notice() const;
 
  private:

@@ -47,13 +47,13 @@ inline constexpr std::uint64_t kSharedBytesMost = std::uint64_t{1} << 33;
 template <std::size_t N>
 using SharedText = std::array<char, N>;
 
-/// Says where a table lies.
+/// Where a table lies.
 struct SharedTable {
   std::uint64_t offset = 0;
   std::uint64_t count = 0;
 };
 
-/// Says what a run is doing.
+/// What a run is doing.
 enum class RunState : std::uint32_t { kLoading, kRunning, kPaused, kEnded };
 
 /// Names a state as viewers show it.

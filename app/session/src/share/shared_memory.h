@@ -46,7 +46,7 @@ class SharedMemory {
   /// Removes the name, so that no more viewers come. Real-time: never from the servo thread.
   void remove_name();
 
-  /// Gives the memory, aligned to a page. Real-time: safe.
+  /// Returns the memory, aligned to a page. Real-time: safe.
   std::span<std::byte> bytes() const noexcept { return bytes_; }
   /// Returns whether somebody has cut the memory short; what is gone reads as zeros. Real-time:
   /// safe.

@@ -36,7 +36,7 @@ class SharedReader {
   /// Signs out of the run, which knows by name who looks on.
   ~SharedReader();
 
-  /// Gives what does not change.
+  /// Returns what does not change.
   const SharedScene& scene() const noexcept { return scene_; }
   /// Returns the name of the run; empty if it has none.
   const std::string& name() const noexcept { return name_; }

@@ -41,7 +41,7 @@ class SharedRun final : public KnobRequests {
   /// Tells the viewers that the run has ended, and removes the name.
   ~SharedRun() override;
 
-  /// Gives the memory, for a reader in this process.
+  /// Returns the memory, for a reader in this process.
   const SharedMemory& memory() const noexcept { return *memory_; }
   /// Returns the name; empty if it has none.
   const std::string& name() const noexcept { return memory_->run(); }
@@ -101,7 +101,7 @@ class SharedRun final : public KnobRequests {
     bool record = false;
     std::string path;  ///< Empty: the run chooses.
   };
-  /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
+  /// Returns the newest order, if there is one after `number`. Real-time: never from the servo
   /// thread.
   std::optional<RecordOrder> record_order_after(std::uint64_t number) const;
   /// An order to begin the run anew.
@@ -109,7 +109,7 @@ class SharedRun final : public KnobRequests {
     std::uint64_t number = 0;  ///< Grows with each order.
     std::string scene;         ///< The file to run; empty: the same once more.
   };
-  /// Gives the newest order, if there is one after `number`. Real-time: never from the servo
+  /// Returns the newest order, if there is one after `number`. Real-time: never from the servo
   /// thread.
   std::optional<RestartOrder> restart_order_after(std::uint64_t number) const;
   /// Sets what viewers find as asked for, unless one has asked already.

@@ -28,7 +28,7 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
 
 /// Lays the report out as text, with a decision per line.
 std::string gating_text(const GatingReport& report);
-/// Gives it as figures.
+/// Returns it as figures.
 std::vector<Figure> figures_of(const GatingReport& report);
 
 /// Runs the scene of `full/FILE` or `reduced/FILE` once, for callgrind; false if that is no scene.

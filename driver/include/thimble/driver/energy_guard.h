@@ -32,7 +32,7 @@ struct EnergyGuardSettings {
   static constexpr int kDelayMost = 15;  ///< Most ticks of delay that it can count.
 };
 
-/// Says what happened at the motors since the tick before; the device books it.
+/// What happened at the motors since the tick before; the device books it.
 struct EnergyFlow {
   double work = 0;  ///< Done on the hand by what was truly sent, after all clamps and rounding, J.
   Eigen::Vector3d move_W{0, 0, 0};    ///< Way of the tip, m.

@@ -29,7 +29,7 @@ inline constexpr Fault kLastFault = Fault::kOtherArm;
 /// Real-time: safe.
 std::string_view describe(Fault fault) noexcept;
 
-/// Gives the short name of a fault as it stands in reports ("transport_lost").
+/// Returns the short name of a fault as it stands in reports ("transport_lost").
 /// Real-time: safe.
 std::string_view name(Fault fault) noexcept;
 

@@ -9,7 +9,7 @@
 
 namespace thimble::driver {
 
-/// Says what a force law touched in one tick; for readers at the side (viewer, recorder, tests).
+/// What a force law touched in one tick; for readers at the side (viewer, recorder, tests).
 struct TouchInfo {
   bool in_contact = false;        ///< True while the tip is held outside an object.
   std::int16_t object = -1;       ///< Which of the scene's objects, -1 for none.

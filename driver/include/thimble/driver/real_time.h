@@ -5,7 +5,7 @@
 
 namespace thimble::driver {
 
-/// Says what the kernel granted to the servo thread, and how to get what it refused.
+/// What the kernel granted to the servo thread, and how to get what it refused.
 struct RealTimeGrant {
   bool fifo = false;           ///< SCHED_FIFO was granted.
   bool memory_locked = false;  ///< Pages stay in memory (mlockall).

@@ -7,7 +7,7 @@
 
 namespace thimble::driver {
 
-/// Says what went wrong on a set-up path, where, and what the user can do about it.
+/// What went wrong on a set-up path, where, and what the user can do about it.
 ///
 /// `message` is one or two full sentences, ready to print ("No access to 1234:0006: install
 /// udev/70-thimble.rules and replug the arm.").

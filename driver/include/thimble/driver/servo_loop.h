@@ -53,7 +53,7 @@ struct ServoSettings {
   static constexpr std::int64_t kPrepare_ns = 10'000;
 };
 
-/// Says why a servo loop ended.
+/// Why a servo loop ended.
 enum class ServoEnd : std::uint8_t {
   kDone,     ///< All periods have passed.
   kStopped,  ///< Somebody set the stop flag.

@@ -11,7 +11,7 @@ namespace thimble::driver {
 struct DeviceState;
 struct ForceCommand;
 
-/// Says where a device is in its life.
+/// Where a device is in its life.
 enum class DeviceStage : std::uint8_t {
   kIdle,    ///< Reports are read, zero force is sent.
   kActive,  ///< Forces are sent through the gate.

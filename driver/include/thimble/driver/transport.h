@@ -6,7 +6,7 @@
 
 namespace thimble::driver {
 
-/// Says how one exchange over the wire ended.
+/// How one exchange over the wire ended.
 enum class TransportStatus : std::uint8_t {
   kOk,       ///< Bytes were read or written.
   kNothing,  ///< No new report arrived before the deadline.
@@ -14,7 +14,7 @@ enum class TransportStatus : std::uint8_t {
   kRefused,  ///< The arm is there and did not take the bytes (stalled, or still busy with others).
 };
 
-/// Says how a read ended and how much of the buffer it filled.
+/// How a read ended and how much of the buffer it filled.
 struct TransportRead {
   TransportStatus status = TransportStatus::kNothing;  ///< What became of the read.
   std::size_t size = 0;       ///< Bytes of the newest report, 0 unless `status` is kOk.

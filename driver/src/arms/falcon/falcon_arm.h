@@ -21,11 +21,11 @@ struct PacketWire {
 /// amperes, so 1000 motor values count as 1 A and the torque constant says the rest.
 using FalconArm = WireArm<PacketWire, DeltaArm>;
 
-/// Gives the geometry of the Falcon [S libnifalcon FalconGeometry.h]. Frame B as there: x to the
+/// Returns the geometry of the Falcon [S libnifalcon FalconGeometry.h]. Frame B as there: x to the
 /// user's right, y up, z out of the arm towards the user.
 DeltaArm falcon_geometry() noexcept;
 
-/// Gives the Falcon's data: geometry, encoders (1280 counts per motor turn through 110 : 14.25,
+/// Returns the Falcon's data: geometry, encoders (1280 counts per motor turn through 110 : 14.25,
 /// zero near 35 degrees [S]) and drives (limit 4096 motor values, what libnifalcon's users clamp
 /// to [S]).
 JointModel<DeltaArm> falcon_model() noexcept;

@@ -68,7 +68,7 @@ Result<UploadReport> upload_firmware(SerialLine& line, std::span<const std::byte
 Result<UploadReport> prepare(SerialLine& line, const std::filesystem::path& firmware_file,
                              const BootSettings& settings = {});
 
-/// Says how far homing has come.
+/// How far homing has come.
 struct HomingState {
   bool answered = false;                 ///< A packet came.
   std::uint8_t homed = 0;                ///< One bit per leg.

@@ -14,10 +14,10 @@ namespace thimble::driver::hfab {
 // hfab_math.h, hfab_api.cpp]: the number in each text line says which it is. All counters are zero
 // in the home pose.
 
-/// Gives the data of the Polhem (its third edition, "polhem_v3").
+/// Returns the data of the Polhem (its third edition, "polhem_v3").
 JointModel<LinkageArm> polhem_model() noexcept;
 
-/// Gives the data of the vintage PHANTOM refit ("vintage").
+/// Returns the data of the vintage PHANTOM refit ("vintage").
 JointModel<SerialArm> vintage_model() noexcept;
 
 /// A generation of the WoodenHaptics' board. The generations count joint A in opposite directions

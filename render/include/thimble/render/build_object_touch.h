@@ -15,7 +15,7 @@
 
 namespace thimble::render {
 
-/// Says how the surface of one object feels: its spring, and the effects a scene puts on it in the
+/// How the surface of one object feels: its spring, and the effects a scene puts on it in the
 /// order in which a tick runs them.
 struct SurfaceChoice {
   SpringDamper spring;                    ///< Of the surface.

@@ -13,7 +13,7 @@ namespace thimble::render {
 // Every way to follow and feel a surface, by name, so that a scene or a study can swap them.
 // render/src/track/README.md and render/src/search/README.md say what each is good for.
 
-/// Says how the tip is followed over the surface while it touches.
+/// How the tip is followed over the surface while it touches.
 enum class TrackerChoice {
   kEdgePlanes,        ///< The paper's edge planes [BP 4b].
   kNormalProjection,  ///< What the paper had before [BP 4a]; for comparison.
@@ -27,7 +27,7 @@ inline constexpr std::array<std::string_view, 5> kTrackerNames{"edge_planes", "n
 /// Names what SearchChoice says.
 inline constexpr std::array<std::string_view, 3> kSearchNames{"linear", "grid", "tree"};
 
-/// Says which normal is felt.
+/// Which normal is felt.
 enum class BlendingChoice { kFlat, kFixedBand, kSizedBand, kPhong };
 inline constexpr std::array<std::string_view, 4> kBlendingNames{"flat", "fixed_band", "sized_band",
                                                                 "phong"};

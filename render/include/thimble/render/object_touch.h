@@ -38,7 +38,7 @@ class ObjectTouch {
   /// Real-time: safe unless the object is on the disk; one question to its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
 
-  /// Gives the mesh whose triangles TouchInfo::feature names, if there is one in full.
+  /// Returns the mesh whose triangles TouchInfo::feature names, if there is one in full.
   virtual const ContactMesh* mesh() const noexcept { return nullptr; }
 
   /// Draws what of the object has left its place (body_patch.h); false, and `patch` is left alone,
@@ -58,7 +58,7 @@ class ObjectTouch {
   virtual std::uint64_t lost_contacts() const noexcept { return 0; }
   /// Returns where the object has moved to. Real-time: safe.
   virtual BodyPose pose() const noexcept { return {}; }
-  /// Gives the shape of an object whose base points move by themselves; nullptr for others.
+  /// Returns the shape of an object whose base points move by themselves; nullptr for others.
   virtual const BodyShape* shape() const noexcept { return nullptr; }
   /// Puts the vertices of the object's mesh, as it was given (W, m), where they are now.
   /// Real-time: safe; time grows with the mesh.

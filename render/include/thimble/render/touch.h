@@ -59,7 +59,7 @@ class Touch {
   }
 
   const Contact& contact() const noexcept { return contact_; }
-  /// Gives the contact stage to who moves its surface. Real-time: safe.
+  /// Returns the contact stage, for who moves its surface. Real-time: safe.
   Contact& contact() noexcept { return contact_; }
 
  private:

@@ -26,7 +26,7 @@ namespace thimble::render {
 /// displaced, also at points that split a triangle.
 class PatchDrawing {
  public:
-  /// Says where an edge of the touched triangle is split and where that point is now.
+  /// Where an edge of the touched triangle is split and where that point is now.
   struct Split {
     double place = 0.5;  ///< Of the base point, from 0 at corner k to 1 at k + 1, exclusive.
     Eigen::Vector3d u{0, 0, 0};  ///< Displacement, m.
@@ -48,7 +48,7 @@ class PatchDrawing {
   /// Gives what was drawn.
   void finish(BodyPatch& patch) noexcept;
 
-  /// Gives the unit normal of the untouched surface at a vertex: faces weighted by their angles.
+  /// Returns the unit normal of the untouched surface at a vertex: faces weighted by their angles.
   const Eigen::Vector3d& normal(std::int32_t vertex) const noexcept {
     return normals_[static_cast<std::size_t>(vertex)];
   }

@@ -39,7 +39,7 @@ class VertexLinks {
   }
   /// Sums up the weights of all edges at a vertex; 6 on a regular mesh.
   double sum(std::int32_t vertex) const noexcept { return sum_[static_cast<std::size_t>(vertex)]; }
-  /// Gives the largest such sum of the mesh.
+  /// Returns the largest such sum of the mesh.
   double sum_max() const noexcept { return sum_max_; }
 
  private:

@@ -79,7 +79,7 @@ class RigidMotion {
     p_WB_ = body_.p_WC() - R_WB_ * first.p_WC;
   }
   const RigidBody& body() const noexcept { return body_; }
-  /// Gives the body, to set it in motion before the first tick.
+  /// Returns the body, to set it in motion before the first tick.
   RigidBody& body() noexcept { return body_; }
 
  private:

@@ -106,7 +106,7 @@ class MovingTouch final : public ObjectTouch {
   }
 
   const Motion& motion() const noexcept { return motion_; }
-  /// Gives the motion to who holds the body otherwise than by its surface. Real-time: safe.
+  /// Returns the motion, for who holds the body otherwise than by its surface. Real-time: safe.
   Motion& motion() noexcept { return motion_; }
   const ObjectTouch& surface() const noexcept { return *surface_; }
 

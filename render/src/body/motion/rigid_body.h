@@ -81,7 +81,7 @@ class RigidBody {
   }
   /// Returns the energy of motion, and of height over the origin where there is gravity, J.
   double kinetic_energy() const noexcept;
-  double potential_energy() const noexcept;  ///< Tells that of height, J.
+  double potential_energy() const noexcept;  ///< Returns the energy of height, J.
 
  private:
   explicit RigidBody(const RigidBodySettings& settings)

@@ -59,8 +59,10 @@ class TranslatingBody {
   /// Returns how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
   /// the body's own time.
   const Eigen::Vector3d& p_W() const noexcept { return p_W_; }
-  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }          ///< Tells it, m/s.
-  Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }  ///< Tells it.
+  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }  ///< Returns the velocity, m/s.
+  Eigen::Vector3d momentum_W() const noexcept {
+    return mass_ * v_W_;
+  }  ///< Returns the momentum, kg m/s.
 
  private:
   OscillatorStep flow_;

@@ -62,13 +62,13 @@ class BodyShape {
 
   /// Returns how many more edges it may split. Real-time: safe.
   std::size_t splits_left() const noexcept { return ring_.size() - places_.size(); }
-  /// Gives the edges that were split after the last `follow`, in order. Real-time: safe.
+  /// Returns the edges that were split after the last `follow`, in order. Real-time: safe.
   std::span<const EdgeSplit> splits() const noexcept { return splits_; }
   /// Returns where a vertex has been led to (m). Real-time: safe.
   const Eigen::Vector3d& place(std::int32_t vertex) const noexcept {
     return places_[static_cast<std::size_t>(vertex)];
   }
-  /// Gives the moves of the last `follow` again. Real-time: safe.
+  /// Returns the moves of the last `follow` again. Real-time: safe.
   std::span<const VertexMove> moves() const noexcept { return moves_; }
   /// Returns whether all vertices are where they shall be. Real-time: safe.
   bool settled() const noexcept { return waiting_ == 0; }

@@ -49,7 +49,7 @@ class ClayShape {
   /// before: what the slider held against turned into heat.
   void moved(double way, double depth) noexcept;
 
-  /// Gives the set of a vertex, m from its first place.
+  /// Returns the set of a vertex, m from its first place.
   const Eigen::Vector3d& set(std::int32_t vertex) const noexcept {
     return sets_[static_cast<std::size_t>(vertex)];
   }

@@ -36,7 +36,7 @@ class SnapShape {
   /// Lets the panels move for `step` s with nothing pressing.
   void rest(double step) noexcept;
 
-  /// Gives the vertices whose place may have changed in the last call, of one panel after the
+  /// Returns the vertices whose place may have changed in the last call, of one panel after the
   /// other.
   template <class Take>
   void for_each_moved(Take take) const noexcept {

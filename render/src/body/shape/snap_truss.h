@@ -17,10 +17,10 @@ class SnapTruss {
   // All of the following are Real-time: safe.
 
   bool valid() const noexcept { return k_ > 0; }  ///< Returns whether it can snap.
-  double rise() const noexcept { return rise_; }  ///< Tells its height at rest, m.
+  double rise() const noexcept { return rise_; }  ///< Returns the height at rest, m.
   /// Returns the force (N) that holds the joint at `u`; and the energy in the bars (J).
   double force(double u) const noexcept;
-  double energy(double u) const noexcept;  ///< Tells that in the bars, J.
+  double energy(double u) const noexcept;  ///< Returns the energy in the bars, J.
   /// Returns the stiffness at `u`, N/m; below zero between the limit points.
   double stiffness(double u) const noexcept;
 

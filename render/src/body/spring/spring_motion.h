@@ -59,7 +59,7 @@ class SpringMotion {
 
   /// Returns displacement (m) and velocity (m/s) of each node, relative to its base point.
   std::span<const Vector> u() const noexcept { return u_; }
-  std::span<const Vector> v() const noexcept { return v_; }  ///< Tells velocities, m/s.
+  std::span<const Vector> v() const noexcept { return v_; }  ///< Returns velocities, m/s.
   /// Puts a node at displacement `u` with velocity `v`.
   void place(std::int32_t node, const Vector& u, const Vector& v) noexcept;
 

@@ -66,7 +66,7 @@ class SpringNetwork {
   /// Returns whether springs or dampers join nodes, and whether there are dampers at all.
   bool coupled() const noexcept { return coupled_; }
   bool damped() const noexcept { return damped_; }  ///< Returns whether dampers are there.
-  const NetworkBounds& bounds() const noexcept { return bounds_; }  ///< Tells its bounds.
+  const NetworkBounds& bounds() const noexcept { return bounds_; }  ///< Returns the bounds.
 
   /// Lists the nodes that springs join to `node`.
   std::span<const std::int32_t> neighbours(std::int32_t node) const noexcept {

@@ -14,7 +14,7 @@ struct SplitFans {
   std::vector<std::int32_t> turned;        ///< Triangles turned round so that sides match.
 };
 
-/// Gives every fan of triangles around a vertex a vertex of its own, copies a rounding apart, and
+/// Returns every fan of triangles around a vertex a vertex of its own, copies a rounding apart, and
 /// so parts what shares only a vertex. An edge of four and more triangles that lie around it by
 /// turns, matter, gap, matter, gap, is parted too: the two triangles around each matter keep it.
 /// Where winding does not tell matter from gap, rays do (compute_out_array). New triangles are

@@ -36,7 +36,7 @@ class BristleLaw {
     slides_ = false;
   }
 
-  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

@@ -28,7 +28,7 @@ class DahlLaw {
   void turn(const Turn& turn) noexcept { pull_ = turn.carry(pull_); }
   void forget() noexcept { pull_.setZero(); }
 
-  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

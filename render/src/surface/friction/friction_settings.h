@@ -42,7 +42,7 @@ struct ViscousSettings {
 
   void read(SettingsReader& reader);
 
-  /// Gives the coefficient at a depth (m), N s/m. Real-time: safe.
+  /// Returns the coefficient at a depth (m), N s/m. Real-time: safe.
   double at(double depth) const noexcept {
     return depth < fade_depth ? viscous * (depth / fade_depth) : viscous;
   }

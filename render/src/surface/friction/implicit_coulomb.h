@@ -29,7 +29,7 @@ class ImplicitCoulombLaw {
   void turn(const Turn& turn) noexcept { bend_ = turn.carry(bend_); }
   void forget() noexcept { bend_.setZero(); }
 
-  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

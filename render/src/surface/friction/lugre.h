@@ -37,7 +37,7 @@ class LugreLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
-  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

@@ -15,7 +15,7 @@ class NaiveFrictionLaw {
  public:
   static constexpr std::string_view kName = "naive";
 
-  /// Says what happens in a tick without a move.
+  /// What happens in a tick without a move.
   enum class AtRest : std::size_t {
     kZero,  ///< No force: below one count per tick it is a damper and holds nothing.
     kHold,  ///< The last direction stays: after a stop it buzzes.
@@ -34,7 +34,7 @@ class NaiveFrictionLaw {
   void turn(const Turn& turn) noexcept { direction_ = turn.carry(direction_); }
   void forget() noexcept { direction_.setZero(); }
 
-  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

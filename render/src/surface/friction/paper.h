@@ -17,7 +17,7 @@ class PaperFrictionLaw {
  public:
   static constexpr std::string_view kName = "paper";
 
-  /// Says what is smoothed.
+  /// What is smoothed.
   enum class Smooth : std::size_t {
     kVelocity,   ///< The velocity; force in proportion to it up to `speed` (D).
     kDirection,  ///< The direction of the last move only: the force is calmer, the hand is not (E).
@@ -43,7 +43,7 @@ class PaperFrictionLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
-  /// Gives the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

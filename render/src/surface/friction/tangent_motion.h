@@ -17,7 +17,7 @@ inline Eigen::Vector3d shortened(const Eigen::Vector3d& v, double limit) noexcep
   return length2 > limit * limit ? Eigen::Vector3d(limit / std::sqrt(length2) * v) : v;
 }
 
-/// Gives the direction of `v`, or zero if it has none or is not finite. Real-time: safe.
+/// Returns the direction of `v`, or zero if it has none or is not finite. Real-time: safe.
 inline Eigen::Vector3d direction_of(const Eigen::Vector3d& v) noexcept {
   const double length2 = v.squaredNorm();
   if (!(length2 > 0) || !(length2 < HUGE_VAL)) return Eigen::Vector3d::Zero();

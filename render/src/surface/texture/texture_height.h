@@ -18,7 +18,7 @@ struct TextureHeight {
   Eigen::Vector3d slope_M{0, 0, 0};  ///< Its gradient in the place, M.
 };
 
-/// Says what a texture does besides changing the depth.
+/// What a texture does besides changing the depth.
 enum class TextureForm : std::uint8_t {
   kConservative,  ///< Pushes aside as well, down the slope.
   kDepthOnly,     ///< Pushes along the object's normal only: the paper's form [BP 4.2].

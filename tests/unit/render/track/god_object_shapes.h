@@ -18,7 +18,7 @@ inline const render::ContactState& move(render::GodObjectContact& contact, const
   return contact.update(state);
 }
 
-/// Gives the full length where THIMBLE_LONG=1 asks for it.
+/// Returns the full length where THIMBLE_LONG=1 asks for it.
 inline int length_of_run(int in_short, int in_full) {
   return long_form() ? in_full : in_short;
 }
@@ -73,7 +73,7 @@ class RandomTip {
   int left_ = 0;
 };
 
-/// Says what a plane `n . x + d >= 0` allows.
+/// What a plane `n . x + d >= 0` allows.
 struct Constraint {
   Vector3d n;
   double d;

@@ -30,7 +30,7 @@ class SessionBatch {
 
   /// Returns how many runs there are. Real-time: safe.
   std::size_t size() const noexcept { return runs_.size(); }
-  /// Gives one of them, until it is begun anew. Real-time: safe.
+  /// Returns one of them, until it is begun anew. Real-time: safe.
   Session& run(std::size_t i) noexcept { return *runs_[i]; }
   const Session& run(std::size_t i) const noexcept { return *runs_[i]; }  ///< As above.
 

@@ -16,7 +16,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Says what the simulated hand does with the arm.
+/// What the simulated hand does with the arm.
 enum class HandMotion : std::uint8_t {
   kRest,    ///< Holds the tip at the home pose.
   kTap,     ///< Goes up and down by 15 mm (Falcon: 20 mm) along the base's z, once a second.
@@ -33,7 +33,7 @@ struct ShelfArm {
   SimulatedArmSettings settings;
 };
 
-/// Says how an arm from the shelf is to be.
+/// How an arm from the shelf is to be.
 struct ShelfOptions {
   HandMotion motion = HandMotion::kTap;  ///< What the hand does.
   std::string serial;                    ///< Serial number that it tells; empty: its board's own.

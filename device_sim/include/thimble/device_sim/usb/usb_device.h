@@ -9,7 +9,7 @@ namespace thimble::device_sim::usb {
 struct SetupPacket;
 struct UsbDescription;
 
-/// Says how a device met one packet or one control request.
+/// How a device met one packet or one control request.
 enum class Answer : std::uint8_t {
   kDone,   ///< Moved so many bytes.
   kNak,    ///< Not now; the host asks again in a later frame.
@@ -17,7 +17,7 @@ enum class Answer : std::uint8_t {
   kGone,   ///< The device left the bus.
 };
 
-/// Says what became of one packet.
+/// What became of one packet.
 struct PacketResult {
   Answer answer = Answer::kNak;  ///< What became of the packet.
   std::size_t size = 0;          ///< Bytes moved; more than the host asked for is babble.

@@ -27,7 +27,7 @@ enum class FaultKind : std::uint8_t {
 };
 inline constexpr std::size_t kFaultKinds = 10;
 
-/// Gives the name of a fault in scripts ("bit_errors"). Real-time: safe.
+/// Returns the name of a fault in scripts ("bit_errors"). Real-time: safe.
 std::string_view name(FaultKind kind) noexcept;
 
 /// Orders one fault for some frames.

@@ -26,7 +26,7 @@ struct UsbipCounters {
 /// The registered TCP port of USB/IP.
 inline constexpr std::uint16_t kUsbipPort = 3240;
 
-/// Says where a server listens and what it calls its device.
+/// Where a server listens and what it calls its device.
 struct UsbipServerSettings {
   std::string address = "127.0.0.1";  ///< IPv4; anything but loopback lets other machines in.
   std::uint16_t port = kUsbipPort;    ///< 0 lets the system choose.

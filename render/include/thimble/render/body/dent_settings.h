@@ -36,8 +36,8 @@ struct DentSettings {
   /// thread.
   void read(SettingsReader& reader, const EffectContext& context);
 
-  /// Says what about the settings is beyond all sense: a mass or stiffness that is not positive, a
-  /// number that is negative or not finite. Real-time: never from the servo thread.
+  /// Returns what about the settings is beyond all sense: a mass or stiffness that is not positive,
+  /// a number that is negative or not finite. Real-time: never from the servo thread.
   driver::Result<void> check() const;
 };
 

@@ -30,7 +30,7 @@ struct ClayChoice {
 
   /// Reads the settings of a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);
-  /// Says what about the settings is beyond all sense. Real-time: never from the servo thread.
+  /// Returns what about the settings is beyond all sense. Real-time: never from the servo thread.
   driver::Result<void> check() const;
 };
 
@@ -46,9 +46,9 @@ struct SnapChoice {
 
   /// Reads the settings of a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);
-  /// Says what about the settings is beyond all sense. Real-time: never from the servo thread.
+  /// Returns what about the settings is beyond all sense. Real-time: never from the servo thread.
   driver::Result<void> check() const;
-  /// Gives the truss whose limit load is `force`.
+  /// Returns the truss whose limit load is `force`.
   SnapSettings truss() const;
 };
 

@@ -53,7 +53,7 @@ constexpr EffectKind effect_kind() {
           }};
 }
 
-/// Gives every effect that a scene can name. To add one: write its file, add its line here.
+/// Returns every effect that a scene can name. To add one: write its file, add its line here.
 std::span<const EffectKind> effect_table();
 
 }  // namespace thimble::render

@@ -61,7 +61,7 @@ class MapSettings final : public SettingsReader {
     mistakes_.push_back(std::string(key) + ": " + sentence);
   }
 
-  /// Gives "key: sentence" of each mistake so far.
+  /// Returns "key: sentence" of each mistake so far.
   const std::vector<std::string>& mistakes() const { return mistakes_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Says which numbers a setting takes.
+/// Which numbers a setting takes.
 struct NumberLimits {
   std::string_view unit;  ///< SI; empty for a plain number.
   double least = 0;       ///< Smallest that is allowed.

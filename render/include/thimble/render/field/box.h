@@ -20,7 +20,7 @@ struct Box {
     return R_WO.transpose() * (p_W - p_WO);
   }
 
-  /// Gives the outward unit normal of a face in W. Real-time: safe.
+  /// Returns the outward unit normal of a face in W. Real-time: safe.
   Eigen::Vector3d normal(std::int32_t face) const noexcept {
     return face % 2 == 0 ? Eigen::Vector3d(-R_WO.col(face / 2))
                          : Eigen::Vector3d(R_WO.col(face / 2));

@@ -36,7 +36,7 @@ constexpr FieldKind field_kind() {
           }};
 }
 
-/// Gives every field that a scene can name. To add one: write its file, add its line here.
+/// Returns every field that a scene can name. To add one: write its file, add its line here.
 std::span<const FieldKind> field_table();
 
 }  // namespace thimble::render

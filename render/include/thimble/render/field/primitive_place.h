@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Says where a tip lies against a solid shape.
+/// Where a tip lies against a solid shape.
 struct PrimitivePlace {
   double depth = 0;              ///< Below the surface along `n_W`, m; not above 0: outside.
   Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal.

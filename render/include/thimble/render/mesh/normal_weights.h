@@ -2,7 +2,7 @@
 
 namespace thimble::render {
 
-/// Says how much each face counts in the normal of a vertex.
+/// How much each face counts in the normal of a vertex.
 enum class NormalWeights {
   kAngle,   ///< By its angle there [Thuermer]: flat ground may be cut up at will.
   kRound,   ///< By sin(angle) / (product of its two sides) [Max]: exact on every mesh of a sphere,

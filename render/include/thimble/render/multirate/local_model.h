@@ -26,7 +26,7 @@ struct LocalModel {
   std::int64_t time_ns = 0;      ///< DeviceState::time_ns of the state it was computed for.
 };
 
-/// Says what is wrong with a model.
+/// What is wrong with a model.
 enum class ModelFlaw : std::uint8_t {
   kNone,
   kNotFinite,          ///< A number is NaN or infinite.
@@ -41,10 +41,10 @@ enum class ModelFlaw : std::uint8_t {
 /// Real-time: safe.
 ModelFlaw flaw_of(const LocalModel& model) noexcept;
 
-/// Says what a flaw means and what to do, in a sentence. Real-time: safe.
+/// Returns what a flaw means and what to do, in a sentence. Real-time: safe.
 std::string_view describe(ModelFlaw flaw) noexcept;
 
-/// Gives the symmetric matrix nearest to `stiffness` (N/m) that has no negative eigenvalue: its
+/// Returns the symmetric matrix nearest to `stiffness` (N/m) that has no negative eigenvalue: its
 /// symmetric part without what pushes away. A matrix that is not finite stays as it is. Real-time:
 /// never from the servo thread.
 Eigen::Matrix3d without_negative(const Eigen::Matrix3d& stiffness);

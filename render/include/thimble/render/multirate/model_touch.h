@@ -32,7 +32,7 @@ struct ModelTouchSettings {
   double reserve = 0.001;
 };
 
-/// Says how old what is felt is.
+/// How old what is felt is.
 enum class ModelAge : std::uint8_t {
   kNothing,   ///< No model was ever published.
   kFollowed,  ///< The newest model is followed.
@@ -41,7 +41,7 @@ enum class ModelAge : std::uint8_t {
   kSilent,    ///< Nothing is felt until it publishes again.
 };
 
-/// Gives the name of an age as it stands in reports ("fading"). Real-time: safe.
+/// Returns the name of an age as it stands in reports ("fading"). Real-time: safe.
 std::string_view name(ModelAge age) noexcept;
 
 /// Counts what models went through.

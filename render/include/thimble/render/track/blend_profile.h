@@ -2,7 +2,7 @@
 
 namespace thimble::render {
 
-/// Says how the normal goes over from an edge to the middle of a triangle within a band, t the
+/// How the normal goes over from an edge to the middle of a triangle within a band, t the
 /// distance from the edge over the band's width.
 enum class BlendProfile {
   kLinear,  ///< By t: its turning rate jumps where a band begins, ends and meets another [BP Fig.
