@@ -1,5 +1,6 @@
 #include "twin/drive_train_twin.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -143,15 +143,20 @@ for folder in bag scene session report web stability studies bringup identified 
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 
-# Eigen declares the cross product in one header and defines it in another: a source that leaves the second to
-# the sources it is joined with does not link where none are joined (preset dev).
-for source in $(grep -rlE '\.cross\(' driver device_sim render app --include='*.h' --include='*.cpp'); do
-  own=$(basename "${source%.*}").h
-  if ! grep -q '<Eigen/Geometry>' "$source" $(find driver device_sim render app -name "$own"); then
-    echo "$source calls cross() and includes <Eigen/Geometry> neither itself nor by its own header"
-    bad=1
-  fi
-done
+# Eigen declares the cross product and the inverse in one header and defines them in another: a source that leaves the
+# second to the sources it is joined with, or to a precompiled header, does not link where there are none (presets dev, mutants).
+needs() {  # needs CALL HEADERS: who calls it includes one of the headers, or its own header does
+  local source own
+  for source in $(grep -rlF ".$1" driver device_sim render app tests --include='*.h' --include='*.cpp'); do
+    own=$(basename "${source%.*}").h
+    if ! grep -qE "<Eigen/($2)>" "$source" $(find driver device_sim render app tests -name "$own"); then
+      echo "$source calls ${1%%(*}() and includes <Eigen/${2%%|*}> neither itself nor by its own header"
+      bad=1
+    fi
+  done
+}
+needs 'cross(' 'Geometry'
+needs 'inverse()' 'LU|Geometry|Eigenvalues|Dense'
 
 # Who looks for something reads a folder from end to end: headers and sources of one of render count together.
 full=$(find driver device_sim render app tests -name '*.h' -o -name '*.cpp' -o -name '*.inc' |

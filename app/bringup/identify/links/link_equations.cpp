@@ -1,5 +1,6 @@
 #include "bringup/identify/links/link_equations.h"
 
+#include <Eigen/LU>
 #include <array>
 
 #include "bringup/identify/arm_constants.h"
