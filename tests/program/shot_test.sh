@@ -49,10 +49,8 @@ if command -v Xvfb >/dev/null; then
   source "$(dirname "$0")/screen.sh"
   "$thimble" run "$scene" --clock wall --name shot_test_$$ --no-view --duration 60 >run.txt 2>&1 &
   run=$!
-  for _ in $(seq 100); do
-    "$thimble" view --list | grep -q "^shot_test_$$:" && break
-    sleep 0.1
-  done
+  listed() { "$thimble" view --list | grep -q "^$1:"; }
+  wait_for 10 listed shot_test_$$
   expect 0 '' "$thimble" view shot_test_$$ --for 2 --picture window.png
   # A window with nothing in it takes 11 kB.
   expect 0 '^[0-9]{6,}$' stat -c %s window.png

@@ -18,9 +18,9 @@ struct HiddenArm {
   double delay = 0;              ///< Both ways together, s.
 };
 
-/// Draws one like that of a file: mass and friction 1/3 to 3 times the file's, gains 0.6 to 1.6,
-/// delays up to 4 ms, and no more weight than its friction carries.
-inline HiddenArm hidden_arm_of(scene::ArmFile file, std::uint64_t seed) {
+/// Draws one like that of a file: mass and friction 1/3 to 3 times the file's, gains 0.6 to 1.6, or
+/// 1/3 to 3 where they are `wide`, delays up to 4 ms, and no more weight than its friction carries.
+inline HiddenArm hidden_arm_of(scene::ArmFile file, std::uint64_t seed, bool wide = false) {
   Random random(seed);
   HiddenArm arm{.file = std::move(file)};
   const auto third_to_three = [&](double value) {
@@ -33,7 +33,7 @@ inline HiddenArm hidden_arm_of(scene::ArmFile file, std::uint64_t seed) {
   simulated.wire.delay_out_ns = static_cast<std::int64_t>(random.uniform(0, 4e6));
   arm.delay = 1e-9 * static_cast<double>(simulated.wire.delay_in_ns + simulated.wire.delay_out_ns);
   for (std::size_t i = 0; i < 3; ++i) {
-    arm.gain[i] = random.uniform(0.6, 1.6);
+    arm.gain[i] = wide ? third_to_three(1) : random.uniform(0.6, 1.6);
     simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] = arm.gain[i];
   }
   arm.weight = random.uniform(0, 0.8) * simulated.plant.coulomb;
@@ -50,24 +50,7 @@ inline HiddenArm hidden_arm(std::uint64_t seed) {
 /// up to 4 ms, and no more weight than its friction carries.
 inline HiddenArm wide_hidden_arm(std::uint64_t seed) {
   constexpr std::array kNames = {"vintage_phantom", "woodenhaptics", "polhem"};
-  Random random(seed);
-  HiddenArm arm{.file = scene::load_arm(kNames[seed % kNames.size()]).value()};
-  const auto third_to_three = [&](double value) {
-    return value * std::exp(random.uniform(-1, 1) * std::log(3.0));
-  };
-  auto& simulated = arm.file.simulated;
-  simulated.plant.mass = third_to_three(simulated.plant.mass);
-  simulated.plant.viscous = third_to_three(simulated.plant.viscous);
-  simulated.plant.coulomb = third_to_three(simulated.plant.coulomb);
-  simulated.wire.delay_out_ns = static_cast<std::int64_t>(random.uniform(0, 4e6));
-  arm.delay = 1e-9 * static_cast<double>(simulated.wire.delay_in_ns + simulated.wire.delay_out_ns);
-  for (std::size_t i = 0; i < 3; ++i) {
-    arm.gain[i] = third_to_three(1);
-    simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] = arm.gain[i];
-  }
-  arm.weight = random.uniform(0, 0.8) * simulated.plant.coulomb;
-  simulated.weight_B = arm.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -arm.weight);
-  return arm;
+  return hidden_arm_of(scene::load_arm(kNames[seed % kNames.size()]).value(), seed, true);
 }
 
 /// Draws a hand that rests at the tip: from two fingers that barely touch it to a firm grip.

@@ -59,10 +59,8 @@ class TranslatingBody {
   /// Returns how far all base points have moved, m; the velocity (m/s) and momentum (kg m/s) are in
   /// the body's own time.
   const Eigen::Vector3d& p_W() const noexcept { return p_W_; }
-  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }  ///< Returns the velocity, m/s.
-  Eigen::Vector3d momentum_W() const noexcept {
-    return mass_ * v_W_;
-  }  ///< Returns the momentum, kg m/s.
+  const Eigen::Vector3d& v_W() const noexcept { return v_W_; }
+  Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }
 
  private:
   OscillatorStep flow_;

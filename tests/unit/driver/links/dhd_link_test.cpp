@@ -21,10 +21,8 @@ struct ForceDimension {
   static constexpr const char* kName = "libdrd";
   static constexpr std::int64_t kPeriod_ns = 1'000'000;
   static constexpr int kTicksAfter = 50;
-  static auto load(const char* file) { return dhd::load(file); }
-  static auto open_link(const Library& library, Clock& clock) {
-    return dhd::open_link(library, clock);
-  }
+  static constexpr auto load = dhd::load;
+  static constexpr auto open_link = dhd::open_link;
   static void heal(Mock& mock) {
     mock.fails.clear();
     mock.tells_nan = mock.late = false;

@@ -20,10 +20,8 @@ struct OpenHaptics {
   static constexpr const char* kName = "libHD";
   static constexpr std::int64_t kPeriod_ns = 2'000'000;
   static constexpr int kTicksAfter = 100;
-  static auto load(const char* file) { return hd::load(file); }
-  static auto open_link(const Library& library, Clock& clock) {
-    return hd::open_link(library, clock);
-  }
+  static constexpr auto load = hd::load;
+  static constexpr auto open_link = hd::open_link;
   static void heal(Mock& mock) {
     mock.error = 0;
     mock.tells_nan = mock.late = false;
