@@ -123,16 +123,7 @@ TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
 }
 
 TEST(IdentifyJointFriction, IsWrittenWithItsInterval) {
-  ArmConstants found;
-  found.mass = {0.075, 1e-3};
-  found.gain = {Estimate{1, 0.01}, {1, 0.01}, {1, 0.01}};
-  found.delay = {0.001, 1e-5};
-  found.cables.emplace();
-  for (CableConstants& cable : *found.cables) {
-    cable.inertia = {2e-4, 1e-5};
-    cable.stiffness = {50, 1};
-    cable.damping = {0.02, 1e-3};
-  }
+  ArmConstants found = support::constants_behind_cables();
   const std::string text = support::text_of_arm("vintage_phantom");
   const IdentifiedMark mark{.date = "2026-11-26", .arm = "sim"};
   (*found.cables)[2].coulomb = {6.25e-3, 2e-4};

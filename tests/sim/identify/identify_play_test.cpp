@@ -126,16 +126,7 @@ TEST(IdentifyPlay, IsNotBlamedOnLateReportsWhereAMotorOscillates) {
 }
 
 TEST(IdentifyPlay, IsWrittenWithItsInterval) {
-  ArmConstants found;
-  found.mass = {0.075, 1e-3};
-  found.gain = {Estimate{1, 0.01}, {1, 0.01}, {1, 0.01}};
-  found.delay = {0.001, 1e-5};
-  found.cables.emplace();
-  for (CableConstants& cable : *found.cables) {
-    cable.inertia = {2e-4, 1e-5};
-    cable.stiffness = {50, 1};
-    cable.damping = {0.02, 1e-3};
-  }
+  ArmConstants found = support::constants_behind_cables();
   const std::string text = support::text_of_arm("vintage_phantom");
   const IdentifiedMark mark{.date = "2026-11-26", .arm = "sim"};
   const auto none = identified_text(text, found, mark);

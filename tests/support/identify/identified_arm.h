@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "bringup/identify/arm_constants.h"
 #include "bringup/identify/identify.h"
 #include "bringup/identify/not_identified.h"
 #include "bringup/identify/simulated_bench.h"
@@ -17,6 +18,21 @@
 namespace thimble::support {
 
 inline constexpr double kKnownMass = 0.025;  // kg
+
+/// Returns constants as they are found behind cables that stretch, for what is written of them.
+inline app::ArmConstants constants_behind_cables() {
+  app::ArmConstants found;
+  found.mass = {0.075, 1e-3};
+  found.gain = {app::Estimate{1, 0.01}, {1, 0.01}, {1, 0.01}};
+  found.delay = {0.001, 1e-5};
+  found.cables.emplace();
+  for (app::CableConstants& cable : *found.cables) {
+    cable.inertia = {2e-4, 1e-5};
+    cable.stiffness = {50, 1};
+    cable.damping = {0.02, 1e-3};
+  }
+  return found;
+}
 
 /// Identifies one, whose file names no periods of cogging; `hold_it` leaves the hand on it that its
 /// file names.
