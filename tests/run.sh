@@ -2,59 +2,64 @@
 # Runs every test: sets the machine up, builds, and runs all tests as release, those of the libraries of a run
 # (tests/CMakeLists.txt) but for release_only.list under the address and undefined-behaviour sanitizers, and of these
 # the ones in which threads of a run meet under the thread sanitizer.
-#   tests/run.sh [--long] [PRESET...]    --long: all tests under all sanitizers, at full length, the
-#                                        release built by clang, a build in which no sources are
-#                                        joined, then tests on 64-bit ARM under QEMU (hours),
-#                                        clang-tidy, coverage and mutants (40, 30 and 30 minutes of
-#                                        two cores), if what they need is installed;
-#                                        PRESET: only these
+#   tests/run.sh [--long] [--without KEY,...] [PRESET...]
+#     --long     all tests under all sanitizers, at full length, the release built by clang, a build in which no
+#                sources are joined, then tests on 64-bit ARM under QEMU (hours), clang-tidy, coverage and mutants
+#                (40, 30 and 30 minutes of two cores)
+#     --without  optional parts (keys of app/optional_parts.list) that are not installed and may be absent
+#     PRESET     only these
+# Ends with 1 if a test fails, or if an optional part that it installs is absent and not named by --without. A test that
+# depends on the wall clock (label wall_clock, tests/wall_clock.list) has three attempts, every other test has one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 presets=()
-for argument in "$@"; do
-  case $argument in
+without=${THIMBLE_WITHOUT:-}
+usage() {
+  sed -n '2,13s/^# \{0,1\}//p' "$0"
+  exit 2
+}
+while [ $# -gt 0 ]; do
+  case $1 in
     --long) export THIMBLE_LONG=1 ;;
-    release | dev | clang | asan | asan-all | tsan | tsan-all) presets+=("$argument") ;;
-    *)
-      sed -n '2,10s/^# \{0,1\}//p' "$0"
-      exit 2
+    --without)
+      [ $# -gt 1 ] || usage
+      without+=" ${2//,/ }"
+      shift
       ;;
+    release | dev | clang | asan | asan-all | tsan | tsan-all) presets+=("$1") ;;
+    *) usage ;;
   esac
+  shift
+done
+export THIMBLE_WITHOUT=$without
+for key in $without; do
+  app/optional_parts.sh keys | grep -qxF "$key" || {
+    echo "--without $key: no optional part has this key; app/optional_parts.list names them." >&2
+    exit 2
+  }
 done
 more=()
 if [ ${#presets[@]} = 0 ]; then
   presets=(release "asan${THIMBLE_LONG:+-all}" "tsan${THIMBLE_LONG:+-all}")
-  if [ -n "${THIMBLE_LONG:-}" ]; then
-    more=(arm64 tidy coverage mutate)
-    if tests/optional_packages.sh "the build by clang" clang; then presets+=(clang); fi
-  fi
+  [ -z "${THIMBLE_LONG:-}" ] || more=(arm64 tidy coverage mutate)
 fi
 
-tests/usb/setup.sh || true  # optional: without it the USB arms are not tested through a kernel
-tests/fuzz/setup.sh || true  # optional: without it only the corpora are replayed
-[ -z "${THIMBLE_LONG:-}" ] || tests/faces/setup.sh || true  # optional: 64-bit ARM
-[ -z "${THIMBLE_LONG:-}" ] || tests/optional_packages.sh "packages and image in a bare Debian 12" debootstrap buildah || true
-tests/optional_packages.sh "the window on a screen in memory" xvfb xdotool || true
-tests/optional_packages.sh "sines and exponentials against their true values" libmpfr-dev || true
-tests/optional_packages.sh "the guide as web pages" mkdocs || true
-tests/optional_packages.sh "the format of the sources" clang-format-14 || true
-tests/optional_packages.sh "pictures, tables and compiled laws of the Python package" \
-  python3-matplotlib python3-pandas python3-numba || true
-[ -z "${THIMBLE_LONG:-}" ] || tests/optional_packages.sh "its notebooks in Jupyter, its types" \
-  python3-nbclient python3-ipykernel mypy || true
-tests/optional_packages.sh "animations as MP4 and GIF" ffmpeg || true
-tests/optional_packages.sh "the page in a real browser" chromium python3-websockets || true
+# Everything is installed before anything is configured. What cannot be installed is named here and fails at the end.
+promised=(base program all tests ${THIMBLE_LONG:+long})
+app/optional_parts.sh install "${promised[@]}" || true
+[[ " $without " == *" usb "* ]] || tests/usb/setup.sh || true
+if [ ${#more[@]} -gt 0 ] && command -v clang++ >/dev/null; then presets+=(clang); fi
 
-# What failed, again at the very end: a log of CI is often cut to its last lines.
-tell_failures() {  # tell_failures PRESET
-  local logs=build/$1/Testing/Temporary
-  [ -e "$logs/LastTestsFailed.log" ] || return 0  # it did not build, or is no preset
-  cut -d: -f2- "$logs/LastTestsFailed.log" | while IFS= read -r name; do
+# The output of failed tests, again at the very end: a log of CI is often cut to its last lines.
+report_failures() {  # report_failures PRESET
+  local name
+  [ -s "build/$1.failed" ] || return 0  # it did not build, or is no preset
+  while IFS= read -r name; do
     echo "== $1: $name"
-    awk -v name="$name" '/^[0-9]+\/[0-9]+ Testing: / { inside = index($0, " Testing: " name) > 0 } inside' \
-      "$logs/LastTest.log" | tail -n 40
-  done
-  cut -d: -f2- "$logs/LastTestsFailed.log" | sed "s/^/Failed in $1: /"
+    awk -v name="$name" '/^[0-9]+\/[0-9]+ Testing: / { inside = $0 ~ / Testing: / && substr($0, index($0, " Testing: ") + 10) == name } inside' \
+      "build/$1.details" | tail -n 40
+  done <"build/$1.failed"
+  sed "s/^/Failed in $1: /" "build/$1.failed"
 }
 
 # A sanitizer builds no more than the tests of libraries (tests/CMakeLists.txt) in its short form.
@@ -65,6 +70,35 @@ build() {  # build PRESET
   esac
 }
 
+# Runs the tests of a preset. Those that failed and depend on the wall clock, which a busy machine makes fail, are
+# repeated one at a time. Leaves in build/: PRESET.tests (output), PRESET.failed and PRESET.retried (names),
+# PRESET.details (output of each test, if one failed).
+run_tests() {  # run_tests PRESET CTEST_ARGUMENT...
+  local preset=$1 logs=build/$1/Testing/Temporary files=build/$1 attempt pattern
+  shift
+  rm -f "$logs/LastTestsFailed.log" "$files.details"
+  : >"$files.failed"
+  : >"$files.retried"
+  ! ctest --preset "$preset" "$@" | tee "$files.tests" || return 0
+  [ -f "$logs/LastTestsFailed.log" ] || return 1
+  cut -d: -f2- "$logs/LastTestsFailed.log" >"$files.failed"
+  cp "$logs/LastTest.log" "$files.details"
+  ctest --preset "$preset" -N -L '^wall_clock$' | sed -n 's/^ *Test *#[0-9]*: //p' >"$files.wall_clock"
+  for attempt in 2 3; do
+    grep -xF -f "$files.wall_clock" "$files.failed" >"$files.again" || break
+    echo "== Attempt $attempt of tests that depend on the wall clock: $preset"
+    pattern=$(sed 's/[][.*+?^$()|\\]/\\&/g' "$files.again" | paste -s -d '|')
+    rm -f "$logs/LastTestsFailed.log"
+    ctest --preset "$preset" --parallel 1 --fixture-exclude-any . -R "^($pattern)\$" | tee -a "$files.tests" || true
+    cat "$logs/LastTest.log" >>"$files.details"
+    { cut -d: -f2- "$logs/LastTestsFailed.log" 2>/dev/null || true; } >"$files.still"
+    grep -vxF -f "$files.still" "$files.again" | tee -a "$files.retried" >"$files.passed" || true
+    grep -vxF -f "$files.passed" "$files.failed" >"$files.rest" || true
+    mv "$files.rest" "$files.failed"
+  done
+  [ ! -s "$files.failed" ]
+}
+
 failed=()
 for preset in "${presets[@]}"; do
   leave=()
@@ -72,10 +106,11 @@ for preset in "${presets[@]}"; do
     asan | tsan) leave=(-L .) ;; # what lies in sources, and not in a program, was tested with the release
   esac
   build "$preset"
+  for key in $(app/optional_parts.sh missing "build/$preset" "${promised[@]}"); do
+    echo "NOTE: the optional part $key is absent, so $preset fails in the end (--without $key accepts that)." >&2
+  done
   echo "== Tests: $preset"
-  # Tests by the wall clock fail where the machine stands still for longer than an arm's watchdog allows; what fails by
-  # itself fails each time. Those that passed at a further try are named below.
-  ctest --preset "$preset" --repeat until-pass:3 "${leave[@]}" | tee "build/$preset.tests" || failed+=("$preset")
+  run_tests "$preset" "${leave[@]}" || failed+=("$preset")
 done
 [ ${#more[@]} = 0 ] || app/setup.sh dev || failed+=(dev)  # each source with its own includes
 for name in "${more[@]}"; do
@@ -84,15 +119,22 @@ for name in "${more[@]}"; do
   [ "$name" != arm64 ] || all=(--all)
   env -u THIMBLE_LONG "tests/$name.sh" "${all[@]}" || [ $? = 3 ] || failed+=("$name")  # 3: not installed
 done
-# What was not tested, or not at the first try, once more where it is seen.
+# What was not tested, or passed at a further attempt only, once more where it is seen.
 for preset in "${presets[@]}"; do
-  sed -nE 's/.*Test +#[0-9]+: ([^ ]+) .*\*\*\*(Failed|Timeout|Exception).*/\1/p' "build/$preset.tests" 2>/dev/null | sort -u |
-    { grep -vxF -f <(cut -d: -f2- "build/$preset/Testing/Temporary/LastTestsFailed.log" 2>/dev/null) || true; } |
-    sed "s/^/Passed at a further try in $preset: /" || true
-  sed -n "s/.*Test  *#[0-9]*: \([^ ]*\) .*\*\*\*Skipped.*/Not tested in $preset: \1/p" "build/$preset.tests" 2>/dev/null || true
+  sed "s/^/Passed at a further attempt in $preset: /" "build/$preset.retried"
+  sed -n "s/.*Test  *#[0-9]*: \([^ ]*\) .*\*\*\*Skipped.*/Not tested in $preset: \1/p" "build/$preset.tests" || true
 done
+app/optional_parts.sh table "build/${presets[0]}" "${promised[@]}"
+status=0
 if [ ${#failed[@]} -gt 0 ]; then
-  for preset in "${failed[@]}"; do tell_failures "$preset" >&2; done
+  for preset in "${failed[@]}"; do report_failures "$preset" >&2; done
   echo "Tests failed in: ${failed[*]}" >&2
-  exit 1
+  status=1
 fi
+for preset in "${presets[@]}"; do
+  for key in $(app/optional_parts.sh missing "build/$preset" "${promised[@]}"); do
+    echo "Absent in $preset: $key. Install it as the table above says, or accept it: tests/run.sh --without $key" >&2
+    status=1
+  done
+done
+exit $status

@@ -26,8 +26,7 @@ mkdir -p "$folder/body"
 build/release/tests/bench/bench_body --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true --figures="$folder/body/figures.json"
 build/release/tests/bench/bench_view
-if tests/optional_packages.sh "what it costs to watch" chromium python3-websockets libjs-three \
-  libjs-dygraphs; then
+if app/optional_parts.sh install browser; then
   app/fetch_meshes.sh >/dev/null
   mkdir -p "$folder/watch"
   /usr/bin/python3 tests/bench/watch_bench.py build/release app/scenes/elephant.yaml \

@@ -1,15 +1,9 @@
 #!/usr/bin/env bash
-# Installs what the virtual machine test takes, if it can; the test is skipped otherwise, with a loud
-# line. The kernel that it boots is unpacked into build/kernel: this system is left with the one it has.
+# Installs what the test in a virtual machine needs: QEMU, a static busybox, udevd and its rules, and a kernel, which is
+# unpacked into build/kernel and not installed.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-packages=(
-  qemu-system-x86     # the machine
-  busybox-static cpio # its small system
-  udev                # the real systemd-udevd, which reads udev/70-thimble.rules
-  systemd             # the rules that make uaccess give a device to who sits at it
-)
-tests/optional_packages.sh "the test of USB arms through a real kernel" "${packages[@]}"
+app/optional_parts.sh install usb
 
 # Debian's kernel, with vhci-hcd, usbhid and hid-generic as modules.
 tests/usb/kernel.sh >/dev/null && exit 0
