@@ -2,7 +2,7 @@
 # The libraries that stand in for others', and programs in C, built for 64-bit ARM and run there by QEMU, under
 # the `thimble exec` of this machine: the same names are exported, structs come back by value, and memory that is
 # shared with a process of another kind of processor has the same form. Only with THIMBLE_LONG.
-#   arm64_test.sh THIMBLE SOURCE_DIR WORK_DIR EIGEN_INCLUDE_DIR
+#   arm64_test.sh THIMBLE SOURCE_DIR WORK_DIR EIGEN_INCLUDE_DIR VERSION_INCLUDE_DIR
 skip() {
   echo "SKIPPED: other makers' interfaces were NOT tested on 64-bit ARM: $1" >&2
   exit 77
@@ -12,12 +12,11 @@ for tool in aarch64-linux-gnu-g++ aarch64-linux-gnu-gcc aarch64-linux-gnu-nm qem
   command -v $tool >/dev/null || skip "$tool is missing (as root: apt-get install g++-aarch64-linux-gnu qemu-user)"
 done
 source "$(dirname "$0")/../program/expect.sh" "$1" "$2" "$3"
-eigen=$4
+eigen=$4 version_folder=$5
 export TMPDIR=$work
 faces=$source_dir/app/faces
 headers=$faces/include/thimble/compat
 mkdir lib clients
-version=$(sed -nE 's/^project\(.*VERSION ([0-9.]+).*/\1/p' "$source_dir/CMakeLists.txt")
 
 # library NAME FACE [FLAG...]: libNAME.so of the sources of a face and of the core, as app/faces/CMakeLists.txt makes it.
 library() {
@@ -26,7 +25,7 @@ library() {
   for source in "$faces/$face"/*.cpp "$faces"/core/*.cpp; do
     objects+=("$face/$(basename "$source").o")
     aarch64-linux-gnu-g++ -std=c++20 -O1 -fPIC -Wno-psabi \
-      -DTHIMBLE_VERSION="\"$version\"" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" \
+      -I"$version_folder" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" \
       -isystem "$eigen" -c "$source" -o "${objects[-1]}" || return
   done
   {

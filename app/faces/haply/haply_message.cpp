@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "faces/haply/haply_frame.h"
+#include "thimble/version.h"
 
 namespace thimble::faces::haply {
 namespace {

@@ -7,6 +7,7 @@
 #include "faces/hd/hd_device.h"
 #include "faces/hd/hd_errors.h"
 #include "faces/hd/hd_parameters.h"
+#include "thimble/version.h"
 
 namespace thimble::faces::hd {
 namespace {

@@ -10,6 +10,7 @@
 #include "faces/ros2/echo_peer.h"
 #include "faces/ros2/message_taker.h"
 #include "faces/ros2/ros_module.h"
+#include "thimble/version.h"
 
 namespace thimble::faces {
 namespace {

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <string>
 
+#include "thimble/version.h"
+
 namespace thimble::faces {
 namespace {
 

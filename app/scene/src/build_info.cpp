@@ -1,5 +1,7 @@
 #include "thimble/scene/build_info.h"
 
+#include "thimble/version.h"
+
 namespace thimble::scene {
 
 BuildInfo build_info() {

@@ -24,7 +24,7 @@ std::int64_t monotonic_ns() noexcept {
 }
 
 // Calls nothing but what POSIX names as safe in a handler: clock_gettime, sigaction, raise.
-extern "C" void on_signal(int number) {
+void on_signal(int number) {
   const int error = errno;
   std::int64_t first_ns = 0;
   const std::int64_t now_ns = monotonic_ns();

@@ -25,7 +25,7 @@ std::uintptr_t page_size = 4096;
 /// Puts a page of zeros where one is gone. mmap is no more than a call of the kernel, which changes
 /// nothing that the interrupted code could be in the middle of [as libwayland does for its
 /// buffers].
-extern "C" void on_bus_error(int number, siginfo_t* info, void*) {
+void on_bus_error(int number, siginfo_t* info, void*) {
   const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
   for (Guarded& one : guarded) {
     if (address < one.begin.load() || address >= one.end.load()) continue;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <concepts>
 #include <string_view>
 
+#include "surface/friction/friction_settings.h"
 #include "surface/friction/tangent_motion.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/effect/effect_context.h"
@@ -16,15 +18,25 @@ namespace thimble::render {
 ///
 /// `pull` gives the force (N in W) along the surface with which the surface holds back, in the
 /// direction in which the tip moved: the hand feels its opposite. `turn` carries what is remembered
-/// along when the normal turns; `forget` ends the contact. All Real-time: safe.
+/// along when the normal turns; `forget` ends the contact; `coulomb` returns the coefficients,
+/// which may be changed between two ticks. All Real-time: safe. `kName` is the name by which scenes
+/// choose it, `Settings` what they set, read by `Settings::read`; a law is made of them.
 template <class Law>
-concept FrictionLaw = requires(Law law, const SlideTick& tick, const Turn& turn) {
+concept FrictionLaw = std::constructible_from<Law, const typename Law::Settings&> &&
+    std::default_initializable<typename Law::Settings> &&
+    std::convertible_to<decltype(Law::kName), std::string_view> &&
+    requires(Law law, const SlideTick& tick, const Turn& turn) {
   { law.pull(tick) }
   noexcept->std::same_as<Eigen::Vector3d>;
   { law.turn(turn) }
   noexcept->std::same_as<void>;
   { law.forget() }
   noexcept->std::same_as<void>;
+  { law.coulomb() }
+  noexcept->std::same_as<CoulombSettings&>;
+} && requires(typename Law::Settings settings, SettingsReader& reader,
+              const EffectContext& context) {
+  settings.read(reader, context);
 };
 
 /// A friction on a surface: a SurfaceStage around a FrictionLaw.
@@ -33,7 +45,7 @@ concept FrictionLaw = requires(Law law, const SlideTick& tick, const Turn& turn)
 /// with the contact: leaving neither pulls nor sticks. It stands after the surface's spring and
 /// takes the normal force from there; so it follows textures and damping too. All positions and
 /// forces are in W; what is not finite gives no friction. Real-time: safe.
-template <class Law>
+template <FrictionLaw Law>
 class FrictionStage {
  public:
   static constexpr std::string_view kGroup = "friction";
@@ -43,9 +55,7 @@ class FrictionStage {
 
   /// Takes settings that Settings::read found right. Real-time: never from the servo thread.
   FrictionStage(const Settings& settings, const EffectContext& context)
-      : law_(settings), motion_(context.tick) {
-    static_assert(FrictionLaw<Law>);
-  }
+      : law_(settings), motion_(context.tick) {}
 
   void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
     SlideTick tick;

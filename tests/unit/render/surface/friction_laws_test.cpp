@@ -28,6 +28,38 @@ double counted(double x) {
   return kStep * std::round(x / kStep);
 }
 
+// A law that is complete, and laws that each lack one thing that FrictionStage uses.
+struct WholeLaw : BristleLaw {
+  using BristleLaw::BristleLaw;
+};
+struct NoCoefficients : WholeLaw {
+  using WholeLaw::WholeLaw;
+  void coulomb() = delete;
+};
+struct CoefficientsByValue : WholeLaw {
+  using WholeLaw::WholeLaw;
+  CoulombSettings coulomb() noexcept { return {}; }
+};
+struct NoName : WholeLaw {
+  using WholeLaw::WholeLaw;
+  static constexpr int kName = 0;
+};
+struct NotMadeOfSettings : WholeLaw {
+  explicit NotMadeOfSettings(int) : WholeLaw(Settings{}) {}
+};
+struct UnreadSettings : WholeLaw {
+  struct Settings : BristleLaw::Settings {
+    void read() {}
+  };
+  using WholeLaw::WholeLaw;
+};
+static_assert(FrictionLaw<WholeLaw>);
+static_assert(!FrictionLaw<NoCoefficients>);
+static_assert(!FrictionLaw<CoefficientsByValue>);
+static_assert(!FrictionLaw<NoName>);
+static_assert(!FrictionLaw<NotMadeOfSettings>);
+static_assert(!FrictionLaw<UnreadSettings>);
+
 template <class Law>
 AnyStageOf<FrictionStage<Law>> stage(const typename Law::Settings& settings) {
   return AnyStageOf<FrictionStage<Law>>({settings, support::phantom_context()});
