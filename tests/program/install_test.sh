@@ -38,14 +38,51 @@ PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)")
 export PKG_CONFIG_PATH
 for page in README.md app/guide/pages/cpp.md; do
   sed -n '/^```cpp$/,/^```$/p' "$examples/../../$page" | sed '/^```/d' >by_pkg_config.cpp
-  sed -i 's/"elephant"/"rubber"/' by_pkg_config.cpp  # whose mesh needs not be fetched
   "${CXX:-c++}" $(pkg-config --cflags thimble) -Wall -Wextra -Werror by_pkg_config.cpp -o by_pkg_config \
     $(pkg-config --libs thimble) >log 2>&1 || fail "$page: $(cat log)"
-  XDG_DATA_DIRS=$work/usr/share ./by_pkg_config >said 2>&1 || fail "$page: $(cat said)"
+  # As after a bare `cmake --install`: a user without files, and no scans.
+  rm -rf touch.h5 nothing && mkdir nothing
+  env -i HOME="$work/nothing" PATH="$PATH" XDG_DATA_DIRS="$work/usr/share" ./by_pkg_config >said 2>&1 || fail "$page: $(cat said)"
   grep -q '^Force ' said || fail "$page printed: $(cat said)"
+  [ -s touch.h5 ] || fail "$page left no recording"
 done
 "$work/examples/09_run_a_scene" rubber third.h5 | diff said - | grep -v Replayed | grep '^[<>]' &&
   fail "by pkg-config another run"
+
+echo "Building the program of README.md by CMake, and asking for the version ..."
+mkdir consumer
+sed -n '/^```cpp$/,/^```$/p' "$examples/../../README.md" | sed '/^```/d' >consumer/touch.cpp
+cat >consumer/version.cpp <<'END'
+#include "thimble/version.h"
+#include <cstdio>
+#include <cstring>
+static_assert(THIMBLE_VERSION_AT_LEAST(THIMBLE_VERSION_MAJOR, THIMBLE_VERSION_MINOR, THIMBLE_VERSION_PATCH));
+static_assert(THIMBLE_VERSION_AT_LEAST(0, 0, 99));
+static_assert(!THIMBLE_VERSION_AT_LEAST(THIMBLE_VERSION_MAJOR, THIMBLE_VERSION_MINOR, THIMBLE_VERSION_PATCH + 1));
+static_assert(!THIMBLE_VERSION_AT_LEAST(THIMBLE_VERSION_MAJOR, THIMBLE_VERSION_MINOR + 1, 0));
+static_assert(!THIMBLE_VERSION_AT_LEAST(THIMBLE_VERSION_MAJOR + 1, 0, 0));
+int main() {
+  char numbers[32];
+  std::snprintf(numbers, sizeof numbers, "%d.%d.%d", THIMBLE_VERSION_MAJOR, THIMBLE_VERSION_MINOR, THIMBLE_VERSION_PATCH);
+  std::puts(THIMBLE_VERSION);
+  return std::strcmp(numbers, THIMBLE_VERSION);
+}
+END
+cat >consumer/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(consumer LANGUAGES CXX)
+find_package(thimble REQUIRED)
+add_executable(touch touch.cpp)
+target_link_libraries(touch PRIVATE thimble::session)
+add_executable(version version.cpp)
+target_link_libraries(version PRIVATE thimble::driver)
+END
+cmake -S consumer -B consumer/build -G Ninja -DCMAKE_PREFIX_PATH="$work/usr" >log 2>&1 && cmake --build consumer/build >log 2>&1 ||
+  fail "$(cat log)"
+env -i HOME="$work/nothing" PATH="$PATH" consumer/build/touch >said 2>&1 || fail "README.md by CMake: $(cat said)"
+grep -q '^Force ' said || fail "README.md by CMake printed: $(cat said)"
+version=$(consumer/build/version) || fail "the numbers of thimble/version.h are not those of its text: $version"
+"$work/usr/bin/thimble" --version | grep -q "^thimble ${version//./\\.} " || fail "thimble/version.h says $version, the program $("$work/usr/bin/thimble" --version)"
 
 echo "Looking at the installed program ..."
 program=$work/usr/bin/thimble

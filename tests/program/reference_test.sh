@@ -31,6 +31,15 @@ for header in $(cd "$source" && find driver/include device_sim/include render/in
     -not -path '*/thimble/compat/*'); do
   grep -qF "$(basename "$header")</" whole/files.html || { echo "FAILED: $header is not in the reference" >&2; exit 1; }
 done
+grep -q '>THIMBLE_VERSION_AT_LEAST<' whole/version_8h.html || { echo "FAILED: no page of thimble/version.h" >&2; exit 1; }
+# What a page says to include is what a program can include.
+grep -rhoE '#include &lt;<a[^>]*>[^<]*' whole/*.html | sed 's/.*>//' | sort -u >included
+[ "$(wc -l <included)" -gt 50 ] || { echo "FAILED: only $(wc -l <included) headers are named for #include" >&2; exit 1; }
+if grep -v '^thimble/' included >&2; then
+  echo "FAILED: the lines above are shown for #include, and no compiler finds them" >&2
+  exit 1
+fi
+grep -qx 'thimble/session/session.h' included || { echo "FAILED: no page says #include <thimble/session/session.h>" >&2; exit 1; }
 grep -q 'what the force law asked for' whole/structthimble_1_1driver_1_1TickRecord.html || { echo "FAILED: an empty page" >&2; exit 1; }
 
 cat >wordless.h <<'EOF'
