@@ -15,7 +15,8 @@ missing_packages() {
   printf '%s\n' "$@" | grep -vxF -f <(installed_packages "$@" | cut -d ' ' -f 1) || true
 }
 
-# install_packages PACKAGE...: installs them. Returns 3 if this user may not.
+# install_packages PACKAGE...: installs them. Returns 3 if this user may not or this system has no apt-get, 1 if apt-get
+# fails.
 install_packages() {
   local as_root=()
   if [ "$(id -u)" != 0 ]; then
@@ -24,5 +25,5 @@ install_packages() {
   fi
   command -v apt-get >/dev/null || return 3
   "${as_root[@]}" apt-get update -q && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -q --no-install-recommends "$@"
+    apt-get install -y -q --no-install-recommends "$@" || return 1
 }

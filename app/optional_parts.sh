@@ -61,6 +61,12 @@ rows() {
   awk -F'|' -v by=" ${*:2} " 'index(by, " " $3 " ")' "$1/optional_parts.txt"
 }
 
+for key in ${THIMBLE_WITHOUT:-}; do
+  grep -qxF "$key" <(parts | cut -d '|' -f 1) || {
+    echo "No optional part has the key '$key'; app/optional_parts.list names them." >&2
+    exit 2
+  }
+done
 command=${1:-}
 [ $# = 0 ] || shift
 case $command in

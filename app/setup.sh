@@ -29,15 +29,15 @@ packages=(
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
 parts=(base)
-case "${targets[*]-}" in
-  "") parts+=(program all) ;;
-  thimble)
+[ ${#targets[@]} -gt 0 ] || parts+=(program all)
+for i in "${!targets[@]}"; do
+  if [ "${targets[i]}" = thimble ]; then
     parts+=(program)
-    targets=(thimble_product)
-    ;;
-esac
-# shellcheck disable=SC2207
-packages+=($(app/optional_parts.sh packages "${parts[@]}"))
+    targets[i]=thimble_product
+  fi
+done
+optional=$(app/optional_parts.sh packages "${parts[@]}")
+mapfile -t -O "${#packages[@]}" packages <<<"$optional"
 [ "$preset" != clang ] || packages+=(clang)
 
 mapfile -t missing < <(missing_packages "${packages[@]}")
@@ -48,8 +48,13 @@ if [ ${#missing[@]} -gt 0 ]; then
   fi
   echo "Installing Debian packages: ${missing[*]}"
   install_packages "${missing[@]}" || {
-    echo "Thimble needs Debian packages that could not be installed. Ask an administrator to run:" >&2
+    if [ $? = 3 ]; then
+      echo "Thimble needs Debian packages that only an administrator can install. Ask one to run:" >&2
+    else
+      echo "Debian packages could not be installed; apt-get says why above. This would install them:" >&2
+    fi
     echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+    echo "Optional parts (app/optional_parts.list) may be left out: THIMBLE_WITHOUT=\"KEY...\" app/setup.sh ${*:-}" >&2
     exit 3
   }
 fi

@@ -150,7 +150,9 @@ run 0 tests/run.sh --without guide release
 says '^ +missing +guide '
 run 0 env THIMBLE_WITHOUT=guide tests/run.sh release
 run 2 tests/run.sh --without nonsense release
-says 'no optional part has this key'
+says "No optional part has the key 'nonsense'"
+run 2 env THIMBLE_WITHOUT=program app/setup.sh release thimble
+says "No optional part has the key 'program'"
 : >"$FAKE/unavailable"
 
 echo "Tests that depend on the wall clock ..."
@@ -206,7 +208,7 @@ printf 'Name: fake\nDescription: fake\nVersion: 1\n' >"$PREFIX/lib/pkgconfig/thi
 search
 [ "$(cat "$work/searched/found.txt")" = "Fake_FOUND;FAKE_PROGRAM;FAKE_MODULE_FOUND" ] ||
   fail "found after it was installed: $(cat "$work/searched/found.txt")"
-rm -r "$PREFIX"/*/*
+rm -r "${PREFIX:?}"/*/*
 sed -i '/^mkdocs$/d; /^ffmpeg$/d' "$FAKE/installed"
 search
 [ -z "$(cat "$work/searched/found.txt")" ] || fail "found after it was removed: $(cat "$work/searched/found.txt")"

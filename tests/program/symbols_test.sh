@@ -12,8 +12,8 @@ fail() {
   exit 1
 }
 cd "$work"
-# C functions that are meant for others: none.
-printf '%s\n' >c_functions
+# C functions that are meant for others, one per line: none.
+: >c_functions
 cmake --install "$build" --component dev --prefix "$work/usr" >log || fail "$(cat log)"
 (cd "$source" && find driver device_sim render app -name '*.h' -print0 | xargs -0 cat) | grep -oE '[A-Za-z_][A-Za-z_0-9]*' | sort -u >declared
 
