@@ -246,7 +246,7 @@ bool Device::follow_silence(std::int64_t now_ns) noexcept {
     return false;
   }
   ++missed_in_a_row_;
-  if (now_ns - quiet_since_ns_ <= settings_.silence_limit_ns) return false;
+  if (lost_ || now_ns - quiet_since_ns_ <= settings_.silence_limit_ns) return false;
   silent_ = true;
   if (spoken_) doubt_counts();
   return true;

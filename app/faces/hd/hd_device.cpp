@@ -73,8 +73,8 @@ void look_at_forces(HHD handle, Device& device) noexcept {
   if (now.link != device.link_told) {
     device.link_told = now.link;
     // An arm can be pulled because of, or after, another fault.
-    const bool told_by_fault = now.fault == driver::Fault::kTransportLost ||
-                               now.fault == driver::Fault::kNoReports;
+    const bool told_by_fault =
+        now.fault == driver::Fault::kTransportLost || now.fault == driver::Fault::kNoReports;
     if (now.link == driver::LinkState::kLost && !told_by_fault) {
       keep_error(HD_COMM_ERROR, handle, static_cast<int>(driver::Fault::kTransportLost));
     }

@@ -64,8 +64,8 @@ Device* current_open(const char* function) noexcept;
 /// lock.
 ArmReading seen(HHD device) noexcept;
 
-/// Returns whether this thread belongs to a scheduler that was stopped, by one of its own callbacks:
-/// no frame that it ends asks for a force.
+/// Returns whether this thread belongs to a scheduler that was stopped, by one of its own
+/// callbacks: no frame that it ends asks for a force.
 bool scheduler_stopped() noexcept;
 
 /// Ends a frame that this thread left open when its callbacks were over, with HD_FRAME_ERROR.

@@ -82,8 +82,8 @@ HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDusho
   return handle;
 }
 
-/// Runs each callback once. Callbacks may schedule and unschedule, and stop the scheduler: then none
-/// of the others runs.
+/// Runs each callback once. Callbacks may schedule and unschedule, and stop the scheduler: then
+/// none of the others runs.
 void run_callbacks(Scheduler& s) {
   std::vector<HDSchedulerHandle> due;
   {

@@ -16,8 +16,8 @@ using driver::LinkState;
 constexpr int kStepsBetweenSearches = 5;  // half a second; chosen
 constexpr const char* kPlugIn = " Plug it in, in its home pose.";
 
-/// Returns where the tip must be. The counters of a simulated arm never restart, and no person could
-/// put it into its home pose.
+/// Returns where the tip must be. The counters of a simulated arm never restart, and no person
+/// could put it into its home pose.
 StartPose place_of(const Setup& setup, std::size_t arm) {
   if (setup.real_arm(arm)) return setup.start_pose(arm);
   return {setup.arm_file(arm).workspace, std::nullopt};
@@ -108,10 +108,12 @@ void ReplugWatch::search() {
 }
 
 void ReplugWatch::let_through(const driver::TickRecord& record) {
-  if (record.link == LinkState::kLost) return terminal_.tell(std::string("The arm is gone.") + kPlugIn);
+  if (record.link == LinkState::kLost)
+    return terminal_.tell(std::string("The arm is gone.") + kPlugIn);
   if (record.link == LinkState::kSilent) {
     return terminal_.tell(
-        "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it and "
+        "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it "
+        "and "
         "plug it in again, in its home pose.");
   }
   const Eigen::Map<const Eigen::Vector3d> p_WT(record.p_WT.data());

@@ -15,10 +15,10 @@ namespace thimble::session {
 
 class Session;
 
-/// A watch over a real arm beside the servo: prints when its force is off and why, finds it again by
-/// its name after it was pulled, whatever the fault was, and lets forces through again only when the
-/// user presses Enter and the tip is where it must be. The counters of an arm that was pulled, or
-/// whose board restarted, begin at zero: it must be in its home pose then (Device::home_needed).
+/// A watch over a real arm beside the servo: prints when its force is off and why, finds it again
+/// by its name after it was pulled, whatever the fault was, and lets forces through again only when
+/// the user presses Enter and the tip is where it must be. The counters of an arm that was pulled,
+/// or whose board restarted, begin at zero: it must be in its home pose then (Device::home_needed).
 /// Real-time: never from the servo thread.
 class ReplugWatch {
  public:

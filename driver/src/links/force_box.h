@@ -33,8 +33,8 @@ class ForceBox {
     return true;
   }
 
-  /// Returns whether a zero that was put last is with the other thread: nothing waits, or nothing but
-  /// one more zero. By the servo thread.
+  /// Returns whether a zero that was put last is with the other thread: nothing waits, or nothing
+  /// but one more zero. By the servo thread.
   bool zero_settled() const noexcept {
     return !full_.load(std::memory_order_acquire) || zero_taken_.load(std::memory_order_acquire);
   }

@@ -158,8 +158,8 @@ class FtdiTransport final : public StreamTransport {
       return TransportStatus::kLost;
     }
     if (code == 0) newest_ = &*free;
-    // The outcome of a write is known later; that of an earlier one is reported now. After a failure
-    // it is not known whether the arm takes this one, although it is handed over.
+    // The outcome of a write is known later; that of an earlier one is reported now. After a
+    // failure it is not known whether the arm takes this one, although it is handed over.
     const bool refused = refused_ || code != 0;
     refused_ = false;
     return refused ? TransportStatus::kRefused : TransportStatus::kOk;

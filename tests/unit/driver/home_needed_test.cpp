@@ -1,4 +1,5 @@
-// A board that restarts on a live wire counts from zero where it stands: no force before the home pose.
+// A board that restarts on a live wire counts from zero where it stands: no force before the home
+// pose.
 
 #include <gtest/gtest.h>
 
@@ -33,10 +34,10 @@ class HomeNeeded : public ::testing::Test {
     device_.reset();
     wire_ = {};
     wire_.to_host.push_back(report(kAway));
-    auto opened = Device::open(
-        std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
-                                   std::move(arm)),
-        support::vintage_settings(), now_ns_);
+    auto opened =
+        Device::open(std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                                std::move(arm)),
+                     support::vintage_settings(), now_ns_);
     ASSERT_TRUE(opened) << opened.error().message;
     device_ = std::move(opened).value();
   }
@@ -150,8 +151,8 @@ TEST_F(HomeNeeded, NotByABoardThatFindsItsOwnZero) {
 TEST_F(HomeNeeded, NotByAnArmWhosePoseItsVendorReports) {
   VirtualClock clock;
   support::PoseArm arm;
-  auto opened = Device::open(std::make_unique<support::PoseLink>(arm, clock),
-                             support::vintage_settings(), 0);
+  auto opened =
+      Device::open(std::make_unique<support::PoseLink>(arm, clock), support::vintage_settings(), 0);
   ASSERT_TRUE(opened);
   EXPECT_FALSE((*opened)->traits().zero_at_power_on);
 }

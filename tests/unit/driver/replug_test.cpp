@@ -122,8 +122,8 @@ TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
   for (std::size_t i = 500; i < 800; ++i) {
     EXPECT_EQ(force(records_[i]), 0) << i;
     EXPECT_EQ(records_[i].fault, Fault::kTransportLost) << i;
-    EXPECT_EQ(records_[i].link, i < 601 ? LinkState::kLost : LinkState::kConnected) << i;
-    EXPECT_EQ(records_[i].home_needed, i >= 601) << i;
+    EXPECT_EQ(records_[i].link, i < 600 ? LinkState::kLost : LinkState::kConnected) << i;
+    EXPECT_EQ(records_[i].home_needed, i >= 600) << i;
   }
   EXPECT_FALSE(records_[801].home_needed);
   EXPECT_EQ(records_[801].stage, DeviceStage::kActive);
@@ -137,10 +137,11 @@ TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
 
 TEST_F(ReplugTest, LossAfterAnotherFaultIsSeenAndReplugged) {
   for (const Fault before : {Fault::kOverSpeed, Fault::kOtherArm, Fault::kNoReports}) {
-    SetUp();
+    device_.reset();
+    wire_ = second_wire_ = {};
     records_.clear();
-    wire_.lost = false;
-    second_wire_ = {};
+    at_tick_ = nullptr;
+    SetUp();
     at_tick_ = [&](const TickRecord&) {
       const std::size_t tick = records_.size();
       if (tick == 100) device_->trip(before);

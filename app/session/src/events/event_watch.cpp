@@ -52,8 +52,7 @@ void EventWatch::push(const TickEvent& event) noexcept {
 bool EventWatch::quiet(const driver::TickRecord& record) const noexcept {
   return counters_.changes() == changes_ && record.in_contact == touching_ &&
          record.stage == stage_ && record.fault == fault_ && record.link == link_ &&
-         record.time_ns <= earliest_end_ns_ &&
-         record.due_ns - due_ns_ < 2 * period_ns_;
+         record.time_ns <= earliest_end_ns_ && record.due_ns - due_ns_ < 2 * period_ns_;
 }
 
 void EventWatch::take(const driver::TickRecord& record) noexcept {
@@ -98,9 +97,12 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
   }
   // Where the fault is the news of the link, it says so itself.
   const bool told_by_fault =
-      record.fault != fault_ && (record.fault == driver::Fault::kTransportLost ||
-                                 record.fault == driver::Fault::kNoReports);
-  if (record.link != link_ && !told_by_fault) {
+      record.fault != fault_ &&
+      (record.fault == driver::Fault::kTransportLost || record.fault == driver::Fault::kNoReports);
+  // A new link is silent until its first report.
+  const bool new_link =
+      link_ == driver::LinkState::kLost && record.link == driver::LinkState::kSilent;
+  if (record.link != link_ && !told_by_fault && !new_link) {
     push({.tick = record.tick,
           .time_ns = record.time_ns,
           .kind = EventKind::kLinkChanged,

@@ -290,9 +290,8 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   if (!std::isfinite(record.gripper)) record.gripper = 0;
   if (!std::isfinite(record.depth)) record.depth = 0;
   const bool known = record.stage <= driver::DeviceStage::kFault &&
-                     record.fault <= driver::kLastFault &&
-                     record.link <= driver::kLastLinkState && record.object >= -1 &&
-                     record.object < static_cast<int>(scene_.objects.size());
+                     record.fault <= driver::kLastFault && record.link <= driver::kLastLinkState &&
+                     record.object >= -1 && record.object < static_cast<int>(scene_.objects.size());
   if (!known) ++rejected_;
   return known;
 }

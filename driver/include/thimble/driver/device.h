@@ -66,14 +66,14 @@ enum class HomeCheck : std::uint8_t {
 /// value of its own: an arm can be pulled because of, or after, any other fault.
 ///
 /// An arm that was pulled and plugged in again: the loop continues with zero force; another thread
-/// finds the arm by its serial number, closes the lost link (`close_lost_link`), opens a new one and
-/// offers it; the next tick takes it and reads positions again. Forces come back only when the user
-/// asks for them (`ask_to_activate`).
+/// finds the arm by its serial number, closes the lost link (`close_lost_link`), opens a new one
+/// and offers it; the next tick takes it and reads positions again. Forces come back only when the
+/// user asks for them (`ask_to_activate`).
 ///
-/// Encoders that count from where the arm stood when its board started (ArmTraits::zero_at_power_on)
-/// are wrong after every restart of the board, with a wire that was pulled or without. After a new
-/// link, a silence, or a jump of the position while no report came, forces therefore need the home
-/// pose again (`home_needed`).
+/// Encoders that count from where the arm stood when its board started
+/// (ArmTraits::zero_at_power_on) are wrong after every restart of the board, with a wire that was
+/// pulled or without. After a new link, a silence, or a jump of the position while no report came,
+/// forces therefore need the home pose again (`home_needed`).
 class Device {
  public:
   /// Takes the link to an arm; waits up to `timeout_ns` of `clock_now_ns` time for the first report
@@ -109,8 +109,8 @@ class Device {
 
   /// Returns whether the force that stands is known to be zero: the last message said so, no
   /// message with a force has failed since, and the last message has left this computer
-  /// (ArmLink::settled). False: a force may stand until the arm's own watchdog switches it off. From
-  /// the thread that uses the device. Real-time: safe.
+  /// (ArmLink::settled). False: a force may stand until the arm's own watchdog switches it off.
+  /// From the thread that uses the device. Real-time: safe.
   bool zero_assured() const noexcept;
 
   /// Begins a tick: reads the newest report and finds where the tip is. A report after which the
@@ -223,8 +223,8 @@ class Device {
   std::int64_t last_report_ns_ = 0;
   std::int64_t quiet_since_ns_ = 0;  // last report, or the begin of listening
   std::int64_t listened_ns_ = 0;     // last read or idle
-  bool guarded_;  // an energy stage or a heat guard is named
-  bool extras_;   // the arm tells more, or less, than joints and counts
+  bool guarded_;                     // an energy stage or a heat guard is named
+  bool extras_;                      // the arm tells more, or less, than joints and counts
   bool active_ = false;
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
@@ -234,7 +234,7 @@ class Device {
   bool silent_ = false;          // no report for the silence limit, and none since
   bool spoken_ = false;          // a message went out since the last report
   bool home_needed_ = false;
-  bool insisted_ = false;        // on a zero that was not taken
+  bool insisted_ = false;  // on a zero that was not taken
   int refused_in_a_row_ = 0;
   int missed_in_a_row_ = 0;  // reads without a report, while it was listened to
   std::int64_t refused_since_ns_ = 0;

@@ -11,8 +11,8 @@ enum class TransportStatus : std::uint8_t {
   kOk,       ///< Bytes were read or written.
   kNothing,  ///< No new report arrived before the deadline.
   kLost,     ///< The arm is gone; every later call says so too.
-  /// The arm is there, and whether it took the bytes is not known: it stalled, or is still busy with
-  /// others, or an earlier message failed.
+  /// The arm is there, and whether it took the bytes is not known: it stalled, or is still busy
+  /// with others, or an earlier message failed.
   kRefused,
 };
 

@@ -43,9 +43,9 @@ Error failure(const Library& library, const std::string& what) {
 
 class DhdLink;
 
-/// The owner of the library. Its functions know one arm and no handles, so that whatever a link does
-/// at its end it does to the arm of all links: one link has it at a time, and a lost one is shut
-/// down before its successor opens the arm.
+/// The owner of the library. Its functions know one arm and no handles, so that whatever a link
+/// does at its end it does to the arm of all links: one link has it at a time, and a lost one is
+/// shut down before its successor opens the arm.
 struct Owner {
   std::recursive_mutex mutex;  // a link that is refused ends while it is held
   DhdLink* link = nullptr;

@@ -121,9 +121,9 @@ class VendorLinkTest : public ::testing::Test {
     }
   }
 
-  /// Pulls the arm by `pull` and plugs it in again, three times, as a watch over a run does. Expects
-  /// that the new link has the library's arm each time, and that nothing is called out of order.
-  /// `closes_first`: the lost link is closed before the new one is opened.
+  /// Pulls the arm by `pull` and plugs it in again, three times, as a watch over a run does.
+  /// Expects that the new link has the library's arm each time, and that nothing is called out of
+  /// order. `closes_first`: the lost link is closed before the new one is opened.
   void expect_replugs(const std::function<void(Mock&)>& pull, bool closes_first) {
     ASSERT_NO_FATAL_FAILURE(open());
     for (int round = 1; round <= 3; ++round) {
