@@ -86,6 +86,8 @@ void BenchArm::tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vecto
   record.f_sent_W = {device_->f_sent_W().x(), device_->f_sent_W().y(), device_->f_sent_W().z()};
   record.stage = device_->stage();
   record.fault = device_->fault();
+  record.link = device_->link_state();
+  record.home_needed = device_->home_needed();
   sink_(record);
 }
 

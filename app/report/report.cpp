@@ -83,10 +83,10 @@ Json to_json(const session::RunFigures& report) {
                        {"memory_locked", report.real_time.memory_locked},
                        {"cpu_awake", report.real_time.cpu_awake},
                        {"advice", report.real_time.advice}};
-  json["end"] = {{"reason", driver::name(report.end)},
-                 {"fault", driver::name(report.fault)},
-                 {"zero_assured", report.zero_assured},
-                 {"motor_current_A", report.current_at_exit}};
+  json["end"] = {
+      {"reason", driver::name(report.end)},  {"fault", driver::name(report.fault)},
+      {"link", driver::name(report.link)},   {"home_needed", report.home_needed},
+      {"zero_assured", report.zero_assured}, {"motor_current_A", report.current_at_exit}};
   json["trace"] = {{"every", report.trace_stride}, {"dropped", report.trace_dropped}};
   return json;
 }

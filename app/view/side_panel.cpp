@@ -75,6 +75,10 @@ void draw_tick(const driver::TickRecord& tick, const std::string& words) {
   if (tick.fault != driver::Fault::kNone) {
     ImGui::TextColored(shown_colour(kForceColour), "%s",
                        std::string(driver::describe(tick.fault)).c_str());
+    // The fault is the first reason; the arm can be pulled afterwards.
+    if (tick.link == driver::LinkState::kLost && tick.fault != driver::Fault::kTransportLost) {
+      ImGui::TextColored(shown_colour(kForceColour), "The arm is gone from the wire.");
+    }
   }
   ImGui::PopTextWrapPos();
 }

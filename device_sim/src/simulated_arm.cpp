@@ -166,6 +166,11 @@ void SimulatedArm::sample_into(BoardBytes& report) noexcept {
   report = firmware_.sample(plant().q(), turned, number);
 }
 
+void SimulatedArm::restart_board() noexcept {
+  firmware_.restart(plant().q(), gimbal());
+  mechanics().set_currents(firmware_.currents());
+}
+
 void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {
   const auto counters = firmware_.receive(bytes, time_ns_);
   if (counters) firmware_.preset(*counters, plant().q(), gimbal());

@@ -85,6 +85,10 @@ class SimulatedArm {
   /// the servo thread.
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B);
 
+  /// Restarts the board, as a reset of its microcontroller does while it is plugged in: motors off
+  /// until the next message, and counters from zero where the arm is now.
+  void restart_board() noexcept;
+
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
 

@@ -21,6 +21,12 @@ constexpr std::int64_t kZeroAgain_ns = 1'000'000;
 /// arm here can resolve.
 constexpr double kPositionStep = 1e-6;
 
+/// A step of the tip while no report came that no motion of a hand explains, m: as far from where
+/// its velocity would have taken it as a tip may be from its home pose when forces are asked for
+/// (session/start_pose.h, which says why less does no harm). [chosen: within a silence that is no
+/// fault yet it takes a change of the velocity of 1 m/s]
+constexpr double kUnseenStep = 0.02;
+
 /// Returns the joint torques of currents as the message holds them, N m.
 Eigen::Vector3d torque_of(const std::array<std::int16_t, 3>& mA,
                           const std::array<MotorDrive, 3>& motors) noexcept {
@@ -54,7 +60,7 @@ Device::Device(std::unique_ptr<ArmLink> link, const DeviceSettings& settings) no
 
 Device::~Device() {
   deactivate();
-  if (!insisted_ && !f_sent_W_.isZero(0)) {
+  if (!insisted_ && !zero_assured()) {
     WallClock clock(0);
     insist_on_zero(clock);
   }
@@ -96,8 +102,15 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<ArmLink> link,
                " ms. Check its power and cable, and that no other program uses it."};
 }
 
-Result<void> Device::activate() {
+Result<void> Device::activate(HomeCheck home) {
   if (lost_) return Error{std::string(describe(Fault::kTransportLost))};
+  if (home == HomeCheck::kPassed) home_needed_ = false;
+  if (home_needed_) {
+    return Error{
+        "The arm was silent, or its position jumped, so its board may have restarted and count "
+        "from another pose. Put the arm into its home pose, switch it off and on there, and begin "
+        "again."};
+  }
   begin_activity();
   return {};
 }
@@ -113,39 +126,63 @@ void Device::begin_activity() noexcept {
   started_ = false;
 }
 
+void Device::close_lost_link() noexcept {
+  delete retired_.exchange(nullptr, std::memory_order_acq_rel);
+  delete offered_.exchange(nullptr, std::memory_order_acq_rel);
+}
+
 Result<void> Device::offer(std::unique_ptr<ArmLink> link) {
   if (link->traits() != traits_) {
     return Error{
         "The arm that was plugged in is not the one that was pulled: its motors or what it tells "
         "are others. Plug in the same arm, or begin a new run."};
   }
-  delete retired_.exchange(nullptr, std::memory_order_acq_rel);
-  delete offered_.exchange(link.release(), std::memory_order_acq_rel);
+  close_lost_link();
+  offered_.store(link.release(), std::memory_order_release);
   return {};
 }
 
+/// Hands the lost link to the thread that closes it: its end may free memory and wait. Returns
+/// whether the place of the link is free.
+bool Device::retire_link() noexcept {
+  if (link_ == nullptr) return true;
+  if (retired_.load(std::memory_order_acquire) != nullptr) return false;
+  retired_.store(link_.release(), std::memory_order_release);
+  return true;
+}
+
 void Device::take_offer(std::int64_t now_ns) noexcept {
-  // The old link may free memory when it goes, so it waits for the next offer or the end. Without
-  // a free place for it the offer is left for a later tick.
-  if (retired_.load(std::memory_order_acquire) != nullptr) return;
+  // Without a place for the old link the offer is left for a later tick.
+  if (!retire_link()) return;
   ArmLink* const fresh = offered_.exchange(nullptr, std::memory_order_acq_rel);
   if (fresh == nullptr) return;
-  retired_.store(link_.release(), std::memory_order_release);
   link_.reset(fresh);
   ++wire_.replugged;
-  lost_ = reported_ = active_ = false;
-  refused_in_a_row_ = 0;
-  last_report_ns_ = now_ns;
+  lost_ = reported_ = active_ = silent_ = spoken_ = false;
+  refused_in_a_row_ = missed_in_a_row_ = 0;
+  last_report_ns_ = quiet_since_ns_ = now_ns;
   velocity_->reset();
+  doubt_counts();
   known_to_stand_ = insisted_ = false;  // of this link nothing is known
   send_zero();
+}
+
+void Device::take_request() noexcept {
+  const Asked asked = activation_asked_.exchange(Asked::kNo, std::memory_order_acq_rel);
+  if (asked == Asked::kNo || link_state() != LinkState::kConnected) return;
+  if (asked == Asked::kAtHome) home_needed_ = false;
+  if (!home_needed_) begin_activity();
 }
 
 void Device::deactivate() noexcept {
   active_ = false;
   send_zero();
-  // A converter tells of the message before, so that the next one may well go through.
-  if (!zero_assured()) send_zero();
+  // A converter reports on the message before, so that the next one may well go through.
+  if (!zero_taken()) send_zero();
+}
+
+bool Device::zero_assured() const noexcept {
+  return zero_taken() && (link_ == nullptr || link_->settled() == LinkStatus::kOk);
 }
 
 bool Device::insist_on_zero(Clock& clock) noexcept {
@@ -156,7 +193,9 @@ bool Device::insist_on_zero(Clock& clock) noexcept {
   for (std::int64_t i = 0; i < tries && !zero_assured() && !lost_; ++i) {
     if (clock.now_ns() - begin_ns > settings_.limits.watchdog_ns) break;
     clock.sleep_until_ns(clock.now_ns() + kZeroAgain_ns);
-    send_zero();
+    // A zero that is still on its way is waited for; one that failed on its way is sent again.
+    if (zero_taken() && link_->settled() == LinkStatus::kNothing) continue;
+    if (!zero_assured()) send_zero();
   }
   if (!zero_assured()) gate_.trip(Fault::kRefused);
   return zero_assured();
@@ -167,11 +206,14 @@ DeviceStage Device::stage() const noexcept {
   return active_ ? DeviceStage::kActive : DeviceStage::kIdle;
 }
 
+LinkState Device::link_state() const noexcept {
+  if (lost_) return LinkState::kLost;
+  return silent_ || !reported_ ? LinkState::kSilent : LinkState::kConnected;
+}
+
 const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
   if (lost_) take_offer(now_ns);
-  if (activation_asked_.exchange(false, std::memory_order_acq_rel) && !lost_ && reported_) {
-    begin_activity();
-  }
+  take_request();
   if (started_) {
     // What would follow is a force that grows the wrong way, and a silence that nobody notices.
     if (now_ns < state_.time_ns) gate_.trip(Fault::kTimeNotMonotonic);
@@ -180,26 +222,51 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
   } else {
     started_ = true;
     state_.dt = 0;
-    last_report_ns_ = now_ns;
+    last_report_ns_ = quiet_since_ns_ = now_ns;
+    missed_in_a_row_ = 0;
   }
   state_.time_ns = now_ns;
   state_.fresh = take_report(now_ns, deadline_ns);
   if (!state_.fresh) {
     ++wire_.missing;
-    if (now_ns - last_report_ns_ > settings_.silence_limit_ns) gate_.trip(Fault::kNoReports);
   }
+  if (follow_silence(now_ns)) gate_.trip(Fault::kNoReports);
   return state_;
+}
+
+/// Returns whether the arm has been silent for too long while it was listened to. Its counts are
+/// doubted then, unless no message went out: an arm that speaks only when spoken to is silent
+/// because the caller is.
+bool Device::follow_silence(std::int64_t now_ns) noexcept {
+  listened_ns_ = now_ns;
+  if (state_.fresh) {
+    quiet_since_ns_ = now_ns;
+    missed_in_a_row_ = 0;
+    silent_ = spoken_ = false;
+    return false;
+  }
+  ++missed_in_a_row_;
+  if (lost_ || now_ns - quiet_since_ns_ <= settings_.silence_limit_ns) return false;
+  silent_ = true;
+  if (spoken_) doubt_counts();
+  return true;
 }
 
 const DeviceState& Device::idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
   started_ = false;  // the next tick is the first one again
+  if (now_ns - listened_ns_ > settings_.silence_limit_ns) {
+    quiet_since_ns_ = now_ns;  // the caller was away
+    missed_in_a_row_ = 0;
+  }
   state_.time_ns = now_ns;
   state_.fresh = take_report(now_ns, deadline_ns);
+  follow_silence(now_ns);
   send_zero();
   return state_;
 }
 
 bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  if (lost_) return false;
   ArmSample& fresh = samples_[1 - newest_];
   const LinkRead read = link_->read(fresh, deadline_ns);
   wire_.skipped += read.skipped;
@@ -212,6 +279,11 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
   const double since_last = static_cast<double>(now_ns - last_report_ns_) * 1e-9;
   const Eigen::Vector3d p_WT = settings_.p_WB + settings_.R_WB * fresh.pose.p_BT;
   if (jumped(p_WT, since_last)) return false;
+  if (moved_unseen(p_WT, now_ns)) {
+    doubt_counts();
+    if (active_) gate_.trip(Fault::kCountsJumped);
+    velocity_->reset();
+  }
   ++wire_.reports;
   reported_ = true;
   newest_ = 1 - newest_;
@@ -273,6 +345,16 @@ bool Device::jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept {
   return jumped_;
 }
 
+bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) const noexcept {
+  const std::int64_t gap_ns = now_ns - last_report_ns_;
+  const bool judged = traits_.zero_at_power_on && missed_in_a_row_ > 0 && velocity_->primed() &&
+                      gap_ns <= settings_.silence_limit_ns;
+  if (!judged) return false;
+  const Eigen::Vector3d off =
+      p_WT - state_.p_WT - state_.v_WT * (static_cast<double>(gap_ns) * 1e-9);
+  return off.squaredNorm() > kUnseenStep * kUnseenStep;
+}
+
 void Device::write(const ForceCommand& command) noexcept {
   const bool guarded = guarded_;
   if (guarded && heat_.named()) heat_.advance(state_.dt);
@@ -282,8 +364,13 @@ void Device::write(const ForceCommand& command) noexcept {
       guarded ? pass_guarded(command) : gate_.pass(command.f_T_W, state_.v_WT, state_.dt);
   const LinkWrite sent = send(force);
   if (guarded) book(sent, force);
-  if (sent.status != LinkStatus::kOk) return keep_standing();
+  if (sent.status != LinkStatus::kOk) {
+    // The arm may hold it all the same.
+    if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
+    return keep_standing();
+  }
   f_sent_W_ = sent.scale * force.f_T_W();
+  known_to_stand_ = true;
 }
 
 void Device::watch() noexcept {
@@ -335,6 +422,7 @@ LinkWrite Device::send(const GatedForce& force) noexcept {
   const LinkWrite sent = link_->write(force, sample(), settings_.R_WB);
   if (sent.status == LinkStatus::kOk) {
     refused_in_a_row_ = 0;
+    spoken_ = true;
   } else {
     count_refusal(sent.status);
   }
@@ -354,6 +442,9 @@ void Device::count_refusal(LinkStatus status) noexcept {
 void Device::lose() noexcept {
   lost_ = true;
   gate_.trip(Fault::kTransportLost);
+  // A message that had not left yet never will.
+  if (link_ != nullptr && link_->settled() != LinkStatus::kOk) known_to_stand_ = false;
+  retire_link();
 }
 
 }  // namespace thimble::driver

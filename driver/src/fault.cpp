@@ -48,6 +48,10 @@ std::string_view describe(Fault fault) noexcept {
     case Fault::kOtherArm:
       return "Another arm of this run came to a fault, and the scene takes the force of all its "
              "arms together (faults: apart lets the others go on).";
+    case Fault::kCountsJumped:
+      return "The arm's position jumped while no report came, as it does when the arm's board "
+             "restarts and its encoders count from zero again. Put the arm into its home pose and "
+             "activate it again; if it happens again, check its power and cable.";
   }
   return "Unknown fault.";
 }
@@ -80,6 +84,8 @@ std::string_view name(Fault fault) noexcept {
       return "counts_unchanged";
     case Fault::kOtherArm:
       return "other_arm";
+    case Fault::kCountsJumped:
+      return "counts_jumped";
   }
   return "unknown";
 }

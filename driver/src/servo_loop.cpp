@@ -38,6 +38,18 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command) noex
   return record;
 }
 
+std::string_view name(LinkState state) noexcept {
+  switch (state) {
+    case LinkState::kConnected:
+      return "connected";
+    case LinkState::kSilent:
+      return "silent";
+    case LinkState::kLost:
+      return "lost";
+  }
+  return "unknown";
+}
+
 std::string_view name(ServoEnd end) noexcept {
   switch (end) {
     case ServoEnd::kDone:
@@ -76,6 +88,8 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   if (device_.heat().named()) record.heat = device_.heat().heat();
   record.stage = device_.stage();
   record.fault = device_.fault();
+  record.link = device_.link_state();
+  record.home_needed = device_.home_needed();
   record.due_ns = due_ns_;
   record.work_ns = clock_.now_ns() - now_ns;
   sink_(record);

@@ -32,6 +32,7 @@ WireLink::WireLink(std::unique_ptr<Transport> transport, std::unique_ptr<const A
               .has_counts = true,
               .has_orientation = arm_->has_gimbal(),
               .has_gimbal = arm_->has_gimbal(),
+              .zero_at_power_on = arm_->zero_at_power_on(),
               .motors = arm_->drives()},
       drives_(arm_->drives()) {}
 
@@ -67,6 +68,10 @@ LinkWrite WireLink::write(const GatedForce& force, const ArmSample& sample,
   const std::size_t size = arm_->encode(currents_, report);
   const auto status = transport_->write(std::span<const std::byte>(report).first(size));
   return {link_status(status), currents_.scale()};
+}
+
+LinkStatus WireLink::settled() noexcept {
+  return link_status(transport_->settled());
 }
 
 void WireLink::limit_currents(const std::array<MotorDrive, 3>& limits) noexcept {

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -195,6 +196,70 @@ TEST_F(FaceHdScheduler, MayBeStoppedAndStartedByItsOwnCallbacks) {
     EXPECT_EQ(calls.load(), again + 1);
     hdUnschedule(handle);
   }
+}
+
+TEST_F(FaceHdScheduler, CallbackThatStopsItLeavesNoForce) {
+  hdInitDevice(nullptr);
+  hdEnable(HD_FORCE_OUTPUT);
+  static std::atomic<bool> stop, stopped;
+  static std::atomic<int> others;
+  stop = stopped = false;
+  others = 0;
+  const auto push = [] {
+    const std::array<double, 3> f{0.3, 0, 0};
+    hdSetDoublev(HD_CURRENT_FORCE, f.data());
+  };
+  schedule(
+      [](void*) -> HDCallbackCode {
+        hdBeginFrame(0);
+        if (stop.load() && !stopped.load()) hdStopScheduler();
+        const std::array<double, 3> f{0.3, 0, 0};
+        hdSetDoublev(HD_CURRENT_FORCE, f.data());
+        hdEndFrame(0);
+        if (!stop.load()) return HD_CALLBACK_CONTINUE;
+        stopped = true;
+        // It asks on, far beyond the gate's stall.
+        for (int tick = 0; tick < 300; ++tick) {
+          hdBeginFrame(0);
+          hdSetDoublev(HD_CURRENT_FORCE, f.data());
+          hdEndFrame(0);
+          ExecRig::wait(0, 1);
+        }
+        stop = false;
+        return HD_CALLBACK_CONTINUE;
+      },
+      nullptr, HD_MAX_SCHEDULER_PRIORITY);
+  schedule(
+      [](void*) -> HDCallbackCode {
+        if (stopped.load()) ++others;
+        return HD_CALLBACK_CONTINUE;
+      },
+      nullptr, HD_MIN_SCHEDULER_PRIORITY);
+  hdStartScheduler();
+  const auto pushed = [&] { return std::abs(rig.motors.force_W().y() - 0.3) < 0.005; };
+  for (int tick = 0; tick < 5000 && !pushed(); ++tick) ExecRig::wait(0, 1);
+  ASSERT_TRUE(pushed());
+  stop = true;
+  while (!stopped.load()) std::this_thread::sleep_for(1ms);
+  ExecRig::wait(0, 30);
+  double most = 0;
+  while (stop.load()) {
+    most = std::max(most, rig.motors.force_W().norm());
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(most, 0) << "no force stands behind a stopped scheduler";
+  ExecRig::wait(0, 50);
+  EXPECT_EQ(others.load(), 0) << "the callbacks behind it must not run any more";
+  // Frames outside of a scheduler ask for forces as before.
+  bool pushes = false;
+  for (int tick = 0; tick < 5000 && !pushes; ++tick) {
+    hdBeginFrame(0);
+    push();
+    hdEndFrame(0);
+    ExecRig::wait(0, 1);
+    pushes = std::abs(rig.motors.force_W().y() - 0.3) < 0.005;
+  }
+  EXPECT_TRUE(pushes);
 }
 
 TEST_F(FaceHdScheduler, RunsEachSecondTickAtHalfTheRate) {

@@ -72,6 +72,7 @@ Seen watch(FaultRig& rig, const TestedFault& fault) {
   }
   if (fault.name == "host stands still for 50 ms") rig.stall(50'000'000);
   if (fault.name == "host stands still for 150 ms") rig.stall(150'000'000);
+  if (fault.place == Place::kBoard) rig.restart_board(60);
   if (fault.name == "clock steps back 10 ms") rig.step_back(10'000'000);
   if (ends) {
     rig.cable().order(*device_sim::usb::parse_fault(fault.order));
@@ -118,7 +119,7 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
   } else {
     const Seen seen = watch(
         rig,
-        {fault.name, fault.place == Place::kHost ? Place::kHost : Place::kWiring, fault.order});
+        {fault.name, fault.place == Place::kCable ? Place::kWiring : fault.place, fault.order});
     EXPECT_FALSE(seen.named_late);
     what = "opened, " + measured(seen);
     if (fault.name == "stall out") {
@@ -165,6 +166,11 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
       fault.name.ends_with("at the end") && phase == Phase::kFree;
   if (promise.cause != driver::Fault::kNone && !stands) {
     EXPECT_EQ(name(seen.cause), name(promise.cause));
+  }
+  if (fault.place == Place::kBoard) {
+    const bool counts_from_elsewhere = arm.kind != driver::ArmKind::kFalcon;
+    EXPECT_EQ(rig.device().home_needed(), counts_from_elsewhere);
+    EXPECT_EQ(!rig.device().activate(), counts_from_elsewhere);
   }
   if (recording) {
     EXPECT_EQ(rig.recorded(), rig.ticks()) << "ticks are missing";

@@ -218,8 +218,17 @@ void FaultRig::tick(bool law_broken) {
     record.time_ns = state.time_ns;
     record.stage = device_->stage();
     record.fault = device_->fault();
+    record.link = device_->link_state();
+    record.home_needed = device_->home_needed();
     (*recorder_)(record);
   }
+}
+
+void FaultRig::restart_board(int frames) {
+  arm_->restart_board();
+  const std::string silent = " for=" + std::to_string(frames);
+  cable_->order(*usb::parse_fault("silence in" + silent));
+  cable_->order(*usb::parse_fault("lost out" + silent));
 }
 
 void FaultRig::end() {

@@ -108,6 +108,9 @@ class FaultRig {
   /// Lets the host stand still.
   void stall(std::int64_t time_ns) { clock_.sleep_until_ns(clock_.now_ns() + time_ns); }
 
+  /// Restarts the arm's board on a live wire; it says and hears nothing for so many frames.
+  void restart_board(int frames);
+
   /// Lets the clock that the driver reads step back; mechanics and board go on.
   void step_back(std::int64_t time_ns) { stepped_back_ns_ += time_ns; }
   /// Ends the touch as a servo loop does.

@@ -72,6 +72,7 @@ struct ArmReading {
   bool stalled = false;                  ///< The program's force is off: it was not renewed.
   driver::DeviceStage stage = driver::DeviceStage::kIdle;  ///< Of the arm.
   driver::Fault fault = driver::Fault::kNone;              ///< That keeps the force off.
+  driver::LinkState link = driver::LinkState::kConnected;  ///< To the arm, whatever the fault is.
 };
 
 /// What a program asks of an arm.

@@ -137,10 +137,11 @@ int dhdGetStatus(int status[DHD_MAX_STATUS], char id) {
   const ArmFacts& facts = arms::facts(arm->number);
   const bool faulty = reading.fault != Fault::kNone;
   const bool on = arm->force == ForceSwitch::kOn && !faulty;
+  const bool connected = reading.link != thimble::driver::LinkState::kLost;
   int cause = kForceOn;
   if (reading.fault == Fault::kOverSpeed)
     cause = kOffByVelocity;
-  else if (reading.fault == Fault::kTransportLost)
+  else if (reading.fault == Fault::kTransportLost || !connected)
     cause = kOffByPull;
   else if (reading.fault == Fault::kLoopStalled)
     cause = kOffByWatchdog;
@@ -150,6 +151,7 @@ int dhdGetStatus(int status[DHD_MAX_STATUS], char id) {
     cause = arm->off_cause;
   std::fill_n(status, DHD_MAX_STATUS, 0);
   status[DHD_STATUS_POWER] = status[DHD_STATUS_CONNECTED] = status[DHD_STATUS_STARTED] = 1;
+  status[DHD_STATUS_CONNECTED] = connected;
   status[DHD_STATUS_RESET] = 1;  // an arm is calibrated before it may be opened
   status[DHD_STATUS_IDLE] = !on;
   status[DHD_STATUS_FORCE] = on;

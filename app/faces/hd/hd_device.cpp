@@ -70,6 +70,15 @@ void look_at_forces(HHD handle, Device& device) noexcept {
         keep_error(HD_DEVICE_FAULT, handle, static_cast<int>(now.fault));
     }
   }
+  if (now.link != device.link_told) {
+    device.link_told = now.link;
+    // An arm can be pulled because of, or after, another fault.
+    const bool told_by_fault =
+        now.fault == driver::Fault::kTransportLost || now.fault == driver::Fault::kNoReports;
+    if (now.link == driver::LinkState::kLost && !told_by_fault) {
+      keep_error(HD_COMM_ERROR, handle, static_cast<int>(driver::Fault::kTransportLost));
+    }
+  }
   if (now.tick == device.frame.last.tick) return;
   if (now.cuts.limited && !device.force_clamping) keep_error(HD_EXCEEDED_MAX_FORCE, handle);
   if (now.cuts.rise_limited) keep_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
@@ -98,6 +107,7 @@ void send(HHD handle, Device& device) noexcept {
 
 void end_frame(HHD handle, Device& device) noexcept {
   device.frame.open = false;
+  if (scheduler_stopped()) device.frame.f_asked_W = {};
   if (device.force_output) send(handle, device);
 }
 

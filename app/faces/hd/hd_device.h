@@ -36,6 +36,7 @@ struct Device {
   std::int64_t enabled_ns = 0;               ///< When force was switched on, by the arm's clock.
   std::uint64_t framed_tick = 0;             ///< Of the newest frame, plus one.
   driver::Fault fault_told = driver::Fault::kNone;
+  driver::LinkState link_told = driver::LinkState::kConnected;
   bool warm_told = false;
 };
 
@@ -62,6 +63,10 @@ Device* current_open(const char* function) noexcept;
 /// Returns what a thread sees of a device: its frame, or the newest tick outside of one. Under the
 /// lock.
 ArmReading seen(HHD device) noexcept;
+
+/// Returns whether this thread belongs to a scheduler that was stopped, by one of its own
+/// callbacks: no frame that it ends asks for a force.
+bool scheduler_stopped() noexcept;
 
 /// Ends a frame that this thread left open when its callbacks were over, with HD_FRAME_ERROR.
 void end_forgotten_frames() noexcept;

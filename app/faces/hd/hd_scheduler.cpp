@@ -47,6 +47,7 @@ struct Scheduler {
 };
 
 thread_local bool on_scheduler_thread = false;
+thread_local const std::atomic<bool>* own_stop = nullptr;  // of the scheduler whose thread this is
 
 // Never destroyed: the thread may run while the program exits.
 Scheduler& scheduler() {
@@ -81,7 +82,8 @@ HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDusho
   return handle;
 }
 
-/// Runs each callback once. Callbacks may schedule and unschedule.
+/// Runs each callback once. Callbacks may schedule and unschedule, and stop the scheduler: then
+/// none of the others runs.
 void run_callbacks(Scheduler& s) {
   std::vector<HDSchedulerHandle> due;
   {
@@ -89,6 +91,7 @@ void run_callbacks(Scheduler& s) {
     for (const Callback& callback : s.callbacks) due.push_back(callback.handle);
   }
   for (const HDSchedulerHandle handle : due) {
+    if (scheduler_stopped()) break;
     Callback now;
     {
       const std::lock_guard lock(s.mutex);
@@ -122,6 +125,7 @@ int pacing_arm() {
 
 void loop(Scheduler& s, const std::atomic<bool>& stop) {
   on_scheduler_thread = true;
+  own_stop = &stop;
   // Refused where the user may not: then it runs with more jitter.
   sched_param parameters{};
   parameters.sched_priority = kPriority;
@@ -170,6 +174,11 @@ void end_forces() {
 }
 
 }  // namespace
+
+bool scheduler_stopped() noexcept {
+  return own_stop != nullptr && own_stop->load();
+}
+
 }  // namespace thimble::faces::hd
 
 using namespace thimble::faces;

@@ -1,6 +1,7 @@
 #include "faces/ros2/arm_health.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "thimble/driver/heat_guard.h"
 
@@ -8,7 +9,12 @@ namespace thimble::faces {
 
 ArmHealth health_of(const driver::TickRecord& tick) {
   if (tick.fault != driver::Fault::kNone) {
-    return {ArmHealth::kError, std::string(driver::describe(tick.fault))};
+    std::string message(driver::describe(tick.fault));
+    // The fault is the first reason; the arm can be pulled afterwards.
+    if (tick.link == driver::LinkState::kLost && tick.fault != driver::Fault::kTransportLost) {
+      message += " The arm is gone from the wire now.";
+    }
+    return {ArmHealth::kError, std::move(message)};
   }
   if (tick.stage != driver::DeviceStage::kActive) {
     return {ArmHealth::kWarn, "No forces: the arm is not activated."};

@@ -21,10 +21,13 @@ Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
 /// Writes the links and joints of one arm.
 class Writer {
  public:
-  Writer(const scene::ArmFile& arm, const std::string& world) : arm_(arm) {
-    prefix_ = frame_word(arm.name) + "_";
+  Writer(const scene::ArmFile& arm, const std::string& world, const std::string& name_in_scene)
+      : arm_(arm) {
+    const std::string robot =
+        frame_word(name_in_scene.empty() ? arm.name : name_in_scene + "_" + arm.name);
+    prefix_ = robot + "_";
     text_ = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"{}\"/>\n",
-                        frame_word(arm.name), frame_word(world));
+                        robot, frame_word(world));
     const Eigen::Vector3d rpy = rpy_of(arm.R_WB);
     text_ += fmt::format("  <link name=\"{}base\">\n{}  </link>\n", prefix_,
                          visual("<sphere radius=\"0.012\"/>", {0, 0, 0}, {0, 0, 0}));
@@ -122,9 +125,10 @@ class Writer {
 
 }  // namespace
 
-std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame) {
+std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame,
+                     const std::string& name_in_scene) {
   const Eigen::Vector3d up(0, 0, 1), right(0, 1, 0), left(0, -1, 0), here(0, 0, 0);
-  Writer writer(arm, world_frame);
+  Writer writer(arm, world_frame, name_in_scene);
   if (const auto* serial = std::get_if<driver::SerialArm>(&arm.model.geometry)) {
     const Eigen::Vector3d shoulder(0, 0, serial->height), elbow(0, 0, serial->length_b),
         tip(0, 0, -serial->length_c);

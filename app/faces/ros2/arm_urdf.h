@@ -14,8 +14,10 @@ namespace thimble::faces {
 /// parallelogram, so a joint that mimics the first link's stands between them. Of a linkage the yaw
 /// and both bars are drawn, not the forearm, whose angle is no joint's; of all other arms the base
 /// alone. Links have no mass but the tip, which has that with which the arm answers at its tip.
-/// Names of links begin with the arm's, so that they meet no frame of /tf. Lengths in m, masses in
-/// kg, effort in N m. Real-time: never from the servo thread.
-std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame);
+/// Names of links begin with the name of the arm's file, so that they meet no frame of /tf, and
+/// before it with `name_in_scene`, if that is not empty: two arms of one kind have links of their
+/// own. Lengths in m, masses in kg, effort in N m. Real-time: never from the servo thread.
+std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame,
+                     const std::string& name_in_scene = {});
 
 }  // namespace thimble::faces

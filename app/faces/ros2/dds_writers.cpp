@@ -186,12 +186,14 @@ void DdsWriters::publish_health(const driver::TickRecord& record, std::int64_t t
       std::to_string(*std::max_element(record.heat.begin(), record.heat.end()));
   const std::string force =
       std::to_string(Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm());
-  std::array<diagnostic_msgs_msg_dds__KeyValue_, 3> values{};
+  const std::string link(driver::name(record.link));
+  std::array<diagnostic_msgs_msg_dds__KeyValue_, 4> values{};
   static const std::string kNoFrame, kFault = "fault", kHeat = "heat, 1: limit",
-                                     kForce = "force, N";
+                                     kForce = "force, N", kLink = "link";
   values[0] = {dds_text(kFault), dds_text(fault)};
   values[1] = {dds_text(kHeat), dds_text(heat)};
   values[2] = {dds_text(kForce), dds_text(force)};
+  values[3] = {dds_text(kLink), dds_text(link)};
   std::array<diagnostic_msgs_msg_dds__DiagnosticStatus_, 1> status{};
   status[0].level = health.level;
   status[0].name = dds_text(name);

@@ -49,7 +49,7 @@ struct RosObject {
 
 /// What the topics tell of a run and does not change.
 struct RosScene {
-  std::string arm;                  ///< its name, for people
+  std::string arm;                  ///< its name, for people; no other arm of the run has it
   std::vector<std::string> joints;  ///< their names; empty: the arm has none
   std::string urdf;                 ///< the arm for robot_description (arm_urdf.h)
   std::vector<RosObject> objects;   ///< in the scene's order

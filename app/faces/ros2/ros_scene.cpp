@@ -35,9 +35,11 @@ RosScene ros_scene(const session::Session& session, const RosOptions& options, s
   const session::Setup& setup = session.setup();
   const driver::ArmTraits& traits = session.device(arm).traits();
   RosScene told;
+  const std::string in_scene = session.arms() > 1 ? session.arm_name(arm) : std::string();
   told.arm = setup.arm_file(arm).name;
+  if (!in_scene.empty()) told.arm = in_scene + " (" + told.arm + ")";
   if (traits.has_joints) told.joints = joint_names(options.style, traits.has_gimbal ? 6 : 3);
-  told.urdf = arm_urdf(setup.arm_file(arm), options.world_frame);
+  told.urdf = arm_urdf(setup.arm_file(arm), options.world_frame, in_scene);
   if (arm != 0) return told;
   const auto& objects = session.scene().objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -52,7 +52,10 @@ void ClientForce::take(const driver::DeviceState& state) noexcept {
   if (enablings != enablings_) {
     enablings_ = enablings;
     opened_ = 0;
-    if (may_activate_ && device_.fault() != driver::Fault::kNone) device_.ask_to_activate();
+    // The counts of a simulated arm never restart.
+    if (may_activate_ && device_.fault() != driver::Fault::kNone) {
+      device_.ask_to_activate(driver::HomeCheck::kPassed);
+    }
   }
   ForceWritten written;
   if (!channel_.force.load(written, kAttempts) || written.number == taken_) return;

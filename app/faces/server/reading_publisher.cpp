@@ -43,6 +43,7 @@ void ReadingPublisher::take(const driver::TickRecord& record) noexcept {
   reading_.stalled = client_.stalled();
   reading_.stage = record.stage;
   reading_.fault = record.fault;
+  reading_.link = record.link;
   turn(record);
   if (device_.traits().has_joints) find_jacobian(record);
   look_at_gate();

@@ -11,10 +11,17 @@
 namespace thimble::session {
 namespace {
 
+using driver::LinkState;
+
 constexpr int kStepsBetweenSearches = 5;  // half a second; chosen
-// A wire that gives nothing for so many steps is taken for pulled again. [chosen: 1 s, ten times
-// the longest start of a board's reports]
-constexpr int kSilentSteps = 10;
+constexpr const char* kPlugIn = " Plug it in, in its home pose.";
+
+/// Returns where the tip must be. The counters of a simulated arm never restart, and no person
+/// could put it into its home pose.
+StartPose place_of(const Setup& setup, std::size_t arm) {
+  if (setup.real_arm(arm)) return setup.start_pose(arm);
+  return {setup.arm_file(arm).workspace, std::nullopt};
+}
 
 }  // namespace
 
@@ -33,41 +40,52 @@ void ReplugWatch::step() {
   driver::TickRecord record;
   if (!snapshot_.load(record)) return;
   if (record.fault == driver::Fault::kNone) {
-    told_ = offered_ = restarted_ = false;
-    present_ = true;
-    terminal_.key();  // an Enter of before must not count for a fault to come
+    fault_reported_ = gone_ = returned_ = home_asked_ = false;
+    terminal_.key();  // an earlier Enter must not count for a later fault
     return;
   }
-  if (!told_) {
-    told_ = true;
-    silent_ = 0;
-    present_ = record.fault != driver::Fault::kTransportLost;
+  if (!fault_reported_) {
+    fault_reported_ = true;
     terminal_.tell("\nForce is off (" + std::string(name(record.fault)) + "). " +
                    std::string(describe(record.fault)));
-    if (present_) terminal_.tell("Press Enter to let forces through again.");
+    if (record.link != LinkState::kLost) {
+      terminal_.tell("Press Enter to let forces through again.");
+    } else if (record.fault == driver::Fault::kTransportLost) {
+      gone_ = true;  // the fault says so itself
+    }
     terminal_.key();
   }
-  if (record.fault == driver::Fault::kTransportLost) look_after_pull(record);
-  if (present_ && terminal_.key() == EnterKey::kPressed) let_through(record);
+  follow_link(record);
+  if (terminal_.key() == EnterKey::kPressed) let_through(record);
 }
 
-void ReplugWatch::look_after_pull(const driver::TickRecord& record) {
-  silent_ = record.fresh ? 0 : silent_ + 1;
-  if (offered_ && !present_ && record.fresh) {
-    present_ = true;
-    restarted_ = true;
+void ReplugWatch::follow_link(const driver::TickRecord& record) {
+  if (record.link == LinkState::kLost) {
+    if (!gone_) {
+      terminal_.tell(std::string(returned_ ? "The arm is gone again." : "The arm is gone.") +
+                     kPlugIn);
+    }
+    gone_ = true;
+    search();
+    return;
+  }
+  if (record.link != LinkState::kConnected) return;
+  if (gone_) {
+    gone_ = false;
+    returned_ = home_asked_ = true;
     terminal_.tell(place_.has_home()
-                       ? "The arm is back. Its counters began anew at zero where it stood when it "
+                       ? "The arm is back. Its counters restarted at zero in the pose in which it "
                          "was plugged in, which must have been its home pose. Put it into its home "
                          "pose and press Enter to let forces through."
-                       : "The arm is back, homed anew. Hold its grip in the workspace and press "
-                         "Enter to let forces through.");
+                       : "The arm is back and has found its zero again. Hold its grip in the "
+                         "workspace and press Enter to let forces through.");
     terminal_.key();
-  } else if ((offered_ || present_) && silent_ > kSilentSteps) {
-    if (present_) terminal_.tell("The arm is gone again. Plug it in, in its home pose.");
-    present_ = offered_ = false;
-  } else if (!present_ && !offered_) {
-    search();
+  } else if (record.home_needed && !home_asked_ && place_.has_home()) {
+    home_asked_ = true;
+    terminal_.tell(
+        "The arm was silent or its position jumped, so its board may have restarted and count from "
+        "another pose. Put it into its home pose and press Enter to let forces through.");
+    terminal_.key();
   }
 }
 
@@ -76,6 +94,8 @@ void ReplugWatch::search() {
   pause_ = kStepsBetweenSearches;
   const auto found = ways_.find(arm_);
   if (!found) return;
+  // First: a vendor's library has one arm for all links.
+  device_.close_lost_link();
   auto link = ways_.open(*found);
   if (!link) return;  // it may still be starting up; the next search tries again
   if (const auto taken = device_.offer(std::move(link).value()); !taken) {
@@ -85,15 +105,22 @@ void ReplugWatch::search() {
   arm_ = *found;
   scene::logger().info("{} is back on the bus: a new link to it is offered to the loop.",
                        arm_.name());
-  offered_ = true;
-  silent_ = 0;
 }
 
 void ReplugWatch::let_through(const driver::TickRecord& record) {
+  if (record.link == LinkState::kLost)
+    return terminal_.tell(std::string("The arm is gone.") + kPlugIn);
+  if (record.link == LinkState::kSilent) {
+    return terminal_.tell(
+        "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it "
+        "and "
+        "plug it in again, in its home pose.");
+  }
   const Eigen::Map<const Eigen::Vector3d> p_WT(record.p_WT.data());
-  const std::string trouble = place_.trouble(p_WT, restarted_);
+  const std::string trouble = place_.trouble(p_WT, record.home_needed);
   if (trouble.empty()) {
-    device_.ask_to_activate();
+    device_.ask_to_activate(record.home_needed ? driver::HomeCheck::kPassed
+                                               : driver::HomeCheck::kNone);
   } else {
     terminal_.tell(trouble + " Then press Enter.");
   }
@@ -110,7 +137,7 @@ ReplugWatch replug_watch_of(Session& session, std::size_t arm, Terminal terminal
   };
   return {setup.device(arm),
           session.newest(arm),
-          setup.start_pose(arm),
+          place_of(setup, arm),
           setup.real_arm(arm).value_or(driver::FoundArm{}),  // one that is simulated is not pulled
           {find, open},
           terminal_of(setup, arm, std::move(terminal))};

@@ -15,10 +15,11 @@ namespace thimble::session {
 
 class Session;
 
-/// A watch over a real arm at the side of the servo: says when its force is off and why, finds it
-/// again by its name after it was pulled, and lets forces through again only when the user presses
-/// Enter and the tip is where it must be. The counters of an arm that was pulled begin at zero, so
-/// it must stand in its home pose then. Real-time: never from the servo thread.
+/// A watch over a real arm beside the servo: prints when its force is off and why, finds it again
+/// by its name after it was pulled, whatever the fault was, and lets forces through again only when
+/// the user presses Enter and the tip is where it must be. The counters of an arm that was pulled,
+/// or whose board restarted, begin at zero: it must be in its home pose then (Device::home_needed).
+/// Real-time: never from the servo thread.
 class ReplugWatch {
  public:
   /// How the watch comes to the arm again; tests write their own.
@@ -38,7 +39,7 @@ class ReplugWatch {
   void step();
 
  private:
-  void look_after_pull(const driver::TickRecord& record);
+  void follow_link(const driver::TickRecord& record);
   void search();
   void let_through(const driver::TickRecord& record);
 
@@ -48,12 +49,11 @@ class ReplugWatch {
   driver::FoundArm arm_;
   Ways ways_;
   Terminal terminal_;
-  bool told_ = false;       // the user knows that the force is off
-  bool present_ = true;     // the arm is on the wire
-  bool offered_ = false;    // a new link waits for the loop
-  bool restarted_ = false;  // its counters began anew and no force came since
-  int pause_ = 0;           // steps until the next search
-  int silent_ = 0;          // steps since a new link gave a report
+  bool fault_reported_ = false;  // the user knows that the force is off
+  bool gone_ = false;            // the arm was pulled and has not reported again
+  bool returned_ = false;        // it came back since the fault
+  bool home_asked_ = false;      // the user knows that the home pose is needed
+  int pause_ = 0;                // steps until the next search
 };
 
 /// Returns the watch over an arm of a session, which must outlive it. Precondition: an arm of the

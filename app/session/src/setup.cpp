@@ -331,8 +331,12 @@ driver::Result<void> Setup::activate() {
 driver::Result<void> Setup::check_start_pose() const {
   for (std::size_t i = 0; i < arms(); ++i) {
     if (!arms_[i].real) continue;
-    const std::string trouble = start_pose(i).trouble(device(i).state().p_WT, !homed_);
-    if (trouble.empty()) continue;
+    const std::string trouble =
+        start_pose(i).trouble(device(i).state().p_WT, !homed_ || device(i).home_needed());
+    if (trouble.empty()) {
+      device(i).confirm_home();
+      continue;
+    }
     return driver::Error{arms() == 1 ? trouble : "The arm \"" + arm_name(i) + "\": " + trouble};
   }
   return {};

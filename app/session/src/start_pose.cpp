@@ -52,7 +52,13 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
 driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& clock,
                                          const StartPose& place, bool at_home,
                                          const Terminal& terminal, const std::atomic<bool>& stop) {
-  std::string trouble = place.trouble(device.state().p_WT, at_home);
+  // The board may restart while it is waited for.
+  const auto trouble_now = [&] {
+    std::string found = place.trouble(device.state().p_WT, at_home || device.home_needed());
+    if (found.empty()) device.confirm_home();
+    return found;
+  };
+  std::string trouble = trouble_now();
   if (trouble.empty()) return true;
   if (!terminal.there) return driver::Error{trouble + " Then start again."};
   const auto ask = [&] { terminal.tell(trouble + " Hold it there and press Enter."); };
@@ -70,7 +76,7 @@ driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& 
     const EnterKey key = terminal.key();
     if (key == EnterKey::kClosed) return driver::Error{trouble + " Nobody is at the terminal."};
     if (key != EnterKey::kPressed) continue;
-    trouble = place.trouble(device.state().p_WT, at_home);
+    trouble = trouble_now();
     if (trouble.empty()) return true;
     ask();
   }

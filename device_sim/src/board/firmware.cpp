@@ -162,6 +162,18 @@ void Firmware::preset(const BoardCounters& counters, const Eigen::Vector3d& q,
                       const Eigen::Vector3d& gimbal) noexcept {
   ++counters_.presets;
   button_ = false;
+  set_counters(counters, q, gimbal);
+}
+
+void Firmware::restart(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal) noexcept {
+  button_ = false;
+  amperes_.setZero();
+  watchdog_due_ns_ = kNever_ns;
+  set_counters({}, q, gimbal);
+}
+
+void Firmware::set_counters(const BoardCounters& counters, const Eigen::Vector3d& q,
+                            const Eigen::Vector3d& gimbal) noexcept {
   const Eigen::Vector3d counts = counts_at(q), turns = gimbal_counts_at(gimbal);
   const double parts = settings_.ideal_encoders ? kFine : 1;
   for (int i = 0; i < 3; ++i) {

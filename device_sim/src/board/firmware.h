@@ -70,6 +70,10 @@ class Firmware {
   void preset(const BoardCounters& counters, const Eigen::Vector3d& q,
               const Eigen::Vector3d& gimbal = {0, 0, 0}) noexcept;
 
+  /// Restarts the board of an arm and a gimbal at these true angles (rad): its motors are off until
+  /// the next message, and its counters begin at zero.
+  void restart(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal = {0, 0, 0}) noexcept;
+
   /// Switches the motors off if no message came for the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
 
@@ -92,6 +96,8 @@ class Firmware {
   Firmware(const driver::ArmModel& model, const FirmwareSettings& settings) noexcept;
   Eigen::Vector3d counts_at(const Eigen::Vector3d& q) const noexcept;
   Eigen::Vector3d gimbal_counts_at(const Eigen::Vector3d& gimbal) const noexcept;
+  void set_counters(const BoardCounters& counters, const Eigen::Vector3d& q,
+                    const Eigen::Vector3d& gimbal) noexcept;
   void report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimbal, std::uint16_t number,
               BoardBytes& bytes) const noexcept;
   bool countable() const noexcept;

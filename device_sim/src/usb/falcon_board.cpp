@@ -46,17 +46,19 @@ double FalconBoard::rate() const noexcept {
 }
 
 void FalconBoard::wires(bool dtr, bool /*rts*/) noexcept {
-  if (dtr && !dtr_) {
-    ++counters_.resets;
-    stage_ = Stage::kBoot;
-    running_ = false;
-    image_right_ = true;
-    greeted_ = uploaded_ = frame_size_ = 0;
-    forget_homes();
-    motors_on_ = false;
-    asked_ = {};
-  }
+  if (dtr && !dtr_) restart();
   dtr_ = dtr;
+}
+
+void FalconBoard::restart() noexcept {
+  ++counters_.resets;
+  stage_ = Stage::kBoot;
+  running_ = false;
+  image_right_ = true;
+  greeted_ = uploaded_ = frame_size_ = 0;
+  forget_homes();
+  motors_on_ = false;
+  asked_ = {};
 }
 
 void FalconBoard::host_rate(double baud) noexcept {

@@ -51,6 +51,8 @@ class FalconBoard final : public SerialBoard {
   double rate() const noexcept override;
   void hear(std::byte byte, ByteQueue& says) noexcept override;
   void wires(bool dtr, bool rts) noexcept override;
+  /// Restarts the boot loader, as a rising DTR does: firmware and homes are lost.
+  void restart() noexcept;
   /// Returns the board at which rate the host talks now: firmware that was uploaded begins to run
   /// when the host comes to the running rate.
   void host_rate(double baud) noexcept;

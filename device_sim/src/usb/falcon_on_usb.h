@@ -46,6 +46,7 @@ class FalconOnUsb final : public UsbArm {
   driver::Result<void> take_hand(const HandSettings& hand);
   void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { hand_.lead(p_BH); }
   void hold_tip(bool held) noexcept override;
+  void restart_board() noexcept override { board_.restart(); }
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override;
   /// Sets the guessed watchdog of the board, ns; 0: none (FalconBoard). Real-time: safe.
   void set_watchdog(std::int64_t time_ns) noexcept { board_.set_watchdog(time_ns); }

@@ -185,6 +185,11 @@ PacketResult HidArm::control(const SetupPacket& setup, std::span<std::byte> data
   return {Answer::kStall, 0};
 }
 
+void HidArm::restart_board() noexcept {
+  arm_.restart_board();
+  offers_ = message_waits_ = false;
+}
+
 ArmTruth HidArm::truth() const noexcept {
   ArmTruth truth = truth_;
   truth.currents = arm_.plant().currents();

@@ -38,6 +38,7 @@ class HidArm final : public UsbArm {
   ArmTruth truth() const noexcept override;
   void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { arm_.hand().lead(p_BH); }
   void hold_tip(bool held) noexcept override { arm_.hold_tip(held); }
+  void restart_board() noexcept override;
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override {
     return arm_.fix_mass(mass, gravity_B);
   }

@@ -28,13 +28,21 @@ class ForceBox {
     if (!full_.load(std::memory_order_acquire)) return false;
     f = f_;
     if (zero_.exchange(false, std::memory_order_acq_rel)) f.setZero();
+    zero_taken_.store(f.isZero(0), std::memory_order_release);
     full_.store(false, std::memory_order_release);
     return true;
+  }
+
+  /// Returns whether a zero that was put last is with the other thread: nothing waits, or nothing
+  /// but one more zero. By the servo thread.
+  bool zero_settled() const noexcept {
+    return !full_.load(std::memory_order_acquire) || zero_taken_.load(std::memory_order_acquire);
   }
 
  private:
   Eigen::Vector3d f_{0, 0, 0};
   std::atomic<bool> full_{false}, zero_{false};
+  std::atomic<bool> zero_taken_{false};  // the force that was taken last was zero
 };
 
 }  // namespace thimble::driver

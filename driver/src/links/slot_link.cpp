@@ -45,6 +45,11 @@ LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
   return {LinkStatus::kOk, scale};
 }
 
+LinkStatus SlotLink::settled() noexcept {
+  if (box_.zero_settled()) return LinkStatus::kOk;
+  return is_lost() ? LinkStatus::kLost : LinkStatus::kNothing;
+}
+
 void SlotLink::publish(const ArmSample& sample) noexcept {
   NumberedSample fresh{sample, ++published_};
   fresh.sample.pose.q = sample.pose.p_BT;  // as ToldArm has it

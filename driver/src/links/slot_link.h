@@ -29,6 +29,9 @@ class SlotLink : public ArmLink {
   LinkWrite write(const GatedForce& force, const ArmSample& sample,
                   const Eigen::Matrix3d& R_WB) noexcept override;
 
+  /// Answers kNothing while a zero force waits for the other thread.
+  LinkStatus settled() noexcept override;
+
  protected:
   // By the thread that speaks with the arm. None of them waits.
   void publish(const ArmSample& sample) noexcept;  ///< Returns where the arm is.

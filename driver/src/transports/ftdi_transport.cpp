@@ -20,13 +20,11 @@ class FtdiTransport final : public StreamTransport {
 
   ~FtdiTransport() override {
     // The last message is the zero force: give it 20 frames to leave.
-    for (int i = 0; i < 20 && !lost_ && any_under_way(out_); ++i) handle_events(1'000'000);
+    for (int i = 0; i < 20 && !lost_ && any_under_way(out_); ++i) wait_a_frame();
     for (Slot& slot : in_) cancel(slot);
     for (Slot& slot : out_) cancel(slot);
     closing_ = true;
-    for (int i = 0; i < 500 && (any_under_way(in_) || any_under_way(out_)); ++i) {
-      handle_events(1'000'000);
-    }
+    for (int i = 0; i < 500 && (any_under_way(in_) || any_under_way(out_)); ++i) wait_a_frame();
     for (Slot& slot : in_) libusb_free_transfer(slot.transfer);
     for (Slot& slot : out_) libusb_free_transfer(slot.transfer);
   }
@@ -56,12 +54,15 @@ class FtdiTransport final : public StreamTransport {
   static constexpr std::size_t kTransferSize = 4 * kFtdiPacketSize;
   static_assert(kTransferSize >= kReportCapacity);
   static constexpr int kErrorsMax = 8;  // reads that failed in a row, until the wire counts as lost
+  // Signals that may interrupt one call in a row. [chosen: more than a timer sends in a tick]
+  static constexpr int kInterruptionsMax = 16;
 
   struct Slot {
     FtdiTransport* owner = nullptr;
     libusb_transfer* transfer = nullptr;
     std::array<unsigned char, kTransferSize> bytes{};
     bool under_way = false;
+    bool failed = false;  // what the last transfer of it came to
   };
 
   static bool any_under_way(const std::array<Slot, 2>& slots) noexcept {
@@ -72,14 +73,32 @@ class FtdiTransport final : public StreamTransport {
     if (slot.under_way) libusb_cancel_transfer(slot.transfer);
   }
 
-  bool submit(Slot& slot) noexcept {
-    slot.under_way = libusb_submit_transfer(slot.transfer) == 0;
-    return slot.under_way;
+  int submit_code(Slot& slot) noexcept {
+    int code = LIBUSB_ERROR_INTERRUPTED;
+    for (int i = 0; i < kInterruptionsMax && code == LIBUSB_ERROR_INTERRUPTED; ++i) {
+      code = libusb_submit_transfer(slot.transfer);
+    }
+    slot.under_way = code == 0;
+    return code;
   }
 
-  void handle_events(std::int64_t wait_ns) noexcept {
+  bool submit(Slot& slot) noexcept { return submit_code(slot) == 0; }
+
+  /// Returns whether no signal interrupted it.
+  bool handle_events(std::int64_t wait_ns) noexcept {
     timeval time{.tv_sec = wait_ns / 1'000'000'000, .tv_usec = (wait_ns / 1'000) % 1'000'000};
-    libusb_handle_events_timeout_completed(usb_.context.get(), &time, nullptr);
+    return libusb_handle_events_timeout_completed(usb_.context.get(), &time, nullptr) !=
+           LIBUSB_ERROR_INTERRUPTED;
+  }
+
+  void handle_what_came() noexcept {
+    for (int i = 0; i < kInterruptionsMax && !handle_events(0); ++i) {
+    }
+  }
+
+  void wait_a_frame() noexcept {
+    for (int i = 0; i < kInterruptionsMax && !handle_events(1'000'000); ++i) {
+    }
   }
 
   static void LIBUSB_CALL came(libusb_transfer* transfer) noexcept {
@@ -109,17 +128,23 @@ class FtdiTransport final : public StreamTransport {
   static void LIBUSB_CALL went(libusb_transfer* transfer) noexcept {
     Slot& slot = *static_cast<Slot*>(transfer->user_data);
     slot.under_way = false;
-    slot.owner->refused_ = transfer->status != LIBUSB_TRANSFER_COMPLETED;
+    slot.failed = transfer->status != LIBUSB_TRANSFER_COMPLETED;
+    if (slot.failed) slot.owner->refused_ = true;
     if (transfer->status == LIBUSB_TRANSFER_NO_DEVICE) slot.owner->lost_ = true;
   }
 
+  // A wait that a signal interrupts is resumed by the caller, which knows the deadline.
   TransportStatus pump(std::int64_t wait_ns) noexcept override {
-    handle_events(wait_ns);
+    if (wait_ns > 0) {
+      handle_events(wait_ns);
+    } else {
+      handle_what_came();
+    }
     return lost_ ? TransportStatus::kLost : TransportStatus::kOk;
   }
 
   TransportStatus put(std::span<const std::byte> bytes) noexcept override {
-    handle_events(0);
+    handle_what_came();
     if (lost_) return TransportStatus::kLost;
     const auto free =
         std::find_if(out_.begin(), out_.end(), [](const Slot& slot) { return !slot.under_way; });
@@ -127,20 +152,30 @@ class FtdiTransport final : public StreamTransport {
     const std::size_t size = std::min(bytes.size(), free->bytes.size());
     std::copy_n(reinterpret_cast<const unsigned char*>(bytes.data()), size, free->bytes.begin());
     free->transfer->length = static_cast<int>(size);
-    const int code = libusb_submit_transfer(free->transfer);
-    free->under_way = code == 0;
+    const int code = submit_code(*free);
     if (code == LIBUSB_ERROR_NO_DEVICE) {
       lost_ = true;
       return TransportStatus::kLost;
     }
-    // The outcome of a write is known later; that of an earlier one is told now.
+    if (code == 0) newest_ = &*free;
+    // The outcome of a write is known later; that of an earlier one is reported now. After a
+    // failure it is not known whether the arm takes this one, although it is handed over.
     const bool refused = refused_ || code != 0;
     refused_ = false;
     return refused ? TransportStatus::kRefused : TransportStatus::kOk;
   }
 
+  TransportStatus settled() noexcept override {
+    if (newest_ == nullptr) return TransportStatus::kOk;
+    if (newest_->under_way && !lost_) handle_what_came();
+    if (newest_->under_way) return lost_ ? TransportStatus::kLost : TransportStatus::kNothing;
+    if (!newest_->failed) return TransportStatus::kOk;
+    return lost_ ? TransportStatus::kLost : TransportStatus::kRefused;
+  }
+
   FtdiUsb usb_;
   std::array<Slot, 2> in_, out_;
+  const Slot* newest_ = nullptr;  // of the message that was handed over last
   int errors_ = 0;
   bool refused_ = false;
   bool lost_ = false;

@@ -41,9 +41,18 @@ class HidTransport final : public Transport {
     std::uint32_t reports = 0;
     int wait_ms = 0;
     bool waited_for_next = false;
+    int interruptions = 0;
+    std::int64_t until_ns = deadline_ns;  // of a wait
     while (reports < kReportsMax) {
+      errno = 0;
       const int count = hid_read_timeout(device_, reinterpret_cast<unsigned char*>(buffer.data()),
                                          buffer.size(), wait_ms);
+      // A signal says nothing of the arm. (hidapi makes an error text then, on the heap.)
+      if (count < 0 && errno == EINTR) {
+        if (++interruptions > kInterruptionsMax) break;
+        if (wait_ms > 0) wait_ms = whole_ms_until(until_ns);
+        continue;
+      }
       if (count < 0) {
         lost_ = true;
         return {.status = TransportStatus::kLost};
@@ -56,13 +65,12 @@ class HidTransport final : public Transport {
       }
       if (reports >= kReportsKept && !waited_for_next) {
         waited_for_next = true;
+        until_ns = clock_.now_ns() + 1'000'000 * kNext_ms;
         wait_ms = kNext_ms;
         continue;
       }
       if (reports > 0 || wait_ms > 0) break;
-      // hidapi waits in whole milliseconds: round down, so as not to pass the deadline.
-      wait_ms = static_cast<int>(
-          std::clamp<std::int64_t>((deadline_ns - clock_.now_ns()) / 1'000'000, 0, 60'000));
+      wait_ms = whole_ms_until(deadline_ns);
       if (wait_ms == 0) break;
     }
     if (reports > 0) {
@@ -80,8 +88,11 @@ class HidTransport final : public Transport {
     const std::size_t size = 1 + std::max(used, message_size_);
     // The kernel would send it, and the arm would throw it away without a word.
     if (size != 1 + out_bytes_) return TransportStatus::kRefused;
-    errno = 0;
-    if (hid_write(device_, message.data(), size) >= 0) return TransportStatus::kOk;
+    for (int i = 0; i <= kInterruptionsMax; ++i) {
+      errno = 0;
+      if (hid_write(device_, message.data(), size) >= 0) return TransportStatus::kOk;
+      if (errno != EINTR) break;
+    }
     // A stalled or silent endpoint is an arm that refuses; only a missing device is a lost one.
     if (errno != ENODEV && errno != EIO && errno != ESHUTDOWN && errno != EBADF) {
       return TransportStatus::kRefused;
@@ -91,6 +102,15 @@ class HidTransport final : public Transport {
   }
 
  private:
+  // Signals that may interrupt one read or write. [chosen: more than a timer sends in a tick]
+  static constexpr int kInterruptionsMax = 16;
+
+  /// hidapi waits in whole milliseconds: rounded down, so as not to pass the deadline.
+  int whole_ms_until(std::int64_t deadline_ns) const noexcept {
+    return static_cast<int>(
+        std::clamp<std::int64_t>((deadline_ns - clock_.now_ns()) / 1'000'000, 0, 60'000));
+  }
+
   const Clock& clock_;
   hid_device* device_;
   NodeLock lock_;

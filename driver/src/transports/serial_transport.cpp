@@ -3,12 +3,14 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <utility>
 
+#include "thimble/driver/arm.h"
 #include "thimble/driver/transports.h"
 #include "transports/node_lock.h"
 #include "transports/stream_transport.h"
@@ -25,8 +27,9 @@ class SerialTransport final : public StreamTransport {
     // arm that takes nothing (tcdrain would, and so would close).
     int waiting = 0;
     for (int ms = 0; ms < 100 && ioctl(file_, TIOCOUTQ, &waiting) == 0 && waiting > 0; ++ms) {
-      const timespec time{.tv_sec = 0, .tv_nsec = 1'000'000};
-      nanosleep(&time, nullptr);
+      timespec time{.tv_sec = 0, .tv_nsec = 1'000'000};
+      while (nanosleep(&time, &time) != 0 && errno == EINTR) {
+      }
     }
     tcflush(file_, TCOFLUSH);
   }
@@ -36,6 +39,7 @@ class SerialTransport final : public StreamTransport {
     if (wait_ns > 0) {
       pollfd port{.fd = file_, .events = POLLIN, .revents = 0};
       const timespec time{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
+      // A wait that a signal interrupts is resumed by the caller, which knows the deadline.
       if (ppoll(&port, 1, &time, nullptr) <= 0) return TransportStatus::kOk;
     }
     // A full port holds 4 kB (a page per tty buffer); more than that per call is not a port.
@@ -47,22 +51,62 @@ class SerialTransport final : public StreamTransport {
         finder().push(std::span<const std::byte>(bytes).first(static_cast<std::size_t>(count)));
         continue;
       }
-      if (count < 0 && (errno == EAGAIN || errno == EINTR)) return TransportStatus::kOk;
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0 && errno == EAGAIN) return TransportStatus::kOk;
       return TransportStatus::kLost;  // end of file or an error: the port is gone
     }
     return TransportStatus::kOk;
   }
 
   TransportStatus put(std::span<const std::byte> bytes) noexcept override {
-    const ssize_t count = ::write(file_, bytes.data(), bytes.size());
-    if (count == static_cast<ssize_t>(bytes.size())) return TransportStatus::kOk;
-    // A part of a message is a torn one at the other end, which answers with an error.
-    if (count >= 0 || errno == EAGAIN || errno == EINTR) return TransportStatus::kRefused;
-    return TransportStatus::kLost;
+    // A message of which only a part fitted is completed first: the arm would read the part and the
+    // next message as one, and take neither.
+    if (rest_size_ > 0) {
+      const auto rest = std::span<const std::byte>(rest_).first(rest_size_);
+      const std::size_t size = put_some(rest);
+      std::copy(rest.begin() + static_cast<std::ptrdiff_t>(size), rest.end(), rest_.begin());
+      rest_size_ -= size;
+      if (rest_size_ > 0) return gone_ ? TransportStatus::kLost : TransportStatus::kRefused;
+    }
+    const std::size_t size = put_some(bytes);
+    if (size == bytes.size()) return TransportStatus::kOk;
+    if (gone_) return TransportStatus::kLost;
+    if (size > 0) {
+      rest_size_ = std::min(bytes.size() - size, rest_.size());
+      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(size), rest_size_, rest_.begin());
+    }
+    return TransportStatus::kRefused;
+  }
+
+  TransportStatus settled() noexcept override {
+    if (rest_size_ > 0) return gone_ ? TransportStatus::kLost : TransportStatus::kRefused;
+    int waiting = 0;
+    const bool answered = ioctl(file_, TIOCOUTQ, &waiting) == 0;
+    if (!answered) return TransportStatus::kLost;
+    return waiting > 0 ? TransportStatus::kNothing : TransportStatus::kOk;
+  }
+
+  /// Writes as many bytes as the port takes now, and returns how many.
+  std::size_t put_some(std::span<const std::byte> bytes) noexcept {
+    // Signals that may interrupt it. [chosen: more than a timer sends in a tick]
+    constexpr int kInterruptionsMax = 16;
+    for (int i = 0; i <= kInterruptionsMax; ++i) {
+      const ssize_t count = ::write(file_, bytes.data(), bytes.size());
+      if (count >= 0) return static_cast<std::size_t>(count);
+      if (errno == EAGAIN) return 0;
+      if (errno != EINTR) {
+        gone_ = true;
+        return 0;
+      }
+    }
+    return 0;
   }
 
   NodeLock lock_;  // the port itself, which it closes
   int file_;
+  std::array<std::byte, kReportCapacity> rest_{};  // of a message of which a part went out
+  std::size_t rest_size_ = 0;
+  bool gone_ = false;  // a write failed for good
 };
 
 }  // namespace

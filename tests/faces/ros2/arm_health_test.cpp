@@ -21,5 +21,13 @@ TEST(ArmHealth, NamesAFaultBeforeAllElse) {
   EXPECT_EQ(health_of(tick).message, driver::describe(driver::Fault::kOverSpeed));
 }
 
+TEST(ArmHealth, NamesALossAfterAnotherFault) {
+  driver::TickRecord tick;
+  tick.stage = driver::DeviceStage::kFault;
+  tick.fault = driver::Fault::kOverSpeed;
+  tick.link = driver::LinkState::kLost;
+  EXPECT_NE(health_of(tick).message.find("gone from the wire"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace thimble::faces

@@ -63,6 +63,7 @@ class LineArm final : public device_sim::usb::UsbArm {
   }
   void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { arm_.hand().lead(p_BH); }
   void hold_tip(bool held) noexcept override { arm_.hold_tip(held); }
+  void restart_board() noexcept override { arm_.restart_board(); }
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override {
     return arm_.fix_mass(mass, gravity_B);
   }

@@ -14,6 +14,7 @@ struct Wire {
   std::vector<std::vector<std::byte>> to_arm;  ///< Everything written, oldest first.
   bool lost = false;
   int refusals = 0;  ///< So many messages from now on are not taken.
+  driver::TransportStatus settled = driver::TransportStatus::kOk;  ///< Of the last message.
 };
 
 /// A wire whose far side is written by the test.
@@ -41,6 +42,8 @@ class ScriptedTransport final : public driver::Transport {
     wire_.to_arm.emplace_back(report.begin(), report.end());
     return driver::TransportStatus::kOk;
   }
+
+  driver::TransportStatus settled() noexcept override { return wire_.settled; }
 
  private:
   Wire& wire_;

@@ -49,7 +49,15 @@ void hid_close(hid_device*) {
 int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int milliseconds) {
   auto& hid = fake_hidapi();
   hid.last_timeout_ms = milliseconds;
-  if (hid.gone) return -1;
+  if (hid.interruptions > 0) {
+    --hid.interruptions;
+    errno = EINTR;
+    return -1;
+  }
+  if (hid.gone) {
+    errno = ENODEV;
+    return -1;
+  }
   if (!hid.script.empty()) {
     const std::size_t told = hid.script[0];
     std::copy_n(hid.script.data() + 1, std::min(told, length), data);
@@ -68,6 +76,11 @@ int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int m
 }
 int hid_write(hid_device*, const unsigned char* data, std::size_t length) {
   auto& hid = fake_hidapi();
+  if (hid.interruptions > 0) {
+    --hid.interruptions;
+    errno = EINTR;
+    return -1;
+  }
   if (hid.write_error != 0) {
     errno = hid.write_error;
     return -1;

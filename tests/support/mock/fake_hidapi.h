@@ -22,6 +22,7 @@ struct FakeHidapi {
   int coming = 0;            ///< Arrive when somebody waits.
   std::uint16_t number = 0;  ///< Of the last report that was read.
   bool gone = false;         ///< Reads fail.
+  int interruptions = 0;     ///< So many calls from now on are interrupted by a signal.
   /// Reports that are read in place of the numbered ones: each behind a byte that tells its length.
   std::span<const unsigned char> script = {};
   std::uint16_t listed_vendor = 0;  ///< Of the one multi-axis controller that is listed; 0: none.

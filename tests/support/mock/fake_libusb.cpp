@@ -142,6 +142,10 @@ void libusb_free_transfer(libusb_transfer* transfer) {
 int libusb_submit_transfer(libusb_transfer* transfer) {
   FakeLibusb& usb = fake_libusb();
   if (usb.submit_code != 0) return usb.submit_code;
+  if (usb.interruptions > 0) {
+    --usb.interruptions;
+    return LIBUSB_ERROR_INTERRUPTED;
+  }
   auto* slot = std::find(usb.waiting.begin(), usb.waiting.end(), nullptr);
   if (slot == usb.waiting.end()) return LIBUSB_ERROR_NO_MEM;
   *slot = transfer;
@@ -157,6 +161,10 @@ int libusb_cancel_transfer(libusb_transfer* transfer) {
 }
 int libusb_handle_events_timeout_completed(libusb_context*, timeval*, int*) {
   FakeLibusb& usb = fake_libusb();
+  if (usb.interruptions > 0) {
+    --usb.interruptions;
+    return LIBUSB_ERROR_INTERRUPTED;
+  }
   for (void*& slot : usb.waiting) {
     auto* transfer = static_cast<libusb_transfer*>(slot);
     if (transfer == nullptr || inwards(*transfer) || !usb.takes) continue;

@@ -31,10 +31,11 @@ class FakeLibusb {
   /// Lets the next read end so (a libusb_transfer_status) with nothing.
   void fail(int status);
 
-  bool answers = false;  ///< Each message that is taken is answered by `answer`.
-  bool takes = true;     ///< Messages complete at once; otherwise they stay under way.
-  int write_status = 0;  ///< What a message comes to.
-  int read_code = 0;     ///< What a read of the line that brings nothing comes to, 0: a timeout.
+  bool answers = false;   ///< Each message that is taken is answered by `answer`.
+  bool takes = true;      ///< Messages complete at once; otherwise they stay under way.
+  int write_status = 0;   ///< What a message comes to.
+  int interruptions = 0;  ///< So many calls from now on are interrupted by a signal.
+  int read_code = 0;      ///< What a read of the line that brings nothing comes to, 0: a timeout.
   std::array<int, 4> requests_refused{-1, -1, -1, -1};  ///< Numbers of control requests that fail.
   int submit_code = 0;                                  ///< What handing a transfer over answers.
   int open_code = 0;                                    ///< What opening the device answers.

@@ -218,7 +218,19 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfAnImpossibleJump) {
     tick({0, 0.5, 0});
   }
   EXPECT_EQ(last_currents(), kZero);
+  EXPECT_EQ(device_->fault(), Fault::kCountsJumped);
+}
+
+TEST_F(DeviceTest, SendsZeroInTheSecondTickOfASmallerJump) {
+  open_and_activate();
+  settle();
+  for (int k = 0; k < 2; ++k) {
+    wire_.to_host.push_back(report(600));  // 14 mm: as much as a tip may be off its home pose
+    tick({0, 0.5, 0});
+  }
+  EXPECT_EQ(last_currents(), kZero);
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
+  EXPECT_FALSE(device_->home_needed());
 }
 
 TEST_F(DeviceTest, LetsAnArmRefuseForAsLongAsTheLimitSaysAndNoLonger) {

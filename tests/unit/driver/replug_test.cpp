@@ -111,7 +111,8 @@ TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
     if (tick == 500) wire_.lost = true;
     if (tick == 550) device_->ask_to_activate();  // too early: the arm is not there
     if (tick == 600) offer(second_wire_);
-    if (tick == 800) device_->ask_to_activate();
+    if (tick == 700) device_->ask_to_activate();  // its counters are new: the home pose is needed
+    if (tick == 800) device_->ask_to_activate(HomeCheck::kPassed);
   };
   EXPECT_EQ(run(1500), ServoEnd::kDone);
   ASSERT_EQ(records_.size(), 1500u);
@@ -121,7 +122,10 @@ TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
   for (std::size_t i = 500; i < 800; ++i) {
     EXPECT_EQ(force(records_[i]), 0) << i;
     EXPECT_EQ(records_[i].fault, Fault::kTransportLost) << i;
+    EXPECT_EQ(records_[i].link, i < 600 ? LinkState::kLost : LinkState::kConnected) << i;
+    EXPECT_EQ(records_[i].home_needed, i >= 600) << i;
   }
+  EXPECT_FALSE(records_[801].home_needed);
   EXPECT_EQ(records_[801].stage, DeviceStage::kActive);
   EXPECT_LT(force(records_[802]), 0.05);  // soft start
   EXPECT_NEAR(force(records_[1499]), 0.5, 1e-9);
@@ -129,6 +133,78 @@ TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
   ASSERT_GT(second_wire_.to_arm.size(), 800u);
   for (std::size_t i = 0; i < 200; ++i) EXPECT_TRUE(is_zero(second_wire_.to_arm[i])) << i;
   EXPECT_TRUE(is_zero(second_wire_.to_arm.back()));
+}
+
+TEST_F(ReplugTest, LossAfterAnotherFaultIsSeenAndReplugged) {
+  for (const Fault before : {Fault::kOverSpeed, Fault::kOtherArm, Fault::kNoReports}) {
+    device_.reset();
+    wire_ = second_wire_ = {};
+    records_.clear();
+    at_tick_ = nullptr;
+    SetUp();
+    at_tick_ = [&](const TickRecord&) {
+      const std::size_t tick = records_.size();
+      if (tick == 100) device_->trip(before);
+      if (tick == 200) wire_.lost = true;
+      if (tick == 300) offer(second_wire_);
+      if (tick == 400) device_->ask_to_activate(HomeCheck::kPassed);
+    };
+    EXPECT_EQ(run(800), ServoEnd::kDone);
+    EXPECT_EQ(records_[150].link, LinkState::kConnected);
+    EXPECT_EQ(records_[250].link, LinkState::kLost);
+    EXPECT_EQ(records_[250].fault, before) << "the first reason stays";
+    EXPECT_EQ(records_[350].link, LinkState::kConnected);
+    EXPECT_EQ(records_[350].fault, before);
+    EXPECT_EQ(force(records_[350]), 0);
+    EXPECT_EQ(records_[799].fault, Fault::kNone);
+    EXPECT_NEAR(force(records_[799]), 0.5, 1e-9);
+  }
+}
+
+TEST_F(ReplugTest, LostLinkIsClosedBeforeItsSuccessorIsOpened) {
+  // A transport that says when it is closed.
+  struct Closing final : Transport {
+    explicit Closing(bool& open) : open_(open) { open_ = true; }
+    ~Closing() override { open_ = false; }
+    TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
+      if (lost) return {.status = TransportStatus::kLost};
+      const auto report = sensor_report();
+      std::copy(report.begin(), report.end(), buffer.begin());
+      return {.status = TransportStatus::kOk, .size = report.size(), .skipped = 0};
+    }
+    TransportStatus write(std::span<const std::byte>) noexcept override {
+      return lost ? TransportStatus::kLost : TransportStatus::kOk;
+    }
+    bool lost = false;
+
+   private:
+    bool& open_;
+  };
+  bool first_open = false, untaken_open = false, last_open = false;
+  const auto link = [](bool& open, Closing*& closing) {
+    auto transport = std::make_unique<Closing>(open);
+    closing = transport.get();
+    return std::make_unique<WireLink>(std::move(transport),
+                                      std::make_unique<hfab::HfabArm>(support::vintage_model()));
+  };
+  Closing *first = nullptr, *untaken = nullptr, *last = nullptr;
+  auto opened = Device::open(link(first_open, first), support::vintage_settings(), 0);
+  ASSERT_TRUE(opened);
+  Device& device = **opened;
+  device.read(1'000'000, 0);
+  first->lost = true;
+  device.read(2'000'000, 0);
+  ASSERT_TRUE(device.lost());
+  EXPECT_TRUE(first_open) << "the servo thread closes nothing";
+  device.close_lost_link();
+  EXPECT_FALSE(first_open);
+  ASSERT_TRUE(device.offer(link(untaken_open, untaken)));
+  device.close_lost_link();
+  EXPECT_FALSE(untaken_open) << "an offer that was not taken would keep the arm as well";
+  ASSERT_TRUE(device.offer(link(last_open, last)));
+  device.read(3'000'000, 0);
+  EXPECT_EQ(device.link_state(), LinkState::kConnected);
+  EXPECT_TRUE(last_open);
 }
 
 TEST_F(ReplugTest, SurvivesManyPullsWithoutLosingAWire) {

@@ -51,8 +51,8 @@ void EventWatch::push(const TickEvent& event) noexcept {
 // Nearly every tick is like the one before.
 bool EventWatch::quiet(const driver::TickRecord& record) const noexcept {
   return counters_.changes() == changes_ && record.in_contact == touching_ &&
-         record.stage == stage_ && record.fault == fault_ && record.time_ns <= earliest_end_ns_ &&
-         record.due_ns - due_ns_ < 2 * period_ns_;
+         record.stage == stage_ && record.fault == fault_ && record.link == link_ &&
+         record.time_ns <= earliest_end_ns_ && record.due_ns - due_ns_ < 2 * period_ns_;
 }
 
 void EventWatch::take(const driver::TickRecord& record) noexcept {
@@ -95,8 +95,22 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
           .kind = EventKind::kFault,
           .fault = record.fault});
   }
+  // Where the fault is the news of the link, it says so itself.
+  const bool told_by_fault =
+      record.fault != fault_ &&
+      (record.fault == driver::Fault::kTransportLost || record.fault == driver::Fault::kNoReports);
+  // A new link is silent until its first report.
+  const bool new_link =
+      link_ == driver::LinkState::kLost && record.link == driver::LinkState::kSilent;
+  if (record.link != link_ && !told_by_fault && !new_link) {
+    push({.tick = record.tick,
+          .time_ns = record.time_ns,
+          .kind = EventKind::kLinkChanged,
+          .link = record.link});
+  }
   stage_ = record.stage;
   fault_ = record.fault;
+  link_ = record.link;
 }
 
 void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {

@@ -88,6 +88,7 @@ class EventWatch final : public TickObserver {
   bool begun_ = false;  // a tick has been taken
   driver::DeviceStage stage_ = driver::DeviceStage::kIdle;
   driver::Fault fault_ = driver::Fault::kNone;
+  driver::LinkState link_ = driver::LinkState::kConnected;
   bool touching_ = false;
   std::atomic<std::uint64_t> lost_{0};
 };

@@ -69,6 +69,16 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
     }
     case EventKind::kTouchEnded:
       return "The tip is free.";
+    case EventKind::kLinkChanged:
+      switch (event.link) {
+        case driver::LinkState::kConnected:
+          return "The arm reports again.";
+        case driver::LinkState::kSilent:
+          return "The arm is silent: check its cable and power.";
+        case driver::LinkState::kLost:
+          return "The arm is gone from the wire: plug it in again.";
+      }
+      break;
   }
   return "Something unknown happened.";
 }
@@ -81,6 +91,9 @@ level_enum level_of(const TickEvent& event) noexcept {
     case EventKind::kDeactivated:
     case EventKind::kWireTaken:
       return spdlog::level::info;
+    case EventKind::kLinkChanged:
+      return event.link == driver::LinkState::kConnected ? spdlog::level::info
+                                                         : spdlog::level::warn;
     case EventKind::kFault:
       return spdlog::level::err;
     case EventKind::kActivityBegan:

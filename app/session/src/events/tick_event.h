@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "thimble/driver/fault.h"
+#include "thimble/driver/tick_record.h"
 
 namespace thimble::session {
 
@@ -37,6 +38,7 @@ enum class EventKind : std::uint8_t {
   kActivityEnded,  ///< `activity` has been quiet; it occurred `count` times in `lasted_ns`.
   kTouchBegan,     ///< The tip touches `object`.
   kTouchEnded,     ///< The tip touches nothing any more.
+  kLinkChanged,    ///< The link came into the state `link`, which is not what `fault` says.
 };
 
 /// Something that happened in a run, as plain numbers for the way out of the servo.
@@ -48,6 +50,7 @@ struct TickEvent {
   EventKind kind = EventKind::kActivated;
   Activity activity = Activity::kSoftStart;
   driver::Fault fault = driver::Fault::kNone;
+  driver::LinkState link = driver::LinkState::kConnected;
   std::int16_t object = -1;
 
   bool operator==(const TickEvent&) const = default;

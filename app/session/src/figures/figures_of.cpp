@@ -34,6 +34,8 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.real_time = grant;
   figures.end = end;
   figures.fault = device.fault();
+  figures.link = device.link_state();
+  figures.home_needed = device.home_needed();
   figures.zero_assured = device.zero_assured();
   if (const auto* simulation = setup.simulation(arm)) {
     figures.current_at_exit = simulation->currents().cwiseAbs().maxCoeff();

@@ -151,6 +151,11 @@ std::string summary(const RunFigures& report) {
     s += "Fault     the force was off at the end: " + std::string(driver::describe(report.fault)) +
          "\n";
   }
+  if (report.link != driver::LinkState::kConnected) {
+    s += std::string("Link      the arm was ") +
+         (report.link == driver::LinkState::kLost ? "gone from the wire" : "silent") +
+         " at the end.\n";
+  }
   if (!report.zero_assured) {
     s += "DANGER    A force may still stand at the arm: its own watchdog must switch the motors "
          "off. "

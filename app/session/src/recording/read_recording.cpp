@@ -139,7 +139,11 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, has_gripper)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, stage)) <=
              static_cast<unsigned>(driver::DeviceStage::kFault) &&
-         byte_at(offsetof(driver::TickRecord, fault)) <= static_cast<unsigned>(driver::kLastFault);
+         byte_at(offsetof(driver::TickRecord, fault)) <=
+             static_cast<unsigned>(driver::kLastFault) &&
+         byte_at(offsetof(driver::TickRecord, link)) <=
+             static_cast<unsigned>(driver::kLastLinkState) &&
+         byte_at(offsetof(driver::TickRecord, home_needed)) <= 1;
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ using driver::TickRecord;
 using Type = RecordingColumn::Type;
 
 // A flag or an enum is one byte in memory and in the file.
-static_assert(sizeof(bool) == 1 && sizeof(driver::DeviceStage) == 1 && sizeof(driver::Fault) == 1);
+static_assert(sizeof(bool) == 1 && sizeof(driver::DeviceStage) == 1 && sizeof(driver::Fault) == 1 &&
+              sizeof(driver::LinkState) == 1);
 
 constexpr std::array kColumns{
     RecordingColumn{"tick", "1", "number of the tick, from 0; gaps are ticks that were missed",
@@ -64,6 +65,10 @@ constexpr std::array kColumns{
                     offsetof(TickRecord, stage)},
     RecordingColumn{"fault", "1", "0 none; /faults names the others", Type::kU8, 1,
                     offsetof(TickRecord, fault)},
+    RecordingColumn{"link", "1", "0 connected, 1 silent, 2 lost", Type::kU8, 1,
+                    offsetof(TickRecord, link), true},
+    RecordingColumn{"home_needed", "1", "1 while the arm may count from elsewhere: no force then",
+                    Type::kU8, 1, offsetof(TickRecord, home_needed), true},
 };
 
 }  // namespace

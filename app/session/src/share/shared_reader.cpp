@@ -279,6 +279,7 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   mend(record.in_contact);
   mend(record.fresh);
   mend(record.has_gripper);
+  mend(record.home_needed);
   // A faulty arm may tell of places that are no numbers; its fault must be seen, they must not.
   for (auto* numbers : {&record.q, &record.p_WT, &record.v_WT, &record.p_WP, &record.n_W,
                         &record.f_wanted_W, &record.f_sent_W, &record.heat}) {
@@ -289,8 +290,8 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   if (!std::isfinite(record.gripper)) record.gripper = 0;
   if (!std::isfinite(record.depth)) record.depth = 0;
   const bool known = record.stage <= driver::DeviceStage::kFault &&
-                     record.fault <= driver::kLastFault && record.object >= -1 &&
-                     record.object < static_cast<int>(scene_.objects.size());
+                     record.fault <= driver::kLastFault && record.link <= driver::kLastLinkState &&
+                     record.object >= -1 && record.object < static_cast<int>(scene_.objects.size());
   if (!known) ++rejected_;
   return known;
 }

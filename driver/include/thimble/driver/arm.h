@@ -62,6 +62,11 @@ class Arm {
   /// Returns how torque becomes current in each motor. Real-time: safe.
   virtual const std::array<MotorDrive, 3>& drives() const noexcept = 0;
 
+  /// Returns whether the encoders count from zero at the pose in which the arm's board starts. Such
+  /// an arm must be in its home pose then, and again after each restart of the board. False for an
+  /// arm with absolute encoders, and for one that finds its own zero. Real-time: safe.
+  virtual bool zero_at_power_on() const noexcept { return true; }
+
   /// Returns whether a gimbal is mounted whose encoders come with each reading. Real-time: safe.
   virtual bool has_gimbal() const noexcept { return false; }
 

@@ -20,6 +20,8 @@ struct ArmTraits {
   bool has_orientation = false;  ///< The arm tells how the stylus is turned.
   bool has_gimbal = false;       ///< The angles of the gimbal's axes are known.
   bool has_gripper = false;      ///< The arm has a gripper.
+  /// Encoders count from zero at the pose in which the arm's board starts (Arm::zero_at_power_on).
+  bool zero_at_power_on = false;
   /// Motors that the link turns forces into currents for. None: the arm takes a force and keeps its
   /// motors to itself, their limits and their heat included. Motors need joints.
   std::optional<std::array<MotorDrive, 3>> motors{};
@@ -48,7 +50,7 @@ enum class LinkStatus : std::uint8_t {
   kRejected,  ///< What arrived cannot be understood.
   kRepeated,  ///< What arrived has been there before.
   kLost,      ///< The arm is gone; every later call says so too.
-  kRefused,   ///< The arm is there and did not take the force; the one before stands.
+  kRefused,   ///< The arm is there, and whether it took the force is not known.
 };
 
 /// What became of a read.
@@ -88,6 +90,10 @@ class ArmLink {
   /// is given. Real-time: safe; waits no longer than one exchange with the arm.
   virtual LinkWrite write(const GatedForce& force, const ArmSample& sample,
                           const Eigen::Matrix3d& R_WB) noexcept = 0;
+
+  /// Returns what became of the last write, for a link that hands a force over before the arm takes
+  /// it: kOk, kNothing (on its way), kRefused or kLost. Real-time: safe; does not wait.
+  virtual LinkStatus settled() noexcept { return LinkStatus::kOk; }
 
   /// Returns whether old news are known as such, by a number or a time of their own; else a
   /// position that never changes is suspicious. Real-time: safe.

@@ -50,17 +50,30 @@ struct WireCounters {
   std::uint64_t replugged = 0;  ///< Times a lost wire was replaced.
 };
 
+/// What the caller knows of the arm's pose when it asks for forces.
+enum class HomeCheck : std::uint8_t {
+  kNone,    ///< Nothing. Enough as long as `Device::home_needed` is false.
+  kPassed,  ///< It has seen the arm in its home pose, or the arm's counts cannot have restarted.
+};
+
 /// One open arm behind its link: idle -> active -> (fault ->) idle, until destroyed.
 ///
 /// Every way out sends zero force: `deactivate`, a fault, the destructor. A fault latches until
 /// `activate` is called again; a clock that steps back is one. Used by one thread at a time, but
-/// for `offer` and `ask_to_activate`.
+/// for `offer`, `close_lost_link` and `ask_to_activate`.
 ///
-/// An arm that was pulled and plugged in again: the loop goes on with zero force and the fault
-/// kTransportLost; somebody at the side finds the arm by its serial number, opens a link and offers
-/// it; the next tick takes it and reads positions again. Forces come back only when the user says
-/// so (`ask_to_activate`). Encoders count from where the arm stood when it got power, so it must
-/// stand in its home pose then.
+/// The fault is the first reason why the force is off. The state of the link (`link_state`) is a
+/// value of its own: an arm can be pulled because of, or after, any other fault.
+///
+/// An arm that was pulled and plugged in again: the loop continues with zero force; another thread
+/// finds the arm by its serial number, closes the lost link (`close_lost_link`), opens a new one
+/// and offers it; the next tick takes it and reads positions again. Forces come back only when the
+/// user asks for them (`ask_to_activate`).
+///
+/// Encoders that count from where the arm stood when its board started
+/// (ArmTraits::zero_at_power_on) are wrong after every restart of the board, with a wire that was
+/// pulled or without. After a new link, a silence, or a jump of the position while no report came,
+/// forces therefore need the home pose again (`home_needed`).
 class Device {
  public:
   /// Takes the link to an arm; waits up to `timeout_ns` of `clock_now_ns` time for the first report
@@ -80,8 +93,9 @@ class Device {
   ~Device();
 
   /// Lets forces through from the next tick on, with a soft start; clears a fault. Fails if the
-  /// link is lost. Real-time: never from the servo thread.
-  Result<void> activate();
+  /// link is lost, or if the home pose is needed first and `home` does not say that the arm was
+  /// seen there. Real-time: never from the servo thread.
+  Result<void> activate(HomeCheck home = HomeCheck::kNone);
 
   /// Sends zero force now, once more if the arm does not take it, and in every later tick.
   /// `zero_assured` says whether it was taken. Real-time: safe.
@@ -93,10 +107,11 @@ class Device {
   /// kRefused. For the end of a loop. Real-time: safe; waits, and a write may wait as well.
   bool insist_on_zero(Clock& clock) noexcept;
 
-  /// Returns whether the force that stands is known to be zero: the last message that the arm took
-  /// said so. False: another force may stand until the arm's own watchdog switches it off. Taken
-  /// means handed over: a serial port or a converter may still have it on the way. Real-time: safe.
-  bool zero_assured() const noexcept { return known_to_stand_ && f_sent_W_.isZero(0); }
+  /// Returns whether the force that stands is known to be zero: the last message said so, no
+  /// message with a force has failed since, and the last message has left this computer
+  /// (ArmLink::settled). False: a force may stand until the arm's own watchdog switches it off.
+  /// From the thread that uses the device. Real-time: safe.
+  bool zero_assured() const noexcept;
 
   /// Begins a tick: reads the newest report and finds where the tip is. A report after which the
   /// tip would have changed its speed by 1 m/s within 1 ms is dropped, once: no hand does that, but
@@ -105,8 +120,9 @@ class Device {
   /// safe; waits no longer than `deadline_ns`.
   const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
-  /// Reads the newest report as `read` does and sends zero force: for whoever looks at the arm
-  /// before a run. It counts no tick, and notices no silence. Real-time: safe.
+  /// Reads the newest report as `read` does and sends zero force: for a caller that looks at the
+  /// arm before a run. It counts no tick, and a silence is no fault, but may make the home pose
+  /// needed. Real-time: safe.
   const DeviceState& idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
   /// Ends a tick: passes the command through the gate and sends what is left of it, or zero if the
@@ -117,20 +133,37 @@ class Device {
   /// Makes a fault that somebody above found (it latches, the force goes off). Real-time: safe.
   void trip(Fault fault) noexcept { gate_.trip(fault); }
 
-  /// Offers a new link to the same arm in place of a lost one; an earlier offer that was not taken
-  /// is dropped. The next `read` takes it if the link is lost. Fails, and drops the link, if it is
-  /// to an arm of another kind (`ArmTraits`). From any one thread beside the loop's. Real-time:
-  /// never from the servo thread.
+  /// Closes the lost link, and an offer that was not taken. Call it before a new link to the same
+  /// arm is opened: a vendor's library has one arm for all links, so that the end of an old link
+  /// would close the new one. From the thread that offers. Real-time: never from the servo thread.
+  void close_lost_link() noexcept;
+
+  /// Offers a new link to the same arm as a replacement for a lost one; closes the lost one first,
+  /// as `close_lost_link` does. The next `read` takes the offer if the link is lost. Fails, and
+  /// drops the link, if it is to an arm of another kind (`ArmTraits`). From one thread other than
+  /// the loop's. Real-time: never from the servo thread.
   Result<void> offer(std::unique_ptr<ArmLink> link);
 
-  /// Asks the next `read` to activate the device. An ask while the link is lost, or before the
-  /// first report of a new link, is forgotten: nobody gets a force he did not just ask for. From
-  /// any thread. Real-time: safe.
-  void ask_to_activate() noexcept { activation_asked_.store(true, std::memory_order_release); }
+  /// Asks the next `read` to activate the device. The request is dropped unless the link is
+  /// connected, and if the home pose is needed and `home` does not say that the arm was seen there.
+  /// From any thread. Real-time: safe.
+  void ask_to_activate(HomeCheck home = HomeCheck::kNone) noexcept {
+    activation_asked_.store(home == HomeCheck::kPassed ? Asked::kAtHome : Asked::kYes,
+                            std::memory_order_release);
+  }
+
+  /// Ends `home_needed`: the caller has seen the arm in its home pose. Real-time: safe.
+  void confirm_home() noexcept { home_needed_ = false; }
 
   DeviceStage stage() const noexcept;  ///< Returns where it is in its life. Real-time: safe.
   /// Returns whether the link is lost and waits for an offer. Real-time: safe.
   bool lost() const noexcept { return lost_; }
+  /// Returns the state of the link, whatever the fault is. Real-time: safe.
+  LinkState link_state() const noexcept;
+  /// Returns whether the arm's board may have restarted, so that its counts may be wrong: no force
+  /// before the arm was seen in its home pose. Never for an arm with absolute encoders, one that
+  /// finds its own zero, or one whose pose its vendor reports. Real-time: safe.
+  bool home_needed() const noexcept { return home_needed_; }
   Fault fault() const noexcept { return gate_.fault(); }  ///< Names what switched the force off.
   /// Shows what was read last. Real-time: safe.
   const DeviceState& state() const noexcept { return state_; }
@@ -152,19 +185,28 @@ class Device {
   bool take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
   void take_extras(const ArmSample& sample) noexcept;
   bool jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept;
+  bool moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) const noexcept;
+  bool follow_silence(std::int64_t now_ns) noexcept;
+  void doubt_counts() noexcept { home_needed_ = home_needed_ || traits_.zero_at_power_on; }
   void take_offer(std::int64_t now_ns) noexcept;
+  void take_request() noexcept;
+  bool retire_link() noexcept;
   void begin_activity() noexcept;
   LinkWrite send(const GatedForce& force) noexcept;
   void send_zero() noexcept;
   void count_refusal(LinkStatus status) noexcept;
   void keep_standing() noexcept;
+  bool zero_taken() const noexcept { return known_to_stand_ && f_sent_W_.isZero(0); }
   void lose() noexcept;
   void watch() noexcept;
   GatedForce pass_guarded(const ForceCommand& command) noexcept;
   void book(const LinkWrite& sent, const GatedForce& force) noexcept;
   const ArmSample& sample() const noexcept { return samples_[newest_]; }
 
-  std::unique_ptr<ArmLink> link_;
+  /// A request to activate.
+  enum class Asked : std::uint8_t { kNo, kYes, kAtHome };
+
+  std::unique_ptr<ArmLink> link_;  // null while it is lost, as soon as the old one was retired
   ArmTraits traits_;
   DeviceSettings settings_;
   SafetyGate gate_;
@@ -179,19 +221,25 @@ class Device {
   DeviceState state_;
   Eigen::Vector3d f_sent_W_{0, 0, 0};
   std::int64_t last_report_ns_ = 0;
-  bool guarded_;  // an energy stage or a heat guard is named
-  bool extras_;   // the arm tells more, or less, than joints and counts
+  std::int64_t quiet_since_ns_ = 0;  // last report, or the begin of listening
+  std::int64_t listened_ns_ = 0;     // last read or idle
+  bool guarded_;                     // an energy stage or a heat guard is named
+  bool extras_;                      // the arm tells more, or less, than joints and counts
   bool active_ = false;
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
   bool jumped_ = false;          // the newest report was dropped for a jump
   bool reported_ = false;        // a report came over this link
   bool known_to_stand_ = false;  // f_sent_W_ is what the arm took last, over this link
-  bool insisted_ = false;        // on a zero that was not taken
+  bool silent_ = false;          // no report for the silence limit, and none since
+  bool spoken_ = false;          // a message went out since the last report
+  bool home_needed_ = false;
+  bool insisted_ = false;  // on a zero that was not taken
   int refused_in_a_row_ = 0;
+  int missed_in_a_row_ = 0;  // reads without a report, while it was listened to
   std::int64_t refused_since_ns_ = 0;
   std::atomic<ArmLink*> offered_{nullptr}, retired_{nullptr};
-  std::atomic<bool> activation_asked_{false};
+  std::atomic<Asked> activation_asked_{Asked::kNo};
 };
 
 }  // namespace thimble::driver

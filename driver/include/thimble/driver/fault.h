@@ -20,10 +20,11 @@ enum class Fault : std::uint8_t {
   kEncoderFrozen,     ///< A joint did not move under a changing force while others did.
   kCountsUnchanged,   ///< No encoder counted while a force was held (motion_watch.h).
   kOtherArm,          ///< Another arm of the same run came to a fault.
+  kCountsJumped,      ///< The position jumped while no report came (Device::home_needed).
 };
 
 /// The last of the faults: what is beyond it in a file or in shared memory is damaged.
-inline constexpr Fault kLastFault = Fault::kOtherArm;
+inline constexpr Fault kLastFault = Fault::kCountsJumped;
 
 /// Returns what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.

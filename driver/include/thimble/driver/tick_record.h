@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "thimble/driver/fault.h"
 #include "thimble/driver/orientation.h"
@@ -17,6 +18,20 @@ enum class DeviceStage : std::uint8_t {
   kActive,  ///< Forces are sent through the gate.
   kFault,   ///< Zero force, latched; see the fault.
 };
+
+/// State of the link to an arm. It is independent of the fault: an arm whose force is off for
+/// another reason can be pulled, and a lost arm can come back while its fault is still latched.
+enum class LinkState : std::uint8_t {
+  kConnected,  ///< Reports arrive.
+  kSilent,     ///< The link is open; no report for `DeviceSettings::silence_limit_ns`, or none yet.
+  kLost,       ///< The arm is gone from the wire; the device waits for a new link.
+};
+
+/// The last of the link states; a larger value in a file or in shared memory is damaged.
+inline constexpr LinkState kLastLinkState = LinkState::kLost;
+
+/// Returns the short name of a link state as it stands in reports ("lost"). Real-time: safe.
+std::string_view name(LinkState state) noexcept;
 
 /// Holds everything one tick did, as plain numbers: what the snapshot shows, the recorder keeps and
 /// reports are made of. Trivially copyable. Frames: W world, T tip, P proxy.
@@ -47,6 +62,8 @@ struct TickRecord {
   bool has_gripper = false;                ///< the arm has a gripper
   DeviceStage stage = DeviceStage::kIdle;  ///< of the device, after the tick
   Fault fault = Fault::kNone;              ///< that keeps the force off
+  LinkState link = LinkState::kConnected;  ///< of the device, after the tick
+  bool home_needed = false;                ///< no force before the home pose: Device::home_needed
 };
 
 /// Returns what a tick is known by before its force went through the gate: what the device read and

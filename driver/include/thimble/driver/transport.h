@@ -11,7 +11,9 @@ enum class TransportStatus : std::uint8_t {
   kOk,       ///< Bytes were read or written.
   kNothing,  ///< No new report arrived before the deadline.
   kLost,     ///< The arm is gone; every later call says so too.
-  kRefused,  ///< The arm is there and did not take the bytes (stalled, or still busy with others).
+  /// The arm is there, and whether it took the bytes is not known: it stalled, or is still busy
+  /// with others, or an earlier message failed.
+  kRefused,
 };
 
 /// How a read ended and how much of the buffer it filled.
@@ -45,9 +47,14 @@ class Transport {
   virtual TransportRead read_latest(std::span<std::byte> buffer,
                                     std::int64_t deadline_ns) noexcept = 0;
 
-  /// Sends one report. Never answers kNothing; kRefused means that nothing of it may have arrived.
+  /// Sends one report. Never answers kNothing; after kRefused the arm may have taken it or not.
   /// Real-time: safe; waits no longer than one transfer of the bus.
   virtual TransportStatus write(std::span<const std::byte> report) noexcept = 0;
+
+  /// Returns what became of the last write, for a wire that takes messages before the arm does: kOk
+  /// (it has left this computer), kNothing (it is on its way), kRefused or kLost. Real-time: safe;
+  /// does not wait.
+  virtual TransportStatus settled() noexcept { return TransportStatus::kOk; }
 };
 
 }  // namespace thimble::driver

@@ -35,7 +35,8 @@ inline std::int32_t round_half_away(double x) noexcept {
 ///
 /// A Wire has two static functions, both noexcept: `bool decode(bytes, ArmReading&)`, total and
 /// leaving the reading alone when it answers false; and `std::size_t encode(mA, bytes)`, which
-/// fills a report with three motor values and tells its length. Real-time: safe.
+/// fills a report with three motor values and tells its length. A wire whose board finds its own
+/// zero, and says when it has lost it, has a constant `kFindsZero = true`. Real-time: safe.
 template <class Wire, class Geometry>
 class WireArm final : public Arm {
  public:
@@ -56,6 +57,11 @@ class WireArm final : public Arm {
   }
 
   const std::array<MotorDrive, 3>& drives() const noexcept override { return model_.drives; }
+
+  bool zero_at_power_on() const noexcept override {
+    if constexpr (requires { Wire::kFindsZero; }) return !Wire::kFindsZero;
+    return true;
+  }
 
   bool has_gimbal() const noexcept override { return kCarries && model_.gimbal.has_value(); }
 

@@ -21,6 +21,7 @@ class WireLink final : public ArmLink {
   LinkRead read(ArmSample& sample, std::int64_t deadline_ns) noexcept override;
   LinkWrite write(const GatedForce& force, const ArmSample& sample,
                   const Eigen::Matrix3d& R_WB) noexcept override;
+  LinkStatus settled() noexcept override;
   bool numbers_reports() const noexcept override { return numbered_; }
   MotorCurrents currents() const noexcept override { return currents_; }
   void limit_currents(const std::array<MotorDrive, 3>& limits) noexcept override;

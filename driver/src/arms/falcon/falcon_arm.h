@@ -11,6 +11,7 @@ namespace thimble::driver::falcon {
 /// libnifalcon FalconFirmwareNovintSDK.h]; an answer in which a leg is not homed is rejected.
 /// Real-time: safe.
 struct PacketWire {
+  static constexpr bool kFindsZero = true;
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& motors,
                             std::span<std::byte, kReportCapacity> bytes) noexcept;

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -37,6 +39,21 @@ constexpr double kFarthest = 2;
 Error failure(const Library& library, const std::string& what) {
   const char* why = library.call.dhdErrorGetLastStr();
   return Error{what + ": the library says \"" + (why == nullptr ? "nothing" : why) + "\"."};
+}
+
+class DhdLink;
+
+/// The owner of the library. Its functions know one arm and no handles, so that whatever a link
+/// does at its end it does to the arm of all links: one link has it at a time, and a lost one is
+/// shut down before its successor opens the arm.
+struct Owner {
+  std::recursive_mutex mutex;  // a link that is refused ends while it is held
+  DhdLink* link = nullptr;
+};
+
+Owner& owner() {
+  static Owner only;
+  return only;
 }
 
 /// An arm that was opened, and is closed at the end.
@@ -78,23 +95,37 @@ class OpenArm {
 
 class DhdLink final : public SlotLink {
  public:
+  /// Precondition: the caller holds the owner's mutex.
   DhdLink(OpenArm arm, const ArmTraits& traits, Clock& clock)
       : SlotLink(traits, clock), arm_(std::move(arm)) {
+    owner().link = this;
     thread_ = std::thread([this] { run(); });
   }
 
   ~DhdLink() override {
+    const std::lock_guard lock(owner().mutex);
+    shut_down();
+  }
+
+  bool gone() const noexcept { return is_lost(); }
+
+  /// Ends what it does with the library, for good. Precondition: as the constructor.
+  void shut_down() noexcept {
+    if (!arm_) return;
     ends_.store(true, std::memory_order_release);
     thread_.join();
-    const Functions& call = arm_.call();
+    const Functions& call = arm_->call();
     call.dhdSetForce(0, 0, 0, kId);
     call.dhdEnableForce(kOff, kId);
     call.dhdStop(kId);
+    arm_.reset();
+    lose();
+    owner().link = nullptr;
   }
 
  private:
   void run() noexcept {
-    const Functions& call = arm_.call();
+    const Functions& call = arm_->call();
     while (!ends_.load(std::memory_order_acquire) && !is_lost()) {
       ArmSample sample;
       if (ask(call, sample)) {
@@ -153,7 +184,7 @@ class DhdLink final : public SlotLink {
     if (call.dhdSetForce(f.x(), f.y(), f.z(), kId) < 0) lose();
   }
 
-  OpenArm arm_;
+  std::optional<OpenArm> arm_;  // none: it was shut down
   std::atomic<bool> ends_{false};
   // Of the thread.
   Eigen::Vector3d f_T_B_{0, 0, 0};
@@ -184,10 +215,25 @@ Result<void> enable(const OpenArm& arm) {
   return step(call.dhdEnableForce(kOn, kId), "switch its forces on");
 }
 
+/// Opens the arm, once no other link of this program has it. Precondition: the caller holds the
+/// owner's mutex.
+Result<OpenArm> take_arm(const Library& library) {
+  if (DhdLink* const link = owner().link; link != nullptr) {
+    if (!link->gone()) {
+      return Error{
+          "This program has the arm of Force Dimension's library open already. Close that run "
+          "first."};
+    }
+    link->shut_down();
+  }
+  return OpenArm::open(library);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock) {
-  auto arm = OpenArm::open(library);
+  const std::lock_guard lock(owner().mutex);
+  auto arm = take_arm(library);
   if (!arm) return arm.error();
   const Functions& call = arm->call();
   if (!call.drdIsInitialized(kId)) {
@@ -206,7 +252,8 @@ Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock)
 }
 
 Result<void> find_zero(const Library& library) {
-  auto arm = OpenArm::open(library);
+  const std::lock_guard lock(owner().mutex);
+  auto arm = take_arm(library);
   if (!arm) return arm.error();
   const Functions& call = arm->call();
   if (call.drdIsInitialized(kId)) return {};

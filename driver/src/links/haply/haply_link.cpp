@@ -46,7 +46,11 @@ class HaplyLink final : public SlotLink, private Traffic {
   void received(std::string_view text) override {
     waits_ = false;
     const StateRead read = read_state(text, device_id_, state_);
-    if (read == StateRead::kGone) return lose();
+    if (read == StateRead::kGone) {
+      lose();
+      // Now, not when the link is destroyed: by then a successor may drive the arm.
+      return socket_->leave();
+    }
     trusted_ = read == StateRead::kOk;
     if (!trusted_) return reject();
     ArmSample sample;

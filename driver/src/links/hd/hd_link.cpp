@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -45,6 +47,20 @@ unsigned first_error(const Functions& call) {
   return first;
 }
 
+class HdLink;
+
+/// The owner of the library. Its scheduler is one for all devices and links: one link has it at a
+/// time, and a lost one is shut down before its successor opens the device.
+struct Owner {
+  std::recursive_mutex mutex;  // a link that is refused ends while it is held
+  HdLink* link = nullptr;
+};
+
+Owner& owner() {
+  static Owner only;
+  return only;
+}
+
 /// A device that was opened, and is given back at the end.
 class OpenDevice {
  public:
@@ -83,13 +99,24 @@ class OpenDevice {
 
 class HdLink final : public SlotLink {
  public:
+  /// Precondition: the caller holds the owner's mutex.
   HdLink(OpenDevice device, const ArmTraits& traits, double force_most, Clock& clock)
       : SlotLink(traits, clock, force_most), device_(std::move(device)) {
+    owner().link = this;
     task_ = call().hdScheduleAsynchronous(&HdLink::tick, this, kFirstPriority);
     call().hdStartScheduler();
   }
 
   ~HdLink() override {
+    const std::lock_guard lock(owner().mutex);
+    shut_down();
+  }
+
+  bool gone() const noexcept { return is_lost(); }
+
+  /// Ends what it does with the library, for good. Precondition: as the constructor.
+  void shut_down() noexcept {
+    if (!device_) return;
     ends_.store(true, std::memory_order_release);
     const auto until = steady_clock::now() + kFarewell;
     while (!ended_.load(std::memory_order_acquire) && steady_clock::now() < until) {
@@ -98,6 +125,9 @@ class HdLink final : public SlotLink {
     call().hdStopScheduler();
     // A callback that is done is no task any more.
     if (!ended_.load(std::memory_order_acquire)) call().hdUnschedule(task_);
+    device_.reset();
+    lose();
+    owner().link = nullptr;
   }
 
   /// Switches the forces on, once the device says that it is calibrated.
@@ -115,21 +145,21 @@ class HdLink final : public SlotLink {
   }
 
  private:
-  const Functions& call() const { return device_.call(); }
+  const Functions& call() const { return device_->call(); }
 
   static unsigned tick(void* self) { return static_cast<HdLink*>(self)->frame(); }
 
   unsigned frame() noexcept {
     const bool last = ends_.load(std::memory_order_acquire);
     const auto now = steady_clock::now();
-    call().hdBeginFrame(device_.handle());
+    call().hdBeginFrame(device_->handle());
     ArmSample sample;
     const bool understood = ask(sample);
     // An arm whose pose is not known, or that is lost, gets no force.
     const bool trusted = understood && !rejected_ && !is_lost();
     const Eigen::Vector3d f = last || !trusted ? Eigen::Vector3d(0, 0, 0) : force_at(now);
     call().hdSetDoublev(kForce, f.data());
-    call().hdEndFrame(device_.handle());
+    call().hdEndFrame(device_->handle());
     judge(first_error(call()), understood, sample, now);
     if (last) ended_.store(true, std::memory_order_release);
     return last ? kCallbackDone : kCallbackContinue;
@@ -181,7 +211,7 @@ class HdLink final : public SlotLink {
     if (understood) publish(sample);
   }
 
-  OpenDevice device_;
+  std::optional<OpenDevice> device_;  // none: it was shut down
   unsigned long task_ = 0;
   std::atomic<bool> ends_{false}, ended_{false};
   // Of the scheduler's thread.
@@ -190,10 +220,24 @@ class HdLink final : public SlotLink {
   bool rejected_ = false;  // the frame before
 };
 
+/// Opens the device, once no other link of this program has it. Precondition: the caller holds the
+/// owner's mutex.
+Result<OpenDevice> take_device(const Library& library) {
+  if (HdLink* const link = owner().link; link != nullptr) {
+    if (!link->gone()) {
+      return Error{
+          "This program has the arm of OpenHaptics' library open already. Close that run first."};
+    }
+    link->shut_down();
+  }
+  return OpenDevice::open(library);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock) {
-  auto device = OpenDevice::open(library);
+  const std::lock_guard lock(owner().mutex);
+  auto device = take_device(library);
   if (!device) return device.error();
   double nominal = 0;
   device->call().hdGetDoublev(kNominalMaxForce, &nominal);
@@ -209,7 +253,8 @@ Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock)
 }
 
 Result<std::string> how_to_calibrate(const Library& library) {
-  auto device = OpenDevice::open(library);
+  const std::lock_guard lock(owner().mutex);
+  auto device = take_device(library);
   if (!device) return device.error();
   int styles = 0;
   device->call().hdGetIntegerv(kCalibrationStyle, &styles);
@@ -224,7 +269,8 @@ Result<std::string> how_to_calibrate(const Library& library) {
 }
 
 Result<void> calibrate(const Library& library) {
-  auto device = OpenDevice::open(library);
+  const std::lock_guard lock(owner().mutex);
+  auto device = take_device(library);
   if (!device) return device.error();
   const Functions& call = device->call();
   int styles = 0;

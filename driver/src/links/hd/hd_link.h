@@ -16,6 +16,9 @@ namespace thimble::driver::hd {
 /// after 20 ms without a new one.
 ///
 /// Forces are enabled only for an arm that is calibrated; one that is not is refused (`calibrate`).
+/// The library has one scheduler for all links: while a link works no other can be opened, and a
+/// lost one is shut down before its successor opens the device.
+///
 /// No force is longer than the library's nominal one. At the end: zero force in a frame, then the
 /// scheduler stops, and the device is given back.
 ///

@@ -104,6 +104,22 @@ TEST(Report, NamesTheFaultThatEndedIt) {
   EXPECT_NE(summary(report).find(driver::describe(driver::Fault::kOverSpeed)), std::string::npos);
 }
 
+TEST(Report, NamesTheLinkBesideTheFault) {
+  session::RunFigures report = example();
+  report.end = driver::ServoEnd::kDone;
+  EXPECT_EQ(summary(report).find("Link "), std::string::npos);
+  report.fault = driver::Fault::kOverSpeed;
+  report.link = driver::LinkState::kLost;
+  report.home_needed = true;
+  EXPECT_NE(summary(report).find("the arm was gone from the wire at the end"), std::string::npos);
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report_link";
+  ASSERT_TRUE(write_report(report, folder).ok());
+  const auto end = read(folder / "report.json")["end"];
+  EXPECT_EQ(end["fault"], "over_speed");
+  EXPECT_EQ(end["link"], "lost");
+  EXPECT_EQ(end["home_needed"], true);
+}
+
 TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;

@@ -110,6 +110,31 @@ TEST_F(EventWatchTest, TellsEachStepOfAnArmsLifeOnce) {
   EXPECT_EQ(events(), Events({event(12, EventKind::kDeactivated)}));
 }
 
+TEST_F(EventWatchTest, NotesALinkThatChangesAfterAnotherFault) {
+  const auto link = [](std::uint64_t tick, driver::LinkState state) {
+    TickEvent event = EventWatchTest::event(tick, EventKind::kLinkChanged);
+    event.link = state;
+    return event;
+  };
+  record_.stage = DeviceStage::kFault;
+  record_.fault = Fault::kOverSpeed;
+  ticks(2);
+  events();
+  record_.link = driver::LinkState::kLost;
+  ticks(2);
+  EXPECT_EQ(events(), Events({link(2, driver::LinkState::kLost)}));
+  record_.link = driver::LinkState::kSilent;  // of a new link, before its first report
+  ticks(2);
+  EXPECT_EQ(events(), Events());
+  record_.link = driver::LinkState::kConnected;
+  ticks(2);
+  EXPECT_EQ(events(), Events({link(6, driver::LinkState::kConnected)}));
+  record_.fault = Fault::kNoReports;
+  record_.link = driver::LinkState::kSilent;
+  ticks(2);
+  EXPECT_EQ(events(), Events({fault(8, Fault::kNoReports)})) << "which says so itself";
+}
+
 TEST_F(EventWatchTest, TellsThatAnArmIsActiveFromItsFirstTickOn) {
   record_.stage = DeviceStage::kActive;
   tick();

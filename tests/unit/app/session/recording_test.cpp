@@ -67,6 +67,9 @@ TickRecord tick_number(std::uint64_t number) {
   tick.fresh = random() % 2 == 0;
   tick.stage = static_cast<driver::DeviceStage>(random() % 3);
   tick.fault = static_cast<driver::Fault>(random() % (static_cast<int>(driver::kLastFault) + 1));
+  tick.link =
+      static_cast<driver::LinkState>(random() % (static_cast<int>(driver::kLastLinkState) + 1));
+  tick.home_needed = random() % 2 == 0;
   return tick;
 }
 
@@ -85,8 +88,8 @@ TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
   std::size_t bytes = 0;
   for (const session::RecordingColumn& column : session::recording_columns())
     bytes += column.bytes();
-  // 4 long counters, 3 counts, 24 + 1 doubles, 8 floats, a triangle, 3 short numbers, 5 flags.
-  EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 25 * 8 + 8 * 4 + 4 + 3 * 2 + 5U);
+  // 4 long counters, 3 counts, 24 + 1 doubles, 8 floats, a triangle, 3 short numbers, 7 flags.
+  EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 25 * 8 + 8 * 4 + 4 + 3 * 2 + 7U);
   EXPECT_LE(sizeof(TickRecord) - bytes, 8U) << "a field of TickRecord is in no column";
 }
 

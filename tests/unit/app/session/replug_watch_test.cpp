@@ -21,6 +21,7 @@ class ReplugWatchTest : public ::testing::Test {
   struct Wire {
     std::array<std::int16_t, 6> counts{};
     bool lost = false;
+    bool silent = false;
   };
 
   class OnWire final : public driver::Transport {
@@ -28,6 +29,7 @@ class ReplugWatchTest : public ::testing::Test {
     explicit OnWire(Wire& wire) : wire_(wire) {}
     driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
       if (wire_.lost) return {.status = driver::TransportStatus::kLost};
+      if (wire_.silent) return {};
       const auto bytes = driver::hfab::encode_input({.counts = wire_.counts});
       std::copy(bytes.begin(), bytes.end(), buffer.begin());
       return {.status = driver::TransportStatus::kOk, .size = bytes.size(), .skipped = 0};
@@ -156,7 +158,7 @@ TEST_F(ReplugWatchTest, AsksAnArmThatFindsItsOwnHomeOnlyForTheWorkspace) {
   plugged_ = true;
   second_.counts = {1500, 0, 0, 0, 0, 0};
   pass(12);
-  EXPECT_TRUE(told("homed anew"));
+  EXPECT_TRUE(told("found its zero again"));
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -172,6 +174,70 @@ TEST_F(ReplugWatchTest, ChecksTheWorkspaceAfterAnyFault) {
   EXPECT_TRUE(told("outside of the workspace"));
   EXPECT_EQ(force(), 0);
   first_.counts = {1500, 0, 0, 0, 0, 0};  // inside, and not at home: it kept its counters
+  pass(2);
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+}
+
+TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
+  pass(5);
+  device_->trip(Fault::kOverSpeed);
+  pass(2);
+  EXPECT_TRUE(told("Force is off (over_speed)"));
+  first_.lost = true;
+  pass(2);
+  EXPECT_TRUE(told("The arm is gone."));
+  enter_ = true;
+  pass(1);
+  EXPECT_EQ(force(), 0);
+  plugged_ = true;
+  pass(12);
+  EXPECT_EQ(opened_, 1);
+  EXPECT_EQ(last_.fault, Fault::kOverSpeed);
+  EXPECT_EQ(last_.link, driver::LinkState::kConnected);
+  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_EQ(force(), 0) << "nobody pressed Enter";
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+}
+
+TEST_F(ReplugWatchTest, FindsAnArmWhoseLossTheKernelReportsLate) {
+  pass(5);
+  first_.silent = true;
+  pass(1);
+  EXPECT_TRUE(told("Force is off (no_reports)"));
+  enter_ = true;
+  pass(1);
+  EXPECT_TRUE(told("The arm is silent"));
+  first_.lost = true;
+  plugged_ = true;
+  pass(12);
+  EXPECT_EQ(opened_, 1);
+  EXPECT_EQ(last_.fault, Fault::kNoReports);
+  enter_ = true;
+  pass(6);
+  EXPECT_GT(force(), 0.4);
+}
+
+TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
+  first_.counts = {1500, 800, 0, 0, 0, 0};
+  pass(5);
+  EXPECT_GT(force(), 0.4);
+  first_.silent = true;
+  pass(5);
+  first_.counts = {0, 0, 0, 0, 0, 0};  // where it stands, 42 mm away from its home pose
+  first_.silent = false;
+  pass(1);
+  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  first_.counts = {1500, 800, 0, 0, 0, 0};  // the user moves it
+  pass(2);
+  enter_ = true;
+  pass(6);
+  EXPECT_TRUE(told("mm away from its home pose"));
+  EXPECT_EQ(force(), 0) << "its tip and its Jacobian are wrong";
+  first_.counts = {};  // put into its home pose, and switched on again there
   pass(2);
   enter_ = true;
   pass(6);

@@ -91,6 +91,7 @@ class WaitForStartPose : public ::testing::Test {
     explicit Answering(WaitForStartPose& test) : test_(test) {}
     driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
       if (test_.lost_) return {.status = driver::TransportStatus::kLost};
+      if (test_.silent_) return {};
       const auto bytes = driver::hfab::encode_input({.counts = test_.counts_});
       std::copy(bytes.begin(), bytes.end(), buffer.begin());
       return {.status = driver::TransportStatus::kOk, .size = bytes.size(), .skipped = 0};
@@ -121,7 +122,7 @@ class WaitForStartPose : public ::testing::Test {
   }
 
   std::array<std::int16_t, 6> counts_{};
-  bool lost_ = false;
+  bool lost_ = false, silent_ = false;
   int zeros_ = 0, messages_ = 0;
   driver::VirtualClock clock_;
   std::unique_ptr<driver::Device> device_;
@@ -163,6 +164,23 @@ TEST_F(WaitForStartPose, AsksUntilTheTipIsThereAndSendsZeroForceMeanwhile) {
   // The run that follows begins with its first tick.
   ASSERT_TRUE(device_->activate());
   EXPECT_EQ(device_->read(clock_.now_ns(), clock_.now_ns()).tick, 0u);
+}
+
+TEST_F(WaitForStartPose, RestartMeanwhileNeedsHomePoseEvenIfHomed) {
+  counts_ = {12000, 0, 0, 0, 0, 0};  // outside of the workspace
+  open();
+  user_ = [this](int look) {
+    silent_ = look >= 10 && look < 13;                // 60 ms
+    if (look == 12) counts_ = {2000, 0, 0, 0, 0, 0};  // it counts from elsewhere, inside
+    if (look == 40) counts_ = {50, 0, 0, 0, 0, 0};    // at home
+    return look == 30 || look == 50 ? session::EnterKey::kPressed : session::EnterKey::kNothing;
+  };
+  EXPECT_TRUE(*wait(false));
+  EXPECT_EQ(looks_, 50);
+  ASSERT_EQ(told_.size(), 2u);
+  EXPECT_TRUE(has(told_[1], "mm away from its home pose")) << told_[1];
+  EXPECT_FALSE(device_->home_needed());
+  EXPECT_TRUE(device_->activate());
 }
 
 TEST_F(WaitForStartPose, GivesUpWhereNobodyCanBeAsked) {

@@ -185,6 +185,85 @@ TEST_F(ZeroForce, IsNotAssuredByAWireThatIsLost) {
   EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));  // nothing goes out any more
 }
 
+TEST_F(ZeroForce, IsNotAssuredAfterARefusedForce) {
+  // The message may have arrived all the same.
+  wire_.to_host.push_back(report());
+  auto opened = Device::open(
+      std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
+                                 std::make_unique<hfab::HfabArm>(support::vintage_model())),
+      support::vintage_settings(), now_ns_);
+  ASSERT_TRUE(opened);
+  device_ = std::move(opened).value();
+  ASSERT_TRUE(device_->activate());
+  tick({0, 0, 0});
+  EXPECT_TRUE(device_->zero_assured());
+  wire_.refusals = kForGood;
+  tick(kPush);
+  tick(kPush);
+  EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));
+  EXPECT_FALSE(device_->zero_assured());
+  device_->deactivate();
+  EXPECT_FALSE(device_->zero_assured());
+  wire_.refusals = 0;
+  device_->deactivate();
+  EXPECT_TRUE(told_zero());
+  EXPECT_TRUE(device_->zero_assured());
+}
+
+/// A clock that lets the last message leave after `leaves_after` sleeps.
+class LeavingClock final : public Clock {
+ public:
+  LeavingClock(support::Wire& wire, int leaves_after, TransportStatus outcome)
+      : wire_(wire), left_(leaves_after), outcome_(outcome) {}
+  std::int64_t now_ns() const noexcept override { return now_ns_; }
+  void sleep_until_ns(std::int64_t time_ns) noexcept override {
+    now_ns_ = time_ns;
+    if (--left_ == 0) wire_.settled = outcome_;
+  }
+
+ private:
+  support::Wire& wire_;
+  int left_;
+  TransportStatus outcome_;
+  std::int64_t now_ns_ = 0;
+};
+
+TEST_F(ZeroForce, IsNotAssuredWhileItIsOnItsWay) {
+  open();
+  wire_.settled = TransportStatus::kNothing;
+  device_->deactivate();
+  EXPECT_FALSE(device_->zero_assured());
+  const std::size_t sent = wire_.to_arm.size();
+  LeavingClock clock(wire_, 5, TransportStatus::kOk);
+  EXPECT_TRUE(device_->insist_on_zero(clock));
+  EXPECT_EQ(clock.now_ns(), 5 * kPeriod_ns);
+  EXPECT_EQ(wire_.to_arm.size(), sent) << "it is waited for, not sent again";
+  EXPECT_EQ(device_->fault(), Fault::kNone);
+}
+
+TEST_F(ZeroForce, IsSentAgainWhenItFailedOnItsWay) {
+  open();
+  wire_.settled = TransportStatus::kNothing;
+  device_->deactivate();
+  const std::size_t sent = wire_.to_arm.size();
+  LeavingClock clock(wire_, 3, TransportStatus::kRefused);
+  EXPECT_FALSE(device_->insist_on_zero(clock));
+  EXPECT_GT(wire_.to_arm.size(), sent);
+  EXPECT_EQ(device_->fault(), Fault::kRefused);
+  wire_.settled = TransportStatus::kOk;
+  EXPECT_TRUE(device_->zero_assured());
+}
+
+TEST_F(ZeroForce, IsNotAssuredWhereTheWireIsLostBeforeItLeft) {
+  open();
+  wire_.settled = TransportStatus::kNothing;
+  device_->deactivate();
+  wire_.lost = true;
+  device_->read(now_ns_ += kPeriod_ns, 0);
+  EXPECT_TRUE(device_->lost());
+  EXPECT_FALSE(device_->zero_assured());
+}
+
 TEST_F(ZeroForce, IsNotWhatARefusedTickLeaves) {
   open();
   wire_.refusals = 10;

@@ -116,6 +116,19 @@ TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
   expect_latched_zero(rows, 30'000'000);
 }
 
+TEST_F(DhdLinkTest, ReplugGivesTheArmToTheNewLink) {
+  expect_replugs([](Mock& mock) { mock.fails = "dhdSetForce"; }, true);
+}
+
+TEST_F(DhdLinkTest, ReplugMayOpenTheNewLinkFirst) {
+  expect_replugs([](Mock& mock) { mock.fails = "dhdSetForce"; }, false);
+}
+
+TEST_F(DhdLinkTest, OneLinkOwnsTheLibrary) {
+  expect_one_owner();
+  EXPECT_FALSE(dhd::find_zero(library_)) << "the arm would be closed at its end";
+}
+
 TEST_F(DhdLinkTest, ALoopThatStandsStillLosesItsForce) {
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));

@@ -306,6 +306,19 @@ TEST_F(HaplyLinkTest, ComesBackOverANewLinkWithoutForceUntilTheUserAsks) {
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
+TEST_F(HaplyLinkTest, LeavesTheServiceWhenTheArmIsGone) {
+  greet();
+  ASSERT_NO_FATAL_FAILURE(open());
+  ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->f_sent_W().x() > 0.3; }));
+  service_->begin(HaplyMischief::kUnplugged);
+  ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->lost(); }));
+  // Its last zero must not reach the arm once a successor drives it.
+  for (int look = 0; look < 1000 && !service_->log().closed_by_client; ++look) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(service_->log().closed_by_client);
+}
+
 TEST_F(HaplyLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());

@@ -98,6 +98,20 @@ TEST_F(HdLinkTest, NamesEachErrorOfTheLibraryAndLatchesZeroForce) {
   expect_latched_zero(rows, 40'000'000);
 }
 
+TEST_F(HdLinkTest, ReplugGivesTheArmToTheNewLink) {
+  expect_replugs([](Mock& mock) { mock.error = 0x0302; }, true);
+}
+
+TEST_F(HdLinkTest, ReplugMayOpenTheNewLinkFirst) {
+  expect_replugs([](Mock& mock) { mock.error = 0x0302; }, false);
+}
+
+TEST_F(HdLinkTest, OneLinkOwnsTheLibrary) {
+  expect_one_owner();
+  EXPECT_FALSE(hd::calibrate(library_)) << "its end would stop the scheduler";
+  EXPECT_FALSE(hd::how_to_calibrate(library_));
+}
+
 TEST_F(HdLinkTest, ALoopThatStandsStillLosesItsForce) {
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));

@@ -69,6 +69,20 @@ TEST(ForceBox, KeepsAForceThatWaitsUnlessZeroComes) {
   EXPECT_EQ(f, Vector3d(4, 0, 0));
 }
 
+TEST(ForceBox, ZeroIsSettledOnceTheOtherThreadHasIt) {
+  ForceBox box;
+  Vector3d f;
+  EXPECT_TRUE(box.put({1, 0, 0}));
+  EXPECT_FALSE(box.put({0, 0, 0}));
+  EXPECT_FALSE(box.zero_settled()) << "the other thread may hang with the force before";
+  ASSERT_TRUE(box.take(f));
+  EXPECT_TRUE(box.zero_settled());
+  EXPECT_TRUE(box.put({0, 0, 0}));
+  EXPECT_TRUE(box.zero_settled()) << "one more zero changes nothing";
+  EXPECT_FALSE(box.put({0, 0, 0}));
+  EXPECT_TRUE(box.zero_settled());
+}
+
 TEST(ForceBox, EveryForceThatWasTakenInGoesOutOnceAndInOrder) {
   ForceBox box;
   constexpr int kForces = 500;

@@ -121,6 +121,46 @@ class VendorLinkTest : public ::testing::Test {
     }
   }
 
+  /// Pulls the arm by `pull` and plugs it in again, three times, as a watch over a run does.
+  /// Expects that the new link has the library's arm each time, and that nothing is called out of
+  /// order. `closes_first`: the lost link is closed before the new one is opened.
+  void expect_replugs(const std::function<void(Mock&)>& pull, bool closes_first) {
+    ASSERT_NO_FATAL_FAILURE(open());
+    for (int round = 1; round <= 3; ++round) {
+      with_mock(pull);
+      ASSERT_TRUE(ticks_until({0, 0, 0}, [&] { return device_->lost(); })) << round;
+      with_mock(Vendor::heal);
+      if (closes_first) device_->close_lost_link();
+      auto link = Vendor::open_link(library_, clock_);
+      ASSERT_TRUE(link) << round << ": " << link.error().message;
+      ASSERT_TRUE(device_->offer(std::move(link).value()));
+      const std::uint64_t before = device_->wire_counters().reports;
+      EXPECT_TRUE(ticks_until({0, 0, 0}, [&] {
+        return device_->wire_counters().reports > before + 50;
+      })) << round;
+      with_mock([&](const Mock& mock) {
+        EXPECT_TRUE(mock.open) << round;
+        EXPECT_TRUE(mock.force_on) << round;
+        EXPECT_EQ(mock.opened, mock.closed + 1) << round;
+        EXPECT_TRUE(mock.wrong.empty()) << round << ": " << mock.wrong.front();
+      });
+      EXPECT_FALSE(device_->lost()) << round;
+      EXPECT_FALSE(device_->home_needed()) << "its vendor reports its pose";
+    }
+  }
+
+  /// Expects that a second link is refused while the first works, and leaves it alone.
+  void expect_one_owner() {
+    ASSERT_NO_FATAL_FAILURE(open());
+    const auto second = Vendor::open_link(library_, clock_);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("open already"), std::string::npos);
+    const std::uint64_t before = device_->wire_counters().reports;
+    EXPECT_TRUE(
+        ticks_until({0, 0, 0}, [&] { return device_->wire_counters().reports > before + 50; }));
+    EXPECT_EQ(device_->fault(), Fault::kNone);
+  }
+
   WallClock clock_{0};
   typename Vendor::Library library_;
   Mock* mock_ = nullptr;

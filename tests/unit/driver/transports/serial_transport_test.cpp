@@ -1,7 +1,9 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/time.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -116,6 +118,50 @@ TEST_F(SerialTransportTest, RefusesWhatAFullPortCannotTakeInsteadOfWaiting) {
     refused += write(line) == TransportStatus::kRefused ? 1 : 0;
   }
   EXPECT_EQ(refused, 1);
+}
+
+TEST_F(SerialTransportTest, CompletesAMessageThatWasTorn) {
+  open();
+  // The port takes a part of a message when it is nearly full; none may run into the next.
+  std::string heard;
+  int refused = 0;
+  for (int i = 0; i < 20'000 && refused < 300; ++i) {
+    const std::size_t length = 20 + static_cast<std::size_t>(i % 60);
+    const auto status = write("[" + std::string(length, '1') + "]\n");
+    refused += status == TransportStatus::kRefused ? 1 : 0;
+    if (status == TransportStatus::kRefused && i % 3 == 0) heard += hear();
+  }
+  ASSERT_GE(refused, 300);
+  for (std::string more = hear(); !more.empty(); more = hear()) heard += more;
+  EXPECT_EQ(write("[2]\n"), TransportStatus::kOk);
+  EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
+  heard += hear();
+  EXPECT_EQ(heard.find("1[1"), std::string::npos) << "a torn message runs into the next";
+  ASSERT_GE(heard.size(), 4U);
+  EXPECT_EQ(heard.substr(heard.size() - 5), "\n[2]\n");
+}
+
+TEST_F(SerialTransportTest, OutlivesSignals) {
+  open();
+  struct sigaction noted {};
+  noted.sa_handler = [](int) {};  // and no SA_RESTART
+  struct sigaction before {};
+  ASSERT_EQ(sigaction(SIGALRM, &noted, &before), 0);
+  const itimerval often{.it_interval = {0, 100}, .it_value = {0, 100}};
+  ASSERT_EQ(setitimer(ITIMER_REAL, &often, nullptr), 0);
+  int answered = 0;
+  for (int i = 0; i < 500; ++i) {
+    if (write("[1,2,3]\n") != TransportStatus::kOk) continue;
+    read(2'000'000);  // nothing comes: it waits under signals
+    std::string text = hear();
+    const ssize_t said = ::write(far_, text.data(), text.size());
+    answered += said > 0 && read() == "[1,2,3]" ? 1 : 0;
+  }
+  const itimerval never{};
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  EXPECT_EQ(answered, 500);
+  EXPECT_NE(last_.status, TransportStatus::kLost);
 }
 
 TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {

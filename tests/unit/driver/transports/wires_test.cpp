@@ -148,6 +148,42 @@ TEST_F(FtdiWire, RefusesAThirdMessageWhileTwoHangAndTellsOfAFailedOneLater) {
   EXPECT_EQ(write(), TransportStatus::kRefused);
 }
 
+TEST_F(FtdiWire, ReportsWhatBecameOfTheLastMessage) {
+  open();
+  EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
+  usb_.takes = false;
+  EXPECT_EQ(write(), TransportStatus::kOk);
+  EXPECT_EQ(wire_->settled(), TransportStatus::kNothing);
+  usb_.takes = true;
+  EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
+  usb_.write_status = LIBUSB_TRANSFER_STALL;
+  EXPECT_EQ(write(), TransportStatus::kOk) << "it is known later that it failed";
+  EXPECT_EQ(wire_->settled(), TransportStatus::kRefused);
+  usb_.write_status = 0;
+  EXPECT_EQ(write(), TransportStatus::kRefused);
+  EXPECT_EQ(wire_->settled(), TransportStatus::kOk) << "it was handed over all the same";
+  usb_.takes = false;
+  write();
+  usb_.fail(LIBUSB_TRANSFER_NO_DEVICE);
+  read();
+  EXPECT_EQ(wire_->settled(), TransportStatus::kLost);
+}
+
+TEST_F(FtdiWire, OutlivesSignals) {
+  usb_.answers = true;
+  usb_.answer = "<ok>";
+  open();
+  for (int k = 0; k < 20; ++k) {
+    usb_.interruptions = k % 8;
+    EXPECT_EQ(write(), TransportStatus::kOk);
+    usb_.interruptions = k % 8;
+    EXPECT_EQ(read(), "<ok>") << k;
+  }
+  usb_.interruptions = 3;
+  wire_.reset();
+  EXPECT_EQ(usb_.under_way, 0);
+}
+
 TEST_F(FtdiWire, LeavesNothingOpenOrUnderWay) {
   for (const bool takes : {true, false}) {
     usb_.reset();
@@ -276,6 +312,29 @@ TEST_F(HidWire, TellsARefusalFromALostArm) {
   hid_.write_error = ENODEV;
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kLost);
   EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kLost);
+}
+
+TEST_F(HidWire, OutlivesSignals) {
+  for (int interruptions = 1; interruptions <= 5; ++interruptions) {
+    hid_.interruptions = interruptions;
+    hid_.reports = 2;
+    const TransportRead read = wire_->read_latest(buffer_, 0);
+    EXPECT_EQ(read.status, TransportStatus::kOk);
+    EXPECT_EQ(read.skipped, 1u);
+    hid_.interruptions = interruptions;
+    EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kOk);
+  }
+  EXPECT_EQ(hid_.messages, 5u);
+}
+
+TEST_F(HidWire, IsNotLostInAStormOfSignals) {
+  hid_.interruptions = 1'000'000;
+  EXPECT_EQ(wire_->read_latest(buffer_, 5'000'000).status, TransportStatus::kNothing);
+  EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused);
+  EXPECT_GT(hid_.interruptions, 999'000) << "the loop is not held up";
+  hid_.interruptions = 0;
+  hid_.reports = 1;
+  EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kOk);
 }
 
 TEST_F(HidWire, IsNotOpenedWithMessagesOfALengthThatTheArmThrowsAway) {

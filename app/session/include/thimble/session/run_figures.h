@@ -48,11 +48,13 @@ struct RunFigures {
   double heat_most = 0;             ///< The most that any motor reached.
   std::uint64_t heat_lowered = 0;   ///< Ticks in which a force was lowered because of heat.
   driver::RealTimeGrant real_time;  ///< What the kernel granted the servo's thread.
-  driver::ServoEnd end = driver::ServoEnd::kDone;  ///< Why the loop ended.
-  driver::Fault fault = driver::Fault::kNone;      ///< In which the device was left.
-  bool zero_assured = true;                        ///< Whether the arm took the last zero force.
-  std::uint64_t trace_stride = 1;                  ///< Every n-th tick is in the trace.
-  std::uint64_t trace_dropped = 0;                 ///< Ticks that found no room there.
+  driver::ServoEnd end = driver::ServoEnd::kDone;          ///< Why the loop ended.
+  driver::Fault fault = driver::Fault::kNone;              ///< In which the device was left.
+  driver::LinkState link = driver::LinkState::kConnected;  ///< In which the arm was left.
+  bool home_needed = false;         ///< No force before the home pose (Device::home_needed).
+  bool zero_assured = true;         ///< Whether the arm took the last zero force.
+  std::uint64_t trace_stride = 1;   ///< Every n-th tick is in the trace.
+  std::uint64_t trace_dropped = 0;  ///< Ticks that found no room there.
 };
 
 /// Returns the figures that a run stands for, with their goals: what figures.json holds.

@@ -35,6 +35,10 @@ class UsbArm : public UsbDevice {
   /// Lets the hand take the tip, which it does from the beginning, or let go of it. Real-time:
   /// safe.
   virtual void hold_tip(bool held) noexcept = 0;
+  /// Restarts the board on a live wire: the plug stays enumerated, the motors go off, and the
+  /// encoders count from zero where the arm is now. A Falcon loses its firmware and answers nothing
+  /// until it is booted again. Real-time: safe.
+  virtual void restart_board() noexcept = 0;
   /// Fixes a mass (kg, 0: none) to the tip, in place of one that was fixed to it before; gravity_B
   /// (m/s^2) pulls on it. Fails if it is negative or not finite. Real-time: never from the servo
   /// thread.
