@@ -103,7 +103,9 @@ struct StepMatrix {
 StepMatrix step_matrix(double m, double k, double b, double h, double known_k, double known_b) {
   double a[2][2];
   for (int column = 0; column < 2; ++column) {
-    const double x = column == 0 ? 1 : 0, v = column == 0 ? 0 : 1 / h;
+    // So small that no force is beyond what a body takes.
+    constexpr double kSmall = 1e-6;
+    const double x = column == 0 ? kSmall : 0, v = column == 0 ? 0 : kSmall / h;
     TranslatingBody body(m, 0, 1, h);
     body.set_velocity({v, 0, 0});
     const TranslatingMotion motion(body, {.mass = m});
@@ -113,8 +115,8 @@ StepMatrix step_matrix(double m, double k, double b, double h, double known_k, d
                                             motion.gain_at({0, 0, 0}, Vector3d::UnitX()));
     body.push({force, 0, 0});
     body.step();
-    a[0][column] = x + body.p_W().x();
-    a[1][column] = h * body.v_W().x();
+    a[0][column] = (x + body.p_W().x()) / kSmall;
+    a[1][column] = h * body.v_W().x() / kSmall;
   }
   return {a[0][0] * a[1][1] - a[0][1] * a[1][0], a[0][0] + a[1][1]};
 }
@@ -146,7 +148,7 @@ double restitution(const MotionChoice& motion, const SurfaceChoice& surface, dou
   thrown.v_W = {0, 0, -speed};
   Tips rig(thrown, surface, stiffness, tick, tips);
   // Below the cube by a part of the way of a tick.
-  const double below = -0.02 - speed * tick * (1 + phase);
+  const double below = -0.02 - speed * tick * (2 + phase);
   const std::vector<Vector3d> at{{0.001 + off, 0.002, below}, {-0.003 + off, 0.001, below}};
   const double before = rig.energy(motion.mass);
   const double patience = 100 + 8 * std::sqrt(motion.mass / stiffness) / tick;
@@ -156,7 +158,7 @@ double restitution(const MotionChoice& motion, const SurfaceChoice& surface, dou
     met = met || rig.touching;
     if (met && !rig.touching) break;
   }
-  EXPECT_TRUE(met);
+  EXPECT_TRUE(met) << motion.mass << " " << stiffness << " " << tick << " " << phase << " " << tips;
   EXPECT_FALSE(rig.touching) << motion.mass << " " << stiffness << " " << tick;
   return std::sqrt(rig.energy(motion.mass) / before);
 }
@@ -247,10 +249,12 @@ TEST(HardCase42, AHeldBodySwingsNoFurtherEachTime) {
           deepest = std::max(deepest, -(*object)->pose().p_WB[2]);
         }
         if (kind == MotionKind::kTranslate) {
-          worst = std::max(worst, deepest / (2 * mass * kGravity / 500));
+          // The share softens the spring to k / (1 + k h^2 / m).
+          worst = std::max(worst, deepest / (2 * kGravity * (mass / 500 + 1 / (rate * rate))));
         } else {
           // It can hang lower by what its middle was above the tip, and no lower.
-          EXPECT_LE(deepest, 0.03 + 3 * mass * kGravity / 500) << rate << " " << mass;
+          EXPECT_LE(deepest, 0.03 + 3 * kGravity * (mass / 500 + 1 / (rate * rate)))
+              << rate << " " << mass;
         }
       }
     }
@@ -258,7 +262,7 @@ TEST(HardCase42, AHeldBodySwingsNoFurtherEachTime) {
   EXPECT_LE(worst, 1 + 1e-9);
   support::record_hard_case(42,
                             "bodies of 1 to 500 g held by 500 N/m, let go, 5 s, 100 Hz to 20 kHz",
-                            "<= deepest point over 2 m g / k", worst, 1 + 1e-9, "1");
+                            "<= deepest point over 2 m g / k'", worst, 1 + 1e-9, "1");
 }
 
 // Two fingers without dampers press a block and hold it against its weight by friction.
@@ -325,7 +329,7 @@ TEST(PhysicsOfCoupling, AHeldBodySwingsAtTheFrequencyOfItsSpring) {
   double felt = 0;
   for (int i = 0; i < 3 * rate; ++i) felt = (*damped)->update(state).f_T_W.z();
   expect_physics({"held body", "weight felt of 100 g", "-m g", "N", -mass * kGravity, 1e-6}, felt);
-  expect_physics({"held body", "sag of 100 g held by 500 N/m", "m g / k", "m", sag, 1e-3},
+  expect_physics({"held body", "sag of 100 g held by 500 N/m", "m g / k", "m", sag, 2e-3},
                  -(*damped)->pose().p_WB[2]);
 }
 
