@@ -23,6 +23,9 @@ constexpr int kRoundsMax = 12;
 // whose shared side runs through the tip would hand it to and fro.
 constexpr double kWeightRounding = 1e-13;
 
+// Faces that lean by more, as a cosine, are the back of a thin part (as in SurfaceTracker).
+constexpr double kFacesAway = -0.25;
+
 Vector3d weighted(const std::array<Vector3d, 3>& corners, const Vector3d& weights) noexcept {
   return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
 }
@@ -102,12 +105,14 @@ TrackerCounters OffsetTracker::counters() const noexcept {
   TrackerCounters sum = edge_planes_.counters();
   sum.cycles += counters_.cycles;
   sum.long_walks += counters_.long_walks;
+  sum.found_far += counters_.found_far;
   return sum;
 }
 
 TrackerStep OffsetTracker::follow(const Vector3d& p_WT) noexcept {
   TrackerStep step;
-  step.hops = walk(p_WT);
+  const Walk walked = walk(p_WT);
+  step.hops = walked.ended ? walked.hops : walk_on(p_WT, walked);
   // Written so that NaN means no contact.
   if (!(foot_.depth >= 0) && !find_again(p_WT)) return step;
   step.touching = true;
@@ -147,7 +152,7 @@ OffsetFoot OffsetTracker::foot_on(std::int32_t triangle, const Vector3d& p_WT) c
   return foot;
 }
 
-std::uint16_t OffsetTracker::walk(const Vector3d& p_WT) noexcept {
+OffsetTracker::Walk OffsetTracker::walk(const Vector3d& p_WT) noexcept {
   TriangleSet<kHopsMax> visited;
   std::int32_t best = active_;
   OffsetFoot best_foot;
@@ -156,7 +161,7 @@ std::uint16_t OffsetTracker::walk(const Vector3d& p_WT) noexcept {
     foot_ = foot_on(active_, p_WT);
     const auto shares = edge_shares(*mesh_, *normals_, active_, foot_, p_WT);
     const double least = std::min({shares[0], shares[1], shares[2]});
-    if (!(least < -kWeightRounding)) return hops;
+    if (!(least < -kWeightRounding)) return {.hops = hops, .ended = true, .last = active_};
     if (least > best_share) {
       best = active_;
       best_foot = foot_;
@@ -176,14 +181,35 @@ std::uint16_t OffsetTracker::walk(const Vector3d& p_WT) noexcept {
       ++counters_.cycles;
       active_ = best;
       foot_ = best_foot;
-      return hops;
+      return {.hops = hops, .ended = true, .last = best};
     }
     active_ = next;
   }
   ++counters_.long_walks;
-  active_ = best;
+  const std::int32_t last = std::exchange(active_, best);
   foot_ = best_foot;
-  return kHopsMax;
+  return {.hops = kHopsMax, .ended = false, .last = last};
+}
+
+// Around a vertex of many faces the sides are violated more before they are violated less, so the
+// best of the triangles visited may be the one where the walk began, and the next tick would end
+// there again.
+std::uint16_t OffsetTracker::walk_on(const Vector3d& p_WT, const Walk& before) noexcept {
+  const std::int32_t best = active_;
+  const OffsetFoot best_foot = foot_;
+  const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
+  const bool faces_alike =
+      hit.triangle >= 0 &&
+      mesh_->cell(hit.triangle).face.n.dot(mesh_->cell(best).face.n) > kFacesAway;
+  // The way around a part that is thin there: the next tick continues where this one ended.
+  active_ = faces_alike ? hit.triangle : before.last;
+  foot_.depth = best_foot.depth;
+  if (!faces_alike) {
+    foot_ = foot_on(active_, p_WT);
+    return before.hops;
+  }
+  ++counters_.found_far;
+  return static_cast<std::uint16_t>(before.hops + walk(p_WT).hops);
 }
 
 bool OffsetTracker::find_again(const Vector3d& p_WT) noexcept {

@@ -45,10 +45,12 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
 /// normal on each side, and the edge plane between the two faces decides [BP 4b]; between the cells
 /// of a crease in a hollow the edge or corner itself holds the tip (hollow_hold.h).
 ///
-/// Where an offset triangle has turned over, the edge planes stand in. If the depth turns negative
-/// while the tip is inside, SurfaceTracker finds the contact again. Deterministic. All but the
-/// constructors is Real-time: safe; usually one or two feet per tick, at worst `kHopsMax` and what
-/// SurfaceTracker needs.
+/// Where an offset triangle has turned over, the edge planes stand in. A walk that reaches
+/// `kHopsMax`, as around a vertex of hundreds of faces, continues from the nearest triangle, which
+/// the search names, unless that one faces the other way as the back of a thin part does. If the
+/// depth turns negative while the tip is inside, SurfaceTracker finds the contact again.
+/// Deterministic. All but the constructors is Real-time: safe; usually one or two feet per tick, at
+/// worst twice `kHopsMax`, one question to the search, and what SurfaceTracker needs.
 class OffsetTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
@@ -102,7 +104,14 @@ class OffsetTracker {
 
  private:
   OffsetFoot foot_on(std::int32_t triangle, const Eigen::Vector3d& p_WT) const noexcept;
-  std::uint16_t walk(const Eigen::Vector3d& p_WT) noexcept;
+  /// How a walk ended.
+  struct Walk {
+    std::uint16_t hops = 0;
+    bool ended = false;      // within kHopsMax: a cell holds the tip, or none of those near by does
+    std::int32_t last = -1;  // triangle that was reached
+  };
+  Walk walk(const Eigen::Vector3d& p_WT) noexcept;
+  std::uint16_t walk_on(const Eigen::Vector3d& p_WT, const Walk& before) noexcept;
   bool find_again(const Eigen::Vector3d& p_WT) noexcept;
   bool hold(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
 

@@ -6,19 +6,40 @@
 
 namespace thimble::render {
 
-/// Finds the share (0 to 1) of a surface force that is given both to the hand and, with the
-/// opposite sign, to the body.
+/// Returns the share (0 to 1) of a surface force that is given to the hand and, with the opposite
+/// sign, to the body, so that the body moves by the whole implicit step.
 ///
-/// The surface tells its force for the place where the body stands; by the end of the tick the body
-/// has given way. A spring taken there is weaker by 1 / (1 + (k h^2 + b h) w), with w the velocity
-/// that the touched point gains along the push per impulse. For an impulse along `u` (unit) that
-/// makes the point gain `gain` (1/kg, W u in the notes below), w = |W u|^2 / (u . W u): 1 / mass
-/// where the push goes through the centre, and never less than u . W u.
+/// MovingTouch and HeldTouch evaluate the surface for the place x + h v to which the body's present
+/// velocity would lead within the step h. The force is then scaled by
+/// s = 1 / (1 + (k h^2 + b h) w), with w the velocity that the touched point gains along the push
+/// per impulse. For an impulse along `u` (unit) that makes the point gain `gain` (1/kg, W u in the
+/// notes below), w = |W u|^2 / (u . W u): 1 / mass where the push goes through the centre, and
+/// never less than u . W u.
 ///
-/// So the spring's energy, k x^2 / 2 with k in any direction no more than `stiffness`, falls with
-/// every step that the body makes by it: with c the share, the step of the point is -h^2 c W f, the
-/// first order of the change -h^2 c f.Wf, and the second at most k h^4 c^2 |W f|^2 / 2, less than
-/// half of the first because c k h^2 w < 1. No mass, place or stiffness can turn that round.
+/// Stability. Let x be the depth of a tip at rest in the surface of a body of mass m, v = dx/dt,
+/// and U(x) the energy of the surface, convex, with dU/dx = 0 outside. The force is
+/// f = -s (U'(x + h v) + b v), and the body moves by v+ = v + h f / m, x+ = x + h (v + v+) / 2.
+/// For U = k x^2 / 2, with K = k h^2 / m and B = b h / m, so s = 1 / (1 + K + B), the step is
+/// linear,
+///
+///     x+ = (1 - s K / 2) x + h (1 - s (K + B) / 2) v,
+///     v+ = -(s K / h) x + (1 - s (K + B)) v,
+///
+/// with determinant 1 - s (B + K / 2) and trace 2 - s (B + 3 K / 2). The determinant lies in (0, 1)
+/// and |trace| <= 1 + determinant, since s (B + K) <= 1: both roots lie in the unit circle for all
+/// m, k, b and h. (With U'(x) instead of U'(x + h v) the determinant is 1 + s (K / 2 - B), above 1
+/// for b < k h / 2.)
+///
+/// Contact that begins and ends. Since x + h v = x+ - h^2 f / (2 m), the force is that of the place
+/// where the step ends, f = -(k x+ + b (v + v+) / 2) / (1 + K / 2 + B / 2); for any convex U it is
+/// minus the slope of a convex function V of x+ (the Moreau envelope of U), less a damper. So
+/// V(x+) - V(x) <= V'(x+) (x+ - x), and kinetic energy + V never grows: in no step, neither where
+/// the contact begins nor where it ends, for any k, b, m and h, and whatever bounds `coupling`
+/// states above the true k and b. Friction that holds by a spring is another part of U; friction
+/// that slides pulls against the way. Several tips count as springs side by side (SharedMotion).
+/// The same holds in three dimensions with the matrix W for 1 / m as long as W stays the same over
+/// a step.
+///
 /// Real-time: safe.
 inline double shared_force(const BodyCoupling& coupling, const Eigen::Vector3d& u,
                            const Eigen::Vector3d& gain) noexcept {

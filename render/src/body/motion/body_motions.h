@@ -5,8 +5,10 @@
 #include <limits>
 #include <optional>
 
+#include "body/motion/body_frame.h"
 #include "body/motion/rigid_body.h"
 #include "body/motion/translating_body.h"
+#include "math/elementary.h"
 
 namespace thimble::render {
 
@@ -30,6 +32,9 @@ class TranslatingMotion {
 
   Eigen::Matrix3d R_WB() const noexcept { return Eigen::Matrix3d::Identity(); }
   Eigen::Vector3d p_WB() const noexcept { return body_.p_W(); }
+  BodyFrame frame_after(double time) const noexcept {
+    return {.R_WB = R_WB(), .p_WB = p_WB() + time * body_.velocity()};
+  }
   Eigen::Vector3d velocity_at(const Eigen::Vector3d&) const noexcept { return body_.velocity(); }
   Eigen::Vector3d gain_at(const Eigen::Vector3d&, const Eigen::Vector3d& impulse) const noexcept {
     return body_.gain() * impulse;
@@ -38,13 +43,14 @@ class TranslatingMotion {
   /// Moves on by the step that the body was made for.
   void step(double) noexcept {
     body_.push(settings_.mass * settings_.gravity_W);
-    body_.step();
     if (settings_.floor) {
       const Floor& floor = *settings_.floor;
-      body_.keep_above(floor.n_W, floor.height - settings_.lowest, floor.friction);
+      body_.step_on_floor(floor.n_W, floor.height - settings_.lowest, floor.friction);
+    } else {
+      body_.step();
     }
     const double far = body_.p_W().norm();
-    if (far > settings_.reach) body_.keep_above(-body_.p_W() / far, -settings_.reach, 0);
+    if (far > settings_.reach) body_.keep_above(-body_.p_W() / far, -settings_.reach);
   }
   const TranslatingBody& body() const noexcept { return body_; }
 
@@ -61,6 +67,21 @@ class RigidMotion {
 
   const Eigen::Matrix3d& R_WB() const noexcept { return R_WB_; }
   const Eigen::Vector3d& p_WB() const noexcept { return p_WB_; }
+  BodyFrame frame_after(double time) const noexcept {
+    const MassProperties& first = body_.settings().mass;
+    const Eigen::Vector3d turn_W = time * body_.settings().time_scale * body_.omega_W();
+    const double half = turn_W.norm() / 2;
+    BodyFrame frame{.R_WB = R_WB_};
+    if (half > 0) {
+      const auto [sine, cosine] = math::sin_cos(half);
+      const Eigen::Vector3d axis = sine / (2 * half) * turn_W;
+      frame.R_WB =
+          Eigen::Quaterniond(cosine, axis.x(), axis.y(), axis.z()).toRotationMatrix() * R_WB_;
+    }
+    frame.p_WB =
+        body_.p_WC() + time * body_.settings().time_scale * body_.v_WC() - frame.R_WB * first.p_WC;
+    return frame;
+  }
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept {
     return body_.velocity_at(p_W);
   }

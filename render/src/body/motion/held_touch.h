@@ -69,7 +69,10 @@ class HeldTouch final : public ObjectTouch {
 
   driver::ForceCommand pull(Motion& motion, const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
-    const Eigen::Vector3d p_WG = motion.p_WB() + motion.R_WB() * p_BG_;
+    // Where the held place will be at the end of the tick: the whole implicit step
+    // (body_coupling.h).
+    const auto [R_WB, p_WB] = motion.frame_after(step_);
+    const Eigen::Vector3d p_WG = p_WB + R_WB * p_BG_;
     const Eigen::Vector3d f_W = grip_.stiffness * (p_WG - state.p_WT) +
                                 grip_.damping * (motion.velocity_at(p_WG) - state.v_WT);
     const double size = f_W.norm();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "body/motion/body_coupling.h"
+#include "body/motion/body_frame.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/body_pose.h"
@@ -20,16 +21,19 @@ namespace thimble::render {
 
 /// How all base points of an object move together [BP 4.3]. All of it is Real-time: safe.
 ///
-/// `R_WB` and `p_WB` tell where the frame B that the mesh stands in is now (W before the first
-/// tick), `velocity_at` how fast a point of the body moves (m/s, our time), `gain_at` which
-/// velocity it gains per impulse given there (our time, m/s per N s), `push` takes a force for the
-/// next step, `step` moves on by s of our time.
+/// `R_WB` and `p_WB` are the frame B that the mesh stands in now (W before the first tick),
+/// `frame_after` is the frame to which the present velocity leads within a time (s), `velocity_at`
+/// is the velocity of a point of the body (m/s, our time), `gain_at` the velocity that it gains per
+/// impulse given there (our time, m/s per N s), `push` takes a force for the next step, `step`
+/// moves on by s of our time.
 template <class Motion>
 concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vector3d& v) {
   { now.R_WB() }
   noexcept->std::convertible_to<Eigen::Matrix3d>;
   { now.p_WB() }
   noexcept->std::convertible_to<Eigen::Vector3d>;
+  { now.frame_after(1e-3) }
+  noexcept->std::same_as<BodyFrame>;
   { now.velocity_at(v) }
   noexcept->std::convertible_to<Eigen::Vector3d>;
   { now.gain_at(v, v) }
@@ -44,11 +48,13 @@ concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vec
 /// mesh, touches there what stands still, and the force comes back; the opposite acts on the body
 /// at the tip, in the same tick and to the bit.
 ///
-/// Contact, texture, friction and dent see the tip move against the surface, whoever of the two
+/// Contact, texture, friction and dent see the tip move against the surface, whichever of the two
 /// moves: a path of the tip in B covers the body's way since the last tick as well, so a body
-/// cannot pass through a resting tip. What part of a force is shared is told by shared_force():
-/// stable for any mass. The body moves on by the loop's period in every tick, so a loop that
-/// stalled lets it wait, and every run is repeatable.
+/// cannot pass through a resting tip. They see the body where its velocity leads by the end of the
+/// tick, and the force is scaled by shared_force(): together the whole implicit step, which is
+/// stable for any mass and creates no energy, with and without damping (body_coupling.h). The body
+/// moves on by the loop's period in every tick, so a loop that stalled lets it wait, and every run
+/// is repeatable.
 template <BodyMotion Motion>
 class MovingTouch final : public ObjectTouch {
  public:
@@ -58,8 +64,7 @@ class MovingTouch final : public ObjectTouch {
       : surface_(std::move(surface)), motion_(std::move(motion)), coupling_(coupling) {}
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
-    const Eigen::Matrix3d R_WB = motion_.R_WB();
-    const Eigen::Vector3d p_WB = motion_.p_WB();
+    const auto [R_WB, p_WB] = motion_.frame_after(coupling_.step);
     driver::DeviceState in_B = state;
     in_B.p_WT = R_WB.transpose() * (state.p_WT - p_WB);
     in_B.v_WT = R_WB.transpose() * (state.v_WT - motion_.velocity_at(state.p_WT));

@@ -1,10 +1,10 @@
 #include "body/motion/rigid_body.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
+#include "body/motion/floor_impulses.h"
 #include "math/elementary.h"
 
 namespace thimble::render {
@@ -109,6 +109,9 @@ void RigidBody::step(double step) noexcept {
     prepare_fading(time);
     kick(time / 2);
     fade();
+    // Before the body moves: what the first half of the kick gave would move it through the floor,
+    // and along it against any friction.
+    if (settings_.floor) stand_on_floor(time, middle_of_turn(time));
     const Vector3d way = time * v_WC();
     p_WC_ += way;
     free_turn_.turn(time, angular_W_, q_WB_);
@@ -117,73 +120,60 @@ void RigidBody::step(double step) noexcept {
     // what they give, to rounding.
     tau_W_ -= way.cross(f_W_);
     kick(time / 2);
-    if (settings_.floor) stand_on_floor(time);
+    if (settings_.floor) {
+      lift_out();
+      stand_on_floor(time, q_WB_);
+    }
   }
   f_W_.setZero();
   tau_W_.setZero();
 }
 
-// Takes the speed into the floor from points that are below it or would be after the next step,
-// without rebound, and friction. Each impulse ends at rest in its direction or before, so each
-// takes energy. To look ahead lets a side come to lie flat: all its corners count at once.
-void RigidBody::stand_on_floor(double time) noexcept {
-  const Floor& floor = *settings_.floor;
-  constexpr int kRounds = 16;     // a block at rest on a side then creeps below 1 um/s
-  constexpr double kCalm = 1e-9;  // of all impulses: what a round adds less than is rounding
-  // Points that the next step cannot bring to the floor, at four times the speed, are left out.
-  constexpr double kAhead = 4;
-  constexpr double kNear = 1e-3;  // of the farthest point's distance from C
-  std::array<Vector3d, kSupportMax> arms;
-  std::array<double, kSupportMax> allowed, pressed{};
-  std::size_t near = 0;
-  double deepest = 0;
-  const double turning = omega_W().norm();
-  const double height = floor.n_W.dot(p_WC_) - floor.height;
-  for (const Vector3d& p_B : settings_.support_B) {
-    const Vector3d arm = q_WB_ * p_B;
-    const double gap = height + floor.n_W.dot(arm);
-    const double far = p_B.norm();
-    if (!(gap <= kAhead * time * (v_WC().norm() + turning * far) + kNear * far)) continue;
-    deepest = std::max(deepest, -gap);
-    arms[near] = arm;
-    allowed[near++] = std::max(gap, 0.0) / time;
-  }
-  double sum = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    double given = 0;
-    for (std::size_t i = 0; i < near; ++i) given += stop_at(arms[i], allowed[i], pressed[i]);
-    sum += given;
-    if (!(given > kCalm * sum)) break;
-  }
-  p_WC_ += deepest * floor.n_W;
+// Returns how the body is turned in the middle of a step. Arms taken there keep a corner about
+// which the body turns where it is, to order 2 of the step.
+Eigen::Quaterniond RigidBody::middle_of_turn(double time) const noexcept {
+  const Vector3d half = time / 4 * omega_W();
+  Eigen::Quaterniond turn(1, half.x(), half.y(), half.z());
+  return (turn * q_WB_).normalized();
 }
 
-// Slows the point at `arm` down to `allowed` m/s into the floor; `pressed` sums up the impulses.
-// Tells the size of what it gave.
-double RigidBody::stop_at(const Vector3d& arm, double allowed, double& pressed) noexcept {
+// Takes the speed into the floor from points that are below it or would be after the next step,
+// without rebound, and friction (floor_impulses.h), with the body turned as `q_WB`. To look ahead
+// lets a side come to lie flat: all its corners count at once.
+void RigidBody::stand_on_floor(double time, const Eigen::Quaterniond& q_WB) noexcept {
   const Floor& floor = *settings_.floor;
-  const auto speed = [&] { return (v_WC() + omega_W().cross(arm)).eval(); };
-  const auto hit = [&](const Vector3d& impulse) {
-    momentum_W_ += impulse;
-    angular_W_ += arm.cross(impulse);
-  };
-  double given = 0;
-  const double beyond = -floor.n_W.dot(speed()) - allowed;
-  if (beyond > 0) {
-    const double impulse = beyond / floor.n_W.dot(give(arm, floor.n_W));
-    pressed += impulse;
-    given += impulse;
-    hit(impulse * floor.n_W);
+  // Points that the next step cannot bring to the floor, at four times the speed, are left out.
+  constexpr double kAhead = 4;
+  constexpr double kNear = 1e-3;  // of the point's distance from C
+  const Vector3d v_WC = this->v_WC();
+  const double speed = v_WC.norm(), turning = omega_W().norm();
+  const double height = floor.n_W.dot(p_WC_) - floor.height;
+  FloorImpulses impulses(settings_.mass.mass, settings_.mass.inertia, q_WB.conjugate() * floor.n_W,
+                         floor.friction);
+  const Vector3d n_B = q_WB_.conjugate() * floor.n_W;
+  for (const Vector3d& p_B : settings_.support_B) {
+    const double gap = height + n_B.dot(p_B);
+    const double far = p_B.norm();
+    if (!(gap <= kAhead * time * (speed + turning * far) + kNear * far)) continue;
+    impulses.add(p_B, std::max(gap, 0.0) / time);
   }
-  if (!(pressed > 0)) return given;
-  const Vector3d v = speed();
-  const Vector3d slip = v - floor.n_W.dot(v) * floor.n_W;
-  const double fast = slip.norm();
-  if (!(fast > 0)) return given;
-  const Vector3d along = slip / fast;
-  const double drag = std::min(fast / along.dot(give(arm, along)), floor.friction * pressed);
-  hit(-drag * along);
-  return given + drag;
+  Vector3d v_B = q_WB.conjugate() * v_WC;
+  Vector3d omega_B = (q_WB.conjugate() * angular_W_).cwiseQuotient(settings_.mass.inertia);
+  if (!impulses.solve(v_B, omega_B)) ++floor_unsolved_;
+  momentum_W_ = settings_.mass.mass * (q_WB * v_B);
+  angular_W_ = q_WB * settings_.mass.inertia.cwiseProduct(omega_B);
+}
+
+// Puts the body back up where its turn has led a point below the floor.
+void RigidBody::lift_out() noexcept {
+  const Floor& floor = *settings_.floor;
+  const double height = floor.n_W.dot(p_WC_) - floor.height;
+  const Vector3d n_B = q_WB_.conjugate() * floor.n_W;
+  double deepest = 0;
+  for (const Vector3d& p_B : settings_.support_B) {
+    deepest = std::max(deepest, -(height + n_B.dot(p_B)));
+  }
+  p_WC_ += deepest * floor.n_W;
 }
 
 void RigidBody::keep_within(double reach) noexcept {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -75,6 +76,9 @@ class RigidBody {
   /// Keeps C within `reach` m of where it was at first: puts it back and takes the momentum that
   /// leads away, so that energy only falls. Nonsense: nothing.
   void keep_within(double reach) noexcept;
+  /// Counts half steps in which the floor's impulses ended less accurate than
+  /// FloorImpulses::kTolerance.
+  std::uint64_t floor_unsolved() const noexcept { return floor_unsolved_; }
   /// Returns where a point of the body that was at `p_W` at first is now, m.
   Eigen::Vector3d moved(const Eigen::Vector3d& p_W) const noexcept {
     return p_WC_ + q_WB_ * (settings_.mass.q_WB.conjugate() * (p_W - settings_.mass.p_WC));
@@ -93,8 +97,9 @@ class RigidBody {
   void kick(double time) noexcept;
   void fade() noexcept;
   void prepare_fading(double time) noexcept;
-  void stand_on_floor(double time) noexcept;
-  double stop_at(const Eigen::Vector3d& arm, double allowed, double& pressed) noexcept;
+  Eigen::Quaterniond middle_of_turn(double time) const noexcept;
+  void stand_on_floor(double time, const Eigen::Quaterniond& q_WB) noexcept;
+  void lift_out() noexcept;
 
   /// Factors of half a step of damping.
   struct Fading {
@@ -112,6 +117,7 @@ class RigidBody {
   Eigen::Vector3d angular_W_{0, 0, 0};
   Eigen::Vector3d f_W_{0, 0, 0};
   Eigen::Vector3d tau_W_{0, 0, 0};
+  std::uint64_t floor_unsolved_ = 0;
 };
 
 }  // namespace thimble::render

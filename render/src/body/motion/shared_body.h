@@ -65,6 +65,7 @@ class SharedMotion {
 
   Eigen::Matrix3d R_WB() const noexcept { return body_->motion().R_WB(); }
   Eigen::Vector3d p_WB() const noexcept { return body_->motion().p_WB(); }
+  BodyFrame frame_after(double time) const noexcept { return body_->motion().frame_after(time); }
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept {
     return body_->motion().velocity_at(p_W);
   }

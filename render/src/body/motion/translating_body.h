@@ -36,18 +36,36 @@ class TranslatingBody {
     f_W_.setZero();
   }
 
+  /// Moves on by one step as `step` does, above a floor n . p >= height (`n_W` unit; m) with
+  /// Coulomb friction of the coefficient `friction` (>= 0) and without rebound.
+  ///
+  /// The floor's impulse is given in two parts, one before the body moves and one after. The first
+  /// holds what the forces of the step would move: a body at rest stays where it is, to rounding,
+  /// and sliding slows down by friction times gravity. In each part friction is bounded by the
+  /// normal impulse of that part.
+  void step_on_floor(const Eigen::Vector3d& n_W, double height, double friction) noexcept {
+    const double time = flow_.xv;  // s, by which a velocity moves the body in a step
+    // Written so that NaN, and a body that does not move, have no floor.
+    const bool moves = time > 0;
+    if (moves) {
+      // Velocity that the way of this step amounts to.
+      const Eigen::Vector3d mean = v_W_ + flow_.xf / time * f_W_;
+      v_W_ += floor_kick(n_W, (n_W.dot(p_W_) - height) / time, friction, mean);
+    }
+    step();
+    if (!moves) return;
+    p_W_ += std::max(height - n_W.dot(p_W_), 0.0) * n_W;
+    v_W_ += floor_kick(n_W, (n_W.dot(p_W_) - height) / time, friction, v_W_);
+  }
+
   /// Keeps the body where n . p >= height (`n_W` unit; m): puts it back, takes the velocity that
-  /// leads out, and of that along the bound up to `friction` times as much. Energy only falls.
-  void keep_above(const Eigen::Vector3d& n_W, double height, double friction) noexcept {
+  /// leads out. Energy only falls.
+  void keep_above(const Eigen::Vector3d& n_W, double height) noexcept {
     const double below = height - n_W.dot(p_W_);
     // Written so that NaN moves nothing.
     if (!(below > 0)) return;
     p_W_ += below * n_W;
-    const double into = std::max(-n_W.dot(v_W_), 0.0);
-    v_W_ += into * n_W;
-    const Eigen::Vector3d slip = v_W_ - n_W.dot(v_W_) * n_W;
-    const double fast = slip.norm();
-    if (fast > 0) v_W_ -= std::min(1.0, friction * into / fast) * slip;
+    v_W_ += std::max(-n_W.dot(v_W_), 0.0) * n_W;
   }
 
   /// Returns the velocity (m/s, in our time), and which of it is gained per impulse (N s, our
@@ -63,6 +81,20 @@ class TranslatingBody {
   Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }
 
  private:
+  // Returns the change of velocity (m/s) by which a floor stops `v_W` to an approach of `allowed`
+  // m/s, and along the floor as far as friction can.
+  static Eigen::Vector3d floor_kick(const Eigen::Vector3d& n_W, double allowed, double friction,
+                                    const Eigen::Vector3d& v_W) noexcept {
+    const double into = n_W.dot(v_W);
+    const double normal = -std::max(allowed, 0.0) - into;
+    // Written so that NaN gives nothing.
+    if (!(normal > 0)) return Eigen::Vector3d::Zero();
+    const Eigen::Vector3d slip = v_W - into * n_W;
+    const double fast = slip.norm();
+    const double stopped = fast > 0 ? std::min(1.0, friction * normal / fast) : 0;
+    return normal * n_W - stopped * slip;
+  }
+
   OscillatorStep flow_;
   double mass_;
   double time_scale_;

@@ -16,6 +16,9 @@ constexpr double kShareOfLimit = 0.98;
 // No arm pushes with more; it keeps squares far from overflow.
 constexpr double kForceMax = 1e6;
 
+// Rounding of a sum over a node and its springs, as a share of it.
+constexpr double kRoundingOfSum = 1e-15;
+
 std::size_t at(std::int32_t node) {
   return static_cast<std::size_t>(node);
 }
@@ -216,7 +219,7 @@ void SpringMotion<kDof>::implicit(double share) noexcept {
 // Solves A w = b by conjugate gradients from v on, and scales w as the proof in the header asks.
 template <int kDof>
 void SpringMotion<kDof>::solve() noexcept {
-  double start = 0;  // b.D^-1 b, which remainders are measured against
+  double start = 0;  // b.D^-1 b, of which the smallest part is rounding
   double rz = 0;
   for (std::int32_t i = 0; i < count_; ++i) {
     w_[at(i)] = v_[at(i)];
@@ -228,7 +231,10 @@ void SpringMotion<kDof>::solve() noexcept {
     start += d * b_[at(i)].squaredNorm();
     rz += d * r_[at(i)].squaredNorm();
   }
-  const double end = options_.remainder * options_.remainder * start;
+  // Measured against what springs and dampers have to change: of a slow motion they change little of
+  // the momentum in a step.
+  const double end = std::max(options_.remainder * options_.remainder * rz,
+                              kRoundingOfSum * kRoundingOfSum * start);
   double beta = 0;
   for (int round = 0; round < options_.rounds_max && rz > end; ++round) {
     for (std::int32_t i = 0; i < count_; ++i) {

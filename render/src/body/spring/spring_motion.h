@@ -27,7 +27,8 @@ struct SpringMotionOptions {
   int substeps = 1;                      ///< At least so many per call.
   int substeps_max = 64;                 ///< At most so many; a network that needs more is refused.
   int rounds_max = 25;                   ///< Of conjugate gradients per substep (implicit schemes).
-  double remainder = 1e-6;               ///< Relative, at which these rounds end early.
+  /// Remainder at which these rounds end early, as a share of what a step has to change.
+  double remainder = 1e-6;
 };
 
 /// Moves a spring network in time by one scheme, some or all of its nodes.

@@ -59,8 +59,13 @@ void HeightMap::list_settings(LiveSettings& settings) {
 TextureHeight HeightMap::at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n_M) const noexcept {
   const Eigen::Vector3d place = pixels_per_metre_ * (R_WO_.transpose() * (p_M - p_WO_));
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
+  // -1 for each axis that the face looks against: seen from outside, the picture would be mirrored
+  // there. Where a normal changes over from one side to the other the axis' share is 0.
+  Eigen::Vector3d side = Eigen::Vector3d::Ones();
   if (along_ == Along::kAll) {
-    share = (R_WO_.transpose() * n_M).cwiseAbs2();
+    const Eigen::Vector3d n_O = R_WO_.transpose() * n_M;
+    share = n_O.cwiseAbs2();
+    side = (n_O.array() < 0).select(-side, side);
   } else {
     share[static_cast<Eigen::Index>(along_) - 1] = 1;
   }
@@ -68,11 +73,12 @@ TextureHeight HeightMap::at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n
   Eigen::Vector3d slope_O = Eigen::Vector3d::Zero();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (share[axis] == 0) continue;
-    // Seen from the tip of each axis: the next axis to the right, the one after it up.
+    // Seen from the tip of each axis: the next axis to the right, the one after it up. From behind
+    // the same axis is up and the other one to the left.
     const Eigen::Index right = (axis + 1) % 3, up = (axis + 2) % 3;
-    const HeightImage::Sample sample = image_->at(place[right], place[up]);
+    const HeightImage::Sample sample = image_->at(side[axis] * place[right], place[up]);
     value += share[axis] * sample.value;
-    slope_O[right] += share[axis] * sample.du;
+    slope_O[right] += share[axis] * side[axis] * sample.du;
     slope_O[up] += share[axis] * sample.dv;
   }
   return {.height = height_ * (value - 1),

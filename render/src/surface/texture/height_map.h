@@ -16,9 +16,11 @@ namespace thimble::render {
 /// FootStage.
 ///
 /// The picture is laid on in the object's frame, along one axis or along all three at once, each
-/// counting by the square of the normal's part along it; it repeats. On flat faces that is
-/// conservative. Where a curved face turns from one axis to the next, the change of the parts is
-/// left out: about (height / radius of curvature) of the force. All textures: texture_height.h.
+/// counting by the square of the normal's part along it; it repeats. Laid on along all, it reads
+/// the same way round on every face, seen from outside; along one axis, as seen from that axis'
+/// tip. On flat faces that is conservative. Where a curved face turns from one axis to the next,
+/// the change of the parts is left out: about (height / radius of curvature) of the force. All
+/// textures: texture_height.h.
 class HeightMap {
  public:
   static constexpr std::string_view kGroup = "texture";

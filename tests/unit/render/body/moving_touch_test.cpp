@@ -63,6 +63,7 @@ struct Spy {
     return Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   }
   Vector3d p_WB() const noexcept { return {0.01, 0.02, -0.03}; }
+  BodyFrame frame_after(double) const noexcept { return {.R_WB = R_WB(), .p_WB = p_WB()}; }
   Vector3d velocity_at(const Vector3d&) const noexcept { return {0, 0, 0}; }
   Vector3d gain_at(const Vector3d&, const Vector3d& impulse) const noexcept {
     return gain * impulse;

@@ -25,8 +25,9 @@ struct DentSettings {
   SpringScheme integrator = kDefaultScheme;  ///< How its springs are stepped.
   int substeps = 1;  ///< Per tick, at least; more where the integrator needs them.
   int rounds = 25;   ///< Of the implicit integrators per substep, at most.
-  /// Relative remainder of one tick at which rounds end early; the next tick takes it up. Below
-  /// what is felt [PHYSICS 6: 7 %], and no remainder harms stability.
+  /// Remainder of one step at which rounds end early, as a share of what springs and dampers have
+  /// to change of the momentum in it. Below what is felt [PHYSICS 6: 7 %], and no remainder harms
+  /// stability.
   double remainder = 1e-2;
   double step = 1e-3;  ///< Time of one tick, s, > 0.
 

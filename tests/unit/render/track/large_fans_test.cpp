@@ -1,0 +1,138 @@
+// Vertices with 400 to 10,000 faces: the tip of a cone, over which every tracker must find its way.
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+
+#include "support/random.h"
+#include "thimble/render/build_object_touch.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRadius = 0.03, kHeight = 0.003;  // m, of the flat cone
+constexpr double kStiffness = 1000;                // N/m
+constexpr double kSlope = kHeight / kRadius;
+
+// A flat cone on top and a deep one below, of `faces` triangles each.
+TriangleMesh top(int faces) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, kHeight}, {0, 0, -kRadius}};
+  for (int i = 0; i < faces; ++i) {
+    const double turn = 2 * std::numbers::pi * i / faces;
+    mesh.vertices.emplace_back(kRadius * std::cos(turn), kRadius * std::sin(turn), 0);
+  }
+  for (int i = 0; i < faces; ++i) {
+    const int a = 2 + i, b = 2 + (i + 1) % faces;
+    mesh.triangles.push_back({0, a, b});
+    mesh.triangles.push_back({1, b, a});
+  }
+  return mesh;
+}
+
+// A tip at a place (x, y) and a depth below the cone, m.
+Vector3d below(double x, double y, double depth) {
+  return {x, y, kHeight - kSlope * std::hypot(x, y) - depth * std::sqrt(1 + kSlope * kSlope)};
+}
+
+struct Tip {
+  std::unique_ptr<ObjectTouch> object;
+
+  Tip(const TriangleMesh& mesh, TrackerChoice tracker) {
+    ContactChoice choice;
+    choice.tracker = tracker;
+    object = build_object_touch(mesh, choice, {.spring = {.stiffness = kStiffness}}).value();
+  }
+  double force(const Vector3d& p) const {
+    driver::DeviceState state;
+    state.dt = 1e-3;
+    state.p_WT = p;
+    return object->update(state).f_T_W.norm();
+  }
+  // Presses from outside to a depth at one place, and stays; gives the force at the end.
+  double press(double x, double y, double depth) const {
+    double felt = 0;
+    for (int i = 0; i <= 40; ++i) felt = force(below(x, y, -0.003 + (0.003 + depth) * i / 40));
+    for (int i = 0; i < 20; ++i) felt = force(below(x, y, depth));
+    return felt;
+  }
+};
+
+class LargeFans : public testing::TestWithParam<TrackerChoice> {};
+
+TEST_P(LargeFans, StrokeOverTheApexEndsWithTheForceOfAFreshTouch) {
+  for (const int faces : {400, 2000, 10000}) {
+    const TriangleMesh mesh = top(faces);
+    for (const double speed : {0.02, 0.1, 0.3}) {
+      for (const double aside : {1e-6, 3e-5, 1e-4}) {
+        Tip tip(mesh, GetParam());
+        tip.press(-0.012, aside, 0.001);
+        const int ticks = static_cast<int>(std::lround(0.024 / speed * 1e3));
+        for (int i = 0; i <= ticks; ++i) tip.force(below(-0.012 + 0.024 * i / ticks, aside, 0.001));
+        double felt = 0;
+        for (int i = 0; i < 10; ++i) felt = tip.force(below(0.012, aside, 0.001));
+        const double fresh = Tip(mesh, GetParam()).press(0.012, aside, 0.001);
+        EXPECT_NEAR(felt, fresh, 0.02 * kStiffness * 0.001)
+            << faces << " faces, " << speed << " m/s, " << aside;
+      }
+    }
+  }
+}
+
+TEST_P(LargeFans, NothingIsFeltAboveTheSurfaceAfterAStroke) {
+  for (const int faces : {400, 2000, 10000}) {
+    const TriangleMesh mesh = top(faces);
+    for (const double aside : {1e-6, 3e-5, 1e-4}) {
+      Tip tip(mesh, GetParam());
+      tip.press(-0.012, aside, 0.001);
+      for (int i = 0; i <= 80; ++i) tip.force(below(-0.012 + 0.024 * i / 80, aside, 0.001));
+      for (int i = 0; i <= 40; ++i) tip.force(below(0.012, aside, 0.001 - 0.003 * i / 40));
+      EXPECT_EQ(tip.force(below(0.012, aside, -0.002)), 0) << faces << " faces, " << aside;
+    }
+  }
+}
+
+TEST_P(LargeFans, OneObjectTouchedAllAroundFeelsLikeAFreshOne) {
+  support::Random random(5);
+  for (const int faces : {500, 10000}) {
+    const TriangleMesh mesh = top(faces);
+    Tip tip(mesh, GetParam());
+    for (int i = 0; i < 60; ++i) {
+      const double r = random.uniform(0.002, 0.022);
+      const double turn = random.uniform(0, 2 * std::numbers::pi);
+      const double x = r * std::cos(turn), y = r * std::sin(turn);
+      EXPECT_NEAR(tip.press(x, y, 0.001), kStiffness * 0.001, 0.2) << faces << " faces, " << i;
+    }
+  }
+}
+
+std::string name_of_tracker(const testing::TestParamInfo<TrackerChoice>& info) {
+  switch (info.param) {
+    case TrackerChoice::kEdgePlanes:
+      return "EdgePlanes";
+    case TrackerChoice::kNormalProjection:
+      return "NormalProjection";
+    case TrackerChoice::kOffset:
+      return "Offset";
+    case TrackerChoice::kGodObject:
+      return "GodObject";
+    case TrackerChoice::kPacked:
+      break;
+  }
+  return "Compact";
+}
+
+INSTANTIATE_TEST_SUITE_P(Trackers, LargeFans,
+                         testing::Values(TrackerChoice::kEdgePlanes,
+                                         TrackerChoice::kNormalProjection, TrackerChoice::kOffset,
+                                         TrackerChoice::kGodObject, TrackerChoice::kPacked),
+                         name_of_tracker);
+
+}  // namespace
+}  // namespace thimble::render
