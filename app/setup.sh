@@ -16,7 +16,7 @@ packages=(
   g++ cmake ninja-build pkg-config       # to build
   libeigen3-dev                          # vectors and matrices
   libusb-1.0-0-dev libhidapi-dev         # arms on USB
-  libassimp-dev zlib1g-dev               # meshes but OFF and PLY; the unit of 3MF
+  libassimp-dev zlib1g-dev               # meshes: DAE, AMF, 3DS, glTF 1; archives of 3MF
   libpng-dev                             # pictures felt as heights
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
   libhdf5-dev                            # recordings

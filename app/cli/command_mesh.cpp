@@ -11,6 +11,8 @@
 #include "cli/complain.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/repair/orient_mesh.h"
+#include "mesh/repair/touching_parts.h"
+#include "meshes/object_size.h"
 #include "page/page_file.h"
 #include "report/pictures.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -41,6 +43,16 @@ void print(const render::MeshFindings& found) {
               found.box_max.y(), found.box_max.z(), size.x(), size.y(), size.z());
   std::printf("  area        %.4g\n", found.area);
   if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
+}
+
+// From which size on a mesh without a unit is likely to count in mm: what `run` reports for the
+// largest reach of the shipped arms, m.
+constexpr double kLargeForArms = scene::kReachesReported * 0.2;
+
+// Prints which parts of a mesh overlap or touch.
+void print_touching(const render::TriangleMesh& mesh) {
+  const std::string parts = render::describe(render::find_touching_parts(mesh));
+  if (!parts.empty()) std::printf("  note        %s\n", parts.c_str());
 }
 
 // Returns whether a mesh can be touched, and if not, why.
@@ -126,6 +138,7 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
   if (!sheets.empty()) std::printf("  - %s\n", sheets.c_str());
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
   print(found);
+  print_touching(repaired.mesh);
   const int verdict = tell_verdict(repaired.mesh, found);
   if (verdict != kExitDone) tell_remedy(repaired.mesh, found);
   return verdict;
@@ -182,7 +195,13 @@ int tell_mesh(const MeshOptions& options) {
   print(found);
   if (info.unit) std::printf("  unit        %g m\n", *info.unit);
   if (info.up != 0) std::printf("  up          %c\n", info.up);
+  const double side = (found.box_max - found.box_min).maxCoeff();
+  if (!info.unit && side > kLargeForArms) {
+    std::printf("  size        %.4g m large in a scene without scale or size; %s\n", side,
+                scene::unit_advice(info.kind).c_str());
+  }
   for (const std::string& note : info.notes) std::printf("  note        %s\n", note.c_str());
+  print_touching(*mesh);
   if (!options.picture.empty()) {
     const std::string title = std::filesystem::path(options.file).filename().string();
     if (const auto drawn = draw_mesh(*mesh, options.picture, title, "unit of the file", &found);

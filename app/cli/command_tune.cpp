@@ -13,6 +13,7 @@
 #include "faces/ros2/ros_latency.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
+#include "thimble/scene/scene_objects.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
@@ -54,6 +55,10 @@ int tune_scene(const TuneCommand& command) {
                      "known. Add one (app/arms/vintage_phantom.yaml shows the form)."},
                     kExitBadInput);
   }
+  // What is wrong with a mesh is wrong for its stiffness too.
+  const auto objects = scene::SceneObjects::build(*scene);
+  if (!objects) return complain(objects.error(), kExitBadInput);
+  for (const std::string& note : (*objects)->notes()) std::printf("Note      %s\n", note.c_str());
   TuneOptions options{.period_spread = 1e-6 * command.spread_us};
   if (command.measure > 0) {
     options.period_spread = measured_spread(scene->rate, command.measure);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/repair/touching_parts.h"
 #include "page/checksum.h"
 #include "page/page_file.h"
 #include "recording/recording_file.h"
@@ -115,6 +116,7 @@ bool read_mesh(Bytes bytes, const char* name) {
   if (mesh->triangles.size() > 2000) return true;
   // What anybody does with it: looks at it, mends it, and makes sheets of what stays open.
   static_cast<void>(render::check_mesh(*mesh));
+  static_cast<void>(render::describe(render::find_touching_parts(*mesh)));
   const render::RepairedMesh repaired = render::repair_mesh(*mesh);
   const double size = (repaired.mesh.vertices.empty() ? 0 : repaired.mesh.vertices[0].norm()) + 1;
   static_cast<void>(render::thicken_sheets(repaired.mesh, 0.01 * size));

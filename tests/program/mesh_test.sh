@@ -38,6 +38,36 @@ done
 expect 0 'unit +0\.0254 m' "$thimble" mesh "$source_dir/tests/data/meshes/box.3mf"
 expect 0 'up +y' "$thimble" mesh "$source_dir/tests/data/meshes/box.gltf"
 expect 0 'note +1 of 1 part was put where' "$thimble" mesh "$source_dir/tests/data/meshes/placed_box.gltf"
+# Formats without a unit, and shapes that a format does not let through.
+meshes="$source_dir/tests/data/meshes"
+expect 0 '50 m large in a scene without scale or size; STL names no unit: set scale: 0\.001' "$thimble" mesh "$meshes/mm50.stl"
+"$thimble" mesh "$meshes/box.3mf" >unit.txt 2>&1
+expect 1 '^0$' grep -c 'names no unit' unit.txt
+expect 0 '1 pair of parts overlap or lie flush' "$thimble" mesh "$meshes/overlap.obj"
+expect 0 '1 pair of parts overlap or lie flush' "$thimble" mesh "$meshes/overlap.obj" --repair overlap.off
+expect 0 '12 triangles were turned round' "$thimble" mesh "$meshes/inside_out.off"
+expect 2 'requires the glTF extension "FOO_bar", which is not read' "$thimble" mesh "$meshes/unknown_required.gltf"
+printf 'v 0 0 0\nv 1mm 0 0\nv 0 1 0\nf 1 2 3\n' >unit.obj
+expect 2 'unit\.obj:2: "1mm" in vertex 2 is not a number' "$thimble" mesh unit.obj
+# The same in a scene: refused, with the remedy; reported, where it is only doubtful.
+scene_of() {
+  printf 'name: part\narm: vintage_phantom\nduration: 0.1\nobjects:\n  - {name: part, mesh: %s, stiffness: 500, position: [0, 0, -0.05]%s}\nhand:\n  path:\n    - {t: 0, at: [0, 0, 0.05]}\n    - {t: 0.1, at: [0, 0, 0.051]}\n' "$1" "$2"
+}
+scene_of "$meshes/mm50.stl" '' >large.yaml
+for command in run tune; do
+  expect 2 '50 m large, 250 times the reach of the arm \(0\.2 m\); STL names no unit: set scale: 0\.001' "$thimble" $command large.yaml
+done
+scene_of "$meshes/mm50.stl" ', scale: 0.001' >scaled.yaml
+"$thimble" run scaled.yaml >scaled.txt 2>&1
+expect 1 '^0$' grep -c 'names no unit' scaled.txt
+scene_of "$meshes/overlap.obj" ', size: 0.06' >overlap.yaml
+expect 0 '1 pair of parts overlap or lie flush' "$thimble" run overlap.yaml
+scene_of "$meshes/inside_out.off" ', size: 0.06' >inverted.yaml
+expect 0 '12 triangles were turned round' "$thimble" run inverted.yaml
+sed 's/0\.05\]}$/-0.05]}/; s/0\.051\]/-0.049]/' scaled.yaml >inside.yaml
+expect 0 'The tip starts inside part: no surface is felt there until' "$thimble" run inside.yaml --report inside
+expect 0 'Start     the tip was inside part' "$thimble" run inside.yaml
+expect 0 '"part"' grep -A 2 inside_at_start inside/report.json
 expect 1 'end in \.off' "$thimble" mesh good.off --repair good.stl
 expect 1 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
 # Cutting a mesh into pages.

@@ -11,6 +11,7 @@
 #include "build_paged_touch.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
+#include "meshes/object_size.h"
 #include "meshes/place_mesh.h"
 #include "page/paged_surface.h"
 #include "still_surface.h"
@@ -28,6 +29,7 @@ using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
 driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedMeshes& meshes,
                                                      std::vector<std::string>& notes) {
   std::vector<MeshPointer> meshes_W;
+  const double reach = reach_of(scene);
   for (const SceneObject& object : scene.objects) {
     if (object.shape || object.build_field || object.paged) {
       meshes_W.push_back(
@@ -37,6 +39,9 @@ driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedM
     const auto loaded = meshes.object_mesh(object);
     if (!loaded) return loaded.error();
     const ObjectMesh& mesh = **loaded;
+    const auto judged = judge_size(object, mesh.size, reach);
+    if (!judged) return judged.error();
+    if (!judged->empty()) notes.push_back(*judged);
     notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
     meshes_W.emplace_back(*loaded, &mesh.mesh_W);
   }
@@ -87,13 +92,16 @@ Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, Shared
 
 /// Builds the force law of one object that one arm touches.
 Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes,
-                  std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
+                  double reach, std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   if (object.build_field) return object.build_field();
   if (object.paged) {
     auto opened = render::PagedSurface::open(object.mesh_file);
     if (!opened) return opened.error();
     pages.emplace_back(std::move(opened).value());
     const render::PagedPlace place = place_pages(pages.back()->file(), object);
+    const auto judged =
+        judge_size(object, {.side = side_of_pages(pages.back()->file(), place)}, reach);
+    if (!judged) return judged.error();
     return render::build_paged_touch(pages.back(), place, surface_of(object));
   }
   auto touch = build_still(object, mesh_W, meshes);
@@ -144,11 +152,12 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   if (!loaded) return loaded.error();
   const std::vector<MeshPointer>& meshes_W = objects->meshes_W_ = std::move(loaded).value();
   const std::size_t arms = 1 + scene.more_arms.size();
+  const double reach = reach_of(scene);
   std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (arms == 1) {
-      auto touch = build_one(object, meshes_W[i], *held, objects->pages_);
+      auto touch = build_one(object, meshes_W[i], *held, reach, objects->pages_);
       if (!touch) return touch.error();
       touches[0].push_back(std::move(touch).value());
       continue;

@@ -91,6 +91,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, s
   setup->arms_.resize(other.arms_.size());
   for (std::size_t i = 0; i < setup->arms_.size(); ++i) {
     setup->arms_[i].energy = other.arms_[i].energy;
+    setup->arms_[i].inside_at_start = other.arms_[i].inside_at_start;
     auto simulation = other.arms_[i].simulation->another(seed + i);
     if (!simulation) return simulation.error();
     setup->arms_[i].simulation = std::move(simulation).value();
@@ -227,7 +228,7 @@ driver::Result<void> Setup::simulate_arms() {
   using Simulated = driver::Result<std::unique_ptr<scene::ArmSimulation>>;
   const auto simulate = [&](const scene::ArmFile& arm, const std::filesystem::path& arm_file,
                             const std::vector<scene::HandWaypoint>& hand, const std::string& name,
-                            std::uint64_t seed) -> Simulated {
+                            std::uint64_t seed, Eigen::Vector3d& start) -> Simulated {
     const std::string whose = name.empty() ? "" : "the arm \"" + name + "\": ";
     const auto in_file = [&whose](const std::filesystem::path& file, const driver::Error& error) {
       return driver::Error{file.string() + ": " + whose + error.message};
@@ -238,6 +239,7 @@ driver::Result<void> Setup::simulate_arms() {
     if (auto reach = scene::check_reach(arm, route); !reach) {
       return in_file(scene_file_, reach.error());
     }
+    start = route.front().second;
     // A hand that is led waits where the planned path begins.
     auto simulation = scene::ArmSimulation::make(
         arm, hand_led() ? scene::HandRoute{route.front()} : route, firmware_, seed);
@@ -248,13 +250,31 @@ driver::Result<void> Setup::simulate_arms() {
     if (arms_[i].real) continue;
     // A seed of its own each, so that two hands do not tremble as one.
     const bool first = i == 0;
-    auto simulation =
-        simulate(arm_file(i), first ? scene_->arm_file : scene_->more_arms[i - 1].arm_file,
-                 first ? scene_->hand : scene_->more_arms[i - 1].hand, arm_name(i), seed_ + i);
+    Eigen::Vector3d start;
+    auto simulation = simulate(
+        arm_file(i), first ? scene_->arm_file : scene_->more_arms[i - 1].arm_file,
+        first ? scene_->hand : scene_->more_arms[i - 1].hand, arm_name(i), seed_ + i, start);
     if (!simulation) return simulation.error();
     arms_[i].simulation = std::move(simulation).value();
+    if (auto inside = find_start_inside(i, start); !inside.empty()) {
+      told_.push_back(std::move(inside));
+    }
   }
   return {};
+}
+
+std::string Setup::find_start_inside(std::size_t i, const Eigen::Vector3d& p_WT) {
+  std::vector<std::string>& inside = arms_[i].inside_at_start;
+  inside.clear();
+  const render::SceneTouch& touch = objects_->touch(i);
+  for (std::size_t object = 0; object < touch.size(); ++object) {
+    if (touch.object(object).inside(p_WT)) inside.push_back(scene_->objects[object].name);
+  }
+  if (inside.empty()) return {};
+  return fmt::format(
+      "{}{} starts inside {}: no surface is felt there until the tip has been outside.",
+      arms() == 1 ? "The tip" : "The tip of the arm ", arms() == 1 ? "" : "\"" + arm_name(i) + "\"",
+      fmt::join(inside, ", "));
 }
 
 bool Setup::any_real() const noexcept {
@@ -318,6 +338,12 @@ driver::Result<void> Setup::open_arm() {
 
 driver::Result<void> Setup::activate() {
   for (std::size_t i = 0; i < arms(); ++i) {
+    if (arms_[i].real) {
+      const std::string inside = find_start_inside(i, device(i).state().p_WT);
+      if (!inside.empty()) scene::logger().warn("{}", inside);
+    }
+  }
+  for (std::size_t i = 0; i < arms(); ++i) {
     if (auto active = device(i).activate(); !active) {
       for (const ArmOfRun& arm : arms_) arm.device->deactivate();
       if (arms() == 1) return active;
@@ -372,7 +398,8 @@ RecordingInfo Setup::recording_info(std::size_t arm) const {
           .program = scene::program_name(),
           .rate = scene_->rate,
           .seed = seed_ + arm,
-          .arm_in_scene = arm_name(arm)};
+          .arm_in_scene = arm_name(arm),
+          .inside_at_start = fmt::format("{}", fmt::join(inside_at_start(arm), ", "))};
 }
 
 }  // namespace thimble::session

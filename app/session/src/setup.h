@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -34,6 +35,7 @@ struct ArmOfRun {
   std::optional<driver::EnergyStage> energy;  ///< That the scene names, if it is not the arm's.
   std::unique_ptr<scene::ArmSimulation> simulation;  ///< Null if it is real.
   std::unique_ptr<driver::Device> device;  ///< Holds the wire to the simulation, so it goes first.
+  std::vector<std::string> inside_at_start;        ///< Names of the objects that its tip starts in.
   std::unique_ptr<scene::HeatKeeper> heat_keeper;  ///< Of a real arm whose file names its heat.
 };
 
@@ -115,6 +117,11 @@ class Setup {
   /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
   /// the meshes, and what became of limits that the scene names, where the arm is real.
   const std::vector<std::string>& told() const noexcept { return told_; }
+  /// Returns the names of the objects that the tip of an arm starts in; of a real arm once it is
+  /// activated.
+  const std::vector<std::string>& inside_at_start(std::size_t arm = 0) const noexcept {
+    return arms_[arm].inside_at_start;
+  }
   /// Returns what is known of an arm's feel check.
   scene::FeelCheckState feel_check(std::size_t arm = 0) const noexcept {
     return arms_[arm].feel_check;
@@ -139,6 +146,7 @@ class Setup {
   driver::Result<void> use_among_others(std::size_t arm, const RealArmUse& use);
   driver::Result<void> build_objects();
   driver::Result<void> simulate_arms();
+  std::string find_start_inside(std::size_t arm, const Eigen::Vector3d& p_WT);
   driver::Result<void> open(std::size_t arm);
 
   std::filesystem::path scene_file_;

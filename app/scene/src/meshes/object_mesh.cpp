@@ -1,8 +1,10 @@
 #include "meshes/object_mesh.h"
 
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "mesh/repair/orient_mesh.h"
+#include "mesh/repair/touching_parts.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
@@ -52,7 +54,15 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
     done.mesh_W = std::move(thick.mesh);
   }
   // What plans and draws must know the same outside as what touches.
-  render::orient_mesh(done.mesh_W);
+  const render::OrientReport turned = render::orient_mesh(done.mesh_W);
+  for (const std::string& note :
+       {render::describe(turned), render::describe(render::find_touching_parts(done.mesh_W))}) {
+    if (!note.empty()) done.notes.push_back(about(note));
+  }
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : done.mesh_W.vertices) box.extend(vertex);
+  done.size = {
+      .side = box.sizes().maxCoeff(), .kind = info.kind, .has_unit = info.unit.has_value()};
   return done;
 }
 

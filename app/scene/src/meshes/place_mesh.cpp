@@ -1,6 +1,8 @@
 #include "meshes/place_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
 #include "thimble/render/mesh/mesh_file.h"
 
@@ -39,6 +41,14 @@ render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& 
       object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
   return {
       .scale = scale, .R_WM = object.R_WO, .p_WM = object.p_WO - scale * (object.R_WO * center)};
+}
+
+double side_of_pages(const render::PageFile& file, const render::PagedPlace& place) {
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, double{file.whole().max[axis]} - double{file.whole().min[axis]});
+  }
+  return std::abs(place.scale) * file.lattice().step * largest;
 }
 
 }  // namespace thimble::scene

@@ -27,4 +27,7 @@ render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObj
 /// from the servo thread.
 render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object);
 
+/// Returns the largest side of the box of a mesh on the disk where it stands in the world, m.
+double side_of_pages(const render::PageFile& file, const render::PagedPlace& place);
+
 }  // namespace thimble::scene

@@ -62,6 +62,10 @@ std::string summary(const RunFigures& report) {
            ? "No contact was lost on the way.\n"
            : fmt::format("{} time{} the tip was inside without a force: a lost contact.\n",
                          report.lost_contacts, report.lost_contacts == 1 ? "" : "s");
+  if (!report.inside_at_start.empty()) {
+    s += fmt::format("Start     the tip was inside {}, so no surface was felt there at first.\n",
+                     fmt::join(report.inside_at_start, ", "));
+  }
   s += fmt::format(
       "Force     {:.2f} N at most (limit {:.2f} N), {:.2f} N on average (rms) while touching.\n",
       run.force_max(), report.force_limit, run.force_rms());

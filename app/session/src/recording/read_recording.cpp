@@ -92,9 +92,10 @@ bool read_info(const H5Handle& file, RecordingInfo& info) {
     *text = std::move(*read);
   }
   info.arm_in_scene = read_text(file, "arm_in_scene").value_or("");
+  info.inside_at_start = read_text(file, "inside_at_start").value_or("");
   // What a person is told of; the texts of files stay as they were.
-  for (std::string* name :
-       {&info.scene, &info.arm, &info.device, &info.clock, &info.program, &info.arm_in_scene}) {
+  for (std::string* name : {&info.scene, &info.arm, &info.device, &info.clock, &info.program,
+                            &info.arm_in_scene, &info.inside_at_start}) {
     make_printable(*name);
   }
   return read_attribute(file, "rate", H5T_NATIVE_DOUBLE, info.rate) && info.rate > 0 &&

@@ -3,12 +3,10 @@
 #include <assimp/scene.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <utility>
+#include <vector>
 
-#include "mesh/file/read_off.h"
+#include "mesh/file/mesh_parts.h"
 #include "mesh/file/triangulate_polygon.h"
 
 namespace thimble::render {
@@ -30,28 +28,14 @@ Matrix4d matrix_of(const aiMatrix4x4& m) {
   return matrix;
 }
 
-// Puts one part of a scene where its node stands.
-driver::Result<void> append(const aiMesh& part, const Matrix4d& place, TriangleMesh& mesh) {
-  const std::size_t first = mesh.vertices.size();
-  if (first + part.mNumVertices > std::numeric_limits<std::int32_t>::max()) {
-    return Error{"it has more than 2^31 - 1 vertices."};
-  }
-  const Eigen::Affine3d pose(place);
-  const bool stays = place.isIdentity(0);
-  const bool mirrored = pose.linear().determinant() < 0;
+// Returns the triangles of one part of a scene, in its own frame.
+driver::Result<TriangleMesh> part_of(const aiMesh& part) {
+  TriangleMesh mesh;
+  mesh.vertices.reserve(part.mNumVertices);
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D& v = part.mVertices[i];
-    Eigen::Vector3d vertex(v.x, v.y, v.z);
-    if (!stays) vertex = pose * vertex;
-    for (const double x : vertex) {
-      if (!(std::abs(x) <= kCoordinateMax)) {
-        return Error{"vertex " + std::to_string(first + i) +
-                     " has a coordinate that is not a number between -1e15 and 1e15."};
-      }
-    }
-    mesh.vertices.push_back(vertex);
+    mesh.vertices.emplace_back(v.x, v.y, v.z);
   }
-  const std::size_t begin = mesh.triangles.size();
   std::vector<std::int32_t> corners;
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
@@ -60,14 +44,13 @@ driver::Result<void> append(const aiMesh& part, const Matrix4d& place, TriangleM
       if (face.mIndices[corner] >= part.mNumVertices) {
         return Error{"face " + std::to_string(f) + " names a vertex that does not exist."};
       }
-      corners.push_back(static_cast<std::int32_t>(first + face.mIndices[corner]));
+      corners.push_back(static_cast<std::int32_t>(face.mIndices[corner]));
     }
-    if (corners.size() >= 3) triangulate_polygon(mesh.vertices, corners, mesh.triangles);
+    if (corners.size() >= 3 && !triangulate_polygon(mesh.vertices, corners, mesh.triangles)) {
+      return Error{too_many_corners("face " + std::to_string(f), corners.size())};
+    }
   }
-  for (std::size_t t = begin; mirrored && t < mesh.triangles.size(); ++t) {
-    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-  }
-  return {};
+  return mesh;
 }
 
 void tell_what_is_left_out(const aiScene& scene, std::vector<std::string>& notes) {
@@ -86,21 +69,22 @@ void tell_what_is_left_out(const aiScene& scene, std::vector<std::string>& notes
 }  // namespace
 
 driver::Result<TriangleMesh> mesh_of_scene(const aiScene& scene, std::vector<std::string>& notes) {
-  TriangleMesh mesh;
+  MeshParts parts;
   std::vector<Stop> stops;
   if (scene.mRootNode != nullptr) {
     stops.push_back({scene.mRootNode, matrix_of(scene.mRootNode->mTransformation)});
   }
-  std::size_t moved = 0, parts = 0;
   while (!stops.empty()) {
     const Stop stop = stops.back();
     stops.pop_back();
     for (unsigned i = 0; i < stop.node->mNumMeshes; ++i) {
       const unsigned number = stop.node->mMeshes[i];
       if (number >= scene.mNumMeshes) return Error{"a node names a part that does not exist."};
-      if (auto done = append(*scene.mMeshes[number], stop.place, mesh); !done) return done.error();
-      ++parts;
-      moved += !stop.place.isIdentity(0);
+      const auto part = part_of(*scene.mMeshes[number]);
+      if (!part) return part.error();
+      if (auto added = parts.add(*part, Eigen::Affine3d(stop.place), true); !added) {
+        return added.error();
+      }
     }
     // The first child on top: parts stay in the file's order.
     for (unsigned i = stop.node->mNumChildren; i-- > 0;) {
@@ -108,12 +92,8 @@ driver::Result<TriangleMesh> mesh_of_scene(const aiScene& scene, std::vector<std
       stops.push_back({child, stop.place * matrix_of(child->mTransformation)});
     }
   }
-  if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
-  if (moved > 0) {
-    notes.push_back(std::to_string(moved) + " of " + std::to_string(parts) +
-                    (parts == 1 ? " part was" : " parts were") +
-                    " put where the file's nodes say.");
-  }
+  auto mesh = parts.take(notes);
+  if (!mesh) return mesh;
   tell_what_is_left_out(scene, notes);
   return mesh;
 }

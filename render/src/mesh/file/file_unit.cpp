@@ -21,6 +21,16 @@ constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"micron", 
 
 }  // namespace
 
+std::optional<double> unit_of_word(std::string_view unit) {
+  std::string word(unit);
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [known, metres] : kUnits) {
+    if (word == known) return metres;
+  }
+  return std::nullopt;
+}
+
 std::optional<double> unit_of_model(std::string_view text, std::string_view element) {
   constexpr double kMillimetre = 1e-3;
   const std::size_t begin = text.find('<' + std::string(element));
@@ -33,13 +43,7 @@ std::optional<double> unit_of_model(std::string_view text, std::string_view elem
   if (open == std::string_view::npos) return kMillimetre;
   const std::size_t close = head.find(head[open], open + 1);
   if (close == std::string_view::npos) return kMillimetre;
-  std::string word(head.substr(open + 1, close - open - 1));
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [known, metres] : kUnits) {
-    if (word == known) return metres;
-  }
-  return std::nullopt;
+  return unit_of_word(head.substr(open + 1, close - open - 1));
 }
 
 char up_axis_of_dae(std::string_view text) {

@@ -9,10 +9,14 @@
 #include <system_error>
 #include <utility>
 
+#include "mesh/file/gltf/read_gltf.h"
+#include "mesh/file/mesh_kind.h"
+#include "mesh/file/package/read_3mf.h"
+#include "mesh/file/read_obj.h"
 #include "mesh/file/read_off.h"
 #include "mesh/file/read_ply.h"
+#include "mesh/file/read_stl.h"
 #include "mesh/file/read_with_assimp.h"
-#include "mesh/file/stl_bytes.h"
 #include "mesh/file/weld_mesh.h"
 
 namespace thimble::render {
@@ -27,6 +31,12 @@ std::string ending_of(const std::filesystem::path& file) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending;
+}
+
+std::string capitals(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
 }
 
 driver::Result<std::string> read_bytes(const std::filesystem::path& file) {
@@ -54,25 +64,28 @@ driver::Result<void> drop_mark(std::string& bytes) {
   return {};
 }
 
-driver::Result<TriangleMesh> read(std::string bytes, const std::string& ending,
+driver::Result<TriangleMesh> read(std::string bytes, const std::string& kind,
                                   const std::filesystem::path& file, MeshFileInfo& info) {
-  const bool is_text = ending == "off" || ending == "obj" || ending == "stl" || ending == "ply";
+  const bool is_text = kind == "off" || kind == "obj" || kind == "stl" || kind == "ply";
   if (is_text) {
     if (auto done = drop_mark(bytes); !done) return done.error();
   }
-  if (ending == "off") return read_off(bytes, file.string());
-  if (ending == "ply") return read_ply(bytes);
-  if (ending == "stl") {
-    if (auto done = put_stl_right(bytes, info.notes); !done) return done.error();
-  }
-  return read_with_assimp(bytes, ending, file.parent_path(), info);
+  if (kind == "off") return read_off(bytes, file.string());
+  if (kind == "obj") return read_obj(bytes, file.string(), info.notes);
+  if (kind == "ply") return read_ply(bytes, info.notes);
+  if (kind == "stl") return read_stl(bytes, file.string(), info.notes);
+  if (kind == "3mf") return read_3mf(bytes, info);
+  if (kind == "gltf" || kind == "glb") return read_gltf(bytes, kind, file.parent_path(), info);
+  return read_with_assimp(bytes, kind, info);
 }
 
 }  // namespace
 
 driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFileInfo* info) {
   const auto error = [&file](const std::string& sentence) {
-    return driver::Error{file.string() + ": " + sentence};
+    // What is wrong on a line of a text names file and line already.
+    return driver::Error{
+        sentence.starts_with(file.string() + ':') ? sentence : file.string() + ": " + sentence};
   };
   const std::string ending = ending_of(file);
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
@@ -81,12 +94,13 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
   auto bytes = read_bytes(file);
   if (!bytes) return error(bytes.error().message);
   MeshFileInfo found;
-  auto mesh = read(std::move(bytes).value(), ending, file, found);
-  // What an OFF file is told of names file and line already.
-  if (!mesh)
-    return ending == "off" && mesh.error().message.starts_with(file.string())
-               ? mesh.error()
-               : error(mesh.error().message);
+  found.kind = mesh_kind_of(*bytes, ending);
+  if (found.kind != ending) {
+    found.notes.push_back("Its contents are " + capitals(found.kind) + ", so it was read as that.");
+  }
+  auto mesh = read(std::move(bytes).value(), found.kind, file, found);
+  if (!mesh) return error(mesh.error().message);
+  found.kind = capitals(found.kind);
   if (info != nullptr) *info = std::move(found);
   return weld_mesh(std::move(mesh).value());
 }

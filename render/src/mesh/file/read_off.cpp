@@ -1,12 +1,12 @@
 #include "mesh/file/read_off.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 
+#include "mesh/file/text_words.h"
 #include "mesh/file/triangulate_polygon.h"
 
 namespace thimble::render {
@@ -14,80 +14,17 @@ namespace {
 
 using driver::Error;
 
-bool is_space(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
-
-// Cuts a file's text into words and knows the line; a '#' hides the rest of its line.
-class Words {
- public:
-  Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
-
-  // Gives the next word on any line; empty at the end of the text.
-  std::string_view next() {
-    while (true) {
-      const std::string_view word = next_on_line();
-      if (!word.empty() || at_ == text_.size()) return word;
-      ++at_;
-      ++line_;
-    }
-  }
-
-  // Gives the next word on this line; empty if there is none.
-  std::string_view next_on_line() {
-    while (at_ < text_.size() && is_space(text_[at_])) ++at_;
-    if (at_ < text_.size() && text_[at_] == '#') skip_to_line_end();
-    const std::size_t begin = at_;
-    while (at_ < text_.size() && !is_space(text_[at_]) && text_[at_] != '\n' && text_[at_] != '#') {
-      ++at_;
-    }
-    return text_.substr(begin, at_ - begin);
-  }
-
-  void skip_to_line_end() {
-    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-  }
-
-  std::size_t left() const { return text_.size() - at_; }
-
-  Error error(const std::string& sentence) const {
-    return {name_ + ":" + std::to_string(line_) + ": " + sentence};
-  }
-
- private:
-  std::string_view text_;
-  const std::string& name_;
-  std::size_t at_ = 0;
-  std::size_t line_ = 1;
-};
-
-template <class Number>
-std::optional<Number> to_number(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);
-  Number number{};
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return number;
-}
-
-// Shows a word in a sentence, cut and cleaned: the file may be anything.
-std::string quoted(std::string_view word) {
-  std::string shown = "\"";
-  for (const char c : word.substr(0, 24)) shown += (c > ' ' && c < 127) ? c : '?';
-  return shown + (word.size() > 24 ? "...\"" : "\"");
-}
-
 struct Header {
   std::int64_t vertices = 0;
   std::int64_t faces = 0;
   bool vertex_per_line = false;  // positions are followed by normals, colours or texture places
 };
 
-driver::Result<Header> read_header(Words& words) {
+driver::Result<Header> read_header(TextWords& words) {
   const std::string_view keyword = words.next();
   if (keyword.empty()) return words.error("the file is empty.");
   if (keyword.size() < 3 || keyword.substr(keyword.size() - 3) != "OFF" || keyword.size() > 8) {
-    return words.error("an OFF file begins with OFF, not with " + quoted(keyword) + ".");
+    return words.error("an OFF file begins with OFF, not with " + shown_word(keyword) + ".");
   }
   const std::string_view prefix = keyword.substr(0, keyword.size() - 3);
   if (prefix.find_first_of("4n") != std::string_view::npos) {
@@ -95,7 +32,7 @@ driver::Result<Header> read_header(Words& words) {
                        " has vertices that are not three numbers: save the mesh as plain OFF.");
   }
   if (prefix.find_first_not_of("STCN") != std::string_view::npos) {
-    return words.error("unknown kind of OFF file " + quoted(keyword) + ".");
+    return words.error("unknown kind of OFF file " + shown_word(keyword) + ".");
   }
   std::string_view word = words.next();
   if (word == "BINARY") return words.error("binary OFF is not read: save the mesh as text.");
@@ -104,9 +41,9 @@ driver::Result<Header> read_header(Words& words) {
   for (std::int64_t* count : {&header.vertices, &header.faces}) {
     if (count == &header.faces) word = words.next();
     if (word.empty()) return words.error("the file ends before the counts of vertices and faces.");
-    const auto number = to_number<std::int64_t>(word);
-    if (!number) return words.error("expected a count, found " + quoted(word) + ".");
-    if (*number < 0) return words.error("the count " + quoted(word) + " is negative.");
+    const auto number = whole_number(word);
+    if (!number) return words.error("expected a count, found " + shown_word(word) + ".");
+    if (*number < 0) return words.error("the count " + shown_word(word) + " is negative.");
     // The shortest vertex is "0 0 0 ", the shortest face "1 0 ": a larger promise cannot be kept,
     // and memory must not be set aside for it.
     const std::size_t shortest = count == &header.vertices ? 6 : 4;
@@ -117,11 +54,11 @@ driver::Result<Header> read_header(Words& words) {
     }
     *count = *number;
   }
-  words.skip_to_line_end();  // the count of edges, which many writers leave at 0
+  words.skip_line();  // the count of edges, which many writers leave at 0
   return header;
 }
 
-std::optional<Error> read_vertices(Words& words, const Header& header, TriangleMesh& mesh) {
+std::optional<Error> read_vertices(TextWords& words, const Header& header, TriangleMesh& mesh) {
   mesh.vertices.reserve(static_cast<std::size_t>(header.vertices));
   for (std::int64_t i = 0; i < header.vertices; ++i) {
     Eigen::Vector3d vertex;
@@ -131,47 +68,49 @@ std::optional<Error> read_vertices(Words& words, const Header& header, TriangleM
         return words.error("the file ends in vertex " + std::to_string(i) + " of " +
                            std::to_string(header.vertices) + ": it is truncated.");
       }
-      const auto number = to_number<double>(word);
+      const auto number = real_number(word);
       if (!number || !(std::abs(*number) <= kCoordinateMax)) {
-        return words.error(quoted(word) + " in vertex " + std::to_string(i) +
+        return words.error(shown_word(word) + " in vertex " + std::to_string(i) +
                            " is not a number between -1e15 and 1e15.");
       }
       vertex[axis] = *number;
     }
     mesh.vertices.push_back(vertex);
-    if (header.vertex_per_line) words.skip_to_line_end();
+    if (header.vertex_per_line) words.skip_line();
   }
   return std::nullopt;
 }
 
-std::optional<Error> read_faces(Words& words, const Header& header, TriangleMesh& mesh) {
+std::optional<Error> read_faces(TextWords& words, const Header& header, TriangleMesh& mesh) {
   std::vector<std::int32_t> corners;
   for (std::int64_t face = 0; face < header.faces; ++face) {
     const std::string name = "face " + std::to_string(face);
     const std::string_view size_word = words.next();
-    const auto size = to_number<std::int64_t>(size_word);
+    const auto size = whole_number(size_word);
     if (size_word.empty()) {
       return words.error("the file ends before " + name + " of " + std::to_string(header.faces) +
                          ": it is truncated.");
     }
     if (!size || *size < 1) {
       return words.error("expected the number of corners of " + name + ", found " +
-                         quoted(size_word) + ".");
+                         shown_word(size_word) + ".");
     }
     corners.clear();
     for (std::int64_t corner = 0; corner < *size; ++corner) {
       const std::string_view word = words.next();
       if (word.empty()) return words.error("the file ends in " + name + ": it is truncated.");
-      const auto vertex = to_number<std::int64_t>(word);
+      const auto vertex = whole_number(word);
       if (!vertex || *vertex < 0 || *vertex >= header.vertices) {
-        return words.error(name + " names vertex " + quoted(word) + "; the vertices are 0 to " +
+        return words.error(name + " names vertex " + shown_word(word) + "; the vertices are 0 to " +
                            std::to_string(header.vertices - 1) + ".");
       }
       corners.push_back(static_cast<std::int32_t>(*vertex));
     }
-    words.skip_to_line_end();  // colours of the face
+    words.skip_line();  // colours of the face
     // Points and lines have no area and cannot be touched.
-    if (corners.size() >= 3) triangulate_polygon(mesh.vertices, corners, mesh.triangles);
+    if (corners.size() >= 3 && !triangulate_polygon(mesh.vertices, corners, mesh.triangles)) {
+      return words.error(too_many_corners(name, corners.size()));
+    }
   }
   return std::nullopt;
 }
@@ -179,7 +118,7 @@ std::optional<Error> read_faces(Words& words, const Header& header, TriangleMesh
 }  // namespace
 
 driver::Result<TriangleMesh> read_off(std::string_view text, const std::string& name) {
-  Words words(text, name);
+  TextWords words(text, name);
   const auto header = read_header(words);
   if (!header) return header.error();
   if (header->vertices > std::numeric_limits<std::int32_t>::max()) {

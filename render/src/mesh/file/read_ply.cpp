@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -13,6 +12,8 @@
 #include <vector>
 
 #include "mesh/file/read_off.h"  // kCoordinateMax
+#include "mesh/file/single_precision.h"
+#include "mesh/file/text_words.h"
 #include "mesh/file/triangulate_polygon.h"
 
 namespace thimble::render {
@@ -81,15 +82,6 @@ std::string_view next_word(std::string_view& text) {
   return word;
 }
 
-template <class Number>
-std::optional<Number> to_number(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);
-  Number number{};
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return number;
-}
-
 std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header& header) {
   const std::string_view whole = line;
   const std::string_view keyword = next_word(line);
@@ -104,7 +96,7 @@ std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header&
   }
   if (keyword == "element") {
     const std::string_view name = next_word(line);
-    const auto count = to_number<std::int64_t>(next_word(line));
+    const auto count = whole_number(next_word(line));
     if (!count || *count < 0) {
       return Error{"its header has no valid count in " + shown(whole) + "."};
     }
@@ -163,7 +155,7 @@ class Numbers {
   Numbers(std::string_view rest, Form form) : rest_(rest), form_(form) {}
 
   std::optional<double> next(const NumberType& type) {
-    if (form_ == Form::kText) return to_number<double>(next_word(rest_));
+    if (form_ == Form::kText) return real_number(next_word(rest_));
     if (rest_.size() < type.size) return std::nullopt;
     std::array<unsigned char, 8> bytes{};
     std::memcpy(bytes.data(), rest_.data(), type.size);
@@ -257,17 +249,53 @@ std::optional<Error> read_face(const Element& element, std::int64_t number, Numb
   if (!there) {
     return Error{"face " + std::to_string(number) + " names a vertex that does not exist."};
   }
-  if (corners.size() >= 3) triangulate_polygon(mesh.vertices, corners, mesh.triangles);
+  if (corners.size() >= 3 && !triangulate_polygon(mesh.vertices, corners, mesh.triangles)) {
+    return Error{too_many_corners("face " + std::to_string(number), corners.size())};
+  }
   return std::nullopt;
+}
+
+// Refuses what the elements of a file say that would be missing or wrong in the mesh.
+std::optional<Error> check_elements(const Header& header) {
+  for (const Element& element : header.elements) {
+    if (element.name == "tristrips" && element.count > 0) {
+      return Error{"it has triangle strips (tristrips), which are not read. Save it with faces."};
+    }
+    if (element.name != "vertex" || element.count == 0) continue;
+    for (const std::string_view axis : {"x", "y", "z"}) {
+      const auto named = [axis](const Property& property) {
+        return property.name == axis && property.count == nullptr;
+      };
+      if (std::count_if(element.properties.begin(), element.properties.end(), named) == 1) continue;
+      return Error{"its vertices do not have exactly one number " + std::string(axis) + "."};
+    }
+  }
+  return std::nullopt;
+}
+
+// Returns whether the coordinates went through single precision: a text keeps all its digits.
+bool is_single(const Header& header) {
+  if (*header.form == Form::kText) return false;
+  for (const Element& element : header.elements) {
+    for (const Property& property : element.properties) {
+      const bool axis = property.name == "x" || property.name == "y" || property.name == "z";
+      if (element.name == "vertex" && axis && property.type->kind == 'f' &&
+          property.type->size == sizeof(float)) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace
 
-driver::Result<TriangleMesh> read_ply(std::string_view bytes) {
+driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::string>& notes) {
   if (bytes.empty()) return Error{"the file is empty."};
   std::string_view rest = bytes;
   const auto header = read_header(rest);
   if (!header) return header.error();
+  if (auto error = check_elements(*header)) return *error;
   TriangleMesh mesh;
   std::vector<std::int32_t> corners;
   Numbers numbers(rest, *header->form);
@@ -291,6 +319,11 @@ driver::Result<TriangleMesh> read_ply(std::string_view bytes) {
     }
   }
   if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
+  if (is_single(*header)) {
+    SinglePrecision precision;
+    for (const Eigen::Vector3d& vertex : mesh.vertices) precision.add(vertex);
+    if (auto kept = precision.judge(mesh, notes); !kept) return kept.error();
+  }
   return mesh;
 }
 

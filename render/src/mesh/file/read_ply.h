@@ -1,6 +1,8 @@
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -8,9 +10,10 @@
 namespace thimble::render {
 
 /// Reads a mesh out of the bytes of a PLY file: text or binary of either byte order, any numbers of
-/// any further properties, faces of any size. The error says what is wrong, without the file's
-/// name. Memory grows with the bytes, not with the counts they promise. (Assimp 5.2.5, which reads
-/// the other formats, crashes on damaged ones of this.) Real-time: never from the servo thread.
-driver::Result<TriangleMesh> read_ply(std::string_view bytes);
+/// any further properties, faces of any size. Triangle strips are refused. `notes` gets a sentence
+/// where single precision of a binary file is coarse. The error says what is wrong, without the
+/// file's name. Memory grows with the bytes, not with the counts they promise. (Assimp 5.2.5
+/// crashes on damaged files of this format.) Real-time: never from the servo thread.
+driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::string>& notes);
 
 }  // namespace thimble::render

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/mesh_file.h"
@@ -9,13 +10,18 @@
 
 namespace thimble::render {
 
-/// Reads the bytes of a mesh file by the Assimp library, in a process of its own. `ending` is that
-/// of the file's name in small letters: obj, stl, gltf, glb, 3mf, dae, amf or 3ds; `folder` is
-/// where the file lies: a glTF file may name others there. Each part stands where the file puts it.
-/// What the file says of itself is added to `info`. Not welded. The error is a sentence without
-/// the file's name. Real-time: never from the servo thread.
+/// Reads the bytes of a mesh file by the Assimp library, in a process of its own. `ending` is its
+/// kind: dae, amf (packed or not) or 3ds. Each part is where the file puts it. What the file says
+/// of itself is added to `info`, also where single precision is coarse. Not welded. The error is a
+/// sentence without the file's name. Real-time: never from the servo thread.
 driver::Result<TriangleMesh> read_with_assimp(const std::string& bytes, const std::string& ending,
-                                              const std::filesystem::path& folder,
                                               MeshFileInfo& info);
+
+/// Does so in this process, without unit and axes, which is for one that was made for it:
+/// read_in_child. `ending` may be gltf or glb, of version 1; then `folder` is where the file is,
+/// which may name others there.
+driver::Result<TriangleMesh> import_by_assimp(const std::string& bytes, const std::string& ending,
+                                              const std::filesystem::path& folder,
+                                              std::vector<std::string>& notes);
 
 }  // namespace thimble::render

@@ -8,8 +8,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Ear cutting looks at every corner for every ear: beyond this size a fan must do, or one face of a
-// hostile file would take minutes.
+// Ear cutting looks at every corner for every ear: beyond this size one face of a hostile file
+// would take minutes.
 constexpr std::size_t kEarCuttingMax = 2000;
 
 // Is a polygon seen along its mean normal, with the area of three of its corners as the only
@@ -56,20 +56,25 @@ bool is_ear(const FlatPolygon& polygon, const std::vector<std::int32_t>& rest, s
 
 }  // namespace
 
-void triangulate_polygon(const std::vector<Vector3d>& vertices,
+bool triangulate_polygon(const std::vector<Vector3d>& vertices,
                          std::span<const std::int32_t> corners,
                          std::vector<std::array<std::int32_t, 3>>& triangles) {
-  const FlatPolygon polygon(vertices, corners);
   const std::size_t size = corners.size();
+  if (size == 3) {
+    triangles.push_back({corners[0], corners[1], corners[2]});
+    return true;
+  }
+  const FlatPolygon polygon(vertices, corners);
   bool convex = true;
-  for (std::size_t i = 0; i < size && size > 3; ++i) {
+  for (std::size_t i = 0; i < size; ++i) {
     convex &= polygon.turn(corners[i], corners[(i + 1) % size], corners[(i + 2) % size]) >= 0;
   }
-  if (convex || size > kEarCuttingMax) {
+  if (!convex && size > kEarCuttingMax) return false;
+  if (convex) {
     for (std::size_t i = 1; i + 1 < size; ++i) {
       triangles.push_back({corners[0], corners[i], corners[i + 1]});
     }
-    return;
+    return true;
   }
   std::vector<std::int32_t> rest(corners.begin(), corners.end());
   while (rest.size() > 3) {
@@ -86,6 +91,12 @@ void triangulate_polygon(const std::vector<Vector3d>& vertices,
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
   }
   triangles.push_back({rest[0], rest[1], rest[2]});
+  return true;
+}
+
+std::string too_many_corners(const std::string& face, std::size_t corners) {
+  return face + " is concave and has " + std::to_string(corners) +
+         " corners; at most 2000 are supported. Save the mesh as triangles.";
 }
 
 }  // namespace thimble::render

@@ -207,8 +207,8 @@ std::vector<Triangle> fill_polygon(const HoleRing& ring, const Taken& taken) {
   std::iota(kept.begin(), kept.end(), 0);
   std::vector<Triangle> triangles;
   if (kept.size() > 3 && is_flat(ring)) {
-    triangulate_polygon(ring.corners, kept, triangles);
-    if (may_stand(ring, triangles, taken)) return triangles;
+    const bool cut = triangulate_polygon(ring.corners, kept, triangles);
+    if (cut && may_stand(ring, triangles, taken)) return triangles;
     triangles.clear();
   }
   std::vector<Vector3d> beside = ring.beside;

@@ -13,6 +13,7 @@
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/recording.h"
+#include "thimble/session/run_figures.h"
 #include "thimble/session/run_statistics.h"
 #include "thimble/session/servo_thread.h"
 
@@ -72,6 +73,47 @@ TEST_F(SessionTest, FindsScenesAndArmsByNameOrPath) {
   const auto no_arm = session::Session::open("box", options);
   ASSERT_FALSE(no_arm);
   EXPECT_NE(no_arm.error().message.find("no_such_arm"), std::string::npos);
+}
+
+/// Writes a scene whose tip starts at a height over the middle of a ball of 30 mm.
+std::filesystem::path ball_with_start(double height) {
+  const std::filesystem::path file = support::scratch_folder() / "start.yaml";
+  std::ofstream(file) << "name: start\narm: vintage_phantom\nduration: 0.2\nobjects:\n"
+                         "  - name: ball\n    sphere: {radius: 0.03}\n    stiffness: 500\n"
+                         "hand:\n  path:\n    - {t: 0, at: [0, 0, "
+                      << height << "]}\n    - {t: 0.2, at: [0.01, 0, " << height << "]}\n";
+  return file;
+}
+
+TEST_F(SessionTest, ReportsATipThatStartsInside) {
+  const auto inside = open(ball_with_start(0.01).string());
+  ASSERT_NE(inside, nullptr);
+  ASSERT_EQ(inside->told().size(), 1U);
+  EXPECT_EQ(inside->told()[0],
+            "The tip starts inside ball: no surface is felt there until the tip has been outside.");
+  inside->run();
+  const session::RunFigures figures = inside->figures();
+  EXPECT_EQ(figures.inside_at_start, std::vector<std::string>{"ball"});
+  EXPECT_NE(summary(figures).find("Start     the tip was inside ball"), std::string::npos);
+}
+
+TEST_F(SessionTest, RecordsThatATipStartsInside) {
+  session::SessionOptions options;
+  options.record = support::scratch_folder() / "start.h5";
+  const auto inside = open(ball_with_start(0.01).string(), options);
+  ASSERT_NE(inside, nullptr);
+  inside->run();
+  ASSERT_TRUE(inside->end_recording());
+  const auto recording = session::read_recording(options.record);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(recording->info.inside_at_start, "ball");
+}
+
+TEST_F(SessionTest, ReportsNoTipThatStartsOutside) {
+  const auto outside = open(ball_with_start(0.05).string());
+  ASSERT_NE(outside, nullptr);
+  EXPECT_TRUE(outside->told().empty());
+  EXPECT_TRUE(outside->figures().inside_at_start.empty());
 }
 
 TEST_F(SessionTest, TellsAnObserverOfEveryTickAndChangesNoBitByThat) {

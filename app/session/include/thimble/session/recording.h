@@ -31,6 +31,8 @@ struct RecordingInfo {
   std::uint64_t seed = 0;  ///< Of everything random in the simulation.
   /// What the scene calls the arm, where it has several; each has a recording of its own.
   std::string arm_in_scene{};
+  /// Names of the objects that the tip of a simulated arm starts in, a comma between two.
+  std::string inside_at_start{};
 };
 
 /// Returns where the recording of one of several arms lies that is asked for as `path`: beside it,

@@ -27,13 +27,14 @@ struct RunFigures {
   std::string arm;            ///< Its name.
   bool simulated_arm = true;  ///< Whether no motor of an arm pulled.
   scene::FeelCheckState feel_check =
-      scene::FeelCheckState::kSimulated;  ///< What the arm had passed before the run.
-  bool virtual_time = true;               ///< As fast as it computed.
-  std::uint64_t seed = 0;                 ///< Of everything random in the simulation.
-  double rate_asked = 0;                  ///< Hz
-  double force_limit = 0;                 ///< The gate's, N.
-  std::size_t triangles = 0;              ///< That can be touched, in memory and on the disk.
-  RunStatistics statistics;               ///< What the ticks sum up to.
+      scene::FeelCheckState::kSimulated;     ///< What the arm had passed before the run.
+  bool virtual_time = true;                  ///< As fast as it computed.
+  std::uint64_t seed = 0;                    ///< Of everything random in the simulation.
+  double rate_asked = 0;                     ///< Hz
+  double force_limit = 0;                    ///< The gate's, N.
+  std::vector<std::string> inside_at_start;  ///< Names of the objects that the tip started in.
+  std::size_t triangles = 0;                 ///< That can be touched, in memory and on the disk.
+  RunStatistics statistics;                  ///< What the ticks sum up to.
   std::uint64_t lost_contacts = 0;  ///< Stretches inside an object without a force (checked after).
   double current_at_exit = 0;       ///< Largest motor current after the end, A (simulated arm).
   std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.

@@ -16,6 +16,7 @@ inline constexpr const char* kMeshEndings = "OFF, OBJ, STL, PLY, glTF, GLB, 3MF,
 
 /// What a mesh file says of itself besides its triangles.
 struct MeshFileInfo {
+  std::string kind;  ///< Its format by its contents: "STL", "GLTF".
   /// Metres per unit of the coordinates, where file or format names one: glTF and DAE come in m,
   /// 3MF and AMF in the unit they name (mm if none).
   std::optional<double> unit;
@@ -24,19 +25,23 @@ struct MeshFileInfo {
   std::vector<std::string> notes;  ///< What was left out or put right, a sentence each.
 };
 
-/// Reads a mesh file (`kMeshEndings`, told by its name's ending), splits polygons into triangles
-/// and welds vertices that lie at exactly the same place (STL has no other way to share them).
-/// Parts stand where the file's nodes, components and instances put them; bones, animations,
-/// lines and points are left out, and told. Coordinates stay in the file's unit and axes, those of
-/// DAE in m; OFF and PLY keep what precision the file has, all others are read in single precision.
-/// A byte order mark, bytes after the last triangle of an STL file and `SOLID` in capitals are
-/// taken in.
+/// Reads a mesh file whose name has a known ending (`kMeshEndings`) as the format that its contents
+/// show, else as that of the ending; splits polygons into triangles and welds vertices that lie at
+/// exactly the same place (STL has no other way to share them). Parts are where the file's nodes,
+/// components and instances put them; morph targets have the weights of the file; bones,
+/// animations, lines and points are left out and reported. Coordinates stay in the file's unit and
+/// axes, those of DAE in m. OFF, OBJ, 3MF, texts of STL and PLY and PLY with doubles are read in
+/// double precision; in the others the numbers are in single precision, or Assimp reads them so:
+/// where its steps at the coordinates are above 1e-6 of the mesh's size that is reported, above
+/// 1e-3 it is refused.
 ///
-/// The error names the file and, for OFF, the line: no such file, unknown ending, truncated, no
-/// triangles, a coordinate that is not a finite number or beyond 1e15, an index out of range.
-/// Memory grows with the file's size, not with the counts it promises. What the Assimp library
-/// reads (all but OFF and PLY) is read by a process of its own with limits of time and memory, so
-/// that no file can crash or hang this one. Real-time: never from the servo thread.
+/// The error names the file and, for OFF, OBJ and text of STL, the line: no such file, unknown
+/// format, truncated, no triangles, a coordinate that is not a finite number or beyond 1e15 ("1mm",
+/// "1,250.5"), an index out of range, a part of the format that is not read (named), such as a
+/// required glTF extension. Memory grows with the file's size, not with the counts it promises.
+/// glTF, 3MF and what the Assimp library reads (DAE, AMF, 3DS) are read in a process of its own
+/// with limits of time and memory, so that no file can crash or hang this one. Real-time: never
+/// from the servo thread.
 driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,
                                        MeshFileInfo* info = nullptr);
 

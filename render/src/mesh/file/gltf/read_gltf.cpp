@@ -1,0 +1,453 @@
+#include "mesh/file/gltf/read_gltf.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mesh/file/gltf/gltf_buffers.h"
+#include "mesh/file/mesh_parts.h"
+#include "mesh/file/read_in_child.h"
+#include "mesh/file/read_with_assimp.h"
+#include "mesh/file/text_words.h"
+
+namespace thimble::render {
+namespace {
+
+using driver::Error;
+using Eigen::Affine3d;
+using Json = nlohmann::json;
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+// Required extensions that are read, or that change no shape; besides those of materials.
+constexpr std::array<std::string_view, 12> kKnownExtensions{kInstancing,
+                                                            "KHR_mesh_quantization",
+                                                            "KHR_texture_transform",
+                                                            "KHR_texture_basisu",
+                                                            "EXT_texture_webp",
+                                                            "EXT_texture_avif",
+                                                            "MSFT_texture_dds",
+                                                            "KHR_lights_punctual",
+                                                            "EXT_lights_image_based",
+                                                            "KHR_xmp_json_ld",
+                                                            "KHR_xmp",
+                                                            "KHR_animation_pointer"};
+
+// What reading may use: a small file may name large ones beside it.
+constexpr ApartLimits kGltfLimits{.seconds = 20, .bytes = std::size_t{4} << 30};
+
+// How primitives are built of their corners [glTF 2.0, 3.7.2.1].
+constexpr std::size_t kTriangles = 4, kStrip = 5, kFan = 6;
+
+// Reads the JSON and the binary chunk of a GLB file.
+driver::Result<std::pair<std::string_view, std::string_view>> chunks_of(std::string_view bytes) {
+  constexpr std::size_t kGlbHead = 12, kChunkHead = 8;
+  const auto number = [bytes](std::size_t at) {
+    std::uint32_t value = 0;
+    if (at + sizeof value <= bytes.size()) std::memcpy(&value, bytes.data() + at, sizeof value);
+    return std::size_t{value};
+  };
+  if (bytes.size() < kGlbHead + kChunkHead) return unreadable("glb", "it is truncated");
+  std::pair<std::string_view, std::string_view> chunks;
+  for (std::size_t at = kGlbHead; at + kChunkHead <= bytes.size();) {
+    const std::size_t length = number(at);
+    if (length > bytes.size() - at - kChunkHead) return unreadable("glb", "it is truncated");
+    const std::string_view chunk = bytes.substr(at + kChunkHead, length);
+    if (bytes.substr(at + 4, 4) == "JSON" && chunks.first.empty()) chunks.first = chunk;
+    if (bytes.substr(at + 4, 4) == std::string_view("BIN\0", 4) && chunks.second.empty()) {
+      chunks.second = chunk;
+    }
+    at += kChunkHead + length;
+  }
+  if (chunks.first.empty()) return unreadable("glb", "it has no JSON");
+  return chunks;
+}
+
+class GltfReader {
+ public:
+  GltfReader(const Json& gltf, std::string_view chunk, const std::filesystem::path& folder,
+             std::string kind)
+      : gltf_(gltf), buffers_(gltf, chunk, folder), kind_(std::move(kind)) {}
+
+  driver::Result<TriangleMesh> read(std::vector<std::string>& notes);
+
+ private:
+  /// A node that is still to be visited, and the place of its parent.
+  struct Stop {
+    std::size_t node = 0;
+    Affine3d place = Affine3d::Identity();
+  };
+  struct Primitive {
+    TriangleMesh mesh;
+    bool single = false;
+  };
+
+  std::optional<Error> check_extensions() const;
+  driver::Result<std::vector<std::size_t>> roots() const;
+  std::optional<Error> add_node(const Json& node, const Affine3d& place);
+  std::optional<Error> add_primitive(const Json& primitive, const Json* weights,
+                                     const std::vector<Affine3d>& places);
+  std::optional<Error> add_targets(const Json& primitive, const Json& weights, Primitive& part);
+  std::optional<Error> read_triangles(const Json& primitive, std::size_t mode, Primitive& part);
+  driver::Result<std::vector<Affine3d>> instances(const Json& node, const Affine3d& place);
+  driver::Result<Affine3d> place_of(const Json& node) const;
+  Error damaged(const std::string& reason) const { return unreadable(kind_, reason); }
+
+  const Json& gltf_;
+  GltfBuffers buffers_;
+  std::string kind_;
+  MeshParts parts_;
+  bool moves_ = false, lines_ = false, morphed_ = false;
+};
+
+// Returns the array at a pointer; an empty one if there is none.
+const Json& elements_of(const Json* array) {
+  static const Json kNone = Json::array();
+  return array != nullptr && array->is_array() ? *array : kNone;
+}
+
+// Returns the numbers of an array, `fallback` if there is none; empty for anything else.
+template <std::size_t kCount>
+std::optional<std::array<double, kCount>> numbers_of(const Json& node, const char* key,
+                                                     std::array<double, kCount> fallback) {
+  const Json* const array = json_member(node, key);
+  if (array == nullptr) return fallback;
+  if (!array->is_array() || array->size() != kCount) return std::nullopt;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (!(*array)[i].is_number()) return std::nullopt;
+    fallback[i] = (*array)[i].get<double>();
+  }
+  return fallback;
+}
+
+// Returns translation times rotation times scale; empty if the rotation is no direction.
+std::optional<Affine3d> composed(const std::array<double, 3>& t, const std::array<double, 4>& r,
+                                 const std::array<double, 3>& s) {
+  const Eigen::Quaterniond rotation(r[3], r[0], r[1], r[2]);
+  if (!(rotation.norm() > 0)) return std::nullopt;
+  Affine3d place = Affine3d::Identity();
+  place.linear() =
+      rotation.normalized().toRotationMatrix() * Eigen::Vector3d(s[0], s[1], s[2]).asDiagonal();
+  place.translation() = Eigen::Vector3d(t[0], t[1], t[2]);
+  return place;
+}
+
+driver::Result<Affine3d> GltfReader::place_of(const Json& node) const {
+  if (json_member(node, "matrix") != nullptr) {
+    const auto m = numbers_of<16>(node, "matrix", {});
+    if (!m) return damaged("a node has a matrix that is not 16 numbers");
+    Affine3d place = Affine3d::Identity();
+    for (std::size_t i = 0; i < 16; ++i) {
+      if (i % 4 == 3) continue;
+      place.matrix()(static_cast<Eigen::Index>(i % 4), static_cast<Eigen::Index>(i / 4)) = (*m)[i];
+    }
+    return place;
+  }
+  const auto t = numbers_of<3>(node, "translation", {0, 0, 0});
+  const auto r = numbers_of<4>(node, "rotation", {0, 0, 0, 1});
+  const auto s = numbers_of<3>(node, "scale", {1, 1, 1});
+  if (!t || !r || !s) return damaged("a node has a pose that is not numbers");
+  const auto place = composed(*t, *r, *s);
+  if (!place) return damaged("a node has a rotation of length 0");
+  return *place;
+}
+
+std::optional<Error> GltfReader::check_extensions() const {
+  const Json* const required = json_member(gltf_, "extensionsRequired");
+  if (required == nullptr || !required->is_array()) return std::nullopt;
+  for (const Json& extension : *required) {
+    if (!extension.is_string()) return damaged("it requires an extension without a name");
+    const auto& name = extension.get_ref<const std::string&>();
+    // Draco is refused where a primitive has nothing else.
+    const bool known =
+        name.starts_with("KHR_materials_") || name == kDraco ||
+        std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
+    if (!known) {
+      return Error{"it requires the glTF extension " + shown_word(name) +
+                   ", which is not read. Export it without."};
+    }
+  }
+  return std::nullopt;
+}
+
+driver::Result<std::vector<std::size_t>> GltfReader::roots() const {
+  const Json* const nodes = json_member(gltf_, "nodes");
+  const std::size_t count = nodes != nullptr && nodes->is_array() ? nodes->size() : 0;
+  std::vector<std::size_t> roots;
+  if (json_member(gltf_, "scenes") == nullptr) {
+    // No scene: what is no child.
+    std::vector<bool> child(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Json* const children = json_member((*nodes)[i], "children");
+      for (const Json& number : elements_of(children)) {
+        if (number.is_number_unsigned() && number.get<std::size_t>() < count) {
+          child[number.get<std::size_t>()] = true;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!child[i]) roots.push_back(i);
+    }
+    return roots;
+  }
+  const Json* const scene = gltf_element(gltf_, "scenes", json_index(gltf_, "scene").value_or(0));
+  if (scene == nullptr) return damaged("its scene does not exist");
+  const Json* const named = json_member(*scene, "nodes");
+  for (const Json& number : elements_of(named)) {
+    if (!number.is_number_unsigned()) return damaged("its scene names no node");
+    roots.push_back(number.get<std::size_t>());
+  }
+  return roots;
+}
+
+driver::Result<TriangleMesh> GltfReader::read(std::vector<std::string>& notes) {
+  if (auto unknown = check_extensions()) return *unknown;
+  const auto first = roots();
+  if (!first) return first.error();
+  std::vector<Stop> stops;
+  for (std::size_t i = first->size(); i-- > 0;) stops.push_back({(*first)[i]});
+  std::vector<bool> visited;
+  while (!stops.empty()) {
+    const Stop stop = stops.back();
+    stops.pop_back();
+    const Json* const node = gltf_element(gltf_, "nodes", stop.node);
+    if (node == nullptr) return damaged("node " + std::to_string(stop.node) + " does not exist");
+    if (visited.size() <= stop.node) visited.resize(stop.node + 1);
+    if (visited[stop.node]) {
+      return damaged("node " + std::to_string(stop.node) + " is a child of two nodes");
+    }
+    visited[stop.node] = true;
+    const auto own = place_of(*node);
+    if (!own) return own.error();
+    const Affine3d place = stop.place * *own;
+    if (auto wrong = add_node(*node, place)) return *wrong;
+    const Json* const children = json_member(*node, "children");
+    if (children == nullptr || !children->is_array()) continue;
+    // The first child on top: parts stay in the file's order.
+    for (std::size_t i = children->size(); i-- > 0;) {
+      if (!(*children)[i].is_number_unsigned()) return damaged("a node names no child");
+      stops.push_back({(*children)[i].get<std::size_t>(), place});
+    }
+  }
+  auto mesh = parts_.take(notes);
+  if (!mesh) return mesh;
+  const Json* const animations = json_member(gltf_, "animations");
+  if (moves_ || (animations != nullptr && !animations->empty())) {
+    notes.push_back("Bones and animations were left out: the mesh stands as at rest.");
+  }
+  if (morphed_) notes.push_back("Morph targets were applied with the weights of the file.");
+  if (lines_) notes.push_back("Lines and points were left out: they cannot be touched.");
+  return mesh;
+}
+
+driver::Result<std::vector<Affine3d>> GltfReader::instances(const Json& node,
+                                                            const Affine3d& place) {
+  const Json* const extensions = json_member(node, "extensions");
+  const Json* const instancing =
+      extensions != nullptr ? json_member(*extensions, kInstancing) : nullptr;
+  if (instancing == nullptr) return std::vector<Affine3d>{place};
+  const Json* const attributes = json_member(*instancing, "attributes");
+  if (attributes == nullptr) return damaged("its instances have no attributes");
+  std::array<std::vector<double>, 3> values;  // translations, rotations, scales
+  constexpr std::array<std::pair<const char*, std::size_t>, 3> kNames{
+      {{"TRANSLATION", 3}, {"ROTATION", 4}, {"SCALE", 3}}};
+  std::optional<std::size_t> count;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const auto& [name, columns] = kNames[i];
+    if (json_member(*attributes, name) == nullptr) continue;
+    const auto accessor = json_index(*attributes, name);
+    if (!accessor) return damaged(std::string("its instances name no accessor for ") + name);
+    auto numbers = buffers_.read(*accessor, columns);
+    if (!numbers) return damaged(numbers.error().message);
+    values[i] = std::move(numbers->values);
+    const std::size_t own = values[i].size() / columns;
+    if (count && *count != own) return damaged("its instances differ in number");
+    count = own;
+  }
+  if (!count) return damaged("its instances have no pose");
+  std::vector<Affine3d> places;
+  for (std::size_t i = 0; i < *count; ++i) {
+    std::array<double, 3> t{0, 0, 0}, s{1, 1, 1};
+    std::array<double, 4> r{0, 0, 0, 1};
+    const auto take = [i](const std::vector<double>& from, auto& to) {
+      if (from.empty()) return;
+      std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(i * to.size()), to.size(), to.begin());
+    };
+    take(values[0], t);
+    take(values[1], r);
+    take(values[2], s);
+    const auto own = composed(t, r, s);
+    if (!own) return damaged("an instance has a rotation of length 0");
+    places.push_back(place * *own);
+  }
+  return places;
+}
+
+std::optional<Error> GltfReader::add_node(const Json& node, const Affine3d& place) {
+  if (json_member(node, "mesh") == nullptr) return std::nullopt;
+  const auto number = json_index(node, "mesh");
+  const Json* const mesh = number ? gltf_element(gltf_, "meshes", *number) : nullptr;
+  if (mesh == nullptr) return damaged("a node names a mesh that does not exist");
+  moves_ = moves_ || json_member(node, "skin") != nullptr;
+  const Json* weights = json_member(node, "weights");
+  if (weights == nullptr) weights = json_member(*mesh, "weights");
+  const auto places = instances(node, place);
+  if (!places) return places.error();
+  const Json* const primitives = json_member(*mesh, "primitives");
+  for (const Json& primitive : elements_of(primitives)) {
+    if (auto wrong = add_primitive(primitive, weights, *places)) return wrong;
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> GltfReader::add_primitive(const Json& primitive, const Json* weights,
+                                               const std::vector<Affine3d>& places) {
+  const bool named = json_member(primitive, "mode") != nullptr;
+  const std::size_t mode = json_index(primitive, "mode").value_or(named ? kFan + 1 : kTriangles);
+  if (mode < kTriangles) {
+    lines_ = true;
+    return std::nullopt;
+  }
+  if (mode > kFan) return damaged("a primitive is of an unknown mode");
+  const Json* const attributes = json_member(primitive, "attributes");
+  const auto accessor = attributes != nullptr ? json_index(*attributes, "POSITION") : std::nullopt;
+  if (!accessor) return damaged("a primitive has no positions");
+  const Json* const extensions = json_member(primitive, "extensions");
+  const Json* const positions = gltf_element(gltf_, "accessors", *accessor);
+  if (extensions != nullptr && json_member(*extensions, kDraco) != nullptr &&
+      (positions == nullptr || json_member(*positions, "bufferView") == nullptr)) {
+    return Error{std::string("it is packed by the glTF extension ") + kDraco +
+                 ", which is not read. Export it without."};
+  }
+  const auto numbers = buffers_.read(*accessor, 3);
+  if (!numbers) return damaged(numbers.error().message);
+  Primitive part;
+  part.single = numbers->single;
+  const std::size_t count = numbers->values.size() / 3;
+  if (count > std::numeric_limits<std::int32_t>::max()) {
+    return Error{"it has more than 2^31 - 1 vertices."};
+  }
+  part.mesh.vertices.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    part.mesh.vertices[i] = Eigen::Vector3d::Map(numbers->values.data() + 3 * i);
+  }
+  if (weights != nullptr) {
+    if (auto wrong = add_targets(primitive, *weights, part)) return wrong;
+  }
+  if (auto wrong = read_triangles(primitive, mode, part)) return wrong;
+  for (const Affine3d& place : places) {
+    if (auto added = parts_.add(part.mesh, place, part.single); !added) return added.error();
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> GltfReader::add_targets(const Json& primitive, const Json& weights,
+                                             Primitive& part) {
+  const Json* const targets = json_member(primitive, "targets");
+  if (targets == nullptr || !targets->is_array()) return std::nullopt;
+  for (std::size_t i = 0; i < targets->size(); ++i) {
+    if (!weights.is_array() || i >= weights.size()) break;
+    if (!weights[i].is_number()) return damaged("a weight of a morph target is no number");
+    const double weight = weights[i].get<double>();
+    if (weight == 0 || json_member((*targets)[i], "POSITION") == nullptr) continue;
+    const auto accessor = json_index((*targets)[i], "POSITION");
+    if (!accessor) return damaged("a morph target names no accessor");
+    const auto moved = buffers_.read(*accessor, 3);
+    if (!moved) return damaged(moved.error().message);
+    if (moved->values.size() != 3 * part.mesh.vertices.size()) {
+      return damaged("a morph target has another number of vertices than its mesh");
+    }
+    for (std::size_t v = 0; v < part.mesh.vertices.size(); ++v) {
+      part.mesh.vertices[v] += weight * Eigen::Vector3d::Map(moved->values.data() + 3 * v);
+    }
+    morphed_ = true;
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> GltfReader::read_triangles(const Json& primitive, std::size_t mode,
+                                                Primitive& part) {
+  std::vector<std::int32_t> corners;
+  const std::size_t vertices = part.mesh.vertices.size();
+  if (json_member(primitive, "indices") != nullptr) {
+    const auto accessor = json_index(primitive, "indices");
+    if (!accessor) return damaged("a primitive names no accessor for its corners");
+    const auto numbers = buffers_.read(*accessor, 1);
+    if (!numbers) return damaged(numbers.error().message);
+    corners.reserve(numbers->values.size());
+    for (const double number : numbers->values) {
+      if (!(number >= 0 && number < static_cast<double>(vertices))) {
+        return damaged("a triangle names a vertex that does not exist");
+      }
+      corners.push_back(static_cast<std::int32_t>(number));
+    }
+  } else {
+    corners.resize(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::int32_t>(i);
+  }
+  auto& triangles = part.mesh.triangles;
+  if (mode == kTriangles) {
+    if (corners.size() % 3 != 0) return damaged("its last triangle lacks a corner");
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+      triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    }
+    return std::nullopt;
+  }
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    if (mode == kFan) {
+      triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    } else {
+      const bool odd = i % 2 == 1;
+      triangles.push_back({corners[i - 2], corners[odd ? i : i - 1], corners[odd ? i - 1 : i]});
+    }
+  }
+  return std::nullopt;
+}
+
+// Returns whether a file is of version 1.
+bool is_version_1(const Json& gltf) {
+  const Json* const asset = json_member(gltf, "asset");
+  const Json* const version = asset != nullptr ? json_member(*asset, "version") : nullptr;
+  if (version == nullptr) return false;
+  if (version->is_number()) return version->get<double>() < 2;
+  return version->is_string() && version->get_ref<const std::string&>().starts_with("1");
+}
+
+driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::string& kind,
+                                       const std::filesystem::path& folder, MeshFileInfo& info) {
+  info.unit = 1;
+  info.up = 'y';
+  std::string_view text = bytes, chunk;
+  if (kind == "glb") {
+    constexpr std::size_t kVersion = 4;  // its place
+    if (bytes.size() > kVersion && bytes[kVersion] == 1) {
+      return import_by_assimp(bytes, kind, folder, info.notes);
+    }
+    const auto chunks = chunks_of(bytes);
+    if (!chunks) return chunks.error();
+    text = chunks->first;
+    chunk = chunks->second;
+  }
+  const Json gltf = Json::parse(text, nullptr, false);
+  if (!gltf.is_object()) return unreadable(kind, "it is no JSON");
+  if (is_version_1(gltf)) return import_by_assimp(bytes, kind, folder, info.notes);
+  return GltfReader(gltf, chunk, folder, kind).read(info.notes);
+}
+
+}  // namespace
+
+driver::Result<TriangleMesh> read_gltf(const std::string& bytes, const std::string& kind,
+                                       const std::filesystem::path& folder, MeshFileInfo& info) {
+  if (bytes.empty()) return Error{"the file is empty."};
+  return read_in_child([&](MeshFileInfo& found) { return read_file(bytes, kind, folder, found); },
+                       kind, kGltfLimits, info);
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "mesh/file/single_precision.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// The parts of a file, put together to one mesh where its nodes or instances put them.
+class MeshParts {
+ public:
+  /// Adds a part at a place in the file's frame; a part that the place mirrors is turned round, so
+  /// that its outer side stays outside. `single`: its coordinates are in single precision. The
+  /// error is a sentence: a coordinate that is no number up to 1e15, or too many triangles.
+  /// Precondition: triangles name vertices that exist. Real-time: never from the servo thread.
+  driver::Result<void> add(const TriangleMesh& part, const Eigen::Affine3d& place, bool single);
+
+  /// Returns the mesh and adds to `notes` how many parts were moved. The error is a sentence: no
+  /// triangle, or coarse coordinates. Real-time: never from the servo thread.
+  driver::Result<TriangleMesh> take(std::vector<std::string>& notes);
+
+ private:
+  TriangleMesh mesh_;
+  SinglePrecision precision_;
+  std::size_t parts_ = 0;
+  std::size_t moved_ = 0;
+};
+
+}  // namespace thimble::render

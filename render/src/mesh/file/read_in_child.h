@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "mesh/file/run_apart.h"
+#include "thimble/driver/result.h"
+#include "thimble/render/mesh/mesh_file.h"
+#include "thimble/render/mesh/triangle_mesh.h"
+
+namespace thimble::render {
+
+/// Reads a mesh and what its file says of itself; throws std::bad_alloc where memory is short.
+using MeshReader = std::function<driver::Result<TriangleMesh>(MeshFileInfo& info)>;
+
+/// Returns the limits of reading a file of so many bytes: twenty times the time per byte of the
+/// slowest format, and four times the memory of the hungriest.
+ApartLimits limits_of(std::size_t bytes);
+
+/// Returns the error about a file that is damaged: "this is no GLTF file that can be read (it
+/// ...)".
+driver::Error unreadable(const std::string& kind, const std::string& reason);
+
+/// Runs a reader in a process of its own with limits of time and memory. The error is the reader's,
+/// or `unreadable` where the process came to its limits or crashed. Real-time: never from the servo
+/// thread.
+driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
+                                           const ApartLimits& limits, MeshFileInfo& info);
+
+}  // namespace thimble::render

@@ -1,0 +1,209 @@
+#include "mesh/file/read_obj.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "mesh/file/read_off.h"  // kCoordinateMax
+#include "mesh/file/text_words.h"
+#include "mesh/file/triangulate_polygon.h"
+
+namespace thimble::render {
+namespace {
+
+using driver::Error;
+
+// Statements that say nothing about the polygons of a mesh.
+constexpr std::array<std::string_view, 31> kWithoutShape{
+    "vn",     "vt",     "vp",     "g",     "o",     "s",         "mg",        "usemtl",
+    "mtllib", "usemap", "maplib", "bevel", "lod",   "c_interp",  "d_interp",  "ctech",
+    "stech",  "cstype", "deg",    "bmat",  "step",  "parm",      "trim",      "hole",
+    "scrv",   "sp",     "end",    "con",   "curv2", "trace_obj", "shadow_obj"};
+
+// Statements whose shape cannot be touched.
+constexpr std::array<std::string_view, 3> kLines{"l", "p", "curv"};
+
+// Statements whose shape would be missing.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kRefused{
+    {{"surf", "free-form surfaces"},
+     {"bzp", "Bezier patches"},
+     {"bsp", "B-spline patches"},
+     {"cdc", "Cardinal curves"},
+     {"cdp", "Cardinal patches"},
+     {"call", "included files"},
+     {"csh", "shell commands"}}};
+
+// A face that names vertices which come after it.
+struct EarlyFace {
+  std::size_t line = 0;
+  std::size_t begin = 0;  // of its corners
+  std::size_t size = 0;
+};
+
+// Returns the number of the vertex in a corner of a face: V, V/T, V//N or V/T/N, of which T and N
+// may be left out behind their slashes; 0 for any other word.
+std::int64_t corner_of(std::string_view word) {
+  std::int64_t vertex = 0;
+  for (int part = 0; part < 3; ++part) {
+    const std::size_t slash = word.find('/');
+    const std::string_view number = word.substr(0, slash);
+    const std::int64_t value = whole_number(number).value_or(0);
+    if (value == 0 && (part == 0 || !number.empty())) return 0;
+    if (part == 0) vertex = value;
+    if (slash == std::string_view::npos) return vertex;
+    word.remove_prefix(slash + 1);
+  }
+  return word.empty() ? vertex : 0;
+}
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const std::string& name) : words_(text, name, true) {}
+
+  std::optional<Error> read();
+  TriangleMesh take() { return std::move(mesh_); }
+  bool has_lines() const { return has_lines_; }
+
+ private:
+  std::optional<Error> read_statement(std::string_view keyword);
+  std::optional<Error> read_vertex();
+  std::optional<Error> read_face();
+  std::optional<Error> add_face(std::size_t line, std::span<const std::int32_t> corners);
+
+  TextWords words_;
+  TriangleMesh mesh_;
+  bool has_lines_ = false;
+  std::vector<std::int32_t> corners_;  // of the face that is being read
+  std::vector<EarlyFace> early_;
+  std::vector<std::int32_t> early_corners_;
+};
+
+std::optional<Error> ObjReader::read() {
+  while (!words_.at_end()) {
+    const std::string_view keyword = words_.next_on_line();
+    if (!keyword.empty()) {
+      if (auto error = read_statement(keyword)) return error;
+    }
+    words_.next_line();
+  }
+  for (const EarlyFace& face : early_) {
+    const std::span<const std::int32_t> corners(early_corners_.data() + face.begin, face.size);
+    for (const std::int32_t corner : corners) {
+      if (static_cast<std::size_t>(corner) < mesh_.vertices.size()) continue;
+      return words_.error_at(face.line,
+                             "the face names vertex " + std::to_string(std::int64_t{corner} + 1) +
+                                 "; the file has " + std::to_string(mesh_.vertices.size()) + ".");
+    }
+    if (auto error = add_face(face.line, corners)) return error;
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> ObjReader::read_statement(std::string_view keyword) {
+  if (keyword == "v") return read_vertex();
+  if (keyword == "f" || keyword == "fo") return read_face();
+  if (std::find(kWithoutShape.begin(), kWithoutShape.end(), keyword) != kWithoutShape.end()) {
+    // A backslash joins lines in these too.
+    while (!words_.next_on_line().empty()) {
+    }
+    return std::nullopt;
+  }
+  if (std::find(kLines.begin(), kLines.end(), keyword) != kLines.end()) {
+    has_lines_ = true;
+    while (!words_.next_on_line().empty()) {
+    }
+    return std::nullopt;
+  }
+  for (const auto& [refused, what] : kRefused) {
+    if (keyword == refused) {
+      return words_.error(shown_word(keyword) + ": " + std::string(what) +
+                          " are not read. Save the mesh as polygons in one file.");
+    }
+  }
+  return words_.error(shown_word(keyword) + " is not a statement of an OBJ file.");
+}
+
+std::optional<Error> ObjReader::read_vertex() {
+  constexpr int kNumbersMax = 7;  // with a colour and its opacity
+  std::array<double, kNumbersMax> numbers{};
+  int count = 0;
+  for (std::string_view word = words_.next_on_line(); !word.empty(); word = words_.next_on_line()) {
+    if (count == kNumbersMax) return words_.error("a vertex has at most 7 numbers.");
+    const auto number = real_number(word);
+    if (!number || (count < 3 && !(std::abs(*number) <= kCoordinateMax))) {
+      return words_.error(shown_word(word) + " in vertex " +
+                          std::to_string(mesh_.vertices.size() + 1) +
+                          " is not a number between -1e15 and 1e15.");
+    }
+    numbers[static_cast<std::size_t>(count++)] = *number;
+  }
+  // Three for a position; one for a weight, three for a colour, four for both or with opacity.
+  if (count < 3 || count == 5) {
+    return words_.error("a vertex has " + std::to_string(count) +
+                        " numbers; it needs 3, 4, 6 or 7.");
+  }
+  if (count == 4 && numbers[3] != 1) {
+    return words_.error("a vertex with a weight other than 1 is not read.");
+  }
+  if (mesh_.vertices.size() >= std::numeric_limits<std::int32_t>::max()) {
+    return words_.error("more than 2^31 - 1 vertices are not supported.");
+  }
+  mesh_.vertices.emplace_back(numbers[0], numbers[1], numbers[2]);
+  return std::nullopt;
+}
+
+std::optional<Error> ObjReader::read_face() {
+  corners_.clear();
+  const auto known = static_cast<std::int64_t>(mesh_.vertices.size());
+  const std::size_t line = words_.line();
+  bool early = false;
+  for (std::string_view word = words_.next_on_line(); !word.empty(); word = words_.next_on_line()) {
+    const std::int64_t vertex = corner_of(word);
+    if (vertex == 0) {
+      return words_.error("the face has a corner " + shown_word(word) +
+                          "; a corner is V, V/T, V//N or V/T/N.");
+    }
+    if (vertex < -known || vertex > std::numeric_limits<std::int32_t>::max()) {
+      return words_.error("the face names vertex " + std::to_string(vertex) +
+                          "; so far there are " + std::to_string(known) + ".");
+    }
+    early = early || vertex > known;
+    corners_.push_back(static_cast<std::int32_t>(vertex > 0 ? vertex - 1 : known + vertex));
+  }
+  if (corners_.empty()) return words_.error("the face has no corners.");
+  if (!early) return add_face(line, corners_);
+  early_.push_back({line, early_corners_.size(), corners_.size()});
+  early_corners_.insert(early_corners_.end(), corners_.begin(), corners_.end());
+  return std::nullopt;
+}
+
+std::optional<Error> ObjReader::add_face(std::size_t line, std::span<const std::int32_t> corners) {
+  if (corners.size() < 3) {
+    has_lines_ = true;
+  } else if (!triangulate_polygon(mesh_.vertices, corners, mesh_.triangles)) {
+    return words_.error_at(line, too_many_corners("the face", corners.size()));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+driver::Result<TriangleMesh> read_obj(std::string_view text, const std::string& name,
+                                      std::vector<std::string>& notes) {
+  if (text.empty()) return Error{"the file is empty."};
+  ObjReader reader(text, name);
+  if (auto error = reader.read()) return *error;
+  TriangleMesh mesh = reader.take();
+  if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
+  if (reader.has_lines()) {
+    notes.push_back("Lines and points were left out: they cannot be touched.");
+  }
+  return mesh;
+}
+
+}  // namespace thimble::render
