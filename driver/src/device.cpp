@@ -110,6 +110,8 @@ void Device::begin_activity() noexcept {
   work_->restart();
   active_ = true;
   insisted_ = false;
+  // The next tick begins with dt = 0 as the first one does, but no number comes twice.
+  if (started_) ++state_.tick;
   started_ = false;
 }
 
@@ -192,6 +194,7 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
 }
 
 const DeviceState& Device::idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  if (started_) ++state_.tick;
   started_ = false;  // the next tick is the first one again
   state_.time_ns = now_ns;
   state_.fresh = take_report(now_ns, deadline_ns);

@@ -38,13 +38,13 @@ done
 expect 0 'unit +0\.0254 m' "$thimble" mesh "$source_dir/tests/data/meshes/box.3mf"
 expect 0 'up +y' "$thimble" mesh "$source_dir/tests/data/meshes/box.gltf"
 expect 0 'note +1 of 1 part was put where' "$thimble" mesh "$source_dir/tests/data/meshes/placed_box.gltf"
-expect 1 'end in \.off' "$thimble" mesh good.off --repair good.stl
-expect 1 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
+expect 2 'end in \.off' "$thimble" mesh good.off --repair good.stl
+expect 2 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
 # Cutting a mesh into pages.
 expect 0 'good\.pages: 4 triangles in 1 pages' "$thimble" mesh page good.off good.pages
 expect 0 'THMBPAGE' head -c 8 good.pages
 expect 2 'only one triangle' "$thimble" mesh page open.off open.pages
-expect 1 'cannot be written' "$thimble" mesh page good.off no_folder/good.pages
+expect 2 'cannot be written' "$thimble" mesh page good.off no_folder/good.pages
 # What a page file is, and one of any size.
 expect 0 'All pages are whole' "$thimble" mesh good.pages
 expect 0 'bumpy ring of 2048 triangles in 2 pages' "$thimble" mesh generate ring.pages --triangles 2000
