@@ -173,7 +173,7 @@ int identify_arm(IdentifyCommand command) {
   const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
   if (auto free = check_new_file(command.output); writes && !free) {
-    return complain(free.error(), kExitTrouble);
+    return complain(free.error(), kExitBadInput);
   }
   output::OutputPlan plan;
   plan.read(chosen->path);

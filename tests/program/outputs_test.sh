@@ -123,7 +123,7 @@ checks=$((checks + 1))
 while read -r command option; do
   option=${option##*,}
   case "$table" in *":$option "*) continue ;; esac
-  case $option in --save-knobs | --control) continue ;; esac
+  case $option in --control | --save-knobs | --write-bad-fit | --yes | --all-colours) continue ;; esac
   echo "FAILED: $command $option is not in the table of this test"
   failures=$((failures + 1))
 done <writes
@@ -171,7 +171,7 @@ expect 0 '' bash -c 'exec 2>&-; "$0" run scene.yaml --duration 0.05 --record clo
 expect 0 '^closed.csv: 50 ticks' "$thimble" export closed.h5 --csv closed.csv
 for closed in '0<&-' '1>&-' '2>&-' '0<&- 1>&- 2>&-'; do
   rm -f closed.h5
-  bash -c "'$thimble' run scene.yaml --duration 0.05 --no-reload --seed 2 --record closed.h5 --report closed $closed"
+  bash -c "'$thimble' run scene.yaml --duration 0.05 --record closed.h5 -vv $closed" >/dev/null 2>&1
   expect 0 '^closed.csv: 50 ticks of box at 1000 Hz\.$' "$thimble" export closed.h5 --csv closed.csv
 done
 
