@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "output/output_plan.h"
 #include "report/figure.h"
 #include "studies/rate_bench.h"
 #include "thimble/scene/shipped_files.h"
@@ -24,6 +25,9 @@ struct BenchOptions {
 };
 
 int run_bench(const BenchOptions& options) {
+  output::OutputPlan plan;
+  plan.write_folder("--out", options.out, {"figures.json"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto scene = scene::find_scene(options.scene);  // the default has not been looked for
   if (!scene) return complain(scene.error(), kExitBadInput);
   const scene::Quality quality =

@@ -24,9 +24,12 @@
 #include "faces/ros2/ros_module.h"
 #include "faces/server/arm_server.h"
 #include "faces/server/face_folder.h"
+#include "files/scene_inputs.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "output/output_plan.h"
 #include "print.h"
+#include "recording/recording_layout.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::app {
@@ -200,6 +203,13 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   if (command.empty() && !serves) {
     return complain({"Which program? thimble exec [OPTIONS] PROGRAM ARGUMENTS..."}, kExitBadInput);
   }
+  output::OutputPlan plan;
+  for (const fs::path& file : scene::scene_inputs(asked.options.scene)) plan.read(file);
+  for (const std::string& arm : asked.arms) plan.read(arm);
+  plan.read(asked.options.hand);
+  plan.read(asked.options.firmware);
+  plan.check("--record", asked.options.record, session::kRecordingOutput, asked.options.overwrite);
+  if (const auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto libraries = faces::face_folder();
   if (!libraries) return complain(libraries.error(), kExitTrouble);
   faces::ExecOptions options = asked.options;
@@ -300,7 +310,10 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"haply"}));
   command->add_option("--port", asked->port, "Port of --serve; 0: any that is free")
       ->capture_default_str();
-  command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
+  CLI::Option* record =
+      command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
+  command->add_flag("--force", options.overwrite, "Let --record replace existing recordings")
+      ->needs(record);
   command->add_flag("--view", options.view, "Watch the run in a window");
   add_ros_options(*command, asked->ros, RosTime::kReal);
   command->add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "output/output_plan.h"
 #include "recording/bag_export.h"
 #include "thimble/session/recording.h"
 #include "view/felt/touch_sound.h"
@@ -22,6 +23,12 @@ struct ExportOptions {
 };
 
 int export_recording(const ExportOptions& options) {
+  output::OutputPlan plan;
+  plan.read(options.file);
+  plan.write("--csv", options.csv, output::kTable);
+  plan.write_new_folder("--bag", options.bag);
+  plan.write("--sound", options.sound, output::kSound);
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto recording = session::read_recording(options.file);
   if (!recording) return complain(recording.error(), kExitBadInput);
   const auto tell = [&recording](const std::string& file) {

@@ -14,6 +14,7 @@
 #include "hil/hil_suite.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "output/output_plan.h"
 #include "terms/feel_check_record.h"
 
 namespace thimble::app {
@@ -79,6 +80,12 @@ int end_of(const std::vector<HilResult>& results) {
 }
 
 int run_hil(HilCommand command) {
+  output::OutputPlan plan;
+  plan.read(command.choice.arm_file);
+  plan.read(command.choice.firmware);
+  plan.write("--json", command.json, output::kJson);
+  plan.write("--junit", command.junit, output::kXml);
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), kExitNoDevice);
   const SimulatedNote simulated(*chosen, "result of a real arm");

@@ -24,6 +24,8 @@
 #include "identified/identify_page.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "output/output_plan.h"
+#include "recording/recording_layout.h"
 #include "terms/feel_check_record.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/shipped_files.h"
@@ -37,6 +39,7 @@ struct IdentifyCommand {
   IdentifyOptions options;
   std::string output;
   std::string record;
+  bool force = false;
   std::string report;
   bool yes = false;
   bool write_bad_fit = false;
@@ -108,7 +111,7 @@ bool checked(const ChosenArm& chosen, const std::string& firmware) {
 
 /// Writes the motion with the bare tip as a recording, for `thimble twin`.
 driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& path,
-                                  const std::vector<driver::TickRecord>& ticks) {
+                                  const std::vector<driver::TickRecord>& ticks, bool replace) {
   const auto file = scene::find_arm_file(chosen.path.string());
   if (!file) return file.error();
   std::ostringstream text;
@@ -122,7 +125,7 @@ driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& pa
   info.clock = chosen.real_arm ? "wall" : "virtual";
   info.program = scene::program_name();
   info.rate = 1000;
-  return session::write_recording(path, info, ticks);
+  return session::write_recording(path, info, ticks, replace);
 }
 
 /// Writes what was found into the new file, if the user says so. A bad fit is kept only if that was
@@ -170,8 +173,15 @@ int identify_arm(IdentifyCommand command) {
   const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
   if (auto free = check_new_file(command.output); writes && !free) {
-    return complain(free.error(), kExitTrouble);
+    return complain(free.error(), kExitBadInput);
   }
+  output::OutputPlan plan;
+  plan.read(chosen->path);
+  plan.read(command.choice.firmware);
+  if (writes) plan.check("--output", command.output, output::kArmFile);
+  plan.write("--record", command.record, session::kRecordingOutput, command.force);
+  plan.write_folder("--report", command.report, {"figures.json", "index.html"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
@@ -209,7 +219,7 @@ int identify_arm(IdentifyCommand command) {
     return kExitInterrupted;
   }
   if (!ticks.empty()) {
-    if (auto written = write_motion(*chosen, command.record, ticks); !written) {
+    if (auto written = write_motion(*chosen, command.record, ticks, command.force); !written) {
       return complain(written.error(), kExitTrouble);
     }
     std::printf("The motion was recorded in %s.\n", command.record.c_str());
@@ -269,8 +279,11 @@ void add_identify_command(CLI::App& app, int& exit_code) {
                 "elsewhere --output is your word");
   sub->add_flag("--write-bad-fit", command->write_bad_fit,
                 "Write the file of a bad fit too, with BAD FIT in each mark");
-  sub->add_option("--record", command->record,
-                  "Recording of the motion with the bare tip to write, for `thimble twin`");
+  CLI::Option* record =
+      sub->add_option("--record", command->record,
+                      "Recording of the motion with the bare tip to write, for `thimble twin`");
+  sub->add_flag("--force", command->force, "Let --record replace an existing recording")
+      ->needs(record);
   sub->add_option("--report", command->report,
                   "Folder for a page with plots, constants and what was not identified, and why");
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });

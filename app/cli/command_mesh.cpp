@@ -10,9 +10,12 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "mesh/contact_mesh.h"
+#include "mesh/file/off_text.h"
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/touching_parts.h"
 #include "meshes/object_size.h"
+#include "output/output_file.h"
+#include "output/output_plan.h"
 #include "page/page_file.h"
 #include "report/pictures.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -129,7 +132,8 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
   if (options.thicken > 0 && !repaired.mesh.triangles.empty()) {
     sheets = thicken(repaired.mesh, options.thicken);
   }
-  if (auto saved = render::save_mesh(repaired.mesh, options.repair); !saved) {
+  const std::string text = render::off_text(repaired.mesh);
+  if (auto saved = output::write_file(options.repair, output::kMesh, text); !saved) {
     return complain(saved.error(), kExitTrouble);
   }
   std::printf("Repaired: %s\n", options.repair.c_str());
@@ -186,6 +190,16 @@ int tell_pages(const MeshOptions& options) {
 }
 
 int tell_mesh(const MeshOptions& options) {
+  if (!options.repair.empty() && std::filesystem::path(options.repair).extension() != ".off") {
+    return complain(
+        {"--repair: " + options.repair + ": a mesh is written as OFF; let the name end in .off."},
+        kExitBadInput);
+  }
+  output::OutputPlan plan;
+  plan.read(options.file);
+  plan.write("--picture", options.picture, output::kind_of_name(options.picture));
+  plan.write("--repair", options.repair, output::kMesh);
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   if (render::is_page_file(options.file)) return tell_pages(options);
   render::MeshFileInfo info;
   const auto mesh = render::load_mesh(options.file, &info);

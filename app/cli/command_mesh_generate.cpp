@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "output/output_file.h"
 #include "page/page_file.h"
 #include "studies/resident_memory.h"
 #include "studies/ring_pages.h"
@@ -24,9 +25,12 @@ int generate_mesh(const GenerateOptions& options) {
   ring.ring_radius *= scale;
   ring.tube_radius *= scale;
   const RingGrid grid = ring_grid(ring, static_cast<std::int64_t>(options.triangles));
-  if (const auto written = write_ring(ring, grid, options.out); !written) {
-    return complain(written.error(), kExitTrouble);
+  auto file = output::OutputFile::open(options.out, output::kPageFile);
+  if (!file) return complain(file.error(), kExitBadInput);
+  if (const auto written = write_ring(ring, grid, file->part()); !written) {
+    return complain(file->named(written.error()), kExitTrouble);
   }
+  if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
   std::printf("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
               options.out.c_str(), grid.triangle_count(),
               grid.triangle_count() / render::kPageTriangles,

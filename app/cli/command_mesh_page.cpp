@@ -6,6 +6,8 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "mesh/contact_mesh.h"
+#include "output/output_file.h"
+#include "output/output_plan.h"
 #include "packed/packed_surface.h"
 #include "page/page_file.h"
 #include "thimble/render/mesh/mesh_file.h"
@@ -18,15 +20,22 @@ struct PageOptions {
 };
 
 int page_mesh(const PageOptions& options) {
+  output::OutputPlan plan;
+  plan.read(options.in);
+  plan.write("OUT", options.out, output::kPageFile);
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto mesh = render::load_mesh(options.in);
   if (!mesh) return complain(mesh.error(), kExitBadInput);
   const auto checked = render::ContactMesh::build(*mesh);
   if (!checked) return complain({options.in + ": " + checked.error().message}, kExitBadInput);
   const auto surface = render::PackedSurface::build(*checked);
   if (!surface) return complain({options.in + ": " + surface.error().message}, kExitBadInput);
-  if (const auto written = render::write_page_file(*surface, options.out); !written) {
-    return complain(written.error(), kExitTrouble);
+  auto file = output::OutputFile::open(options.out, output::kPageFile);
+  if (!file) return complain(file.error(), kExitTrouble);
+  if (const auto written = render::write_page_file(*surface, file->part()); !written) {
+    return complain(file->named(written.error()), kExitTrouble);
   }
+  if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
   std::printf("%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
               (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
   return kExitDone;

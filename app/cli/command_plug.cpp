@@ -1,3 +1,5 @@
+#include <fcntl.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <atomic>
@@ -17,6 +19,7 @@
 #include "cli/plug_orders.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "output/output_file.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 #include "thimble/device_sim/usb/usbip_server.h"
@@ -81,7 +84,9 @@ class KernelAttachment {
 /// Writes what was true of the arm in each frame in which a packet moved, as tests want it.
 class TruthTrace {
  public:
-  explicit TruthTrace(const std::string& path) : file_(std::fopen(path.c_str(), "we")) {
+  explicit TruthTrace(output::OutputFile output)
+      : output_(std::move(output)),
+        file_(fdopen(fcntl(output_.descriptor(), F_DUPFD_CLOEXEC, 3), "w")) {
     if (file_ != nullptr) {
       std::fprintf(file_,
                    "# frame reports sampled_frame c0 c1 c2 exact0 exact1 exact2 messages m0 m1 m2 "
@@ -93,9 +98,9 @@ class TruthTrace {
   ~TruthTrace() {
     if (file_ != nullptr) std::fclose(file_);
   }
-  bool open() const { return file_ != nullptr; }
 
   void add(std::int64_t frame, const usb::ArmTruth& truth) {
+    if (file_ == nullptr) return;
     const bool moved =
         truth.reports != reports_ || truth.messages != messages_ || truth.motors_on != motors_on_;
     if (!moved) return;
@@ -116,6 +121,7 @@ class TruthTrace {
   }
 
  private:
+  output::OutputFile output_;
   std::FILE* file_;
   std::uint64_t reports_ = 0, messages_ = 0;
   bool motors_on_ = false;
@@ -184,8 +190,12 @@ int plug(const PlugOptions& options) {
         kExitBadInput);
   }
   std::optional<TruthTrace> trace;
-  if (!options.trace.empty() && !trace.emplace(options.trace).open()) {
-    return complain({"cannot write " + options.trace + "."}, kExitBadInput);
+  if (!options.trace.empty()) {
+    auto output = output::OutputFile::open(options.trace, output::kMotionTrace);
+    // It has its name from the beginning: it is read while the arm is plugged in.
+    auto named = output ? output->publish() : driver::Result<void>(output.error());
+    if (!named) return complain(named.error(), kExitBadInput);
+    trace.emplace(std::move(output).value());
   }
   auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
   if (!server) {

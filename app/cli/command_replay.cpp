@@ -11,7 +11,9 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "output/output_plan.h"
 #include "print.h"
+#include "recording/recording_layout.h"
 #include "recording/replay_bag.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
@@ -25,6 +27,7 @@ struct ReplayOptions {
   std::vector<std::string> files;
   std::string scene;
   std::string record;
+  bool force = false;
   std::string page;
   bool verify = false;
   session::TrajectoryForm form;
@@ -79,8 +82,8 @@ int replay_probe(const ReplayOptions& options) {
   print_comparison(options.files.front(), replay->compared, replay->felt.info.scene,
                    form.has_forces());
   if (options.record.empty()) return kExitDone;
-  if (auto written =
-          session::write_recording(options.record, replay->felt.info, replay->felt.ticks);
+  if (auto written = session::write_recording(options.record, replay->felt.info, replay->felt.ticks,
+                                              options.force);
       !written) {
     return complain(written.error(), kExitTrouble);
   }
@@ -109,7 +112,8 @@ int replay_a_bag(const ReplayOptions& options) {
     }
   }
   if (options.record.empty()) return kExitDone;
-  auto written = session::write_recording(options.record, replay.felt.info, replay.felt.ticks);
+  auto written =
+      session::write_recording(options.record, replay.felt.info, replay.felt.ticks, options.force);
   return written ? kExitDone : complain(written.error(), kExitTrouble);
 }
 
@@ -136,6 +140,13 @@ void print_reason(const session::Recording& recording, const std::string& scene)
 }
 
 int replay_recordings(const ReplayOptions& options) {
+  output::OutputPlan plan;
+  for (const std::string& file : options.files) plan.read(file);
+  plan.read(options.scene);
+  plan.check("--record", options.record, session::kRecordingOutput, options.force);
+  plan.write("--page", options.page, output::kWebPage);
+  plan.write("--csv", options.csv, output::kTable);
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   if (options.files.size() == 1 && bag::is_bag(options.files.front())) {
     return replay_a_bag(options);
   }
@@ -171,7 +182,8 @@ int replay_recordings(const ReplayOptions& options) {
     replay.felt.info.device = "replay of " + options.files[i];
     const std::filesystem::path file =
         session::file_of_arm(options.record, replay.felt.info.arm_in_scene);
-    if (auto written = session::write_recording(file, replay.felt.info, replay.felt.ticks);
+    if (auto written =
+            session::write_recording(file, replay.felt.info, replay.felt.ticks, options.force);
         !written) {
       return complain(written.error(), kExitTrouble);
     }
@@ -223,7 +235,10 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--csv", options->csv, "Table to write of what a bag's positions felt");
   add_scene_option(*command, options->scene, "--scene",
                    "Scene to touch in place of the recorded one: what would this hand have felt?");
-  command->add_option("--record", options->record, "Recording of what is felt now to write");
+  CLI::Option* record =
+      command->add_option("--record", options->record, "Recording of what is felt now to write");
+  command->add_flag("--force", options->force, "Let --record replace an existing recording")
+      ->needs(record);
   command->add_option("--page", options->page,
                       "Page that plays the touch in a browser to write: one HTML file");
   command->add_flag("--verify", options->verify,

@@ -18,10 +18,15 @@
 #include "cli/file_options.h"
 #include "cli/options/run_options.h"
 #include "faces/ros2/ros_run.h"
+#include "files/scene_inputs.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "mesh/file/off_text.h"
 #include "open_arm.h"
+#include "output/output_file.h"
+#include "output/output_plan.h"
 #include "print.h"
+#include "recording/recording_layout.h"
 #include "replug_watch.h"
 #include "report/page/touch_page.h"
 #include "report/report.h"
@@ -79,7 +84,8 @@ driver::Result<void> write_files(const session::Session& session,
     if (written) session::print(stdout, "Page that plays it: {}\n", file.string());
   }
   if (!options.save_mesh.empty()) {
-    if (auto saved = render::save_mesh(session.mesh_now(object), options.save_mesh); !saved) {
+    const std::string text = render::off_text(session.mesh_now(object));
+    if (auto saved = output::write_file(options.save_mesh, output::kMesh, text); !saved) {
       return saved;
     }
     session::print(stdout, "Mesh as it is now: {}\n", options.save_mesh);
@@ -159,7 +165,8 @@ struct RunCourse {
   std::shared_ptr<faces::SteppedClock> clock;  // of a run that is stepped, or null
   std::optional<session::NextRun> next;        // what comes after it, where anything may
   std::unique_ptr<session::ViewerProcess> viewer;
-  int number = 1;  // of the run
+  int number = 1;         // of the run
+  std::string recording;  // of this one
 };
 
 /// Returns the object whose mesh is saved, -1 for all.
@@ -185,8 +192,14 @@ driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunCourse& 
 driver::Result<void> begin_next(RunCourse& course, session::Session& session,
                                 session::Session& before) {
   if (!course.asked.record.empty()) {
-    const auto file = numbered(course.options.record, course.number);
-    if (auto begun = session.begin_recording(file); !begun) return begun;
+    const bool force = course.options.force;
+    std::error_code unknown;
+    int number = course.number;
+    do {
+      course.recording = numbered(course.options.record, number++);
+    } while (!force && std::filesystem::exists(
+                           session::file_of_arm(course.recording, session.arm_name(0)), unknown));
+    if (auto begun = session.begin_recording(course.recording, force); !begun) return begun;
   }
   return session.share(course.asked, before.shared());
 }
@@ -232,7 +245,7 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   const ExitCode ran = run_session(session, servo, desk.get(), options, sides, guard, end);
   if (ran != kExitDone) return leave(ran);
   // The touch went on, whatever became of the recording.
-  const ExitCode recorded = end_recording(session, numbered(options.record, course.number));
+  const ExitCode recorded = end_recording(session, course.recording);
   // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
   // where the arm took no zero.
   if (zero_assured(session)) guard.reset();
@@ -253,6 +266,16 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   return ended == kExitDone ? recorded : ended;
 }
 
+/// Adds all files that a run reads and writes.
+void plan_outputs(const RunOptions& options, output::OutputPlan& plan) {
+  for (const std::filesystem::path& file : scene::scene_inputs(options.scene)) plan.read(file);
+  plan.read(options.arm_file);
+  plan.read(options.firmware);
+  plan.check("--record", options.record, session::kRecordingOutput, options.force);
+  plan.write("--save-mesh", options.save_mesh, output::kMesh);
+  plan.write_folder("--report", options.report, run_file_names());
+}
+
 int run_scene(RunOptions& options) {
   if (const auto fits = check_run_options(options); !fits)
     return complain(fits.error(), kExitBadInput);
@@ -268,7 +291,11 @@ int run_scene(RunOptions& options) {
   // All that takes time comes before the arm is opened: an open arm is served in every millisecond.
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (arms->real()) scene::leave_rather_than_stop();
+  output::OutputPlan outputs;
+  plan_outputs(options, outputs);
+  if (const auto begun = outputs.begin(); !begun) return complain(begun.error(), kExitBadInput);
   RunCourse course{options, *arms, stop, session_options(options, *arms), {}, {}, {}};
+  course.recording = options.record;
   if (options.stepped()) {
     course.asked.own_clock = course.clock = std::make_shared<faces::SteppedClock>(stop);
   }

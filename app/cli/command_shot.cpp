@@ -12,6 +12,8 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "files/scene_inputs.h"
+#include "output/output_plan.h"
 #include "thimble/scene/scene_file.h"
 #include "view/gl/animated_picture_file.h"
 #include "view/gl/film_file.h"
@@ -130,6 +132,13 @@ int take_shot(const ShotOptions& options) {
       return complain(found.error(), kExitTrouble);
     }
   }
+  output::OutputPlan plan;
+  plan.read(options.arm_file);
+  for (const auto& file : scene::scene_inputs(options.scene)) plan.read(file);
+  plan.write("--out", options.out, output::kPng);
+  plan.write("--animate", options.animate,
+             view::is_film(options.animate) ? output::kFilm : output::kPng);
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   choice.paint.shading =
       options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;
   choice.paint.edges = options.edges == "on"    ? view::Edges::kOn

@@ -11,6 +11,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "faces/ros2/ros_latency.h"
+#include "output/output_plan.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
 #include "thimble/scene/scene_objects.h"
@@ -48,6 +49,11 @@ double measured_spread(double rate, double duration) {
 }
 
 int tune_scene(const TuneCommand& command) {
+  output::OutputPlan plan;
+  plan.read(command.scene);
+  plan.read(command.arm_file);
+  plan.write_folder("--out", command.folder, {"figures.json"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
   if (!scene) return complain(scene.error(), kExitBadInput);
   if (!scene->arm.can_simulate) {

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "output/output_plan.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/session/recording.h"
 #include "twin/compare_twin.h"
@@ -26,6 +27,11 @@ struct TwinCommand {
 };
 
 int compare(const TwinCommand& command) {
+  output::OutputPlan plan;
+  plan.read(command.recording);
+  plan.read(command.arm_file);
+  plan.write_folder("--output", command.output, {"figures.json"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto recording = session::read_recording(command.recording);
   if (!recording) return complain(recording.error(), kExitBadInput);
   const auto file = scene::load_arm(command.arm_file);

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "output/output_plan.h"
 #include "view/time/recording_view.h"
 #include "view/window.h"
 
@@ -15,6 +16,9 @@ void add_window_command(CLI::App& app, int& exit_code) {
   ShowWindow show;
   show.runs = [choice](session::RunAttachment& runs, double seconds) -> int {
     choice->seconds = seconds;
+    output::OutputPlan plan;
+    plan.write("--picture", choice->last_picture, output::kPng);
+    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
     const auto shown = view::show_window(runs, *choice);
     return shown ? kExitDone : complain(shown.error(), kExitTrouble);
   };
@@ -25,6 +29,10 @@ void add_window_command(CLI::App& app, int& exit_code) {
                        "writes the sound of a recording."},
                       kExitBadInput);
     }
+    output::OutputPlan plan;
+    for (const std::string& file : files) plan.read(file);
+    plan.write("--picture", choice->last_picture, output::kPng);
+    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
     const auto recording = view::RecordingView::open({files.begin(), files.end()});
     if (!recording) return complain(recording.error(), kExitBadInput);
     const auto shown = view::show_recording(**recording, files.front(), *choice);

@@ -10,6 +10,7 @@
 #include "cli/log_options.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "output/standard_streams.h"
 #include "thimble/scene/build_info.h"
 
 namespace {
@@ -80,6 +81,7 @@ int with_output(int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (!thimble::output::open_standard_streams()) return thimble::app::kExitTrouble;
   thimble::scene::outlive_trouble_with_files();
   // Every exception ends here, so that destructors run and the arm is left with zero force.
   try {

@@ -16,7 +16,9 @@ int complain(const driver::Error& error) {
 
 int main(int argc, char** argv) {
   const char* file = argc > 2 ? argv[2] : "touch.h5";
-  auto run = session::Session::open(argc > 1 ? argv[1] : "rubber", {.record = file});
+  // Without `overwrite` an existing recording is kept, and this is an error.
+  auto run =
+      session::Session::open(argc > 1 ? argv[1] : "rubber", {.record = file, .overwrite = true});
   if (!run) return complain(run.error());
   session::Session& touch = **run;
   // A law of one's own, asked in each tick of virtual time. Without it the scene's own force is

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "output/output_file.h"
 #include "report/figure_json.h"
 
 namespace thimble::app {
@@ -70,7 +71,8 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
   const Json whole{
       {"arm", record.arm},     {"arm_file", record.arm_file}, {"simulated", record.simulated},
       {"suite", record.suite}, {"time", record.time},         {"checks", std::move(checks)}};
-  return write_text(whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", file);
+  return output::write_file(file, output::kJson,
+                            whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<HilResult>& results,
@@ -106,7 +108,7 @@ driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<
     }
     text += "  </testcase>\n";
   }
-  return write_text(text + "</testsuite>\n", file);
+  return output::write_file(file, output::kXml, text + "</testsuite>\n");
 }
 
 }  // namespace thimble::app

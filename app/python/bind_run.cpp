@@ -206,7 +206,7 @@ void bind_run(py::module_& core) {
       .def(py::init([](const std::string& scene, const std::string& arm, const std::string& device,
                        bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,
-                       const std::string& record, const std::string& firmware,
+                       const std::string& record, bool overwrite, const std::string& firmware,
                        const py::object& law, bool homed, bool no_real_time, const py::object& ros2,
                        std::shared_ptr<scene::SharedMeshes> meshes) {
              return std::make_unique<HeldRun>(RunOptions{.scene = scene,
@@ -219,6 +219,7 @@ void bind_run(py::module_& core) {
                                                          .seed = seed,
                                                          .quality = quality,
                                                          .record = record,
+                                                         .overwrite = overwrite,
                                                          .firmware = firmware,
                                                          .homed = homed,
                                                          .topics = topics_of(ros2),
@@ -229,9 +230,10 @@ void bind_run(py::module_& core) {
            py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
            py::arg("agreed") = false, py::arg("unchecked") = false, py::arg("real_time") = false,
            py::arg("seconds") = py::none(), py::arg("seed") = py::none(),
-           py::arg("quality") = "normal", py::arg("record") = "", py::arg("firmware") = "",
-           py::arg("law") = py::none(), py::arg("homed") = false, py::arg("no_real_time") = false,
-           py::arg("ros2") = py::none(), py::arg("meshes") = py::none())
+           py::arg("quality") = "normal", py::arg("record") = "", py::arg("overwrite") = false,
+           py::arg("firmware") = "", py::arg("law") = py::none(), py::arg("homed") = false,
+           py::arg("no_real_time") = false, py::arg("ros2") = py::none(),
+           py::arg("meshes") = py::none())
       .def("topics_report", [](const HeldRun& held) { return held.run->topics_report(); })
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())

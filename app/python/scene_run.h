@@ -29,6 +29,7 @@ struct RunOptions {
   std::optional<std::uint64_t> seed = {};
   std::string quality = "normal";
   std::string record = {};    ///< HDF5 file; empty: none.
+  bool overwrite = false;     ///< `record` may replace an existing recording.
   std::string firmware = {};  ///< For a real arm that needs some.
   bool homed = false;  ///< A real arm was in its home pose when it got power: do not ask for it.
   std::optional<faces::RosWords> topics = {};  ///< Of ROS 2; in real time only.

@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "output/output_file.h"
 #include "report/figure_json.h"
 
 namespace thimble::app {
@@ -62,14 +62,7 @@ std::string unmet_line(const std::vector<Figure>& figures) {
 }
 
 driver::Result<void> write_text(const std::string& text, const std::filesystem::path& file) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (!stream) {
-    return driver::Error{"Cannot write " + file.string() +
-                         ": check that the folder exists, may be written and has room."};
-  }
-  return {};
+  return output::write_file(file, output::kind_of_name(file), text);
 }
 
 }  // namespace thimble::app

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <sstream>
 #include <utility>
 
+#include "output/output_file.h"
 #include "report/figure.h"
 
 namespace thimble::app {
@@ -21,13 +23,17 @@ constexpr const char* kMissingMessage =
 
 enum class RunEnd { kGood, kMissing, kBad };
 
-// Runs `gnuplot argument` in `folder`, with what it says going to `log`. No shell is involved, so
-// folder names may hold any character.
-RunEnd run_gnuplot(const std::string& argument, const std::string& folder, const std::string& log) {
+// Runs `gnuplot argument` in `folder`, with `input` to read and its messages going to `log`. No
+// shell is involved, so folder names may hold any character.
+RunEnd run_gnuplot(const std::string& argument, int input, const std::string& folder,
+                   const std::string& log) {
   posix_spawn_file_actions_t actions;
   if (posix_spawn_file_actions_init(&actions) != 0) return RunEnd::kBad;
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  if (input >= 0) posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+  if (input < 0) {
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  }
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
                                    O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
@@ -54,25 +60,66 @@ std::string content_of(const std::filesystem::path& file) {
 }  // namespace
 
 bool has_gnuplot() {
-  return run_gnuplot("--version", "/", "/dev/null") == RunEnd::kGood;
+  return run_gnuplot("--version", -1, "/", "/dev/null") == RunEnd::kGood;
 }
 
-driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& folder) {
+namespace {
+
+/// Returns a string as gnuplot writes it.
+std::string quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted.append(c == '\'' ? "''" : std::string(1, c));
+  return quoted + "'";
+}
+
+/// Returns the script that draws a plot to two files.
+std::string script_of(const Plot& plot, const std::string& png, const std::string& svg) {
   const std::string size = std::to_string(plot.width) + "," + std::to_string(plot.height);
   const std::array<std::pair<std::string, std::string>, 2> terminals{
-      std::pair{"png", "pngcairo size " + size + " font 'DejaVu Sans,17' background '#ffffff'"},
-      std::pair{"svg",
+      std::pair{png, "pngcairo size " + size + " font 'DejaVu Sans,17' background '#ffffff'"},
+      std::pair{svg,
                 "svg size " + size + " font 'DejaVu Sans,sans-serif,17' background '#ffffff'"}};
   std::string script = "set encoding utf8\n";
-  for (const auto& [ending, terminal] : terminals) {
-    script.append("reset\nset terminal ").append(terminal).append("\nset output '");
-    script.append(plot.name).append(".").append(ending).append("'\n");
+  for (const auto& [file, terminal] : terminals) {
+    script.append("reset\nset terminal ").append(terminal).append("\nset output ");
+    script.append(quoted(file)).append("\n");
     script.append(plot.commands).append("unset output\n");
   }
-  const std::string script_name = "data/" + plot.name + ".gp";
+  return script;
+}
+
+/// Lets gnuplot run a script, which it gets as its input.
+RunEnd draw(const std::string& script, const std::string& folder, const std::string& log) {
+  const int input = memfd_create("plot", MFD_CLOEXEC);
+  if (input < 0) return RunEnd::kBad;
+  std::size_t written = 0;
+  while (written < script.size()) {
+    const ssize_t now = write(input, script.data() + written, script.size() - written);
+    if (now < 0 && errno == EINTR) continue;
+    if (now <= 0) break;
+    written += static_cast<std::size_t>(now);
+  }
+  const bool whole = written == script.size() && lseek(input, 0, SEEK_SET) == 0;
+  const RunEnd end = whole ? run_gnuplot("-", input, folder, log) : RunEnd::kBad;
+  close(input);
+  return end;
+}
+
+}  // namespace
+
+driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& folder) {
   const std::string log_name = "data/" + plot.name + ".log";
-  if (auto done = write_text(script, folder / script_name); !done) return done;
-  const RunEnd end = run_gnuplot(script_name, folder.string(), log_name);
+  if (auto done = write_text(script_of(plot, plot.name + ".png", plot.name + ".svg"),
+                             folder / ("data/" + plot.name + ".gp"));
+      !done) {
+    return done;
+  }
+  auto png = output::OutputFile::open(folder / (plot.name + ".png"), output::kPng);
+  if (!png) return png.error();
+  auto svg = output::OutputFile::open(folder / (plot.name + ".svg"), output::kSvg);
+  if (!svg) return svg.error();
+  const RunEnd end =
+      draw(script_of(plot, png->part().string(), svg->part().string()), folder.string(), log_name);
   if (end == RunEnd::kMissing) return driver::Error{kMissingMessage};
   const std::string said = content_of(folder / log_name);
   if (end == RunEnd::kBad) {
@@ -82,7 +129,8 @@ driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& fo
   // Warnings (an empty range, a bad font) do not fail a run; they stay in the log.
   std::error_code status;
   if (said.empty()) std::filesystem::remove(folder / log_name, status);
-  return {};
+  if (auto done = png->commit(); !done) return done;
+  return svg->commit();
 }
 
 }  // namespace thimble::app

@@ -3,11 +3,13 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "output/output_file.h"
 #include "report/fault_marks.h"
 #include "report/figure.h"
 #include "report/gnuplot.h"
 #include "report/mesh_view.h"
 #include "report/picture_parts.h"
+#include "text_file.h"
 
 namespace thimble::app {
 namespace {
@@ -311,11 +313,8 @@ driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
   if (done) done = draw_views({}, mesh, {title, unit, 1, 0, faults}, "mesh", folder);
   std::error_code status;
   if (done) {
-    std::filesystem::copy_file(folder / ("mesh" + ending), picture,
-                               std::filesystem::copy_options::overwrite_existing, status);
-    if (status) {
-      done = driver::Error{"Cannot write " + picture.string() + ": " + status.message() + "."};
-    }
+    done = output::write_file(picture, output::kind_of_name(picture),
+                              scene::text_of(folder / ("mesh" + ending)));
   }
   std::filesystem::remove_all(folder, status);
   return done;

@@ -27,6 +27,14 @@ driver::Result<void> write_arm_files(const session::Session& session,
 
 }  // namespace
 
+std::vector<std::string> run_file_names() {
+  std::vector<std::string> names{"report.json", "figures.json", "index.html"};
+  for (const char* picture : {"dent", "force_and_depth", "path_on_mesh", "period_histogram"}) {
+    for (const char* ending : {".png", ".svg"}) names.push_back(std::string(picture) + ending);
+  }
+  return names;
+}
+
 driver::Result<void> write_run_files(const session::Session& session,
                                      const driver::RealTimeGrant& grant,
                                      const std::filesystem::path& folder) {

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
 
 namespace thimble::app {
+
+/// Returns the names of what `write_run_files` and the page of a run write in a folder.
+std::vector<std::string> run_file_names();
 
 /// Writes what a run that is over leaves in `folder`: report.json and figures.json (write_report),
 /// the pictures (draw_pictures) and, of a scene that was dented, dent.png; of several arms into a

@@ -123,6 +123,8 @@ void Device::begin_activity() noexcept {
   work_->restart();
   active_ = true;
   insisted_ = false;
+  // The next tick begins with dt = 0 as the first one does, but no number comes twice.
+  if (started_) ++state_.tick;
   started_ = false;
 }
 
@@ -253,6 +255,7 @@ bool Device::follow_silence(std::int64_t now_ns) noexcept {
 }
 
 const DeviceState& Device::idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
+  if (started_) ++state_.tick;
   started_ = false;  // the next tick is the first one again
   if (now_ns - listened_ns_ > settings_.silence_limit_ns) {
     quiet_since_ns_ = now_ns;  // the caller was away

@@ -101,6 +101,9 @@ forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
 forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|faces|hil|web|cli)/'
+# What writes files knows nothing of what is written.
+forbid app/scene/src/output '(log|yaml|files|terms|hand|meshes|quality|arm)/|thimble/(device_sim|render|scene)/' \
+  "the rest of the scene library"
 forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|hil|web|cli)/'
 forbid_app session '(report|stability|studies|view|bringup|faces|hil|web|cli)/'
 # What a program of somebody else's includes needs nothing beside the sources; and observers of a run's

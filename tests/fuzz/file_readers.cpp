@@ -223,7 +223,7 @@ std::vector<std::byte> recording_of(int byte, bool whole) {
   info.scene = "fuzz";
   info.rate = 1000;
   const std::filesystem::path path = folder() / "sound.h5";
-  auto file = session::RecordingFile::create(path, info, ticks.size());
+  auto file = session::RecordingFile::create(path, info, {.rows_max = ticks.size()}, true);
   promise(static_cast<bool>(file), "a recording can be begun");
   const auto some = std::span<const driver::TickRecord>(ticks).first(whole ? 8 : 7);
   promise(static_cast<bool>(file->append(some)), "a recording can be written");

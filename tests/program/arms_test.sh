@@ -121,7 +121,7 @@ if command -v gnuplot >/dev/null; then
   expect_plot links/identify_masses
   expect 0 '^5$' grep -c '^<svg' links/index.html
 fi
-expect 1 'twin\.yaml is there already' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
+expect 2 'twin\.yaml is there already' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
 expect 4 'Motor 1 pulls against its encoder' "$thimble" identify --arm reversed.yaml --output no.yaml
 expect 1 '' test -e no.yaml
 sed 's/^simulation:/&\n  drive_train: {stiffness: [20, 20, 20], inertia: [0.0005, 0.0005, 0.0005], damping: [0.01, 0.01, 0.01]}/' \

@@ -96,7 +96,7 @@ expect 1 'could not be written' bash -c '"$0" --help >/dev/full' "$thimble"
 expect 0 'Scenes' bash -c 'set -o pipefail; "$0" run --list | head -1' "$thimble"
 # A recording in place of the scene that it is of.
 cp scenes/box.yaml scenes/mine.yaml
-expect 2 'mine\.yaml: this file is no recording' \
+expect 2 'mine\.yaml cannot be written: the existing file is not a recording' \
   "$thimble" run scenes/mine.yaml --duration 0.1 --record scenes/mine.yaml
 expect 0 '' cmp scenes/box.yaml scenes/mine.yaml
 sed 's/^seed:.*/rate: 40/' scenes/box.yaml >scenes/slow.yaml
@@ -107,6 +107,6 @@ expect 0 'Waiting for a run' timeout 20 "$thimble" view no_such_run --text --for
 # A report that cannot be written.
 if [ -f "$THIMBLE_MESHES/elephant.off" ]; then
   : >a_file
-  expect 1 'a_file' "$thimble" run scenes/elephant.yaml --duration 0.01 --report a_file/report
+  expect 2 'a_file' "$thimble" run scenes/elephant.yaml --duration 0.01 --report a_file/report
 fi
 finish

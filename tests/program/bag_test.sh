@@ -35,7 +35,7 @@ expect 0 'relative_file_paths' cat out/metadata.yaml
 expect 0 'message_count: 6000' cat out/metadata.yaml
 expect 0 '^/pose geometry_msgs/msg/PoseStamped 2000 ' python3 "$maker" show out
 expect 0 '^/wrench geometry_msgs/msg/WrenchStamped 2000 ' python3 "$maker" show out
-expect 1 'is there already' "$thimble" export hand.h5 --bag out
+expect 2 'the folder is not empty' "$thimble" export hand.h5 --bag out
 expect 2 'csv|bag' "$thimble" export hand.h5
 
 # Round trip: the law feels the same along the exported positions.

@@ -125,7 +125,7 @@ else
 fi
 
 # The disk. A file that may not grow is the same to a program, and anybody can make it so.
-expect 2 'cannot be written here' bash -c \
+expect 2 'small.h5 cannot be written: there is no room for' bash -c \
   'ulimit -f 100; exec "$0" run "$1" --duration 60 --no-view --record small.h5' "$thimble" "$scenes/rubber.yaml"
 cell "file size limit" "opening" "refused with a sentence, no crash"
 expect 0 '' "$thimble" run "$scenes/rubber.yaml" --duration 1 --no-view --record good.h5

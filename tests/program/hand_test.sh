@@ -18,7 +18,7 @@ expect 0 'Recording' "$thimble" run "$scene" --record touch.h5 --no-view
 expect 0 '^touch.wav: 3000 ticks' "$thimble" export touch.h5 --sound touch.wav
 expect 0 '^288044$' stat -c %s touch.wav # 3 s of 48000 samples of 2 bytes
 expect 0 '^yes$' bash -c '[ "$(tail -c +45 touch.wav | tr -d "\0" | wc -c)" -gt 1000 ] && echo yes'
-expect 1 'touch.wav cannot be written' "$thimble" export touch.h5 --sound none/touch.wav
+expect 2 'touch.wav cannot be written' "$thimble" export touch.h5 --sound none/touch.wav
 
 for tool in Xvfb xdotool; do
   command -v $tool >/dev/null || {

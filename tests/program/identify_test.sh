@@ -25,7 +25,7 @@ expect 0 '^Nothing was written\.' $at_terminal wait 'Write these constants to th
 expect 1 '' test -e asked.yaml
 expect 0 'Written to asked\.yaml\.' $at_terminal wait 'asked.yaml? [y/N]' keys 'y\n' -- "$thimble" $brief --output asked.yaml
 expect 0 'mass: 0\.07.*\[I ' cat asked.yaml
-expect 1 'asked\.yaml is there already' $at_terminal -- "$thimble" $endless --output asked.yaml
+expect 2 'asked\.yaml is there already' $at_terminal -- "$thimble" $endless --output asked.yaml
 expect 0 'Written to said\.yaml\.' $at_terminal -- "$thimble" $brief --output said.yaml --yes
 # A script says it by --output or --yes.
 expect 0 '^Nothing was written: name the new file by --output, or answer by --yes' "$thimble" $brief

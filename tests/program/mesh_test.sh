@@ -68,13 +68,13 @@ sed 's/0\.05\]}$/-0.05]}/; s/0\.051\]/-0.049]/' scaled.yaml >inside.yaml
 expect 0 'The tip starts inside part: no surface is felt there until' "$thimble" run inside.yaml --report inside
 expect 0 'Start     the tip was inside part' "$thimble" run inside.yaml
 expect 0 '"part"' grep -A 2 inside_at_start inside/report.json
-expect 1 'end in \.off' "$thimble" mesh good.off --repair good.stl
-expect 1 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
+expect 2 'end in \.off' "$thimble" mesh good.off --repair good.stl
+expect 2 'cannot be written' "$thimble" mesh good.off --repair no_folder/good.off
 # Cutting a mesh into pages.
 expect 0 'good\.pages: 4 triangles in 1 pages' "$thimble" mesh page good.off good.pages
 expect 0 'THMBPAGE' head -c 8 good.pages
 expect 2 'only one triangle' "$thimble" mesh page open.off open.pages
-expect 1 'cannot be written' "$thimble" mesh page good.off no_folder/good.pages
+expect 2 'cannot be written' "$thimble" mesh page good.off no_folder/good.pages
 # What a page file is, and one of any size.
 expect 0 'All pages are whole' "$thimble" mesh good.pages
 expect 0 'bumpy ring of 2048 triangles in 2 pages' "$thimble" mesh generate ring.pages --triangles 2000

@@ -13,7 +13,7 @@ expect 0 '^2001$' grep -c '' run.csv
 
 # The recorded hand touches again: the same scene feels the same to the bit, another one does not.
 for name in elephant tin_can honey; do
-  expect 0 'Recording' "$thimble" run "$source_dir/app/scenes/$name.yaml" --duration 3 --record again.h5
+  expect 0 'Recording' "$thimble" run "$source_dir/app/scenes/$name.yaml" --duration 3 --record again.h5 --force
   expect 0 '3000 ticks of .* every force is the recorded one to the bit' \
     "$thimble" replay again.h5 --verify
 done

@@ -42,7 +42,7 @@ if command -v ffmpeg >/dev/null; then
 else
   echo "NOT TESTED: MP4 and GIF, for want of ffmpeg."
 fi
-expect 1 'cannot be written' "$thimble" shot "$scene" --at 1 --size 160x120 --out no/such/a.png
+expect 2 'cannot be written' "$thimble" shot "$scene" --at 1 --size 160x120 --out no/such/a.png
 expect 1 'screen' env -u DISPLAY -u WAYLAND_DISPLAY "$thimble" view --for 1
 
 if command -v Xvfb >/dev/null; then

@@ -35,7 +35,7 @@ expect 2 '--window' "$thimble" twin free.h5 --arm vintage_phantom --window 0.001
 expect 2 '--arm' "$thimble" twin free.h5
 head -c 20000 free.h5 >half.h5
 expect 2 'half\.h5' "$thimble" twin half.h5 --arm vintage_phantom
-expect 1 'annot' "$thimble" twin free.h5 --arm vintage_phantom --output "$arm/x"
-expect 1 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 \
+expect 2 'cannot be written' "$thimble" twin free.h5 --arm vintage_phantom --output "$arm/x"
+expect 2 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 \
   --record nowhere/free.h5 --output other.yaml
 finish

@@ -81,6 +81,16 @@ def test_a_run_tells_itself_as_the_program_does(told, tmp_path):
     assert run.info["clock"] == "virtual" and run.info["rate"] == 1000
 
 
+def test_recording_is_replaced_only_if_asked(tmp_path):
+    file = tmp_path / "kept.h5"
+    thimble.run("honey", seconds=0.1, record=file)
+    with pytest.raises(thimble.Error, match="overwrite"):
+        thimble.run("honey", seconds=0.2, record=file)
+    assert len(thimble.read_recording(file)) == 100
+    thimble.run("honey", seconds=0.2, record=file, overwrite=True)
+    assert len(thimble.read_recording(file)) == 200
+
+
 def test_records_what_it_returns(tmp_path):
     run = thimble.run("honey", seconds=0.5, record=tmp_path / "honey.h5")
     read = thimble.read_recording(tmp_path / "honey.h5")

@@ -186,7 +186,7 @@ void FaultRig::record(const std::filesystem::path& path) {
   session::RecordingInfo info;
   info.scene = "fault";
   info.rate = 1000;
-  auto recorder = session::Recorder::open(path, info, 10'000);
+  auto recorder = session::Recorder::open(path, info, 10'000, true);
   ASSERT_TRUE(recorder) << recorder.error().message;
   recorder_ = std::move(recorder).value();
   recording_ = path;

@@ -20,6 +20,11 @@ driver::Result<void> check_run_options(RunOptions& options) {
     return driver::Error{"--budget says what --quality auto may spend: name both, or neither."};
   }
   if (auto fits = check_ros_arguments(options.ros); !fits) return fits;
+  if (!options.save_mesh.empty() &&
+      std::filesystem::path(options.save_mesh).extension() != ".off") {
+    return driver::Error{"--save-mesh: " + options.save_mesh +
+                         ": a mesh is written as OFF; let the name end in .off."};
+  }
   if (options.stepped() && options.devices != std::vector<std::string>{"sim"}) {
     return driver::Error{"A real arm has the time of the world: leave --clock virtual away."};
   }
@@ -96,6 +101,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.real_arms = arms.several;
   asked.firmware = options.firmware;
   asked.record = options.record;
+  asked.overwrite = options.force;
   asked.log = true;
   asked.share_out =
       !options.name.empty() || for_a_person || options.loop || (real_time && !options.no_view);
@@ -219,8 +225,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::Range(1.0, 1e9));
   command.add_option("--report", options.report,
                      "Folder for report.json, pictures and index.html, a page that plays the run");
-  command.add_option("--record", options.record,
-                     "Recording of every tick to write (HDF5; thimble export makes a table of it)");
+  CLI::Option* record = command.add_option(
+      "--record", options.record,
+      "Recording of every tick to write (HDF5; thimble export makes a table of it)");
+  command.add_flag("--force", options.force, "Let --record replace an existing recording")
+      ->needs(record);
   CLI::Option* save = command.add_option(
       "--save-mesh", options.save_mesh,
       "OFF file for the meshes as they are at the end: moved, dented, sculpted (world, m)");

@@ -25,6 +25,7 @@ struct RunOptions {
   std::string arm_file;
   std::string firmware;
   std::string record;
+  bool force = false;  // replace an existing recording
   std::string save_mesh;
   std::string save_object;
   std::string hand = "path";

@@ -1,24 +1,20 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
-#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/study/end_study.h"
+#include "output/output_plan.h"
 #include "studies/study.h"
 
 namespace thimble::app {
 namespace {
 
 int run_study(const Study& study, const std::filesystem::path& folder) {
-  std::error_code status;
-  std::filesystem::create_directories(folder, status);
-  if (!std::filesystem::is_directory(folder, status)) {
-    return complain({"Cannot make the folder " + folder.string() +
-                     "; name one that may be written with --out."},
-                    kExitBadInput);
-  }
+  output::OutputPlan plan;
+  plan.write_folder("--out", folder, {"figures.json"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto figures = study.run(folder);
   if (!figures) return complain(figures.error(), kExitTrouble);
   return end_study(*figures, folder);

@@ -2,13 +2,14 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
+#include "output/output_file.h"
+#include "output/output_plan.h"
 #include "report/figure.h"
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/quality_points.h"
@@ -27,19 +28,19 @@ struct AccuracyOptions {
 
 int run_accuracy(const AccuracyOptions& options) {
   if (!options.table.empty()) {
-    const auto written = write_text(quality_table_text(), options.table);
+    output::OutputPlan plan;
+    plan.write("--table", options.table, output::kQualityTable);
+    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    const auto written =
+        output::write_file(options.table, output::kQualityTable, quality_table_text());
     if (!written) return complain(written.error(), kExitTrouble);
     std::printf("Points for --quality auto: %s\n", options.table.c_str());
     return kExitDone;
   }
   const std::filesystem::path folder = options.out;
-  std::error_code status;
-  std::filesystem::create_directories(folder, status);
-  if (!std::filesystem::is_directory(folder, status)) {
-    return complain({"Cannot make the folder " + folder.string() +
-                     "; name one that may be written with --out."},
-                    kExitBadInput);
-  }
+  output::OutputPlan plan;
+  plan.write_folder("--out", folder, {"figures.json", "index.html"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto figures = study_accuracy(options.axes, !options.no_count, folder);
   if (!figures) return complain(figures.error(), kExitBadInput);
   return end_study(*figures, folder, "; the page is index.html there");
@@ -72,8 +73,10 @@ driver::Result<void> write_gating_runs(const std::string& scene, const GatingRep
 
 int run_gating(const GatingOptions& options) {
   const std::filesystem::path folder = options.out;
-  std::error_code status;
-  std::filesystem::create_directories(folder, status);
+  output::OutputPlan plan;
+  plan.read(options.scene);
+  plan.write_folder("--out", folder, {"figures.json", "gating.txt", "index.html"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto report = decide_gating(options.scene, !options.no_count);
   if (!report) return complain(report.error(), kExitBadInput);
   const std::string text = gating_text(*report);

@@ -2,13 +2,13 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
 #include "interrupt.h"
+#include "output/output_plan.h"
 #include "studies/stability/study_stability.h"
 #include "studies/trouble/study_trouble.h"
 
@@ -40,13 +40,9 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
   const auto team = SweepTeam::join();
   if (!team) return complain(team.error(), kExitBadInput);
   const bool leads = *team == nullptr || (*team)->rank() == 0;
-  std::error_code status;
-  if (leads) std::filesystem::create_directories(choice.out, status);
-  if (leads && !std::filesystem::is_directory(choice.out, status)) {
-    return complain(
-        {"Cannot make the folder " + choice.out + "; name one that may be written with --out."},
-        kExitBadInput);
-  }
+  output::OutputPlan plan;
+  if (leads) plan.write_folder("--out", choice.out, {"figures.json"});
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto report = run(
       SweepOptions{
           .folder = choice.out, .jobs = choice.jobs, .resume = choice.resume, .team = team->get()},

@@ -62,6 +62,7 @@ driver::Result<void> ArmRun::prepare(int number) {
   asked.terms = arm->terms;
   asked.firmware = options_.firmware;
   asked.record = recording_of(options_.record, index_, number);
+  asked.overwrite = options_.overwrite;
   asked.log = true;
   asked.homed = options_.homed;
   asked.hand_by_mouse = options_.hand == "mouse" && !arm->real;

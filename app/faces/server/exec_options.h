@@ -28,6 +28,7 @@ struct ExecOptions {
   std::string scene = {};             ///< Name or path; empty: nothing but what the program draws.
   std::string hand = "path";          ///< "path": the scene's; "mouse"; or a file (hand_path.h).
   std::filesystem::path record = {};  ///< Recording of every tick; empty: none.
+  bool overwrite = false;             ///< `record` may replace existing recordings.
   std::filesystem::path firmware = {};  ///< For a real arm that needs some.
   /// Ticks wait for the program: the same result each time, as fast as it goes. Only with simulated
   /// arms, and without a viewer.

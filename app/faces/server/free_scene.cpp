@@ -1,5 +1,6 @@
 #include "faces/server/free_scene.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -18,7 +19,7 @@ driver::Result<std::unique_ptr<FreeScene>> FreeScene::make(const std::string& ar
   std::error_code status;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(status);
   std::string pattern = (folder / "thimble-free-XXXXXX.yaml").string();
-  const int file = mkstemps(pattern.data(), 5);
+  const int file = mkostemps(pattern.data(), 5, O_CLOEXEC);
   if (file < 0) {
     return driver::Error{"No file can be written in " + folder.string() +
                          "; free some room there, or name another folder in TMPDIR."};

@@ -52,6 +52,7 @@ class Run:
         seed: Optional[int] = None,
         quality: str = "normal",
         record: str = "",
+        overwrite: bool = False,
         firmware: str = "",
         law: Union[None, Callable[[Any], Any], tuple[int, int, object]] = None,
         homed: bool = False,

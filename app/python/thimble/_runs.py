@@ -70,6 +70,7 @@ def run(
     arm: Optional[PathOrName] = None,
     quality: str = "normal",
     record: Optional[PathOrName] = None,
+    overwrite: bool = False,
     law: Optional[Law] = None,
     meshes: Optional[Meshes] = None,
 ) -> Run:
@@ -83,6 +84,8 @@ def run(
     ``{"ball.stiffness": 300, "ball.effects.friction.coefficient": 0.2, "rate": 2000}``. seconds: how long; the scene's own if absent. seed: of
     everything random; the scene's own if absent. arm: file or name in place of the scene's arm.
     quality: "draft", "normal", "reference" or "auto". record: HDF5 file to write every tick into.
+    overwrite: let it replace an existing recording; without it that is an Error, and a file of another
+    kind is never replaced.
 
     law: a force law in place of the scene's: ``law(tick)`` is asked in each tick for the force on the
     hand, three numbers (N, in the world), or None for the scene's own, which is
@@ -95,7 +98,7 @@ def run(
     Raises Error, with what to do, if scene, arm or mesh cannot be had. A fault of the arm is no
     exception: ``end`` is "fault" then, and the last tick names it.
     """
-    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law, meshes=meshes)
+    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, overwrite=overwrite, law=law, meshes=meshes)
     held.run()
     why_not = "it had a force law of its own" if law is not None else ""
     if quality != "normal":
@@ -121,11 +124,12 @@ class Stepper(Held):
         arm: Optional[PathOrName] = None,
         quality: str = "normal",
         record: Optional[PathOrName] = None,
+        overwrite: bool = False,
         law: Optional[Law] = None,
         meshes: Optional[Meshes] = None,
     ) -> None:
         self._run = begin(
-            scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, law=law, meshes=meshes
+            scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, overwrite=overwrite, law=law, meshes=meshes
         )
 
     def step(self, hand: Optional[ArrayLike] = None) -> bool:

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "output/output_file.h"
 #include "report/page/page_block.h"
 #include "report/page/page_libraries.h"
 #include "report/page/page_parts.h"
@@ -124,7 +125,7 @@ driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* 
 driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::path& file) {
   const auto text = page_text(touch);
   if (!text) return text.error();
-  return write_text(*text, file);
+  return output::write_file(file, output::kWebPage, *text);
 }
 
 }  // namespace thimble::app

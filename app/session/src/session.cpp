@@ -10,7 +10,9 @@
 #include "log/logger.h"
 #include "more_arms.h"
 #include "observers/page_server.h"
+#include "output/output_file.h"
 #include "print.h"
+#include "recording/recording_layout.h"
 #include "recording/write_black_box.h"
 #include "run_loop.h"
 #include "run_records.h"
@@ -151,7 +153,8 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   session->parts_->add_records();
   if (options.knobs && session->arms() == 1) session->parts_->add_knobs();
   if (!options.record.empty()) {
-    if (auto begun = session->begin_recording(options.record); !begun) return begun.error();
+    if (auto begun = session->begin_recording(options.record, options.overwrite); !begun)
+      return begun.error();
   }
   if (options.share || options.share_out) {
     const auto shared = session->parts_->share(options);
@@ -342,18 +345,27 @@ std::optional<render::TriangleMesh> Session::deepest_dent() const {
   return bent(objects.mesh_W(), objects.place(static_cast<std::size_t>(patch.object)), patch);
 }
 
-driver::Result<void> Session::begin_recording(const std::filesystem::path& path) {
+driver::Result<void> Session::begin_recording(const std::filesystem::path& path, bool overwrite) {
   constexpr double kLongest = 86400;  // s, of a run without an end; chosen
   const Setup& setup = *parts_->setup;
   const auto ticks_most =
       setup.ticks() > 0 ? setup.ticks()
                         : static_cast<std::uint64_t>(std::ceil(kLongest * setup.scene().rate));
+  // All files before the first is begun. A single one is checked where it is opened.
+  for (std::size_t arm = 0; arms() > 1 && arm < arms(); ++arm) {
+    const auto file = file_of_arm(path, arm_name(arm));
+    const auto place = output::resolve_output(file);
+    if (!place) return place.error();
+    auto may = output::check_replaceable(file, *place, kRecordingOutput, overwrite);
+    if (!may) return may;
+  }
   if (parts_->shared) {
     parts_->shared->set_recording_path(std::filesystem::absolute(path).string());
   }
   for (std::size_t arm = 0; arm < arms(); ++arm) {
-    auto begun = parts_->records_of(arm).recording.begin(
-        file_of_arm(path, arm_name(arm)), setup.recording_info(arm), ticks_most, setup.real_time());
+    auto begun = parts_->records_of(arm).recording.begin(file_of_arm(path, arm_name(arm)),
+                                                         setup.recording_info(arm), ticks_most,
+                                                         setup.real_time(), overwrite);
     if (!begun) return begun;
   }
   return {};

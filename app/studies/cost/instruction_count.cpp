@@ -18,7 +18,7 @@ std::optional<double> instructions_of(const std::string& subject, int strokes) {
                               program + "' cost-probe '" + subject + "' " +
                               std::to_string(strokes) + " 2>&1 >/dev/null";
   const auto close = [](std::FILE* pipe) { pclose(pipe); };
-  const std::unique_ptr<std::FILE, decltype(close)> pipe(popen(command.c_str(), "r"), close);
+  const std::unique_ptr<std::FILE, decltype(close)> pipe(popen(command.c_str(), "re"), close);
   if (!pipe) return std::nullopt;
   std::optional<double> count;
   std::array<char, 512> line;

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "report/figure.h"
+#include "output/output_file.h"
 #include "text_file.h"
 #include "text_sum.h"
 
@@ -104,7 +104,7 @@ driver::Result<std::unique_ptr<SweepJournal>> SweepJournal::open(const std::file
                                                                  std::size_t cells, bool resume,
                                                                  CellNumbers& numbers) {
   numbers.assign(cells, {});
-  auto lock = FolderLock::take(file.parent_path());
+  auto lock = output::FolderLock::take(file.parent_path());
   if (!lock) return lock.error();
   const std::string heading = heading_of(key, cells);
   std::error_code status;
@@ -142,12 +142,7 @@ bool SweepJournal::add(std::size_t cell, std::span<const double> numbers) {
 driver::Result<void> SweepJournal::finish(const CellNumbers& numbers) {
   std::string text = heading_;
   for (std::size_t cell = 0; cell < numbers.size(); ++cell) text += line_of(cell, numbers[cell]);
-  const std::filesystem::path fresh = file_.string() + ".new";
-  if (auto done = write_text(text, fresh); !done) return done;
-  std::error_code status;
-  std::filesystem::rename(fresh, file_, status);
-  if (status) return unwritable(file_);
-  return {};
+  return output::write_file(file_, output::kPlainText, text);
 }
 
 }  // namespace thimble::app

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "studies/sweep/folder_lock.h"
+#include "output/folder_lock.h"
 #include "studies/sweep/sweep.h"
 #include "thimble/driver/result.h"
 
@@ -37,13 +37,14 @@ class SweepJournal {
   driver::Result<void> finish(const CellNumbers& numbers);
 
  private:
-  SweepJournal(FolderLock lock, std::filesystem::path file, std::string heading, int descriptor)
+  SweepJournal(output::FolderLock lock, std::filesystem::path file, std::string heading,
+               int descriptor)
       : lock_(std::move(lock)),
         file_(std::move(file)),
         heading_(std::move(heading)),
         descriptor_(descriptor) {}
 
-  FolderLock lock_;
+  output::FolderLock lock_;
   std::filesystem::path file_;
   std::string heading_;
   int descriptor_;

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <limits>
+
+#include "output/output_file.h"
 
 namespace thimble::app::view {
 namespace {
@@ -52,12 +53,7 @@ driver::Result<void> write_wav(std::span<const float> samples, int rate, const s
   bytes += "data";
   put(bytes, data_bytes, 4);
   for (const std::int16_t x : sixteen_bits(samples)) put(bytes, static_cast<std::uint16_t>(x), 2);
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  if (!stream)
-    return driver::Error{file + " cannot be written: is there room, and may you write there?"};
-  return {};
+  return output::write_file(file, output::kSound, bytes);
 }
 
 }  // namespace thimble::app::view

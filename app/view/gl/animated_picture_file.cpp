@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "view/gl/colour_table.h"
+#include "view/gl/picture_file.h"
 
 // An animated PNG [PNG 3rd edition, W3C] is a PNG with chunks more: one that says how many pictures
 // follow, and for each picture where it goes and its pixels. The system's libpng writes the file
@@ -160,11 +161,15 @@ driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, do
   for (const Picture& picture : pictures) all.push_back(&picture);
   const ColourTable table(all);
   const std::vector<Chunk> chunks = chunks_of(pictures, frame_time, table);
-  std::FILE* const out = std::fopen(file.c_str(), "wb");
+  auto target = output::OutputFile::open(file, output::kPng);
+  if (!target) return target.error();
+  std::FILE* const out = write_stream(*target);
   const bool written = out != nullptr && PngFile().write(out, pictures[0], table, chunks);
   const bool closed = out != nullptr && std::fclose(out) == 0;
-  if (!written || !closed) return driver::Error{file.string() + " cannot be written."};
-  return {};
+  if (!written || !closed) {
+    return driver::Error{file.string() + " cannot be written: is there room on the disk?"};
+  }
+  return target->commit();
 }
 
 }  // namespace thimble::app::view

@@ -15,6 +15,8 @@
 #include <memory>
 #include <string>
 
+#include "output/output_file.h"
+
 namespace thimble::app::view {
 namespace {
 
@@ -160,9 +162,11 @@ driver::Result<void> write_film(const std::vector<Picture>& pictures, double fra
   if (said == nullptr || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return driver::Error{file.string() + " cannot be written: this computer is out of files."};
   }
+  auto target = output::OutputFile::open(file, output::kFilm);
+  if (!target) return target.error();
   Descriptor ours(ends[0]);
   Descriptor theirs(ends[1]);
-  const Ffmpeg ffmpeg(words_for(pictures.front(), frame_time, file), theirs.number(),
+  const Ffmpeg ffmpeg(words_for(pictures.front(), frame_time, target->part()), theirs.number(),
                       fileno(said.get()));
   theirs.close_now();
   bool sent = true;
@@ -170,7 +174,7 @@ driver::Result<void> write_film(const std::vector<Picture>& pictures, double fra
   ours.close_now();
   const Ended ended = ffmpeg.wait();
   if (ended == Ended::kMissing) return missing();
-  if (ended == Ended::kGood && sent) return {};
+  if (ended == Ended::kGood && sent) return target->commit();
   const std::string text = text_of(said.get());
   return driver::Error{file.string() + " cannot be written by ffmpeg" +
                        (text.empty() ? std::string(".") : ": " + text)};

@@ -1,6 +1,8 @@
 #include "view/gl/picture_file.h"
 
+#include <fcntl.h>
 #include <png.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -25,8 +27,9 @@ png_image image_of(const Picture& picture, png_uint_32 format) {
 
 driver::Result<void> write_png(const Picture& picture, const std::filesystem::path& file,
                                PngColours colours) {
-  // Opened here: libpng deletes what it opened and could not write, be it a device.
-  std::FILE* const out = std::fopen(file.c_str(), "wb");
+  auto target = output::OutputFile::open(file, output::kPng);
+  if (!target) return target.error();
+  std::FILE* const out = write_stream(*target);
   if (out == nullptr) return driver::Error{file.string() + " cannot be written."};
   int written = 0;
   if (colours == PngColours::kAll) {
@@ -40,8 +43,18 @@ driver::Result<void> write_png(const Picture& picture, const std::filesystem::pa
     written = png_image_write_to_stdio(&image, out, 0, numbers.data(), 0, table.colours().data());
   }
   const bool closed = std::fclose(out) == 0;
-  if (written == 0 || !closed) return driver::Error{file.string() + " cannot be written."};
-  return {};
+  if (written == 0 || !closed) {
+    return driver::Error{file.string() + " cannot be written: is there room on the disk?"};
+  }
+  return target->commit();
+}
+
+std::FILE* write_stream(const output::OutputFile& file) {
+  const int copy = fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 3);
+  if (copy < 0) return nullptr;
+  std::FILE* const stream = fdopen(copy, "wb");
+  if (stream == nullptr) close(copy);
+  return stream;
 }
 
 driver::Result<Picture> read_png(const std::filesystem::path& file) {

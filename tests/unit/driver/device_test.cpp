@@ -176,6 +176,17 @@ TEST_F(DeviceTest, TakesTheNewestReportAndCountsTheOthers) {
   EXPECT_EQ(device_->wire_counters().skipped, 2u);
 }
 
+TEST_F(DeviceTest, TickNumbersNeverRepeatAfterActivation) {
+  open_and_activate();
+  for (std::uint64_t number = 0; number < 8; ++number) {
+    if (number == 3) device_->trip(Fault::kOverSpeed);
+    if (number == 5) device_->ask_to_activate();
+    wire_.to_host.push_back(report());
+    tick({0, 0, 0});
+    EXPECT_EQ(device_->state().tick, number);
+  }
+}
+
 TEST_F(DeviceTest, SendsZeroInTheTickOfAForceThatIsNotANumber) {
   open_and_activate();
   settle();

@@ -14,6 +14,7 @@
 #include "bringup/identify/new_file/file_lines.h"
 #include "bringup/identify/new_file/identified_further.h"
 #include "bringup/identify/new_file/links_section.h"
+#include "output/output_file.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
 
@@ -270,14 +271,7 @@ driver::Result<std::string> text_of(const std::filesystem::path& arm_file) {
 }
 
 driver::Result<void> write_new(const std::filesystem::path& new_file, const std::string& text) {
-  std::ofstream out(new_file);
-  out << text;
-  out.close();
-  if (!out) {
-    return driver::Error{new_file.string() +
-                         " cannot be written; look at its folder and its disk."};
-  }
-  return {};
+  return output::write_file(new_file, output::kArmFile, text);
 }
 
 }  // namespace

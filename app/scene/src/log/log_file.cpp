@@ -1,19 +1,50 @@
 #include "log/log_file.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/rotating_file_sink.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <exception>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "log/console.h"
+#include "output/output_file.h"
 
 namespace thimble::scene {
 namespace {
 
 constexpr const char* kLine = "%Y-%m-%dT%H:%M:%S.%e%z %-8l %P %n: %v";
+
+/// Fails if a file of another kind has the name.
+driver::Result<void> check(const std::filesystem::path& path) {
+  const auto place = output::resolve_output(path);
+  if (!place) return place.error();
+  struct stat about {};
+  if (place->stream && ::stat(path.c_str(), &about) == 0 && S_ISFIFO(about.st_mode)) {
+    return output::cannot_write(path, "it is a pipe. Name a file.");
+  }
+  return output::check_replaceable(path, *place, output::kLogFile, false);
+}
+
+/// Makes the file, for its owner only, before the library opens it.
+void make_owned(const spdlog::filename_t& path) {
+  const int made = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY, 0600);
+  if (made >= 0) ::close(made);
+}
+
+/// Takes an older file from other users, and does not leave it to children.
+void keep_owned(const spdlog::filename_t&, std::FILE* stream) {
+  const int descriptor = fileno(stream);
+  struct stat about {};
+  if (::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode)) ::fchmod(descriptor, 0600);
+  ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+}
 
 }  // namespace
 
@@ -23,11 +54,16 @@ LogFile::LogFile(std::filesystem::path path, Growth growth, std::string heading)
 void LogFile::open_it() {
   const std::filesystem::path folder = path_.parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
+  // Several processes may append to one log, whose lines have their numbers: it is not locked.
+  if (auto may = check(path_); !may) throw std::runtime_error(may.error().message);
+  spdlog::file_event_handlers handlers;
+  handlers.before_open = make_owned;
+  handlers.after_open = keep_owned;
   if (growth_ == Growth::kRotates) {
     file_ = std::make_shared<spdlog::sinks::rotating_file_sink_st>(path_.string(), kBytesMost,
-                                                                   kFilesMost - 1);
+                                                                   kFilesMost - 1, false, handlers);
   } else {
-    file_ = std::make_shared<spdlog::sinks::basic_file_sink_st>(path_.string());
+    file_ = std::make_shared<spdlog::sinks::basic_file_sink_st>(path_.string(), false, handlers);
   }
   file_->set_pattern(kLine);
   file_->log({"thimble", spdlog::level::info, heading_});

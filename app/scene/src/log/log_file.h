@@ -13,9 +13,10 @@
 namespace thimble::scene {
 
 /// The file that a process logs to: a line per message with the time (ISO 8601), the level, the
-/// number of the process and who says it. Opened with the first message. Where it cannot be
-/// written the log ends, the user is told once, and everything else goes on. From any thread.
-/// Real-time: never from the servo thread.
+/// number of the process and who says it. Only its owner can read it (mode 0600), and a file that
+/// is no log is never appended to. Opened with the first message. Where it cannot be written the
+/// log ends, the user is told once, and everything else goes on. From any thread. Real-time: never
+/// from the servo thread.
 class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   /// Bytes of a file and number of files that are kept when it rotates: 5 MB. [chosen: an hour of

@@ -8,8 +8,8 @@ namespace thimble::session {
 
 driver::Result<std::unique_ptr<Recorder>> Recorder::open(const std::filesystem::path& path,
                                                          const RecordingInfo& info,
-                                                         std::uint64_t ticks_max) {
-  auto file = RecordingFile::create(path, info, ticks_max);
+                                                         std::uint64_t ticks_max, bool replace) {
+  auto file = RecordingFile::create(path, info, {.rows_max = ticks_max}, replace);
   if (!file) return file.error();
   return std::unique_ptr<Recorder>(new Recorder(std::move(file).value()));
 }
@@ -52,9 +52,15 @@ void Recorder::serve() noexcept {
 driver::Result<void> Recorder::finish() {
   stop_thread();
   while (ring_.waiting() > 0) serve();
-  auto finished = file_.finish();
+  auto finished = file_.finish(!trouble_ && dropped() == 0);
   if (trouble_) return *trouble_;
   if (!finished) return finished;
+  if (file_.left_out() > 0) {
+    return driver::Error{path().string() + ": the recording is full after " +
+                         std::to_string(file_.rows()) + " ticks; the " +
+                         std::to_string(file_.left_out()) +
+                         " after them are missing. Record long runs in several files."};
+  }
   if (dropped() > 0) {
     return driver::Error{path().string() + ": the disk was too slow for " +
                          std::to_string(dropped()) +

@@ -24,11 +24,12 @@ class Recorder {
   /// The room for ticks on their way to the disk: 8 s at 1 kHz, for disks that pause.
   static constexpr std::size_t kRingTicks = 8192;
 
-  /// Begins a recording of at most `ticks_max` ticks. The error is that of RecordingFile::create.
-  /// Real-time: never from the servo thread.
+  /// Begins a recording of at most `ticks_max` ticks. `replace` and the error are those of
+  /// RecordingFile::create. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<Recorder>> open(const std::filesystem::path& path,
                                                         const RecordingInfo& info,
-                                                        std::uint64_t ticks_max);
+                                                        std::uint64_t ticks_max,
+                                                        bool replace = false);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   /// Ends the thread; a recording that was not finished counts as cut off.
@@ -49,8 +50,9 @@ class Recorder {
   /// Returns how many ticks wait to be written. Real-time: safe.
   std::size_t waiting() const noexcept { return ring_.waiting(); }
 
-  /// Writes what is left and ends the file. The error says after which tick the recording ended and
-  /// why, or how many ticks found no room. Real-time: never from the servo thread.
+  /// Writes what is left and ends the file, which is complete only if it lacks no tick. The error
+  /// says after which tick the recording ended and why, or how many ticks it lacks. Real-time:
+  /// never from the servo thread.
   driver::Result<void> finish();
 
   /// Returns how many ticks found no room, because the disk was too slow. Real-time: safe.

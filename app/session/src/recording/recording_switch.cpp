@@ -8,9 +8,9 @@ namespace thimble::session {
 
 driver::Result<void> RecordingSwitch::begin(const std::filesystem::path& path,
                                             const RecordingInfo& info, std::uint64_t ticks_max,
-                                            bool by_thread) {
+                                            bool by_thread, bool replace) {
   if (auto stopped = stop(); !stopped) return stopped;
-  auto recorder = Recorder::open(path, info, ticks_max);
+  auto recorder = Recorder::open(path, info, ticks_max, replace);
   if (!recorder) return recorder.error();
   recorder_ = std::move(recorder).value();
   by_thread_ = by_thread;

@@ -27,10 +27,10 @@ class RecordingSwitch final : public TickObserver {
   }
 
   /// Begins a recording of at most `ticks_max` ticks; ends the one before. With `by_thread` a
-  /// thread writes, otherwise the servo's own, for virtual time. Real-time: never from the servo
-  /// thread.
+  /// thread writes, otherwise the servo's own, for virtual time. `replace` as for Recorder::open.
+  /// Real-time: never from the servo thread.
   driver::Result<void> begin(const std::filesystem::path& path, const RecordingInfo& info,
-                             std::uint64_t ticks_max, bool by_thread);
+                             std::uint64_t ticks_max, bool by_thread, bool replace = false);
   /// Ends the recording, if there is one. The error is that of Recorder::finish.
   /// Real-time: never from the servo thread.
   driver::Result<void> stop();

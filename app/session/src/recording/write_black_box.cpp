@@ -59,8 +59,12 @@ driver::Result<fs::path> write_black_box(std::span<const driver::TickRecord> tic
     cause = std::string(name(tick.fault));
     break;
   }
-  const fs::path path =
-      folder / (time_as_name() + "-" + scene::as_file_name(info.scene) + "-" + cause + ".h5");
+  const std::string name = time_as_name() + "-" + scene::as_file_name(info.scene) + "-" + cause;
+  fs::path path = folder / (name + ".h5");
+  // Several arms may fail in the same millisecond.
+  for (int number = 2; fs::exists(path, status); ++number) {
+    path = folder / (name + "-" + std::to_string(number) + ".h5");
+  }
   if (auto written = write_recording(path, info, ticks); !written) return written.error();
   return path;
 }

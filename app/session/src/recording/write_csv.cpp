@@ -3,8 +3,9 @@
 #include <array>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <string>
+
+#include "output/output_file.h"
 
 namespace thimble::session {
 namespace {
@@ -60,8 +61,10 @@ std::string heading() {
 }  // namespace
 
 driver::Result<void> write_csv(const Recording& recording, const std::filesystem::path& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << heading() << '\n';
+  auto file = output::OutputFile::open(path, output::kTable);
+  if (!file) return file.error();
+  constexpr std::size_t kPiece = std::size_t{1} << 16;
+  std::string text = heading() + '\n';
   std::string line;
   for (const driver::TickRecord& tick : recording.ticks) {
     line.clear();
@@ -72,14 +75,14 @@ driver::Result<void> write_csv(const Recording& recording, const std::filesystem
         add_number(line, column.type, from + k * column.element());
       }
     }
-    file << line << '\n';
+    text += line;
+    text += '\n';
+    if (text.size() < kPiece) continue;
+    if (auto written = file->write(text); !written) return written;
+    text.clear();
   }
-  file.close();
-  if (!file) {
-    return driver::Error{path.string() +
-                         ": cannot be written. Is the folder there, and room on the disk?"};
-  }
-  return {};
+  if (auto written = file->write(text); !written) return written;
+  return file->commit();
 }
 
 }  // namespace thimble::session

@@ -8,6 +8,8 @@
 #include "events/event_words.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "output/output_file.h"
+#include "recording/recording_layout.h"
 #include "run_records.h"
 #include "setup.h"
 #include "thimble/scene/scene_file.h"
@@ -25,15 +27,33 @@ std::string recording_name(const std::string& scene) {
   return run_name_of(scene) + time;
 }
 
+/// Fails if a recording cannot be begun under this name.
+driver::Result<void> check_new_recording(const Session& session, const std::string& path) {
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    const auto file = file_of_arm(path, session.arm_name(arm));
+    const auto place = output::resolve_output(file);
+    if (!place) return place.error();
+    auto may = output::check_replaceable(file, *place, kRecordingOutput, false);
+    if (!may) return may;
+  }
+  return {};
+}
+
 }  // namespace
 
 void ViewerRequestHandler::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
+  const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
+  if (order.record) {
+    // Before the recording that runs is ended for it.
+    if (auto may = check_new_recording(session_, path); !may) {
+      return scene::logger().error("{}", may.error().message);
+    }
+  }
   if (auto stopped = session_.end_recording(); !stopped) {
     scene::logger().error("{}", stopped.error().message);
   }
   if (!order.record) return;
-  const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (auto begun = session_.begin_recording(path); !begun) {
     scene::logger().error("{}", begun.error().message);
   }

@@ -84,7 +84,7 @@ driver::Error broken(const std::filesystem::path& file, const std::string& why) 
 }  // namespace
 
 driver::Result<HeightImage> HeightImage::load(const std::filesystem::path& file) {
-  const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "rb"));
+  const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "rbe"));
   if (!stream) return broken(file, "it cannot be opened");
   PngReader reader;
   if (!reader.begin(stream.get())) return broken(file, reader.said());

@@ -1,4 +1,5 @@
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
@@ -13,7 +14,9 @@
 #include <gtest/gtest.h>
 
 #include "observers/black_box.h"
+#include "recording/h5_handle.h"
 #include "recording/recorder.h"
+#include "recording/recording_file.h"
 #include "support/heap_guard.h"
 #include "support/long_form.h"
 #include "support/scratch.h"
@@ -144,7 +147,7 @@ TEST(Recording, OfAnOlderProgramHasNoHeatAndNoOrientation) {
 TEST(Recording, IsAsShortAsTheRunWas) {
   for (const std::uint64_t ticks : {0U, 1U, 999U}) {
     const auto path = scratch("short.h5");
-    auto recorder = session::Recorder::open(path, kInfo, 1'000'000);
+    auto recorder = session::Recorder::open(path, kInfo, 1'000'000, true);
     ASSERT_TRUE(recorder);
     for (std::uint64_t i = 0; i < ticks; ++i) (**recorder)(tick_number(i));
     ASSERT_TRUE((*recorder)->finish());
@@ -156,7 +159,7 @@ TEST(Recording, IsAsShortAsTheRunWas) {
       EXPECT_TRUE(same(read->ticks.back(), tick_number(ticks - 1)));
     }
     EXPECT_LT(std::filesystem::file_size(path), 64'000 + ticks * 300);
-    EXPECT_FALSE(std::filesystem::exists(scratch("short.h5.part")));
+    EXPECT_FALSE(std::filesystem::exists(scratch("short.thimble-part.h5")));
   }
 }
 
@@ -168,7 +171,7 @@ TEST(Recording, KilledInTheMiddleOpensAndLacksLessThanATenthOfASecond) {
     ASSERT_EQ(pipe(pipe_ends), 0);
     const pid_t child = fork();
     if (child == 0) {
-      auto recorder = session::Recorder::open(path, kInfo, 36'000'000);
+      auto recorder = session::Recorder::open(path, kInfo, 36'000'000, true);
       if (!recorder) _exit(1);
       (*recorder)->start_thread();
       for (std::uint64_t i = 0;; ++i) {
@@ -236,7 +239,149 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
   const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->ticks.size(), 1000U);
+  EXPECT_FALSE(read->complete);
   EXPECT_TRUE(same(read->ticks.back(), tick_number(999)));
+  EXPECT_FALSE(std::filesystem::exists(scratch("full.thimble-part.h5")));
+}
+
+TEST(Recording, BeyondItsLongestTimeIsNotComplete) {
+  const auto path = scratch("longest.h5");
+  auto recorder = session::Recorder::open(path, kInfo, 100);
+  ASSERT_TRUE(recorder);
+  for (std::uint64_t i = 0; i < 150; ++i) (**recorder)(tick_number(i));
+  const auto finished = (*recorder)->finish();
+  ASSERT_FALSE(finished);
+  EXPECT_NE(finished.error().message.find("the 50 after them are missing"), std::string::npos)
+      << finished.error().message;
+  const auto read = session::read_recording(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->ticks.size(), 100U);
+  EXPECT_FALSE(read->complete);
+}
+
+// The first room is small, so that the file grows many times.
+TEST(Recording, GrowsAsItIsWritten) {
+  const auto path = scratch("grows.h5");
+  constexpr std::uint64_t kTicks = 5000;
+  {
+    auto file = session::RecordingFile::create(path, kInfo, {.rows_max = 1'000'000, .room = 16});
+    ASSERT_TRUE(file) << file.error().message;
+    std::vector<TickRecord> ticks;
+    for (std::uint64_t i = 0; i < kTicks; ++i) {
+      ticks.push_back(tick_number(i));
+      if (ticks.size() < 1 + i % 23) continue;
+      const auto appended = file->append(ticks);
+      ASSERT_TRUE(appended) << appended.error().message;
+      ticks.clear();
+      // It can be read at any moment.
+      if (i % 1000 > 976) {
+        const auto now = session::read_recording(path);
+        ASSERT_TRUE(now) << now.error().message;
+        EXPECT_EQ(now->ticks.size(), i + 1);
+        EXPECT_FALSE(now->complete);
+      }
+    }
+    ASSERT_TRUE(file->append(ticks));
+    ASSERT_TRUE(file->finish(true));
+  }
+  const auto read = session::read_recording(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(read->complete);
+  ASSERT_EQ(read->ticks.size(), kTicks);
+  for (std::uint64_t i = 0; i < kTicks; ++i) ASSERT_TRUE(same(read->ticks[i], tick_number(i))) << i;
+}
+
+// A file system without holes (FAT) has no room for a whole day at once.
+TEST(Recording, OfAWholeDayBeginsSmall) {
+  const auto path = scratch("day.h5");
+  const auto recorder = session::Recorder::open(path, kInfo, 86'400'000);
+  ASSERT_TRUE(recorder) << recorder.error().message;
+  EXPECT_LT(std::filesystem::file_size(path), 100'000'000U);
+}
+
+TEST(Recording, EndsWhereTheFileCannotGrow) {
+  const auto path = scratch("cannot_grow.h5");
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    auto file = session::RecordingFile::create(path, kInfo, {.rows_max = 1'000'000, .room = 100});
+    if (!file) _exit(1);
+    const rlimit full{std::filesystem::file_size(path), RLIM_INFINITY};
+    if (setrlimit(RLIMIT_FSIZE, &full) != 0) _exit(2);
+    std::vector<TickRecord> ticks;
+    for (std::uint64_t i = 0; i < 150; ++i) ticks.push_back(tick_number(i));
+    const auto appended = file->append(ticks);
+    if (appended) _exit(3);
+    if (appended.error().message.find("after 100 ticks") == std::string::npos) _exit(4);
+    _exit(file->finish(false) ? 0 : 5);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const auto read = session::read_recording(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->ticks.size(), 100U);
+  EXPECT_FALSE(read->complete);
+  EXPECT_FALSE(std::filesystem::exists(scratch("cannot_grow.thimble-part.h5")));
+}
+
+TEST(Recording, IsReadableByItsOwnerOnly) {
+  const auto path = scratch("private.h5");
+  const mode_t before = umask(0);
+  auto recorder = session::Recorder::open(path, kInfo, 100);
+  const auto mode = std::filesystem::status(path).permissions();
+  ASSERT_TRUE(recorder && (*recorder)->finish());
+  umask(before);
+  EXPECT_EQ(mode, std::filesystem::perms(0600));
+  EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms(0600));
+}
+
+TEST(Recording, SecondWriterIsRefused) {
+  const auto path = scratch("twice.h5");
+  const auto first = session::Recorder::open(path, kInfo, 100);
+  ASSERT_TRUE(first);
+  for (const bool replace : {false, true}) {
+    const auto second = session::Recorder::open(path, kInfo, 100, replace);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("being written"), std::string::npos)
+        << second.error().message;
+  }
+}
+
+TEST(Recording, CanBeReadWhileItIsWritten) {
+  const auto path = scratch("read_along.h5");
+  const auto recorder = session::Recorder::open(path, kInfo, 100);
+  ASSERT_TRUE(recorder);
+  (**recorder)(tick_number(0));
+  (*recorder)->serve();
+  const auto read = session::read_recording(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->ticks.size(), 1U);
+}
+
+TEST(Recording, SymbolicLinkStays) {
+  const auto link = scratch("link.h5");
+  std::filesystem::create_symlink("behind_link.h5", link);
+  auto recorder = session::Recorder::open(link, kInfo, 100);
+  ASSERT_TRUE(recorder && (*recorder)->finish());
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_TRUE(session::read_recording(scratch("behind_link.h5")));
+}
+
+TEST(Recording, Hdf5FileOfAnotherProgramIsKept) {
+  const auto path = scratch("other_program.h5");
+  session::silence_hdf5();
+  {
+    const session::H5Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                                 H5Fclose);
+    ASSERT_TRUE(file.good());
+  }
+  const auto size = std::filesystem::file_size(path);
+  const auto refused = session::Recorder::open(path, kInfo, 10, true);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("not a recording"), std::string::npos)
+      << refused.error().message;
+  EXPECT_EQ(std::filesystem::file_size(path), size);
 }
 
 TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
@@ -248,6 +393,7 @@ TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
   const auto finished = (*recorder)->finish();
   ASSERT_FALSE(finished);
   EXPECT_NE(finished.error().message.find("10 ticks"), std::string::npos);
+  EXPECT_FALSE(session::read_recording(scratch("slow.h5"))->complete);
 }
 
 TEST(Recording, ThatCannotBeWrittenSaysWhere) {
@@ -256,19 +402,30 @@ TEST(Recording, ThatCannotBeWrittenSaysWhere) {
   EXPECT_NE(refused.error().message.find("/proc/no/such/place.h5"), std::string::npos);
 }
 
-TEST(Recording, OverwritesARecordingAndNothingElse) {
+TEST(Recording, FileOfAnotherKindIsKept) {
   const auto scene = scratch("precious.yaml");
   std::ofstream(scene) << "name: precious\n";
-  const auto refused = session::Recorder::open(scene, kInfo, 10);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("precious.yaml: this file is no recording"),
-            std::string::npos);
+  for (const bool replace : {false, true}) {
+    const auto refused = session::Recorder::open(scene, kInfo, 10, replace);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("precious.yaml cannot be written: the existing file is "
+                                           "not a recording"),
+              std::string::npos)
+        << refused.error().message;
+  }
   std::string kept;
   std::getline(std::ifstream(scene), kept);
   EXPECT_EQ(kept, "name: precious");
+}
+
+TEST(Recording, IsReplacedOnlyIfThatIsAllowed) {
   const auto again = scratch("again.h5");
   std::ofstream(again).flush();  // an empty file holds nothing to lose
-  for (int time = 0; time < 2; ++time) EXPECT_TRUE(session::Recorder::open(again, kInfo, 10));
+  EXPECT_TRUE(session::Recorder::open(again, kInfo, 10));
+  const auto refused = session::Recorder::open(again, kInfo, 10);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("--force"), std::string::npos) << refused.error().message;
+  EXPECT_TRUE(session::Recorder::open(again, kInfo, 10, true));
 }
 
 TEST(Recording, TellsNamesThatCannotMoveATerminal) {
@@ -301,7 +458,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
 #endif
   const auto path = scratch("damaged.h5");
   const auto bytes_of = [&](std::uint64_t first) {
-    auto recorder = session::Recorder::open(path, kInfo, 4);
+    auto recorder = session::Recorder::open(path, kInfo, 4, true);
     EXPECT_TRUE(recorder);
     for (std::uint64_t i = 0; i < 4; ++i) (**recorder)(tick_number(first + i));
     EXPECT_TRUE((*recorder)->finish());

@@ -44,7 +44,8 @@ std::filesystem::path file_of_arm(const std::filesystem::path& path,
 struct Recording {
   RecordingInfo info;                     ///< What it is of.
   std::vector<driver::TickRecord> ticks;  ///< Every tick, oldest first.
-  bool complete = false;                  ///< False if it was cut off, by a crash or a full disk.
+  /// False if it was cut off, or lacks ticks: after a crash, a full disk, or its longest time.
+  bool complete = false;
 };
 
 /// One column of a recording: one number or some of each tick.
@@ -73,9 +74,11 @@ std::span<const RecordingColumn> recording_columns() noexcept;
 /// makes no sense.
 driver::Result<Recording> read_recording(const std::filesystem::path& path);
 
-/// Writes a whole recording at once, as complete. The error says what cannot be written.
+/// Writes a whole recording at once, as complete. `overwrite`: an existing recording of that name
+/// is replaced; a file of another kind never is. The error says what cannot be written.
 driver::Result<void> write_recording(const std::filesystem::path& path, const RecordingInfo& info,
-                                     std::span<const driver::TickRecord> ticks);
+                                     std::span<const driver::TickRecord> ticks,
+                                     bool overwrite = false);
 
 /// Writes a recording as a table: a line that names the columns with their units
 /// ("p_WT.x [m]"), then one per tick, numbers so that they read back to the bit.

@@ -86,6 +86,7 @@ struct SessionOptions {
   std::map<std::string, std::optional<RealArmUse>> real_arms = {};
   std::filesystem::path firmware = {};  ///< for a real arm that needs some (Falcon)
   std::filesystem::path record = {};    ///< where every tick is written; empty: nowhere
+  bool overwrite = false;               ///< `record` may replace an existing recording
   bool share = false;                   ///< lets a viewer in this process see the run
   bool share_if_possible = false;       ///< goes on unseen where there is no shared memory
   bool share_out = false;               ///< lets viewers of other processes see it
@@ -246,9 +247,10 @@ class Session {
   std::optional<render::TriangleMesh> deepest_dent() const;
 
   /// Begins a recording of every tick from now on; ends the one before. Of several arms each has a
-  /// file of its own (file_of_arm). One thread beside the servo's. Real-time: never from the servo
-  /// thread.
-  driver::Result<void> begin_recording(const std::filesystem::path& path);
+  /// file of its own (file_of_arm). `overwrite`: existing recordings of these names are replaced;
+  /// without it they are an error, as files of another kind always are. One thread beside the
+  /// servo's. Real-time: never from the servo thread.
+  driver::Result<void> begin_recording(const std::filesystem::path& path, bool overwrite = false);
   /// Ends the recording, if there is one, and returns its file, of several arms that of the first.
   /// The error says which ticks it lacks and why. As above.
   driver::Result<std::optional<std::filesystem::path>> end_recording();

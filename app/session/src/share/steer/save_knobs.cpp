@@ -86,7 +86,10 @@ driver::Result<void> write_scene(const std::string& text, const fs::path& file) 
     return driver::Error{"The knobs as they are make no scene of their own: " +
                          read.error().message};
   }
-  fs::rename(draft, file, status);
+  // A link to the scene stays a link.
+  std::error_code none;
+  const fs::path target = fs::is_symlink(file, none) ? fs::canonical(file, none) : file;
+  fs::rename(draft, target, status);
   if (!status) return {};
   return driver::Error{file.string() + " cannot be written: " + status.message() + "."};
 }

@@ -1,0 +1,220 @@
+#!/usr/bin/env bash
+# No output destroys anything: every output option of every command, in one table (`file` and `folder` below), is refused before the
+# work begins where it names an input, a file of another kind, a folder that does not exist or cannot be written to, or what another
+# process writes. The end looks whether an option of the program is missing in the table.
+source "$(dirname "$0")/expect.sh" "$@"
+scenes=$source_dir/app/scenes
+sed "s#^arm: .*#arm: $source_dir/app/arms/vintage_phantom.yaml#" "$scenes/box.yaml" >scene.yaml
+cp "$source_dir/app/arms/vintage_phantom.yaml" arm.yaml
+printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >mesh.off
+printf 't x y z\n0 0 0 0.03\n1 0 0 0.02\n' >probe.traj
+"$thimble" run scene.yaml --duration 0.05 --record in.h5 >/dev/null 2>&1 || { echo "FAILED: no recording" && exit 1; }
+"$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 --record free.h5 --output free.yaml >/dev/null 2>&1 ||
+  { echo "FAILED: no motion" && exit 1; }
+printf 'precious\n# a, b\nname: kept\n' >precious
+table=" "
+
+# refused FILE PATTERN COMMAND...: the command ends with 2 and a matching sentence within the time in which no work is done, and FILE is
+# as it was.
+refused() {
+  local file=$1 pattern=$2 before
+  shift 2
+  before=$(md5sum "$file" 2>&1)
+  expect 2 "$pattern" timeout 20 "$@"
+  checks=$((checks + 1))
+  [ "$(md5sum "$file" 2>&1)" = "$before" ] && return
+  echo "FAILED: $* changed $file"
+  failures=$((failures + 1))
+}
+# with OUT COMMAND...: prints the words of the command, a line each, with OUT in place of its word OUT.
+with() {
+  local out=$1 word
+  shift
+  for word; do printf '%s\n' "${word/#OUT/$out}"; done
+}
+# file OPTION ENDING INPUTS COMMAND...: an option that writes a file. INPUTS: files that the command reads (words in one argument).
+file() {
+  local option=$1 ending=$2 inputs=$3 input link words
+  shift 3
+  table="$table$1:$option "
+  mapfile -t words < <(with "none/out$ending" "$@")
+  refused precious 'none.*(does not exist|cannot be written)' "$thimble" "${words[@]}"
+  cp precious "kept$ending"
+  mapfile -t words < <(with "kept$ending" "$@")
+  refused "kept$ending" "kept$ending" "$thimble" "${words[@]}"
+  for input in $inputs; do
+    rm -f "soft$ending" "hard$ending"
+    ln -s "$input" "soft$ending"
+    ln "$input" "hard$ending"
+    for link in "soft$ending" "hard$ending"; do
+      mapfile -t words < <(with "$link" "$@")
+      refused "$input" "$link cannot be written" "$thimble" "${words[@]}"
+    done
+  done
+  mapfile -t words < <(with "locked$ending" "$@")
+  refused precious 'being written' flock "locked.thimble-part$ending" "$thimble" "${words[@]}"
+  rm -f "locked.thimble-part$ending" "soft$ending" "hard$ending"
+}
+# folder OPTION COMMAND...: an option that writes a folder.
+folder() {
+  local option=$1 words
+  shift
+  table="$table$1:$option "
+  mapfile -t words < <(with "precious" "$@")
+  refused precious 'precious.*(not a folder|Not a directory|cannot be written)' "$thimble" "${words[@]}"
+  mapfile -t words < <(with "/proc/none/out" "$@")
+  refused precious '/proc/none' "$thimble" "${words[@]}"
+  mkdir -p locked
+  mapfile -t words < <(with "locked" "$@")
+  refused precious 'being written' flock locked "$thimble" "${words[@]}"
+  rm -rf kept
+  mkdir kept
+  cp precious kept/figures.json
+  mapfile -t words < <(with "kept" "$@")
+  refused kept/figures.json 'figures.json|not empty' "$thimble" "${words[@]}"
+}
+
+run=(run scene.yaml --duration 0.05)
+file --record .h5 "scene.yaml" "${run[@]}" --record OUT
+file --save-mesh .off "scene.yaml" "${run[@]}" --save-mesh OUT
+folder --report "${run[@]}" --report OUT
+file --csv .csv in.h5 export in.h5 --csv OUT
+file --sound .wav in.h5 export in.h5 --sound OUT
+folder --bag export in.h5 --bag OUT
+file --record .h5 "in.h5" replay in.h5 --record OUT
+file --record .h5 "in.h5" replay in.h5 --force --record OUT
+file --page .html in.h5 replay in.h5 --page OUT
+file --csv .csv in.h5 replay in.h5 --csv OUT
+file OUT .pages mesh.off mesh page mesh.off OUT
+file OUT .pages "" mesh generate OUT --triangles 5000
+file --repair .off mesh.off mesh mesh.off --repair OUT
+file --picture .png mesh.off mesh mesh.off --picture OUT
+file --out .png scene.yaml shot scene.yaml --at 0.1 --size 64x64 --out OUT
+file --animate .png scene.yaml shot scene.yaml --at 0.1 --until 0.2 --size 64x64 --animate OUT
+folder --out tune scene.yaml --out OUT
+folder --out bench scene.yaml --seconds 1 --out OUT
+folder --output twin free.h5 --arm vintage_phantom --output OUT
+folder --report identify --device sim --arm vintage_phantom --seconds 10 --output new.yaml --report OUT
+file --record .h5 arm.yaml identify --device sim --arm arm.yaml --seconds 10 --output new.yaml --record OUT
+file --output .yaml arm.yaml identify --device sim --arm arm.yaml --seconds 10 --output OUT
+file --json .json arm.yaml hil --device sim --arm arm.yaml --json OUT
+file --junit .xml arm.yaml hil --device sim --arm arm.yaml --junit OUT
+file --record .h5 "scene.yaml arm.yaml" exec --device sim --scene scene.yaml --arm arm.yaml --record OUT true
+file --trace .txt "" plug woodenhaptics --port 0 --trace OUT
+folder --out study friction --out OUT
+folder --out study gating scene.yaml --out OUT
+folder --out study accuracy --no-count --out OUT
+file --table .inc "" study accuracy --table OUT
+folder --out study stability --arm vintage_phantom --coarse --out OUT
+folder --out study trouble --arm vintage_phantom --count 10 --out OUT
+file --picture .png in.h5 view in.h5 --for 1 --picture OUT
+for log in scene.yaml precious in.h5 mesh.off; do
+  refused $log "--log: $log cannot be written|$log: the log cannot be written" "$thimble" "${run[@]}" --log $log
+done
+table="$table all:--log "
+
+# Options that name outputs, as the manual describes them, are in the table; --save-as and --save-knobs write new files only, --control
+# makes a pipe, and --record of view asks the run to record.
+"$thimble" manual >manual
+awk '/^\.SS/ { command = $2; next } /^\.TP/ { getline; option = $0; getline
+    if (/[Tt]o write|^Write|Folder for|OFF file for|File to log to/) print command, option }' manual |
+  sed -E 's/\\fB|\\fR.*//g; s/\\-/-/g' >writes
+checks=$((checks + 1))
+while read -r command option; do
+  option=${option##*,}
+  case "$table" in *":$option "*) continue ;; esac
+  case $option in --control | --save-knobs | --write-bad-fit | --yes | --all-colours) continue ;; esac
+  echo "FAILED: $command $option is not in the table of this test"
+  failures=$((failures + 1))
+done <writes
+checks=$((checks + 1))
+[ "$(wc -l <writes)" -ge 25 ] || { echo "FAILED: the manual names few outputs" && failures=$((failures + 1)); }
+
+# Two outputs of one name, and through a link.
+refused in.h5 'name the same place' "$thimble" export in.h5 --csv same --sound same
+ln -sf new_name link_to_new
+refused in.h5 'name the same place' "$thimble" export in.h5 --csv new_name --sound link_to_new
+
+# A recording is a measurement: it is replaced only with --force, and links stay.
+"$thimble" run scene.yaml --duration 0.05 --record once.h5 >/dev/null 2>&1
+refused once.h5 'a recording exists there already.*--force' "$thimble" "${run[@]}" --record once.h5
+expect 0 'Recording: once.h5' "$thimble" "${run[@]}" --record once.h5 --force
+ln -s once.h5 linked.h5
+expect 0 'Recording: linked.h5' "$thimble" "${run[@]}" --record linked.h5 --force
+expect 0 '' test -L linked.h5
+# An HDF5 file of another program is not replaced, with --force either.
+printf '\x89HDF\r\n\x1a\n of another program' >other.h5
+refused other.h5 'not a recording' "$thimble" "${run[@]}" --record other.h5 --force
+# Other outputs of the same kind are replaced, and their mode is kept.
+expect 0 '' "$thimble" export in.h5 --csv table.csv
+chmod 640 table.csv
+expect 0 '' "$thimble" export in.h5 --csv table.csv
+expect 0 '^640$' stat -c %a table.csv
+
+# Two runs at once: of one recording, and of one folder.
+"$thimble" run scene.yaml --clock wall --duration 20 --no-view --record busy.h5 --report busy >busy.txt 2>&1 &
+pid=$!
+for _ in $(seq 500); do [ -e busy.h5 ] && break; sleep 0.02; done
+expect 2 'busy.h5 cannot be written: it is being written or read by process' "$thimble" "${run[@]}" --record busy.h5 --force
+expect 2 'busy is being written by process' "$thimble" "${run[@]}" --report busy
+kill -INT $pid
+wait $pid
+expect 0 'ticks of box at' "$thimble" export busy.h5 --csv busy.csv
+
+# Recordings, logs and black boxes can be read by their owner only, whatever the umask.
+(umask 0 && XDG_STATE_HOME=$PWD/state "$thimble" run scene.yaml --duration 0.05 --record secret.h5 --log secret.log) >/dev/null 2>&1
+(umask 0 && XDG_STATE_HOME=$PWD/state "$thimble" run scene.yaml --duration 0.05) >/dev/null 2>&1
+for secret in secret.h5 secret.log state/thimble/log/thimble.log; do expect 0 '^600$' stat -c %a $secret; done
+
+# Closed standard streams: no output gets their numbers.
+expect 0 '' bash -c 'exec 2>&-; "$0" run scene.yaml --duration 0.05 --record closed.h5 --log /dev/stderr' "$thimble"
+expect 0 '^closed.csv: 50 ticks' "$thimble" export closed.h5 --csv closed.csv
+for closed in '0<&-' '1>&-' '2>&-' '0<&- 1>&- 2>&-'; do
+  rm -f closed.h5
+  bash -c "'$thimble' run scene.yaml --duration 0.05 --record closed.h5 -vv $closed" >/dev/null 2>&1
+  expect 0 '^closed.csv: 50 ticks of box at 1000 Hz\.$' "$thimble" export closed.h5 --csv closed.csv
+done
+
+# Killed while it makes a recording: there is none, or one that can be opened.
+unreadable=0
+[ -n "${THIMBLE_LONG:-}" ] && tries=300 || tries=40
+for _ in $(seq $tries); do
+  rm -f killed*.h5
+  "$thimble" run scene.yaml --clock wall --duration 20 --no-view --record killed.h5 >/dev/null 2>&1 &
+  pid=$!
+  # Until the first bytes of it are there, under any name.
+  for _ in $(seq 2000); do [ -e killed.h5 ] || [ -e killed.thimble-part.h5 ] && break; done
+  kill -9 $pid
+  wait $pid 2>/dev/null
+  [ -e killed.h5 ] && ! "$thimble" export killed.h5 --csv killed.csv >/dev/null 2>&1 && unreadable=$((unreadable + 1))
+done
+expect 0 '^0$' echo $unreadable
+# What is left of it is used again.
+expect 0 'Recording: killed.h5' "$thimble" "${run[@]}" --record killed.h5 --force
+expect 1 '' test -e killed.thimble-part.h5
+
+# A full disk, and one that cannot be written to, are found before the run; nothing is left.
+cat >disks.sh <<'END'
+mkdir -p full readonly
+mount -t tmpfs -o size=64k tmpfs full && mount -t tmpfs -o ro tmpfs readonly || exit 77
+head -c 1m /dev/zero >full/all 2>/dev/null
+"$1" run scene.yaml --duration 1 --record full/run.h5; echo "full: $?"
+ls full
+"$1" run scene.yaml --duration 1 --report readonly/out; echo "readonly: $?"
+"$1" run scene.yaml --duration 1 --save-mesh readonly/out.off; echo "readonly mesh: $?"
+END
+if unshare -rm true 2>/dev/null; then
+  unshare -rm bash disks.sh "$thimble" >disks.txt 2>&1
+  if [ $? = 77 ]; then
+    leave_out "full and read-only disks: no file system in memory may be mounted"
+  else
+    expect 0 '^full: 2$' cat disks.txt
+    expect 1 '' grep -E 'part' disks.txt
+    expect 0 '^readonly: 2$' cat disks.txt
+    expect 0 '^readonly mesh: 2$' cat disks.txt
+    expect 0 'Read-only file system' cat disks.txt
+  fi
+else
+  leave_out "full and read-only disks: no file system may be mounted here"
+fi
+finish
