@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
+#include "interrupt.h"
 #include "report/figure.h"
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/quality_points.h"
@@ -23,6 +25,7 @@ struct AccuracyOptions {
   std::string out = "study-accuracy";
   std::string table;
   bool no_count = false;
+  bool resume = false;
 };
 
 int run_accuracy(const AccuracyOptions& options) {
@@ -40,9 +43,18 @@ int run_accuracy(const AccuracyOptions& options) {
                      "; name one that may be written with --out."},
                     kExitBadInput);
   }
-  const auto figures = study_accuracy(options.axes, !options.no_count, folder);
-  if (!figures) return complain(figures.error(), kExitBadInput);
-  return end_study(*figures, folder, "; the page is index.html there");
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  const auto report = study_accuracy({.axes = options.axes,
+                                      .count = !options.no_count,
+                                      .resume = options.resume,
+                                      .folder = folder},
+                                     stop);
+  if (!report) return complain(report.error(), kExitBadInput);
+  if (report->stopped) {
+    std::printf("Stopped early; the same command with --resume goes on.\n");
+    return kExitInterrupted;
+  }
+  return end_study(report->figures, folder, "; the page is index.html there");
 }
 
 struct GatingOptions {
@@ -115,6 +127,8 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code) {
   command->add_flag(
       "--no-count", options->no_count,
       "Do not count instructions, which takes minutes; time alone says what is cheaper");
+  command->add_flag("--resume", options->resume,
+                    "Continue where an interrupted run of the same options ended");
   command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import Any, Callable, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 
 _QUARTILE = {"logistic": math.log(3.0), "probit": 0.6744897501960817}  # from the middle to 75 %, in widths
 _LAPSES = np.linspace(0.0, 0.06, 13)  # looked through with lapse="fit"; more would be no lapse [chosen]
-_MIDDLES, _WIDTHS = np.linspace(0.05, 0.95, 10), (0.02, 0.07, 0.2, 0.6)  # to begin at, over the levels' span
+# A grid to begin at, over the levels' span, and how many of its valleys are refined.
+_MIDDLES = np.linspace(-0.5, 1.5, 41)
+_LOG_WIDTHS = np.linspace(math.log(0.005), math.log(4.0), 14)
+_BEGINS_MOST = 8
 _STEPS_MOST = 100
 _NARROWEST = 1e-3  # width over the levels' span; what is narrower is a step as far as answers tell
 
@@ -173,8 +176,7 @@ def _fitted(
                 return loss, values
         return loss, values
 
-    begins = [np.array([middle, math.log(width)]) for middle in _MIDDLES for width in _WIDTHS]
-    loss, best = improved(min(begins, key=lambda one: _loss(at(one)[0], k, n)))
+    loss, best = min((improved(one) for one in _begins(at, k, n)), key=lambda one: one[0])
     _refuse_flat(k, n, loss)
     matrix, _ = information(best)
     errors = np.full(2, math.nan)
@@ -196,6 +198,21 @@ def _fitted(
         deviance=max(0.0, 2.0 * (loss - own)),
     )
     return curve, held
+
+
+def _begins(at: Callable[[Array], tuple[Array, Array]], k: Array, n: Array) -> list[Array]:
+    """Give the values to refine: local minima of a grid over middle and log width, the best few.
+
+    The loss has several valleys, above all with guess > 0, and the best point of the grid is not always in
+    the deepest.
+    """
+    grid = np.array([[_loss(at(np.array([m, w]))[0], k, n) for w in _LOG_WIDTHS] for m in _MIDDLES])
+    around = np.pad(grid, 1, constant_values=math.inf)
+    rows, columns = grid.shape
+    near = [around[1 + i : 1 + i + rows, 1 + j : 1 + j + columns] for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    valleys = np.argwhere(grid <= np.min(near, axis=0))
+    best = sorted(valleys.tolist(), key=lambda one: float(grid[one[0], one[1]]))[:_BEGINS_MOST]
+    return [np.array([_MIDDLES[i], _LOG_WIDTHS[j]]) for i, j in best]
 
 
 def _refuse_flat(k: Array, n: Array, loss: float) -> None:
