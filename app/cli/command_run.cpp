@@ -17,6 +17,7 @@
 #include "cli/end_run.h"
 #include "cli/file_options.h"
 #include "cli/options/run_options.h"
+#include "cli/usage/usage_error.h"
 #include "faces/ros2/ros_run.h"
 #include "interrupt.h"
 #include "log/logger.h"
@@ -172,7 +173,10 @@ struct RunCourse {
 driver::Result<int> find_saved(const session::Session& session, const RunOptions& options) {
   if (options.save_object.empty()) return -1;
   if (const auto object = session.find_object(options.save_object)) return *object;
-  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"."};
+  std::vector<std::string> names;
+  for (const auto& object : session.scene().objects) names.push_back(object.name);
+  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"." +
+                       suggestion(options.save_object, names)};
 }
 
 /// Prepares what comes next, unseen and unrecorded while the run before goes on.

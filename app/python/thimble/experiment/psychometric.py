@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Any, Callable, Union
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -139,7 +139,7 @@ def _loss(p: Array, k: Array, n: Array) -> float:
 def _fitted(
     x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
 ) -> tuple[Psychometric, bool]:
-    """Fit middle and log of the width by Fisher's scoring with halved steps, from the best of a few."""
+    """Fit middle and log of the width by Fisher's scoring with halved steps, from each of a few valleys."""
     first, span = float(x[0]), float(x[-1] - x[0])
     x = (x - first) / span  # from 0 to 1, whatever the unit
     range_ = 1.0 - guess - lapse
@@ -156,27 +156,35 @@ def _fitted(
         weight = 1.0 / (p * (1.0 - p))
         return (by * weight * n) @ by.T, by @ (weight * (k - n * p))
 
+    def nearer(values: Array, step: Array, loss: float) -> tuple[float, Array]:
+        step = step * min(1.0, 1.0 / max(np.abs(step).max(), 1e-300))
+        for halved in range(30):
+            tried = values + step * 0.5**halved
+            tried[1] = min(max(tried[1], narrowest), narrowest + 14.0)
+            there = _loss(at(tried)[0], k, n)
+            if there < loss:
+                return there, tried
+        return loss, values
+
     def improved(values: Array) -> tuple[float, Array]:
         loss = _loss(at(values)[0], k, n)
         for _ in range(_STEPS_MOST):
             matrix, ascent = information(values)
-            scale = 1e-9 * np.trace(matrix) + 1e-300
-            step = np.linalg.solve(matrix + scale * np.eye(2), ascent)
-            step *= min(1.0, 1.0 / max(np.abs(step).max(), 1e-300))
-            for halved in range(30):
-                tried = values + step * 0.5**halved
-                tried[1] = min(max(tried[1], narrowest), narrowest + 14.0)
-                there = _loss(at(tried)[0], k, n)
-                if there < loss:
-                    break
-            else:
+            # Where one level decides, the matrix is all but singular, and damped steps get on better.
+            there, tried = loss, values
+            for damping in (1e-9, 1e-3, 1.0):
+                damped = matrix + (damping * np.trace(matrix) + 1e-300) * np.eye(2)
+                there, tried = min(
+                    (there, tried), nearer(values, np.linalg.solve(damped, ascent), loss), key=lambda one: one[0]
+                )
+            if not there < loss:
                 return loss, values
             gained, loss, values = loss - there, there, tried
             if gained < 1e-12 * (1.0 + loss):
                 return loss, values
         return loss, values
 
-    loss, best = min((improved(one) for one in _begins(at, k, n)), key=lambda one: one[0])
+    loss, best = min((improved(one) for one in _begins(x, k, n, shape, guess, lapse)), key=lambda one: one[0])
     _refuse_flat(k, n, loss)
     matrix, _ = information(best)
     errors = np.full(2, math.nan)
@@ -200,19 +208,27 @@ def _fitted(
     return curve, held
 
 
-def _begins(at: Callable[[Array], tuple[Array, Array]], k: Array, n: Array) -> list[Array]:
-    """Give the values to refine: local minima of a grid over middle and log width, the best few.
+def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float) -> list[Array]:
+    """Give the values to refine: the best local minima of a grid over middle and log width, apart from each other.
 
-    The loss has several valleys, above all with guess > 0, and the best point of the grid is not always in
-    the deepest.
+    The loss has several valleys, above all with guess > 0, and the best point of a grid is not always in the
+    deepest. x: the levels, from 0 to 1.
     """
-    grid = np.array([[_loss(at(np.array([m, w]))[0], k, n) for w in _LOG_WIDTHS] for m in _MIDDLES])
+    z = (x - _MIDDLES[:, None, None]) / np.exp(_LOG_WIDTHS)[None, :, None]
+    p = np.clip(guess + (1.0 - guess - lapse) * rising(shape, z), 1e-12, 1.0 - 1e-12)
+    grid = -(k * np.log(p) + (n - k) * np.log(1.0 - p)).sum(axis=2)
     around = np.pad(grid, 1, constant_values=math.inf)
     rows, columns = grid.shape
     near = [around[1 + i : 1 + i + rows, 1 + j : 1 + j + columns] for i in (-1, 0, 1) for j in (-1, 0, 1)]
-    valleys = np.argwhere(grid <= np.min(near, axis=0))
-    best = sorted(valleys.tolist(), key=lambda one: float(grid[one[0], one[1]]))[:_BEGINS_MOST]
-    return [np.array([_MIDDLES[i], _LOG_WIDTHS[j]]) for i, j in best]
+    valleys = np.argwhere(grid <= np.min(near, axis=0)).tolist()
+    chosen: list[list[int]] = []
+    for valley in sorted(valleys, key=lambda one: float(grid[one[0], one[1]])):
+        # Points of one flat place begin alike.
+        if all(max(abs(valley[0] - one[0]), abs(valley[1] - one[1])) > 2 for one in chosen):
+            chosen.append(valley)
+        if len(chosen) == _BEGINS_MOST:
+            break
+    return [np.array([_MIDDLES[i], _LOG_WIDTHS[j]]) for i, j in chosen]
 
 
 def _refuse_flat(k: Array, n: Array, loss: float) -> None:
