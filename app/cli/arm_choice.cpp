@@ -36,6 +36,11 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
     if (plugged_in && !chosen.real_arm) left = scene::boards_left_out(*plugged_in);
   }
   if (!chosen.real_arm) {
+    if (choice.arm_file.empty() && choice.device == "sim") {
+      return driver::Error{
+          "--device sim needs to know which arm to simulate: add --arm NAME, such as --arm "
+          "vintage_phantom; `thimble run --list` lists the arms."};
+    }
     if (choice.arm_file.empty()) {
       return driver::Error{
           std::string("No arm is plugged in that can be told for sure (thimble devices). Plug it "
@@ -61,6 +66,10 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
                         found->why + ").");
   chosen.told.insert(chosen.told.end(), found->told.begin(), found->told.end());
   return chosen;
+}
+
+ExitCode exit_code_of(const ArmChoice& refused) {
+  return refused.device == "sim" ? kExitBadInput : kExitNoDevice;
 }
 
 SimulatedNote::SimulatedNote(const ChosenArm& arm, const char* kept) {

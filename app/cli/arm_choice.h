@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/exit_code.h"
 #include "thimble/driver/discovery.h"
 #include "thimble/scene/arm_file.h"
 
@@ -34,6 +35,10 @@ struct ChosenArm {
 /// calibration unless it is chosen `for_calibration`; else the simulated one of --arm. The error
 /// says what to do. Real-time: never from the servo thread.
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration);
+
+/// Returns the exit code of a command whose arm could not be resolved: wrong arguments or a wrong
+/// file if the arm is simulated, else no device.
+ExitCode exit_code_of(const ArmChoice& refused);
 
 /// Says on the first and the last line that an arm is simulated, so that nobody takes what was
 /// found for the arm on the desk.

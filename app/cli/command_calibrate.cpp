@@ -88,7 +88,7 @@ int let_find_zero(const std::string& name) {
 
 int calibrate(const ArmChoice& choice, bool dry_run) {
   auto chosen = resolve(choice, true);
-  if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  if (!chosen) return complain(chosen.error(), exit_code_of(choice));
   if (chosen->real_arm && chosen->real_arm->kind == driver::ArmKind::kDhd && !dry_run) {
     return let_find_zero(chosen->name);
   }

@@ -19,6 +19,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/options/ros_options.h"
+#include "cli/usage/usage_error.h"
 #include "faces/core/open_channel.h"
 #include "faces/haply/haply_service.h"
 #include "faces/ros2/ros_module.h"
@@ -324,8 +325,13 @@ void add_exec_command(CLI::App& app, int& exit_code) {
   command->add_flag("--homed", options.homed, "A real arm was in its home pose when it got power");
   command->add_flag("--no-real-time", options.no_real_time,
                     "Use a real arm though the loop gets no real-time priority");
-  command->callback(
-      [asked, command, &exit_code] { exit_code = run_program(*asked, command->remaining()); });
+  command->callback([asked, command, &exit_code] {
+    const auto words = command->remaining();
+    // What stands before PROGRAM is an option of ours.
+    exit_code = !words.empty() && words.front().starts_with('-') && words.front() != "--"
+                    ? complain({unknown_word(*command, words.front())}, kExitBadInput)
+                    : run_program(*asked, words);
+  });
 }
 
 }  // namespace thimble::app

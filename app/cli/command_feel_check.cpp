@@ -43,7 +43,7 @@ driver::Result<void> keep_result(const ChosenArm& chosen, const std::string& fir
 int check_arm(const ArmChoice& choice, double listen) {
   auto chosen = resolve(choice, false);
   if (!chosen) {
-    return complain(chosen.error(), kExitNoDevice);
+    return complain(chosen.error(), exit_code_of(choice));
   }
   const SimulatedNote simulated(*chosen, "record of this check");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());

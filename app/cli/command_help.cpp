@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/usage/usage_error.h"
 #include "scene_keys.h"
 
 namespace thimble::app {
@@ -29,10 +30,12 @@ int print_keys(const HelpOptions& options) {
   const std::string text =
       options.page ? scene::key_page(keys) : scene::key_text(keys, options.key);
   if (text.empty()) {
-    return complain(
-        driver::Error{"No key of " + options.file + " files is called \"" + options.key +
-                      "\"; `thimble help " + options.file + "` lists all."},
-        kExitBadInput);
+    std::vector<std::string> names;
+    for (const scene::KeyNote& key : keys) names.push_back(key.key);
+    return complain(driver::Error{"No key of " + options.file + " files is called \"" +
+                                  options.key + "\"; `thimble help " + options.file +
+                                  "` lists all." + suggestion(options.key, names)},
+                    kExitBadInput);
   }
   std::printf("%s", text.c_str());
   return kExitDone;

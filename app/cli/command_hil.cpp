@@ -87,7 +87,7 @@ int run_hil(HilCommand command) {
   plan.write("--junit", command.junit, output::kXml);
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto chosen = resolve(command.choice, false);
-  if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "result of a real arm");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   const std::atomic<bool>& stop = scene::catch_interrupts();

@@ -158,7 +158,7 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const Identifi
 
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
-  if (!chosen) return complain(chosen.error(), kExitNoDevice);
+  if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
   for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {

@@ -2,6 +2,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "arms/falcon/falcon_boot.h"
 #include "bringup/identify/arm_constants.h"
@@ -17,6 +19,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/plug_orders.h"
+#include "cli/usage/usage_error.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "output/output_file.h"
@@ -235,6 +238,16 @@ int plug(const PlugOptions& options) {
   return attachment.failed() ? kExitTrouble : kExitDone;
 }
 
+/// Returns what is wrong with the name of a simulated USB arm; "" if there is one.
+std::string check_arm_name(const std::string& name) {
+  std::vector<std::string> names;
+  for (const usb::ShelfEntry& entry : usb::kShelf) names.emplace_back(entry.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return {};
+  std::string known;
+  for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+  return "expected one of " + known + "; found \"" + name + "\"." + suggestion(name, names);
+}
+
 std::string arm_list() {
   std::string list = "Which arm:";
   for (const usb::ShelfEntry& entry : usb::kShelf) {
@@ -249,7 +262,9 @@ void add_plug_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "plug", "Export a simulated arm as a USB device that this kernel can plug in (USB/IP)");
   auto options = std::make_shared<PlugOptions>();
-  command->add_option("ARM", options->arm, arm_list())->required();
+  command->add_option("ARM", options->arm, arm_list())
+      ->required()
+      ->check(CLI::Validator(check_arm_name, ""));
   command->add_option("--port", options->port, "TCP port; 0 takes any free one")
       ->capture_default_str();
   command

@@ -17,6 +17,7 @@
 #include "cli/end_run.h"
 #include "cli/file_options.h"
 #include "cli/options/run_options.h"
+#include "cli/usage/usage_error.h"
 #include "faces/ros2/ros_run.h"
 #include "files/scene_inputs.h"
 #include "interrupt.h"
@@ -49,9 +50,16 @@
 namespace thimble::app {
 namespace {
 
+/// Prints on standard output, unless the user wants errors only.
+template <class... Args>
+void report(fmt::format_string<Args...> format, Args&&... args) {
+  if (scene::talk() == scene::Talk::kQuiet) return;
+  session::print(stdout, format, std::forward<Args>(args)...);
+}
+
 /// Prints sentences, a line each.
 void tell(const std::vector<std::string>& sentences) {
-  for (const std::string& sentence : sentences) session::print(stdout, "{}\n", sentence);
+  for (const std::string& sentence : sentences) report("{}\n", sentence);
   std::fflush(stdout);  // before a person is asked something
 }
 
@@ -60,8 +68,7 @@ ExitCode end_recording(session::Session& session, const std::string& asked) {
   const auto recorded = session.end_recording();
   if (!recorded) return complain(recorded.error(), kExitTrouble);
   for (std::size_t arm = 0; *recorded && arm < session.arms(); ++arm) {
-    session::print(stdout, "Recording: {}\n",
-                   session::file_of_arm(asked, session.arm_name(arm)).string());
+    report("Recording: {}\n", session::file_of_arm(asked, session.arm_name(arm)).string());
   }
   std::fflush(stdout);
   return kExitDone;
@@ -73,7 +80,7 @@ driver::Result<void> write_files(const session::Session& session,
                                  RunPage* page, int object) {
   if (!options.report.empty()) {
     if (auto written = write_run_files(session, grant, options.report); !written) return written;
-    session::print(stdout, "Report and pictures: {}\n", options.report);
+    report("Report and pictures: {}\n", options.report);
   }
   if (page != nullptr) {
     // The pictures are there; a page less is no trouble.
@@ -81,14 +88,14 @@ driver::Result<void> write_files(const session::Session& session,
     const auto written = page->write(grant, file);
     if (!written)
       scene::logger().warn("{} is not written: {}", file.string(), written.error().message);
-    if (written) session::print(stdout, "Page that plays it: {}\n", file.string());
+    if (written) report("Page that plays it: {}\n", file.string());
   }
   if (!options.save_mesh.empty()) {
     const std::string text = render::off_text(session.mesh_now(object));
     if (auto saved = output::write_file(options.save_mesh, output::kMesh, text); !saved) {
       return saved;
     }
-    session::print(stdout, "Mesh as it is now: {}\n", options.save_mesh);
+    report("Mesh as it is now: {}\n", options.save_mesh);
   }
   return {};
 }
@@ -135,8 +142,8 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   if (real) watch.emplace(session);
 
   servo.begin(session, stop);
-  session::RunAttendance attendance(session, watch ? &*watch : nullptr, desk,
-                                    isatty(STDERR_FILENO) != 0);
+  const bool shows_progress = isatty(STDERR_FILENO) != 0 && scene::talk() != scene::Talk::kQuiet;
+  session::RunAttendance attendance(session, watch ? &*watch : nullptr, desk, shows_progress);
   while (!servo.ended()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     attendance.step();
@@ -173,7 +180,10 @@ struct RunCourse {
 driver::Result<int> find_saved(const session::Session& session, const RunOptions& options) {
   if (options.save_object.empty()) return -1;
   if (const auto object = session.find_object(options.save_object)) return *object;
-  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"."};
+  std::vector<std::string> names;
+  for (const auto& object : session.scene().objects) names.push_back(object.name);
+  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"." +
+                       suggestion(options.save_object, names)};
 }
 
 /// Prepares what comes next, unseen and unrecorded while the run before goes on.
@@ -222,10 +232,12 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   const auto object = find_saved(session, options);
   if (!object) return leave(complain(object.error(), kExitBadInput));
   session::NextRun* next = course.next ? &*course.next : nullptr;
-  const auto desk = first ? session::open_viewer_requests(session, viewer_choice(options),
-                                                          viewer_arguments(options), next)
-                          : std::make_unique<session::ViewerRequestHandler>(
-                                session, std::move(course.viewer), options.by_viewer(), next);
+  const auto desk = first
+                        ? session::open_viewer_requests(session, viewer_choice(options),
+                                                        options.ends_with_window(),
+                                                        viewer_arguments(options), next)
+                        : std::make_unique<session::ViewerRequestHandler>(
+                              session, std::move(course.viewer), options.ends_with_window(), next);
   if (!desk) next = nullptr;
   if (next != nullptr) next->begin(session);
   session::ServoThread servo(session.real_time());
@@ -251,8 +263,8 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   if (zero_assured(session)) guard.reset();
   if (desk) desk->close();
   if (next != nullptr) then = next->take(servo.join(), course.stop.load());
-  print_summaries(session, servo.grant());
-  for (const auto& arm : sides.topics) session::print(stdout, "{}", arm->report());
+  if (scene::talk() != scene::Talk::kQuiet) print_summaries(session, servo.grant());
+  for (const auto& arm : sides.topics) report("{}", arm->report());
   if (then) {
     std::fflush(stdout);
     course.viewer = desk->take_viewer();

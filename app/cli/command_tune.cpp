@@ -79,17 +79,22 @@ int tune_scene(const TuneCommand& command) {
     options.topics =
         AnswerAges{.median = 1e-9 * ages->percentile(0.5), .most = 1e-9 * ages->percentile(0.99)};
   }
-  const TuneResult result = tune(*scene, options);
-  std::printf("%s\n%s", result.text.c_str(), figure_table(result.figures).c_str());
-  if (command.folder.empty()) return kExitDone;
-  std::error_code status;
-  std::filesystem::create_directories(command.folder, status);
-  const std::filesystem::path file = std::filesystem::path(command.folder) / "figures.json";
-  if (const auto written = write_figures(result.figures, file); !written) {
-    return complain(written.error(), kExitTrouble);
+  const auto tuned = tune(*scene, options);
+  if (!tuned) return complain(tuned.error(), kExitBadInput);
+  std::printf("%s\n%s", tuned->text.c_str(), figure_table(tuned->figures).c_str());
+  if (!command.folder.empty()) {
+    std::error_code status;
+    std::filesystem::create_directories(command.folder, status);
+    const std::filesystem::path file = std::filesystem::path(command.folder) / "figures.json";
+    if (const auto written = write_figures(tuned->figures, file); !written) {
+      return complain(written.error(), kExitTrouble);
+    }
+    std::printf("Written to %s.\n", file.c_str());
   }
-  std::printf("Written to %s.\n", file.c_str());
-  return kExitDone;
+  const std::string unmet = unmet_line(tuned->figures);
+  if (unmet.empty()) return kExitDone;
+  std::printf("%s\n", unmet.c_str());
+  return kExitUnmet;
 }
 
 }  // namespace

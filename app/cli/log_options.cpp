@@ -33,8 +33,8 @@ void fall_through(CLI::App& above) {
 void add_log_options(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LogOptions>();
   program.add_flag("-v,--verbose", options->more,
-                   "Tell on the terminal what happens; -vv: all of it");
-  program.add_flag("-q,--quiet", options->quiet, "Tell of errors alone")->excludes("--verbose");
+                   "Print what happens on the terminal; -vv: all of it");
+  program.add_flag("-q,--quiet", options->quiet, "Print errors only")->excludes("--verbose");
   program.add_option("--log", options->file,
                      "File to log to, in place of thimble/log/thimble.log in $XDG_STATE_HOME "
                      "(~/.local/state), which rotates");

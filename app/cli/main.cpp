@@ -6,8 +6,10 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
+#include "cli/usage/usage_error.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "output/standard_streams.h"
@@ -57,11 +59,19 @@ int run(int argc, char** argv) {
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", app.version());
   }
+  thimble::app::check_numbers(app);
+  if (argc <= 1) {
+    std::printf("%s", app.help().c_str());
+    return thimble::app::kExitDone;
+  }
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& stop) {
-    // --help and --version arrive here too, as success.
-    return app.exit(stop) == 0 ? thimble::app::kExitDone : thimble::app::kExitBadInput;
+  } catch (const CLI::Success& stop) {  // --help, --version, --list
+    app.exit(stop);
+    return thimble::app::kExitDone;
+  } catch (const CLI::ParseError& error) {
+    return thimble::app::complain({thimble::app::usage_error(app, error)},
+                                  thimble::app::kExitBadInput);
   }
   return exit_code;
 }

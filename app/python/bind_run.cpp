@@ -60,6 +60,32 @@ struct HeldRun {
   std::unique_ptr<SceneRun> run;
 };
 
+/// Returns the run that a Python object holds; null while it is being made.
+HeldRun* held_by(PyObject* self) {
+  auto* instance = reinterpret_cast<py::detail::instance*>(self);
+  const py::detail::value_and_holder value = instance->get_value_and_holder();
+  return value.holder_constructed() ? value.value_ptr<HeldRun>() : nullptr;
+}
+
+/// Lets the garbage collector see the law of a run: laws often refer to what holds the run, and
+/// such a cycle would never be freed.
+py::custom_type_setup collected() {
+  return py::custom_type_setup([](PyHeapTypeObject* heap_type) {
+    PyTypeObject* type = &heap_type->ht_type;
+    type->tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type->tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+      Py_VISIT(Py_TYPE(self));
+      const HeldRun* held = held_by(self);
+      return held != nullptr && held->law ? held->law->visit(visit, arg) : 0;
+    };
+    type->tp_clear = [](PyObject* self) {
+      const HeldRun* held = held_by(self);
+      if (held != nullptr && held->law) held->law->clear();
+      return 0;
+    };
+  });
+}
+
 void run_all(HeldRun& held) {
   bool interrupted = false;
   {
@@ -202,7 +228,7 @@ std::optional<faces::RosWords> topics_of(const py::object& asked) {
 }  // namespace
 
 void bind_run(py::module_& core) {
-  py::class_<HeldRun>(core, "Run")
+  py::class_<HeldRun>(core, "Run", collected())
       .def(py::init([](const std::string& scene, const std::string& arm, const std::string& device,
                        bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,

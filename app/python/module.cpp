@@ -32,10 +32,17 @@ namespace py = pybind11;
 namespace thimble::python {
 namespace {
 
+/// Returns a name of the file system as Python has it, whatever its bytes are (os.fsdecode).
+py::str file_text(const std::string& name) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeFSDefaultAndSize(name.data(), static_cast<py::ssize_t>(name.size())));
+}
+
 py::list named(const std::vector<scene::ShippedFile>& files) {
   py::list list;
   for (const scene::ShippedFile& file : files) {
-    list.append(py::make_tuple(file.name, file.path.string(), scene::description_of(file.path)));
+    list.append(py::make_tuple(file_text(file.name), file_text(file.path.string()),
+                               scene::description_of(file.path)));
   }
   return list;
 }
@@ -65,14 +72,19 @@ py::tuple workspace_of(const SimulatorSession& session) {
 }
 
 /// Steps arms one after the other, each with its row of `forces` (n, 3; N), after all hands were
-/// led to their rows of `hands` (n, 3; m) if there are any: if one cannot be, no arm is stepped.
+/// led to their rows of `hands` (n, 3; m), if given. If one arm does not reach its point, no hand
+/// is led and no arm is stepped.
 py::array step_all(const std::vector<SimulatorSession*>& arms, const Rows& forces,
                    const std::optional<Rows>& hands) {
+  const auto hand_of = [&hands](std::size_t i) -> Eigen::Vector3d {
+    return hands->row(static_cast<Eigen::Index>(i)).transpose();
+  };
   for (std::size_t i = 0; hands && i < arms.size(); ++i) {
-    if (arms[i]->lead(hands->row(static_cast<Eigen::Index>(i)).transpose())) continue;
+    if (arms[i]->reaches(hand_of(i))) continue;
     throw ArgumentError("hand: arm " + std::to_string(i) +
                         " does not reach that point of the world (m); move it.");
   }
+  for (std::size_t i = 0; hands && i < arms.size(); ++i) arms[i]->lead(hand_of(i));
   std::vector<driver::TickRecord> ticks;
   ticks.reserve(arms.size());
   for (SimulatorSession* arm : arms) {
@@ -151,6 +163,13 @@ PYBIND11_MODULE(_core, core) {
       list.append(py::make_tuple(column.name, column.unit, column.about));
     }
     return list;
+  });
+  core.def("columns_by_axis", [] {
+    py::set names;
+    for (const auto& column : session::recording_columns()) {
+      if (column.by_axis()) names.add(column.name);
+    }
+    return names;
   });
   core.def("fault", [](int number) {
     const auto fault = static_cast<driver::Fault>(number);

@@ -29,6 +29,33 @@ Eigen::Vector3d force_of(const py::object& answer) {
   return {force.at(0), force.at(1), force.at(2)};
 }
 
+/// An exception of Python that may be raised again, any number of times.
+class KeptError {
+ public:
+  void keep(const py::error_already_set& error) {
+    type_ = error.type();
+    value_ = error.value();
+    trace_ = error.trace();
+  }
+  explicit operator bool() const { return static_cast<bool>(type_); }
+  [[noreturn]] void raise() const {
+    // PyErr_Restore takes the references that it gets.
+    PyErr_Restore(py::object(type_).release().ptr(), py::object(value_).release().ptr(),
+                  py::object(trace_).release().ptr());
+    throw py::error_already_set();
+  }
+  int visit(visitproc visit, void* arg) const {
+    Py_VISIT(type_.ptr());
+    Py_VISIT(value_.ptr());
+    Py_VISIT(trace_.ptr());
+    return 0;
+  }
+  void clear() { type_ = value_ = trace_ = py::object(); }
+
+ private:
+  py::object type_, value_, trace_;
+};
+
 class PythonLaw final : public OwnLaw {
  public:
   PythonLaw(py::function law, SceneRun& run) : law_(std::move(law)), run_(run) {}
@@ -36,24 +63,43 @@ class PythonLaw final : public OwnLaw {
   void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept override {
     const py::gil_scoped_acquire python;
     try {
-      if (error_) throw ThimbleError("The law has failed before.");
+      if (error_ || !law_) throw py::value_error("The law has failed before.");
       const py::object answer = law_(one(driver::record_of(state, command)));
       if (!answer.is_none()) command.f_T_W = force_of(answer);
-    } catch (...) {
-      if (!error_) error_ = std::current_exception();
-      command.f_T_W.setZero();
-      run_.ask_to_stop();
+      return;
+    } catch (const py::error_already_set& error) {
+      if (!error_) error_.keep(error);
+    } catch (const py::builtin_exception& error) {
+      if (!error_) {
+        error.set_error();
+        error_.keep(py::error_already_set());
+      }
+    } catch (const std::exception& error) {
+      if (!error_) {
+        PyErr_SetString(PyExc_RuntimeError, error.what());
+        error_.keep(py::error_already_set());
+      }
     }
+    command.f_T_W.setZero();
+    run_.ask_to_stop();
   }
 
   void rethrow() override {
-    if (error_) std::rethrow_exception(error_);
+    if (error_) error_.raise();
+  }
+  int visit(visitproc visit, void* arg) override {
+    Py_VISIT(law_.ptr());
+    return error_.visit(visit, arg);
+  }
+  void clear() override {
+    law_ = py::object();
+    error_.clear();
   }
 
  private:
-  py::function law_;
+  py::object law_;  // a function; null once the garbage collector has cleared it
   SceneRun& run_;
-  std::exception_ptr error_;
+  KeptError error_;
 };
 
 /// A function by its address.
@@ -73,6 +119,11 @@ class CompiledLaw final : public OwnLaw {
     command.f_T_W.setConstant(std::numeric_limits<double>::quiet_NaN());
     function_(1e-9 * static_cast<double>(state.time_ns), state.p_WT.data(), state.v_WT.data(),
               wanted.data(), command.f_T_W.data(), data_);
+  }
+  // What is kept is part of the function: it is visited, and cleared with the run alone.
+  int visit(visitproc visit, void* arg) override {
+    Py_VISIT(kept_.ptr());
+    return 0;
   }
 
  private:

@@ -17,8 +17,12 @@ class OwnLaw {
  public:
   virtual ~OwnLaw() = default;
 
-  /// Throws what went wrong in the law.
+  /// Throws what went wrong in the law, each time that it is called.
   virtual void rethrow() {}
+  /// Visits the Python objects that the law holds, for the garbage collector (tp_traverse).
+  virtual int visit(visitproc visit, void* arg) = 0;
+  /// Drops those of them that may be part of a cycle (tp_clear): the run is unreachable.
+  virtual void clear() {}
   /// Finds the force of a tick; `command` is the scene's own.
   virtual void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept = 0;
 };

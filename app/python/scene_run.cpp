@@ -112,8 +112,12 @@ SceneRun::SceneRun(const RunOptions& options) {
 }
 
 SceneRun::~SceneRun() {
-  stop_.store(true);
-  servo_.reset();
+  try {
+    stop();
+    finish();
+  } catch (const std::exception& trouble) {
+    scene::logger().error("{}", trouble.what());
+  }
 }
 
 std::string SceneRun::topics_report() const {

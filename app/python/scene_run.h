@@ -46,7 +46,8 @@ session::SessionOptions session_options(const RunOptions& options);
 class SceneRun {
  public:
   explicit SceneRun(const RunOptions& options);
-  /// Stops and joins the servo, which leaves the arm with zero force.
+  /// Ends the run as `stop` does, with zero force, and finishes its recording. What goes wrong is
+  /// logged.
   ~SceneRun();
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;

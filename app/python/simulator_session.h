@@ -25,6 +25,10 @@ class SimulatorSession {
   /// Leads the hand to a point (m, world) from now on. False, and it stays, where the arm does not
   /// reach it.
   bool lead(const Eigen::Vector3d& p_WH) noexcept { return device_->simulation().lead(p_WH); }
+  /// Returns whether `lead` can lead the hand to a point (m, world).
+  bool reaches(const Eigen::Vector3d& p_WH) const noexcept {
+    return device_->simulation().reaches(p_WH);
+  }
   /// Runs one tick with a force on the hand (N, world). Returns what it was: the tip as the driver
   /// saw it when the tick began, and the force that went to the motors.
   const driver::TickRecord& step(const Eigen::Vector3d& f_T_W) noexcept;

@@ -79,23 +79,18 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
       1e3 * carried.latency, limit, rate, 1e3 * carried.times.delay);
 }
 
-/// Returns how the hand rests on what the scene has, and how hands of other firmness would.
-void tell_rests(const scene::Scene& scene, TuneResult& result) {
+/// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
+void tell_rests(const scene::Scene& scene, const RestTrial& trial,
+                const std::shared_ptr<scene::SharedMeshes>& meshes, TuneResult& result) {
   const device_sim::HandSettings& own = scene.arm.simulated.hand;
-  const auto meshes = std::make_shared<scene::SharedMeshes>();  // of all hands
-  const auto trial = try_rests(scene, own, meshes);
-  if (!trial) {
-    result.text += fmt::format("Rest      not simulated: {}\n", trial.error().message);
-    return;
-  }
-  for (const Rest& rest : trial->rests) {
+  for (const Rest& rest : trial.rests) {
     result.text +=
         fmt::format("Rest      at {:.2f} s{}: {:.2g} N, oscillates by {:.2f} mN RMS\n", rest.time,
                     rest.on.empty() ? "" : " on " + rest.on, rest.force, 1e3 * rest.oscillation);
   }
-  const std::vector<std::string> warnings = rest_warnings(scene, *trial);
+  const std::vector<std::string> warnings = rest_warnings(scene, trial);
   for (const std::string& warning : warnings) result.text += "Warning   " + warning + "\n";
-  const Rest* const worst = trial->worst();
+  const Rest* const worst = trial.worst();
   result.figures.push_back(
       {"rest_oscillation", worst ? worst->oscillation : 0, "N", fmt::format("<= {:g}", kRestFelt)});
   result.figures.push_back({"rest_warnings", static_cast<double>(warnings.size()), "", ""});
@@ -231,7 +226,11 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   return warnings;
 }
 
-TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
+driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& options) {
+  const auto meshes = std::make_shared<scene::SharedMeshes>();  // of all hands
+  // First, because a scene that cannot be opened fails here.
+  const auto trial = try_rests(scene, scene.arm.simulated.hand, meshes);
+  if (!trial) return trial.error();
   TuneResult result;
   const scene::ArmFile& arm = scene.arm;
   const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
@@ -308,7 +307,7 @@ TuneResult tune(const scene::Scene& scene, const TuneOptions& options) {
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";
   }
-  tell_rests(scene, result);
+  tell_rests(scene, *trial, meshes, result);
   return result;
 }
 

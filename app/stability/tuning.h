@@ -6,6 +6,7 @@
 
 #include "report/figure.h"
 #include "stability/stability_laws.h"
+#include "thimble/driver/result.h"
 #include "thimble/scene/scene_file.h"
 #include "worst_direction.h"
 
@@ -64,7 +65,9 @@ struct TuneOptions {
 };
 
 /// Returns what a scene asks and what can be had: by the laws, and simulated through the whole loop
-/// in three directions at places all over the workspace. Real-time: never from the servo thread.
-TuneResult tune(const scene::Scene& scene, const TuneOptions& options);
+/// in three directions at places all over the workspace. Fails if the scene cannot be opened: a
+/// mesh that cannot be read, or a hand that the arm cannot follow. Real-time: never from the servo
+/// thread.
+driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& options);
 
 }  // namespace thimble::app

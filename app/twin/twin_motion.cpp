@@ -5,6 +5,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
@@ -61,6 +63,10 @@ class Reader {
       if (i > 0 && !follows(ticks[i - 1], ticks[i])) close();
       const bool used =
           time >= span.from && time <= span.until && ticks[i].stage == driver::DeviceStage::kActive;
+      if (used && ticks[i].in_contact) {
+        if (!touch_) touch_.emplace(time, time);
+        touch_->second = time;
+      }
       if (!used || !take(ticks[i])) close();
     }
     close();
@@ -145,6 +151,14 @@ class Reader {
           "the tip {:.3g} mm beside where it was. It was made with the arm {}.",
           file_.name, 1e3 * off_, recorded_.name)};
     }
+    if (touch_) {
+      return driver::Error{fmt::format(
+          "The tip touches objects between {:.3g} and {:.3g} s of the recording, so a hand held "
+          "the "
+          "arm, and the twin has none. Compare a part of free motion by --from and --until, or a "
+          "recording of `thimble identify --record FILE`.",
+          touch_->first, touch_->second)};
+    }
     std::size_t left = 0;
     for (const auto& stretch : motion_.stretches) left += stretch.size();
     if (static_cast<double>(left) * motion_.dt < kShortest) return too_short();
@@ -165,7 +179,8 @@ class Reader {
   const scene::ArmFile& recorded_;
   TwinMotion motion_;
   std::vector<TwinSample> stretch_;
-  double off_ = 0;  // m
+  std::optional<std::pair<double, double>> touch_;  // first and last second of contact
+  double off_ = 0;                                  // m
   double force_square_ = 0, step_square_ = 0;
   std::size_t taken_ = 0;
 };

@@ -3,7 +3,7 @@
 source "$(dirname "$0")/expect.sh" "$@"
 
 rm -rf out
-expect 2 'known are tessellation' "$thimble" study accuracy --axis nonsense --out out
+expect 2 'nonsense is no axis.*known are tessellation' "$thimble" study accuracy --axis nonsense --out out
 expect 0 'More accuracy can no longer be felt' \
   "$thimble" study accuracy --axis velocity --no-count --out out
 for file in index.html velocity.csv summary.json figures.json; do
@@ -17,6 +17,39 @@ fi
 expect_links out/runs/index.html 3
 expect 1 '' grep -E 'src="http|href="http' out/index.html
 expect 0 '"default_point"' cat out/summary.json
+# Nothing is drawn over what a pipe has got.
+expect 1 '^0$' bash -c '"$0" study accuracy --axis velocity --no-count --out piped 2>&1 | grep -c "$(printf "\r")"' "$thimble"
+
+# Ctrl-C stops it as any study, a person sees how long it takes; --resume continues with the axes that were measured, by the same numbers.
+stopped() {
+  local pid
+  setsid "$thimble" study accuracy --axis velocity --axis encoder --out stopped "$@" >stopped.txt 2>&1 &
+  pid=$!
+  for _ in $(seq 1200); do
+    if [ -n "${child:-}" ]; then pgrep -s $pid -f "$child" >/dev/null && break; fi
+    if [ -z "${child:-}" ]; then [ "$(wc -l 2>/dev/null <stopped/accuracy.journal || echo 0)" -ge 2 ] && break; fi
+    sleep 0.05
+  done
+  kill -TERM -- -$pid  # a shell lets those in the background ignore SIGINT
+  wait $pid
+}
+expect 130 '[0-9]+:[0-9]{2} left' /usr/bin/python3 "$source_dir/tests/program/at_terminal.py" wait ' left' keys '\x03' -- \
+  "$thimble" study accuracy --axis encoder --no-count --out terminal
+expect 0 '' mkdir stopped
+stopped --no-count
+expect 0 '^130$' echo $?
+expect 0 'Stopped early; the same command with --resume' cat stopped.txt
+expect 1 '' test -e stopped/figures.json
+line=$(sed -n 2p stopped/accuracy.journal)
+expect 2 'leave out --resume' "$thimble" study accuracy --axis velocity --no-count --out stopped --resume
+expect 0 'Written to stopped' "$thimble" study accuracy --axis velocity --axis encoder --no-count --out stopped --resume
+expect 0 '^yes$' bash -c '[ "$(sed -n 2p stopped/accuracy.journal)" = "$1" ] && echo yes' _ "$line"
+if command -v valgrind >/dev/null; then
+  rm -r stopped
+  child=callgrind stopped
+  expect 0 '^130$' echo $?
+  expect 1 '' grep -E 'not counted|not installed' stopped.txt
+fi
 expect 0 'Enough|Not enough' "$thimble" bench "$source_dir/app/scenes/box.yaml" --rate 1000 --seconds 0.3
 expect 2 'expected|not' "$thimble" run "$source_dir/app/scenes/box.yaml" --quality best
 expect 0 'reference: ' "$thimble" run "$source_dir/app/scenes/box.yaml" --duration 0.1 --quality reference

@@ -82,6 +82,40 @@ scene_with 's/^( *)stiffness:.*/\1stiffness: .nan/'
 expect 2 'changed\.yaml:[0-9]+: stiffness' "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)stiffness:(.*)/\1stifness:\2/'
 expect 2 'changed\.yaml:[0-9]+: .*stifness.*stiffness' "$thimble" run scenes/changed.yaml
+# A value that is wrong is told by itself, without the checks that would compare with it.
+for seed in 7.5 0x1f 9007199254740993 -1 "'7'"; do
+  sed "s/^seed:.*/seed: $seed/" scenes/box.yaml >scenes/changed.yaml
+  expect 2 '^thimble: changed\.yaml:[0-9]+: seed: expected a whole number from 0 to 9007199254740992, found ' "$thimble" run scenes/changed.yaml
+done
+expect 0 '^1$' bash -c '"$0" run scenes/changed.yaml 2>&1 | wc -l' "$thimble"
+sed 's/^seed:.*/rate: 0x3e8/' scenes/box.yaml >scenes/hex.yaml
+expect 2 'hex\.yaml:11: rate: expected a number from 10 to 100000 Hz, found "0x3e8"\.$' "$thimble" run scenes/hex.yaml
+expect 0 '^1$' bash -c '"$0" run scenes/hex.yaml 2>&1 | wc -l' "$thimble"
+cat >scenes/damped.yaml <<END
+name: damped
+duration: 1
+arm: ../arms/vintage_phantom.yaml
+objects:
+  - {name: honey, field: viscous, damping: 5000}
+  - {name: ball, sphere: {radius: 0.03}, stiffness: 600, damping: 5000, effects: [{friction: lugre, coefficient: 0.5, damping: 5}]}
+hand: {path: [{t: 0, at: [0, 0, 0]}, {t: 1, at: [0, 0, 0]}]}
+END
+expect 2 'damped\.yaml:6: damping: expected a number from 0 to 1000 N s/m, found "5000"' "$thimble" run scenes/damped.yaml
+expect 0 '^2$' bash -c '"$0" run scenes/damped.yaml 2>&1 | wc -l' "$thimble"
+# Characters that do not belong there, by line and column; a pipe; very many keys.
+printf 'name: caf\xe9\n' >scenes/latin1.yaml
+expect 2 'latin1\.yaml:1:10: the byte 0xE9 is not UTF-8' "$thimble" run scenes/latin1.yaml
+printf 'name: a\nobjects:\n\t- {name: b}\n' >scenes/tab.yaml
+expect 2 'tab\.yaml:3:1: a tab cannot indent' "$thimble" run scenes/tab.yaml
+printf 'name: a\nduration:\xc2\xa010\n' >scenes/nbsp.yaml
+expect 2 'nbsp\.yaml:2:10: a no-break space \(U\+00A0\) is no blank in YAML' "$thimble" run scenes/nbsp.yaml
+mkfifo scenes/pipe.yaml
+expect 2 'pipe\.yaml: this is not a file' timeout 20 "$thimble" run scenes/pipe.yaml
+mkdir -p app/scenes && mkfifo app/scenes/pipe.yaml
+expect 0 '^Arms:' timeout 20 "$thimble" run --list
+rm -r app
+seq 100000 | sed 's/.*/key_&: 1/' >scenes/many.yaml
+expect 2 '[0-9]+ more mistakes follow' timeout 60 "$thimble" run scenes/many.yaml
 scene_with 's/^arm:.*/arm: no_such_arm.yaml/'
 expect 2 'no_such_arm\.yaml' "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)mesh:.*/\1mesh: no_such_mesh.off/'

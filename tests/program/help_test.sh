@@ -14,12 +14,12 @@ for option in device clock duration report seed quality view hand name unchecked
 done
 expect 0 '^sim +simulated arm' "$thimble" devices
 
-expect 2 'subcommand is required' "$thimble"
+expect 0 '^Usage: thimble' "$thimble"
 expect 0 'friction +limit cycles of friction' "$thimble" study --help
 expect 0 '--out' "$thimble" study friction --help
 
-expect 2 'subcommand is required' "$thimble" touch
-expect 2 'SCENE is required' "$thimble" run
+expect 2 'touch is no command of' "$thimble" touch
+expect 2 'SCENE is missing' "$thimble" run
 expect 2 'clock' "$thimble" run box --clock sundial
 expect 3 "No arm is called 'omni'" "$thimble" run box --device omni
 expect 2 'duration' "$thimble" run box --duration -1

@@ -19,7 +19,7 @@ expect 0 '^thimble: tick 0, 0\.000 s: Forces are let through\.$' said "$thimble"
 expect 0 '^thimble: tick 0, 0\.000 s: Forces are let through\.$' said "$thimble" -v "${run[@]}"
 expect 0 '^thimble: tick [0-9]+, .* s: The tip touches ' said "$thimble" "${run[@]}" -vv
 expect 0 'The tip touches' cat "$file"
-expect 2 'excludes' "$thimble" "${run[@]}" -v --quiet
+expect 2 'do not go together' "$thimble" "${run[@]}" -v --quiet
 echo 'name: [' >bad.yaml
 expect 2 '^thimble: bad\.yaml' said "$thimble" --quiet run ./bad.yaml
 expect 0 'error +[0-9]+ thimble: bad\.yaml' cat "$file"
@@ -29,7 +29,7 @@ rm -r "$work/state"
 expect 0 '^Loop' "$thimble" "${run[@]}" --log own.log
 expect 0 'Forces are let through' cat own.log
 expect 1 'No such file' cat "$file"
-expect 2 '^--log: /dev/full: the log cannot be written there' "$thimble" "${run[@]}" --log /dev/full
+expect 2 '^thimble: --log: /dev/full: the log cannot be written there' "$thimble" "${run[@]}" --log /dev/full
 
 # Where it cannot be written it is told once, and the run goes on.
 mkdir -p "$work/state"

@@ -30,7 +30,7 @@ expect 2 'only one triangle' "$thimble" mesh still_open.off
 expect 2 'touched as a sheet: --repair OUT.off --thicken 0\.01 here' "$thimble" mesh sheet.off
 expect 0 'touched as a sheet of 1 triangle' "$thimble" mesh sheet.off --repair thin.off --thicken 0.01
 expect 0 'closed and wound alike' "$thimble" mesh thin.off
-expect 2 '--thicken requires --repair' "$thimble" mesh sheet.off --thicken 0.01
+expect 2 '--thicken needs --repair' "$thimble" mesh sheet.off --thicken 0.01
 # What others' programs write.
 for ending in gltf glb 3mf amf dae 3ds; do
   expect 0 'closed and wound alike' "$thimble" mesh "$source_dir/tests/data/meshes/box.$ending"
@@ -83,7 +83,7 @@ expect 2 'neither drawn nor repaired' "$thimble" mesh ring.pages --repair ring.o
 expect 1 'cannot be written' "$thimble" mesh generate no_folder/ring.pages
 printf 'x' | dd of=ring.pages bs=1 seek=10000 conv=notrunc status=none
 expect 2 '1 pages are damaged' "$thimble" mesh ring.pages
-expect 2 'FILE is required' "$thimble" mesh
+expect 2 'FILE is missing' "$thimble" mesh
 if command -v gnuplot >/dev/null; then
   expect 2 'Picture: open\.png' "$thimble" mesh open.off --picture open.png
   expect 0 'PNG' head -c 4 open.png

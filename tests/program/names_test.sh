@@ -21,7 +21,7 @@ expect 0 'carr|N/m' "$thimble" tune box
 expect 2 'elefant: there is no such file, and no scene of that name.*box, .*elephant' "$thimble" run elefant
 expect 2 'vintage: there is no such file, and no arm file of that name.*vintage_phantom' "$thimble" run box --arm vintage
 expect 2 'folder/elephant' "$thimble" run folder/elephant
-expect 2 'SCENE is required' "$thimble" run --duration 1
+expect 2 'SCENE is missing' "$thimble" run --duration 1
 
 # Nearer ones go before: other folders of the system, the user's own, ./app, a file of that name.
 expect 2 'only_there: there is no such file' "$thimble" run only_there

@@ -73,6 +73,17 @@ if command -v Xvfb >/dev/null; then
   kill -9 "$viewer"
   expect 0 '' timeout 30 tail --pid=$run -f /dev/null
   kill -9 $run 2>/dev/null
+  # So does a run that restarts for the person at its window.
+  "$thimble" run "$scene" --duration 1 --view --loop --name shot_loop_$$ >run.txt 2>&1 &
+  run=$!
+  for _ in $(seq 200); do
+    viewer=$(pgrep -P $run | head -1)
+    "$thimble" view --list | grep -q "^shot_loop_$$:" && [ -n "$viewer" ] && break
+    sleep 0.1
+  done
+  kill -9 "$viewer"
+  expect 0 '' timeout 30 tail --pid=$run -f /dev/null
+  kill -9 $run 2>/dev/null
 else
   leave_out 'the window, for want of Xvfb (as root: apt-get install xvfb)'
 fi

@@ -78,16 +78,17 @@ wait
 
 # Ended by a viewer, and by a signal: the name is gone in each case.
 for end in view signal; do
-  "$thimble" run "$scenes/honey.yaml" --hand mouse --name "$me" >led.log 2>&1 &
+  "$thimble" run "$scenes/honey.yaml" --hand mouse --no-view --name "$me" >led.log 2>&1 &
   run=$!
   for _ in $(seq 100); do "$thimble" view --list | grep -q "^$me:" && break; sleep 0.1; done
   if [ $end = view ]; then "$thimble" view "$me" --stop; else kill -TERM $run; fi
   wait $run
   echo $? >code
   expect 0 "$([ $end = view ] && echo '^0$' || echo '^130$')" cat code
-  expect 0 'No screen .*: watch by' cat led.log
   expect 1 '' test -e "$segment"
 done
+
+expect 0 'No screen .*: watch by' "$thimble" run "$scenes/honey.yaml" --view --duration 0.2 --name "$me"
 
 # Steered: at a pace, tick by tick, begun anew by hand, by its file, and with another scene.
 sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: 60/" "$scenes/rubber.yaml" >ball.yaml
@@ -114,7 +115,7 @@ ticks() { grep -oE '[0-9]+ ticks' "$1" | grep -oE '[0-9]+'; }
 expect 0 '^100$' echo $(($(ticks after.txt) - $(ticks before.txt)))
 expect 0 ', 0 missed' cat after.txt
 expect 0 '' "$thimble" view "$me" --speed 4 --loop off
-expect 2 'Value 5 not in range' "$thimble" view "$me" --speed 5
+expect 2 '--speed: expected a number from .* to .*, found "5"' "$thimble" view "$me" --speed 5
 expect 0 '' "$thimble" view "$me" --restart
 told "$me running"
 expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=250' --save-knobs

@@ -16,12 +16,12 @@ def logistic(x, middle, width, guess=0.5, lapse=0.0):
 def test_all_combinations_come_equally_often_in_every_order():
     factors = {"amplitude": [1e-5, 2e-5], "speed": [0.02, 0.05, 0.1]}
     for order in ("given", "random", "blocks", "balanced"):
-        trials = experiment.Trials(factors, repeats=4, order=order, seed=3)
+        trials = experiment.Trials(factors, repeats=4, order=order, seed=3, subject=0)
         told = [(one["amplitude"], one["speed"]) for one in trials.conditions]
         assert len(told) == 24 and all(told.count(one) == 4 for one in itertools.product(*factors.values()))
-        again = experiment.Trials(factors, repeats=4, order=order, seed=3)
+        again = experiment.Trials(factors, repeats=4, order=order, seed=3, subject=0)
         assert again.conditions == trials.conditions
-        other = experiment.Trials(factors, repeats=4, order=order, seed=4).conditions
+        other = experiment.Trials(factors, repeats=4, order=order, seed=4, subject=0).conditions
         assert (other != trials.conditions) == (order in ("random", "blocks"))
     blocks = experiment.Trials(factors, repeats=4, order="blocks", seed=3).conditions
     for at in range(0, 24, 6):
@@ -190,6 +190,45 @@ def test_answers_without_a_width_are_warned_of_and_flat_ones_refused():
             experiment.fit([1, 2, 3], said, 10)
 
 
+def test_constant_stimuli_are_balanced_over_subjects():
+    rows = []
+    for subject in range(4):
+        stimuli = experiment.ConstantStimuli([1, 2, 3, 4], 1, order="balanced", subject=subject)
+        rows.append([one["level"] for one in stimuli.conditions])
+    for column in zip(*rows):
+        assert sorted(column) == [1, 2, 3, 4]
+
+
+def dense_loss(x, k, n, guess, lapse):
+    """Least loss of logistic curves over a grid of middles and widths that is much finer than what fit() begins at."""
+    x = (x - x[0]) / (x[-1] - x[0])
+    middles, widths = np.linspace(-0.5, 1.5, 201), np.exp(np.linspace(math.log(0.002), math.log(20), 160))
+    z = (x - middles[:, None, None]) / widths[None, :, None]
+    p = np.clip(guess + (1 - guess - lapse) * 0.5 * (1 + np.tanh(0.5 * z)), 1e-12, 1 - 1e-12)
+    return float(-(k * np.log(p) + (n - k) * np.log(1 - p)).sum(axis=2).min())
+
+
+@pytest.mark.filterwarnings("ignore:The answers do not hold:RuntimeWarning")
+@pytest.mark.parametrize("guess", [0.0, 0.5])
+def test_no_curve_of_a_dense_grid_is_likelier(guess):
+    random = np.random.default_rng(7)
+    fits = 0
+    for _ in range(200):
+        x = np.sort(random.choice(np.linspace(0, 1, 21), random.integers(3, 9), replace=False))
+        n = np.full(len(x), float(random.integers(2, 20)))
+        width = math.exp(random.uniform(math.log(0.02), math.log(0.5)))
+        k = random.binomial(n.astype(int), logistic(x, random.uniform(0, 1), width, guess, 0.02)).astype(float)
+        try:
+            curve = experiment.fit(x, k, n, guess=guess, lapse=0.02)
+        except thimble.ArgumentError:  # answers that do not rise
+            continue
+        p = np.clip(curve(x), 1e-12, 1 - 1e-12)
+        own = float(-(k * np.log(p) + (n - k) * np.log(1 - p)).sum())
+        assert own < dense_loss(x, k, n, guess, 0.02) + 1e-3, (x, k, n)
+        fits += 1
+    assert fits > 120
+
+
 def test_constant_stimuli_end_in_a_fit():
     stimuli = experiment.ConstantStimuli(np.linspace(0.7, 1.3, 7), 40, says="rougher", seed=5)
     random = np.random.default_rng(2)
@@ -211,6 +250,9 @@ def test_constant_stimuli_end_in_a_fit():
         (lambda: experiment.Staircase(1, 1).take({"right": True}), "correct=True or False"),
         (lambda: experiment.Trials({"a": [1]}, order="wild"), "given, random, blocks, balanced"),
         (lambda: experiment.Trials({"a": []}), "at least one"),
+        (lambda: experiment.Trials({"a": [1, 2]}, order="balanced"), "subject: .*give each its number"),
+        (lambda: experiment.ConstantStimuli([1, 2], 2, order="balanced"), "subject: .*give each its number"),
+        (lambda: experiment.Trials({"a": [1, 2]}, order="balanced", subject=-1), "subject: expected a whole number"),
         (lambda: experiment.ConstantStimuli([1, 2], 2).take({}), "correct=True or False"),
         (lambda: experiment.Interleaved({}), "at least one"),
         (lambda: experiment.fit([1, 1], [0, 1]), "two or more"),

@@ -1,5 +1,6 @@
 """What the package answers beside a run: names, mistakes, arms, real time, studies."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -145,6 +146,42 @@ def test_the_warnings_of_one_scene_are_not_told_of_another():
             thimble.run("rubber", seconds=0.01)
         with pytest.warns(RuntimeWarning, match="40000 N/m"):
             thimble.run("rubber", set={"ball.stiffness": 40000}, seconds=0.01)
+
+
+def test_scenes_are_listed_whatever_bytes_the_users_have(tmp_path):
+    folder = tmp_path / "thimble" / "scenes"
+    folder.mkdir(parents=True)
+    (folder / "latin1.yaml").write_bytes(b"name: a\ndescription: caf\xe9\n")
+    (folder / "utf8.yaml").write_bytes("name: b\ndescription: caf\u00e9\n".encode())
+    (folder / "broken.yaml").write_bytes(b"description: [\n")
+    os.mkfifo(folder / "pipe.yaml")
+    open(os.fsencode(folder) + b"/caf\xe9.yaml", "wb").close()
+    program = "import thimble; print({one.name: one.description for one in thimble.scenes()})"
+    done = subprocess.run(
+        [sys.executable, "-X", "utf8", "-c", program],
+        env={**os.environ, "XDG_DATA_HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        errors="surrogateescape",
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "'latin1': ''" in done.stdout and "'utf8': 'caf\u00e9'" in done.stdout and "'broken': ''" in done.stdout
+    assert "pipe" not in done.stdout and "'caf\\udce9'" in done.stdout
+
+
+def test_hands_are_led_only_if_all_arms_reach_theirs():
+    arms = thimble.Simulators(2)
+    alone = thimble.Simulators(2)
+    for _ in range(50):
+        before = arms.step()
+        alone.step()
+    with pytest.raises(thimble.ArgumentError, match="hand: arm 1 does not reach"):
+        arms.step(hand=[(0.03, 0.0, 0.0), (0.1, 0.1, 0.1)])
+    for _ in range(500):
+        after, undisturbed = arms.step(), alone.step()
+    assert after.columns.tobytes() == undisturbed.columns.tobytes()
+    assert np.abs(after.tip - before.tip).max() < 2e-3
 
 
 def test_a_simulated_arm_is_pushed_by_hand():

@@ -118,3 +118,31 @@ def test_nothing_stays_of_a_scene_that_was_not_recorded(tmp_path):
     )
     assert told.stdout.startswith(str(tmp_path / "thimble-"))
     assert not list(tmp_path.glob("thimble-*")) and not (tmp_path / "state/thimble/scenes").exists()
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["caf\u00e9 \U0001f600", "a \\ \" ' : # {x} [y] *z &w !v | > % @ `", "\u0085\u2028\u2029\ufeff\x7f\x9b", "\u6f22\u5b57\tb"],
+    ids=["emoji", "signs", "breaks", "others"],
+)
+def test_any_text_may_be_in_a_scene(name):
+    scene = {**BALL, "name": name, "duration": 0.01}
+    assert thimble.run(scene).info["scene"] == name
+    assert thimble.run(BALL, set={"name": name}, seconds=0.01).info["scene"] == name
+
+
+def test_paths_may_be_in_a_scene(tmp_path, source):
+    arm = source / "app" / "arms" / "vintage_phantom.yaml"
+    assert thimble.run({**BALL, "arm": arm}, seconds=0.01).info["arm"] == thimble.run(BALL, seconds=0.01).info["arm"]
+    assert len(thimble.run(BALL, set={"arm": arm}, seconds=0.01)) == 10
+
+
+def test_half_a_surrogate_pair_is_refused():
+    with pytest.raises(thimble.ArgumentError, match="A scene cannot hold"):
+        thimble.run({**BALL, "name": "\ud83d"})
+
+
+@pytest.mark.parametrize("seed", [7.5, "0x1f", 2**53 + 1, -1, "7"])
+def test_seed_of_a_scene_is_a_whole_number(seed):
+    with pytest.raises(thimble.Error, match="seed: expected a whole number from 0 to 9007199254740992"):
+        thimble.run({**BALL, "seed": seed}, seconds=0.01)

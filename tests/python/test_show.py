@@ -77,6 +77,15 @@ def test_pandas_gets_every_column_over_time(run):
     assert {"q_WT_0", "q_WT_3", "in_contact"} <= set(table.columns)
 
 
+def test_pandas_numbers_joints_and_motors(run):
+    pytest.importorskip("pandas", reason="install python3-pandas")
+    table = run.to_pandas()
+    for name in ("q", "counts", "heat", "gimbal"):
+        assert {f"{name}_{k}" for k in range(3)} <= set(table.columns)
+        assert f"{name}_x" not in table.columns
+    np.testing.assert_array_equal(table[["q_0", "q_1", "q_2"]], run.joints)
+
+
 def test_matplotlib_draws_force_and_depth(run, tmp_path):
     matplotlib = pytest.importorskip("matplotlib", reason="install python3-matplotlib")
     matplotlib.use("Agg")

@@ -157,7 +157,9 @@ TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
   wall.stiffness = 800;
   wall.damping = 1;
   scene.objects.push_back(wall);
-  const TuneResult result = tune(scene, {.places_per_side = 2});
+  const auto tuned = tune(scene, {.places_per_side = 2});
+  ASSERT_TRUE(tuned.ok());
+  const TuneResult& result = *tuned;
   std::printf("%s", result.text.c_str());
   for (const Figure& figure : result.figures) {
     if (figure.name == "wall.simulated_over_exact") {

@@ -11,6 +11,7 @@
 #include "log/logger.h"
 #include "print.h"
 #include "share/shared_layout.h"
+#include "share/viewer_process.h"
 #include "thimble/scene/quality.h"
 
 namespace thimble::app {
@@ -50,6 +51,18 @@ driver::Result<void> check_run_options(RunOptions& options) {
                          " leads the simulated arm's hand; a real arm has yours."};
   }
   if (options.by_topic()) return {};
+  if (!options.no_view && !has_window()) {
+    return driver::Error{"--hand " + options.hand +
+                         " needs the window, which this build does not have (app/setup.sh release "
+                         "thimble builds it)."};
+  }
+  if (!options.no_view && !session::has_display()) {
+    return driver::Error{
+        "--hand " + options.hand +
+        " needs the window, and there is no screen: DISPLAY and WAYLAND_DISPLAY are not set. Start "
+        "it on a desktop, or add --no-view and lead the hand from `thimble view --hand " +
+        options.hand + "`."};
+  }
   if (options.clock == "virtual" && !options.duration) {
     return driver::Error{
         "--hand " + options.hand +
@@ -117,6 +130,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.rate_factor = scene::rate_factor_of(quality);
   asked.adjust = [&options, quality](scene::Scene& scene) {
     for (const std::string& choice : scene::apply_quality(quality, scene, options.budget)) {
+      if (scene::talk() == scene::Talk::kQuiet) continue;
       session::print(stdout, "{}: {}\n", options.quality, choice);
     }
   };
@@ -125,7 +139,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
 
 session::ViewerChoice viewer_choice(const RunOptions& options) {
   const bool asked = options.for_a_person();
-  if (asked && !has_window()) {
+  if (asked && !has_window() && scene::talk() != scene::Talk::kQuiet) {
     scene::terminal().info(
         "No window in this build (app/setup.sh release thimble makes one); `thimble view --text` "
         "tells of "
@@ -203,9 +217,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   CLI::Option* none =
       command.add_flag("--no-view", options.no_view, "Show the run to nobody")->excludes(view);
   command
-      .add_flag("--loop", options.loop,
-                "Begin anew whenever the scene is over, with a simulated arm, until Ctrl-C or a "
-                "viewer ends it; recordings after the first are FILE-2.h5 and so on")
+      .add_flag(
+          "--loop", options.loop,
+          "Restart whenever the scene is over, with a simulated arm, until Ctrl-C or a viewer "
+          "ends it, or with --view its window is closed; recordings after the first are "
+          "FILE-2.h5 and so on")
       ->excludes(none);
   command.add_flag("--sound", options.sound,
                    "With the window: play what is felt as sound (clicks, textures, friction)");

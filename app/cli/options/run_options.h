@@ -51,6 +51,8 @@ struct RunOptions {
   bool stepped() const { return ros.asked && clock == "virtual"; }
   /// Returns whether a person watches a simulated arm's run.
   bool for_a_person() const { return view || by_viewer(); }
+  /// Returns whether the run ends when its window is closed.
+  bool ends_with_window() const { return by_viewer() || (view && loop); }
   /// Returns whether the run begins anew when its scene's file changes.
   bool reloads() const { return reload.value_or(for_a_person()); }
 };

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
+#include "interrupt.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
 #include "report/figure.h"
@@ -24,6 +26,7 @@ struct AccuracyOptions {
   std::string out = "study-accuracy";
   std::string table;
   bool no_count = false;
+  bool resume = false;
 };
 
 int run_accuracy(const AccuracyOptions& options) {
@@ -41,9 +44,18 @@ int run_accuracy(const AccuracyOptions& options) {
   output::OutputPlan plan;
   plan.write_folder("--out", folder, {"figures.json", "index.html"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto figures = study_accuracy(options.axes, !options.no_count, folder);
-  if (!figures) return complain(figures.error(), kExitBadInput);
-  return end_study(*figures, folder, "; the page is index.html there");
+  const std::atomic<bool>& stop = scene::catch_interrupts();
+  const auto report = study_accuracy({.axes = options.axes,
+                                      .count = !options.no_count,
+                                      .resume = options.resume,
+                                      .folder = folder},
+                                     stop);
+  if (!report) return complain(report.error(), kExitBadInput);
+  if (report->stopped) {
+    std::printf("Stopped early; the same command with --resume continues.\n");
+    return kExitInterrupted;
+  }
+  return end_study(report->figures, folder, "; the page is index.html there");
 }
 
 struct GatingOptions {
@@ -118,6 +130,8 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code) {
   command->add_flag(
       "--no-count", options->no_count,
       "Do not count instructions, which takes minutes; time alone says what is cheaper");
+  command->add_flag("--resume", options->resume,
+                    "Continue where an interrupted run of the same options ended");
   command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 

@@ -28,7 +28,7 @@ struct SweepChoice {
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     command.add_flag("--resume", resume,
-                     "Go on where an interrupted run of the same options ended");
+                     "Continue where an interrupted run of the same options ended");
   }
 };
 

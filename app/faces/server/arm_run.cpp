@@ -83,9 +83,11 @@ driver::Result<void> ArmRun::prepare(int number) {
   if (!prepared) return prepared.error();
   session_ = std::move(prepared).value();
   for (const std::string& told : session_->told()) scene::terminal().info("{}", told);
-  desk_ = session::open_viewer_requests(*session_, options_.view || asked.hand_by_mouse
-                                                       ? session::ViewerChoice::kAsked
-                                                       : session::ViewerChoice::kNever);
+  desk_ = session::open_viewer_requests(*session_,
+                                        options_.view || asked.hand_by_mouse
+                                            ? session::ViewerChoice::kAsked
+                                            : session::ViewerChoice::kNever,
+                                        asked.hand_by_mouse);
   servo_ = std::make_unique<session::ServoThread>(!options_.paced);
   if (arm->real) return session::check_real_time(servo_->grant(), options_.no_real_time);
   return {};

@@ -19,9 +19,14 @@ _SEED_MOST = 2**64 - 1  # what the program keeps it in
 def path_of(name: str, value: PathOrName, meant: str = "a file or a name") -> str:
     """Give a path or name as text; TypeError for what is none."""
     try:
-        return str(os.fspath(value))
+        text = os.fsdecode(value)
     except TypeError:
         raise TypeError(f"{name}: expected {meant}, found {value!r}.") from None
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:
+        raise ArgumentError(f"{name}: {text!r} is not UTF-8; rename the file.") from None
+    return text
 
 
 def optional_path(name: str, value: Optional[PathOrName]) -> str:

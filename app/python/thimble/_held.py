@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import warnings
-from typing import Any, Mapping, Optional, Union
+import weakref
+from typing import Any, Mapping, Optional, Protocol, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +100,30 @@ class OfArm:
         if name in ("ticks", "latest", "summary", "figures", "info"):
             return lambda: found(self._arm)
         return found
+
+
+class _Stopped(Protocol):
+    def stop(self) -> None: ...
+
+
+_open: "weakref.WeakSet[_Stopped]" = weakref.WeakSet()
+
+
+def stop_at_exit(run: _Stopped) -> None:
+    """Stop a run at the end of the program, if it is still there: with zero force, and its recording closed."""
+    _open.add(run)
+
+
+def stop_all() -> None:
+    """Stop all that would be stopped at the end of the program."""
+    for run in list(_open):
+        try:
+            run.stop()
+        except Exception as wrong:  # the others are stopped all the same
+            warnings.warn(str(wrong), RuntimeWarning, stacklevel=2)
+
+
+atexit.register(stop_all)
 
 
 def begin(

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import signal
 import threading
-import weakref
 from typing import Any, Mapping, Optional, Union
 
 from . import _core
 from ._arguments import PathOrName, path_of
 from ._core import Error
-from ._held import Held, begin
+from ._held import Held, begin, stop_all, stop_at_exit
 from ._knobs import Knobs
 from ._scene_text import Scene
 from ._ticks import Tick, Ticks
@@ -65,9 +63,6 @@ class Live(Held):
     def ticks(self) -> Ticks:
         """Give all ticks of a run that is over; Error while it goes on."""
         return Ticks(self._run.ticks())
-
-
-_live: "weakref.WeakSet[Live]" = weakref.WeakSet()
 
 
 def open(
@@ -128,15 +123,10 @@ def open(
         ros2=dict(ros2) if isinstance(ros2, Mapping) else ros2,
     )
     live = Live(held)
-    _live.add(live)
+    stop_at_exit(live)
     _stop_on_signals()
     held.start()
     return live
-
-
-def _stop_all() -> None:
-    for live in list(_live):
-        live.stop()
 
 
 # Signals that would end Python at once and can be caught; SIGINT comes as KeyboardInterrupt.
@@ -149,7 +139,7 @@ def _stop_on_signals() -> None:
         return
 
     def leave(number: int, _: Any) -> None:
-        _stop_all()
+        stop_all()
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
 
@@ -159,5 +149,3 @@ def _stop_on_signals() -> None:
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, leave)
 
-
-atexit.register(_stop_all)

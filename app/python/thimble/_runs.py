@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arguments import PathOrName, vector_of
-from ._held import Held, OfArm, Past, begin
+from ._held import Held, OfArm, Past, begin, stop_at_exit
 from ._knobs import Knobs
 from ._laws import Law
 from ._meshes import Meshes
@@ -109,7 +109,9 @@ def run(
 class Stepper(Held):
     """A scene in virtual time, tick by tick. Options as of :func:`run`.
 
-    ``while stepper.step(): ...`` is the same to the bit as :func:`run`.
+    ``while stepper.step(): ...`` is the same to the bit as :func:`run`. Use it in a ``with`` if it records:
+    at the end of it the run ends and the recording is closed. A Stepper that is dropped, or left at the end
+    of the program, does the same.
     """
 
     _run: _core.Run
@@ -131,6 +133,13 @@ class Stepper(Held):
         self._run = begin(
             scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, overwrite=overwrite, law=law, meshes=meshes
         )
+        stop_at_exit(self)
+
+    def __enter__(self) -> "Stepper":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
 
     def step(self, hand: Optional[ArrayLike] = None) -> bool:
         """Run the next tick. False, and nothing runs, if the run is over.

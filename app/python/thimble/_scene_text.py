@@ -5,6 +5,8 @@ from __future__ import annotations
 import atexit
 import functools
 import json
+import os
+import re
 import shutil
 import tempfile
 from pathlib import Path
@@ -18,11 +20,24 @@ Scene = Union[PathOrName, Mapping[str, Any]]
 
 
 def as_yaml(value: Any) -> str:
-    """Write a value as JSON, which YAML understands; numpy's are taken as Python's own."""
+    """Write a value as JSON, which YAML understands; numpy's are taken as Python's own, paths as text."""
     try:
-        return json.dumps(value, allow_nan=False, default=lambda one: one.tolist())
+        # Emoji as they are: YAML has no surrogate pairs, which JSON would escape them as.
+        text = json.dumps(value, allow_nan=False, ensure_ascii=False, default=_plain)
+        text.encode("utf-8")
     except (AttributeError, TypeError, ValueError) as wrong:
         raise ArgumentError(f"A scene cannot hold {value!r}: {wrong}.") from wrong
+    # Characters that end a line for YAML or that it refuses, though JSON takes them as they are.
+    return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+# C1 controls, DEL, line and paragraph separators, byte order mark [YAML 1.2, 5.1 and 5.4].
+_UNPRINTABLE = re.compile("[\x7f-\x9f\u2028\u2029\ufeff]")
+
+
+def _plain(value: Any) -> Any:
+    """Turn what JSON does not know into what it does: paths, and numpy's arrays and numbers."""
+    return os.fsdecode(value) if isinstance(value, os.PathLike) else value.tolist()
 
 
 def scene_file(scene: Scene, changes: Optional[Mapping[str, Any]], keep: bool) -> str:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 
+from . import _core
+
 if TYPE_CHECKING:
     from . import Figure, Ticks
 
@@ -21,13 +23,14 @@ def to_pandas(ticks: Ticks) -> Any:
     except ImportError as missing:
         raise ImportError("to_pandas() needs pandas: install python3-pandas, or `pip install pandas`.") from missing
     columns = {}
+    by_axis = _core.columns_by_axis()
     for name in ticks.columns.dtype.names:
         values = ticks.columns[name]
         if values.ndim == 1:
             columns[name] = values.copy()
             continue
         for k in range(values.shape[1]):
-            part = _AXES[k] if values.shape[1] == 3 else str(k)
+            part = _AXES[k] if values.shape[1] == 3 and name not in by_axis else str(k)
             columns[f"{name}_{part}"] = values[:, k].copy()
     return pandas.DataFrame(columns, index=pandas.Index(ticks.time, name="seconds"))
 

@@ -171,7 +171,8 @@ class Ticks(_Columns):
     def to_pandas(self) -> Any:
         """Give all columns as a pandas DataFrame over the time in s.
 
-        Vectors become ``p_WT_x``, ``p_WT_y``, ``p_WT_z``, what has no axes ``q_0`` and so on; units as
+        Vectors become ``p_WT_x``, ``p_WT_y``, ``p_WT_z``; columns of joints, motors and the gimbal are
+        numbered from 0 (``q_0``, ``counts_0``, ``heat_0``), and so is the quaternion ``q_WT``. Units as
         :func:`units` tells them. ImportError without pandas.
         """
         return _show.to_pandas(self)

@@ -25,6 +25,7 @@ namespace {
 
 // The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
 // [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
+constexpr std::int64_t kCountsMax = 1'000'000;
 
 driver::SerialArm read_geometry(YamlMap map) {
   driver::SerialArm geometry;
@@ -40,8 +41,8 @@ driver::HeatSettings read_heat(YamlMap& map) {
   driver::HeatSettings heat;
   const bool current = map.has("continuous_current"), time = map.has("thermal_time_constant");
   if (!current && !time) return heat;
-  if (!current) map.reject("thermal_time_constant", "expected continuous_current beside it");
-  if (!time) map.reject("continuous_current", "expected thermal_time_constant beside it");
+  if (!current) map.refuse("thermal_time_constant", "expected continuous_current beside it");
+  if (!time) map.refuse("continuous_current", "expected thermal_time_constant beside it");
   if (!current || !time) return heat;
   const Eigen::Vector3d amperes = map.require_vector3("continuous_current", "A", 0.01, 32);
   const Eigen::Vector3d seconds = map.require_vector3("thermal_time_constant", "s", 1, 1e5);
@@ -70,17 +71,15 @@ void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& hea
   const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
   const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
   const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
-  const Eigen::Vector3d counts = map.require_vector3("counts_per_motor_turn", "counts", 1, 1e6);
-  const Eigen::Vector3d home = map.require_vector3("home_counts", "counts", -1e6, 1e6);
-  const Eigen::Vector3d motor_sign = map.require_vector3("motor_sign", "", -1, 1);
-  const Eigen::Vector3d encoder_sign = map.require_vector3("encoder_sign", "", -1, 1);
+  const auto counts = map.require_three_whole("counts_per_motor_turn", "counts", 1, kCountsMax);
+  const auto home = map.require_three_whole("home_counts", "counts", -kCountsMax, kCountsMax);
+  const auto motor_sign = map.require_signs("motor_sign");
+  const auto encoder_sign = map.require_signs("encoder_sign");
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (std::abs(motor_sign[k]) != 1) map.reject("motor_sign", "expected each to be 1 or -1");
-    if (std::abs(encoder_sign[k]) != 1) map.reject("encoder_sign", "expected each to be 1 or -1");
-    if (home[k] != std::round(home[k])) map.reject("home_counts", "expected whole numbers");
-    model.drives[i] = {motor_sign[k], ratio[k], torque[k], current[k]};
-    model.encoders[i] = {encoder_sign[k], counts[k], static_cast<std::int64_t>(home[k])};
+    model.drives[i] = {static_cast<double>(motor_sign[i]), ratio[k], torque[k], current[k]};
+    model.encoders[i] = {static_cast<double>(encoder_sign[i]), static_cast<double>(counts[i]),
+                         home[i]};
   }
   heat = read_heat(map);
   map.finish();
@@ -89,25 +88,24 @@ void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& hea
 /// Reads the gimbal that is mounted on this arm.
 driver::Gimbal read_gimbal(YamlMap map) {
   driver::Gimbal gimbal;
-  const Eigen::Vector3d counts = map.require_vector3("counts_per_turn", "counts", 4, 1e6);
-  const Eigen::Vector3d home = map.optional_vector3("home_counts", {0, 0, 0}, "counts", -1e6, 1e6);
-  const Eigen::Vector3d sign = map.require_vector3("sign", "", -1, 1);
+  const auto counts = map.require_three_whole("counts_per_turn", "counts", 4, kCountsMax);
+  const auto home =
+      map.optional_three_whole("home_counts", {0, 0, 0}, "counts", -kCountsMax, kCountsMax);
+  const auto sign = map.require_signs("sign");
   const auto axes = map.optional_choices("axes", {0, 1, 0}, {"x", "y", "z"});
   if (axes.size() == 3) {
     if (axes[0] == axes[1] || axes[1] == axes[2]) {
-      map.reject("axes", "expected no two neighbours to be the same axis");
+      map.refuse("axes", "expected no two neighbours to be the same axis");
     }
   } else if (!axes.empty()) {  // what cannot be read at all has been told
-    map.reject("axes", "expected three axes, from the link to the stylus");
+    map.refuse("axes", "expected three axes, from the link to the stylus");
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (std::abs(sign[k]) != 1) map.reject("sign", "expected each to be 1 or -1");
-    if (home[k] != std::round(home[k])) map.reject("home_counts", "expected whole numbers");
     if (axes.size() == 3) gimbal.axes[i] = static_cast<driver::FrameAxis>(axes[i]);
-    gimbal.sign[i] = sign[k];
-    gimbal.counts_per_turn[i] = counts[k];
-    gimbal.home_counts[i] = static_cast<std::int32_t>(home[k]);
+    gimbal.sign[i] = static_cast<double>(sign[i]);
+    gimbal.counts_per_turn[i] = static_cast<double>(counts[i]);
+    gimbal.home_counts[i] = static_cast<std::int32_t>(home[i]);
   }
   map.finish();
   return gimbal;
@@ -267,7 +265,7 @@ void read_kind(YamlMap& root, ArmFile& arm) {
     return;
   }
   const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
-  arm.board_model = static_cast<int>(root.optional_number("board_model", 0, "", 0, 1000));
+  arm.board_model = static_cast<int>(root.optional_whole("board_model", 0, "", 0, 1000));
   if (shape.built_in != nullptr) {
     arm.model = shape.built_in();
     if (root.has("joints")) {

@@ -12,6 +12,11 @@
 namespace thimble::scene {
 namespace {
 
+/// Draws a point of the world to the box of the arm's workspace.
+Eigen::Vector3d in_workspace(const ArmFile& file, const Eigen::Vector3d& p_W) {
+  return p_W.cwiseMax(file.workspace.min_W).cwiseMin(file.workspace.max_W);
+}
+
 Eigen::Vector3d in_base(const ArmFile& file, const Eigen::Vector3d& p_W) {
   return file.R_WB.transpose() * (p_W - file.p_WB);
 }
@@ -143,11 +148,13 @@ void ArmSimulation::settle(std::int64_t now_ns) noexcept {
 }
 
 bool ArmSimulation::lead(const Eigen::Vector3d& p_WH) noexcept {
-  if (!p_WH.allFinite()) return false;
-  const Eigen::Vector3d p = p_WH.cwiseMax(file_.workspace.min_W).cwiseMin(file_.workspace.max_W);
-  if (!joint_angles_at(file_, p)) return false;
-  hand().lead(in_base(file_, p));
+  if (!reaches(p_WH)) return false;
+  hand().lead(in_base(file_, in_workspace(file_, p_WH)));
   return true;
+}
+
+bool ArmSimulation::reaches(const Eigen::Vector3d& p_WH) const noexcept {
+  return p_WH.allFinite() && joint_angles_at(file_, in_workspace(file_, p_WH));
 }
 
 Eigen::Vector3d ArmSimulation::currents() const {

@@ -18,14 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::array<int, 3> read_signs(YamlMap& map, std::string_view key) {
-  const Eigen::Vector3d signs = map.require_vector3(key, "", -1, 1);
-  std::array<int, 3> whole{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double sign = signs[static_cast<Eigen::Index>(i)];
-    if (std::abs(sign) != 1) map.reject(key, "expected each to be 1 or -1");
-    whole[i] = sign < 0 ? -1 : 1;
-  }
-  return whole;
+  const auto signs = map.require_signs(key);
+  return {static_cast<int>(signs[0]), static_cast<int>(signs[1]), static_cast<int>(signs[2])};
 }
 
 template <class Number>
@@ -47,10 +41,9 @@ driver::Result<std::optional<Calibration>> load_calibration(const std::string& n
   if (!yaml) return yaml.error();
   YamlMap& root = yaml->root();
   Calibration calibration;
-  const Eigen::Vector3d home = root.require_vector3("home_counts", "counts", -1e6, 1e6);
+  const auto home = root.require_three_whole("home_counts", "counts", -1'000'000, 1'000'000);
   for (std::size_t i = 0; i < 3; ++i) {
-    calibration.home_counts[i] =
-        static_cast<std::int32_t>(std::lround(home[static_cast<Eigen::Index>(i)]));
+    calibration.home_counts[i] = static_cast<std::int32_t>(home[i]);
   }
   calibration.encoder_sign = read_signs(root, "encoder_sign");
   calibration.motor_sign = read_signs(root, "motor_sign");

@@ -30,7 +30,7 @@ const render::EffectKind* named_effect(YamlMap& entry) {
     known += (known.empty() ? "" : " or ") + std::string(group) + ": NAME";
     if (!entry.has(group)) continue;
     if (found != nullptr) {
-      entry.reject(group, "stands beside another effect; begin a list entry of its own");
+      entry.refuse(group, "stands beside another effect; begin a list entry of its own");
       return nullptr;
     }
     std::vector<const render::EffectKind*> kinds;
@@ -42,7 +42,7 @@ const render::EffectKind* named_effect(YamlMap& entry) {
     }
     found = kinds[entry.require_choice(group, names)];
   }
-  if (found == nullptr) entry.reject("", "expected " + known);
+  if (found == nullptr) entry.refuse("", "expected " + known);
   return found;
 }
 

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
+#include <string_view>
 #include <system_error>
+#include <unordered_set>
 #include <utility>
 
 #include "energy_choice.h"
@@ -22,6 +24,7 @@
 #include "scene_effects.h"
 #include "scene_shapes.h"
 #include "yaml/yaml_reader.h"
+#include "yaml/yaml_words.h"
 
 namespace thimble::scene {
 namespace {
@@ -78,7 +81,7 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
   object.mesh_file = find_mesh_file(map, folder, mesh_folder);
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
-    map.reject("scale", "cannot stand together with size; keep one of them");
+    map.refuse("scale", "cannot stand together with size; keep one of them");
   } else if (map.has("scale")) {
     object.scale = map.require_number("scale", "m per unit of the file", 1e-9, 1e9);
   }
@@ -114,7 +117,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   int forms = 0;
   for (const char* form : {"mesh", "plane", "sphere", "box", "field"}) forms += map.has(form);
   if (forms > 1) {
-    map.reject("", "expected one of mesh, plane, sphere, box and field, found several");
+    map.refuse("", "expected one of mesh, plane, sphere, box and field, found several");
     return object;
   }
   object.R_WO = map.optional_rotation("rotate_degrees");
@@ -222,8 +225,8 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
                  kRateMin, kRateMax);
   scene.rate_factor = reading.rate_factor;
   scene.duration = root.require_number("duration", "s", 0.001, kDurationMax);
-  // 2^53: every whole number up to here is a double.
-  scene.seed = static_cast<std::uint64_t>(root.optional_number("seed", 0, "", 0, 0x1p53));
+  scene.seed =
+      static_cast<std::uint64_t>(root.optional_whole("seed", 0, "", 0, std::int64_t{1} << 53));
   if (root.has("gate")) {
     YamlMap gate = root.require_map("gate");
     scene.energy =
@@ -248,6 +251,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
       scene.arm = std::move(arm).value();
     } else {
       arm_error = arm.error();
+      root.ignore_checks();  // they would compare with an arm that is not there
     }
   }
   if (!arm_error) check_stall(root, scene.rate, scene.arm);
@@ -256,13 +260,10 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   for (YamlMap& object : root.require_maps("objects")) {
     scene.objects.push_back(read_object(object, folder, mesh_folder, context));
   }
-  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (scene.objects[i].name == scene.objects[j].name) {
-        root.reject("objects",
-                    "expected different names, found \"" + scene.objects[i].name + "\" twice");
-      }
-    }
+  std::unordered_set<std::string_view> names;
+  for (const SceneObject& object : scene.objects) {
+    if (names.insert(object.name).second) continue;
+    root.reject("objects", "expected different names, found " + in_quotes(object.name) + " twice");
   }
   if (several) {
     read_hands(arms, folder, scene);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <limits>
 #include <utility>
 
 #include "studies/accuracy/probed_stroke.h"
@@ -18,7 +19,23 @@ double worked() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-void measure_times(std::vector<MeasuredPoint*>& points, int rounds) {
+/// How a measurement gets on, and whether it is to be stopped.
+class Course {
+ public:
+  explicit Course(const MeasureOptions& options) : options_(options) {}
+
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  void advance(int steps) const {
+    if (options_.advance) options_.advance(steps);
+  }
+
+ private:
+  const MeasureOptions& options_;
+};
+
+constexpr int kCountSteps = 2;  // of each point; counting takes longer than all else [measured]
+
+void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course& course) {
   struct Timed {
     MeasuredPoint* point = nullptr;
     Stroke stroke;
@@ -28,13 +45,16 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds) {
   std::vector<Timed> all;
   volatile double seen = 0;
   for (MeasuredPoint* point : points) {
+    if (course.stopped()) return;
     all.push_back({point, point->point->prepare()});
     if (point->point->beside) all.back().beside = point->point->beside();
     seen = seen + all.back().stroke();  // the first one reads everything into the caches
     if (all.back().beside) seen = seen + all.back().beside();
   }
   for (int round = 0; round < rounds; ++round) {
+    course.advance(1);
     for (Timed& timed : all) {
+      if (course.stopped()) return;
       const double begin = worked();
       seen = seen + timed.stroke();
       double spent = worked() - begin;
@@ -121,41 +141,107 @@ std::optional<double> slope_of(const std::vector<MeasuredPoint>& points) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options) {
+namespace {
+
+/// Returns an axis with its lines and points, of which nothing is known yet.
+MeasuredAxis unmeasured(AccuracyAxis axis) {
   MeasuredAxis measured;
   measured.axis = std::move(axis);
   for (const AccuracyLine& line : measured.axis.lines) {
     MeasuredLine found{.line = &line, .slope = {}, .points = {}};
     for (const AccuracyPoint& point : line.points) {
-      MeasuredPoint one;
-      one.point = &point;
-      one.error = point.error();
-      // Written so that NaN counts as diverged.
-      one.diverged = !(std::abs(one.error) < 1e9);
-      found.points.push_back(one);
+      found.points.emplace_back();
+      found.points.back().point = &point;
     }
-    found.slope = slope_of(found.points);
     measured.lines.push_back(std::move(found));
   }
+  return measured;
+}
+
+std::vector<MeasuredPoint*> points_of(MeasuredAxis& measured) {
   std::vector<MeasuredPoint*> points;
   for (MeasuredLine& line : measured.lines) {
     for (MeasuredPoint& point : line.points) points.push_back(&point);
   }
-  if (options.rounds > 0) measure_times(points, options.rounds);
-  if (options.count) {
-    std::size_t strokes = 0;
-    for (const MeasuredPoint* point : points) strokes += point->point->beside ? 2 : 1;
-    const auto counts = count_strokes(measured.axis.name);
-    if (counts && counts->size() == strokes) {
-      std::size_t next = 0;
-      for (MeasuredPoint* point : points) {
-        double count = (*counts)[next++];
-        if (point->point->beside) count -= (*counts)[next++];
-        point->instructions = count / point->point->ticks;
-      }
+  return points;
+}
+
+void set_error(MeasuredPoint& point, double error) {
+  point.error = error;
+  // Written so that NaN counts as diverged.
+  point.diverged = !(std::abs(error) < 1e9);
+}
+
+void count_instructions(const std::string& axis, const std::vector<MeasuredPoint*>& points) {
+  std::size_t strokes = 0;
+  for (const MeasuredPoint* point : points) strokes += point->point->beside ? 2 : 1;
+  const auto counts = count_strokes(axis);
+  if (!counts || counts->size() != strokes) return;
+  std::size_t next = 0;
+  for (MeasuredPoint* point : points) {
+    double count = (*counts)[next++];
+    if (point->point->beside) count -= (*counts)[next++];
+    point->instructions = count / point->point->ticks;
+  }
+}
+
+/// Finds what follows from the numbers of all points.
+void conclude(MeasuredAxis& measured) {
+  for (MeasuredLine& line : measured.lines) line.slope = slope_of(line.points);
+  if (!measured.axis.given) find_front(points_of(measured));
+}
+
+}  // namespace
+
+int steps_of(const AccuracyAxis& axis, const MeasureOptions& options) {
+  int points = 0;
+  for (const AccuracyLine& line : axis.lines) points += static_cast<int>(line.points.size());
+  return points + options.rounds + (options.count ? kCountSteps * points : 0);
+}
+
+std::vector<double> numbers_of(const MeasuredAxis& measured) {
+  std::vector<double> numbers;
+  for (const MeasuredLine& line : measured.lines) {
+    for (const MeasuredPoint& point : line.points) {
+      numbers.insert(numbers.end(),
+                     {point.error, point.ns, point.ns_spread,
+                      point.instructions.value_or(std::numeric_limits<double>::quiet_NaN())});
     }
   }
-  if (!measured.axis.given) find_front(points);
+  return numbers;
+}
+
+MeasuredAxis with_numbers(AccuracyAxis axis, std::span<const double> numbers) {
+  MeasuredAxis measured = unmeasured(std::move(axis));
+  const auto points = points_of(measured);
+  measured.complete = numbers.size() == 4 * points.size();
+  for (std::size_t i = 0; measured.complete && i < points.size(); ++i) {
+    const auto of_point = numbers.subspan(4 * i, 4);
+    set_error(*points[i], of_point[0]);
+    points[i]->ns = of_point[1];
+    points[i]->ns_spread = of_point[2];
+    if (!std::isnan(of_point[3])) points[i]->instructions = of_point[3];
+  }
+  conclude(measured);
+  return measured;
+}
+
+MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options) {
+  MeasuredAxis measured = unmeasured(std::move(axis));
+  const Course course(options);
+  auto points = points_of(measured);
+  for (MeasuredPoint* point : points) {
+    if (course.stopped()) break;
+    set_error(*point, point->point->error());
+    course.advance(1);
+  }
+  if (options.rounds > 0 && !course.stopped()) measure_times(points, options.rounds, course);
+  if (options.count && !course.stopped()) {
+    count_instructions(measured.axis.name, points);
+    course.advance(kCountSteps * static_cast<int>(points.size()));
+  }
+  measured.complete = !course.stopped();
+  if (measured.complete) conclude(measured);
   return measured;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +41,7 @@ struct MeasuredAxis {
 
   AccuracyAxis axis;
   std::vector<MeasuredLine> lines;
+  bool complete = true;  ///< False: it was stopped, and numbers are missing.
 
   const MeasuredPoint* default_point() const;
   const MeasuredLine* line_of(const MeasuredPoint* point) const;
@@ -48,7 +52,20 @@ struct MeasuredAxis {
 struct MeasureOptions {
   int rounds = 15;    ///< Strokes timed of each point, in turn with all others; 0: no time.
   bool count = true;  ///< Counts instructions, if valgrind is installed.
+  const std::atomic<bool>* stop = nullptr;      ///< Ends the measurement early once it is true.
+  std::function<void(int steps)> advance = {};  ///< Called as it gets on, with steps done.
 };
+
+/// Returns how many steps `measure_axis` reports for an axis, as a measure of its duration.
+int steps_of(const AccuracyAxis& axis, const MeasureOptions& options);
+
+/// Returns the measured numbers of an axis, for a journal: error, time, its spread, and
+/// instructions (NaN if not counted) of each point.
+std::vector<double> numbers_of(const MeasuredAxis& measured);
+
+/// Returns an axis with the numbers of `numbers_of` instead of measuring them; not complete if they
+/// are not as many as it has. Real-time: never from the servo thread.
+MeasuredAxis with_numbers(AccuracyAxis axis, std::span<const double> numbers);
 
 /// Measures errors, time and instructions of all points. Errors are the same bits each time; times
 /// are medians on whatever this machine is. Real-time: never from the servo thread.

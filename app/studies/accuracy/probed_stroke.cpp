@@ -5,6 +5,8 @@
 #include <fstream>
 #include <map>
 
+#include "studies/callgrind.h"
+
 extern "C" [[gnu::noinline]] double thimble_probed_stroke(const thimble::app::Stroke& stroke) {
   const double sum = stroke();
   asm volatile("");  // so that the call above is no jump, and the function ends here
@@ -78,17 +80,13 @@ std::optional<std::vector<double>> count_strokes(const std::string& prefix) {
 }
 
 std::optional<std::vector<double>> count_subject(const std::string& subject) {
-  if (subject.find('\'') != std::string::npos) return std::nullopt;  // no word for a shell
-  std::error_code error;
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
   const ScratchFolder folder;
-  if (error || folder.path().empty()) return std::nullopt;
-  const std::string command =
-      "valgrind --tool=callgrind --toggle-collect=thimble_probed_stroke "
-      "--dump-after=thimble_probed_stroke --callgrind-out-file='" +
-      (folder.path() / "out").string() + "' '" + program + "' cost-probe '" + subject +
-      "' 1 >/dev/null 2>&1";
-  if (std::system(command.c_str()) != 0) return std::nullopt;  // NOLINT(cert-env33-c)
+  if (folder.path().empty()) return std::nullopt;
+  const bool counted =
+      run_callgrind({"--toggle-collect=thimble_probed_stroke", "--dump-after=thimble_probed_stroke",
+                     "--callgrind-out-file=" + (folder.path() / "out").string()},
+                    {"cost-probe", subject, "1"});
+  if (!counted) return std::nullopt;
   std::vector<double> counts;
   for (int i = 1;; ++i) {
     const auto file = folder.path() / ("out." + std::to_string(i));

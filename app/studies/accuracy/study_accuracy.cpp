@@ -6,6 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "log/logger.h"
+#include "nearest_word.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/accuracy/accuracy_axis.h"
@@ -14,6 +16,10 @@
 #include "studies/accuracy/axis_words.h"
 #include "studies/accuracy/measure_axis.h"
 #include "studies/run_pages.h"
+#include "studies/sweep/progress_bar.h"
+#include "studies/sweep/sweep.h"
+#include "studies/sweep/sweep_journal.h"
+#include "thimble/scene/build_info.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/shipped_files.h"
 
@@ -21,17 +27,92 @@ namespace thimble::app {
 namespace {
 
 driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const AxisMaker& maker : accuracy_axes()) known.emplace_back(maker.name);
+  for (const std::string& name : names) {
+    if (std::count(known.begin(), known.end(), name) == 1) {
+      if (std::count(names.begin(), names.end(), name) == 1) continue;
+      return driver::Error{"--axis: " + name + " is named twice; name each axis once."};
+    }
+    std::string message = "--axis: " + name + " is no axis";
+    if (const auto near = scene::nearest_word(name, known)) {
+      message += "; did you mean " + *near + "?";
+    }
+    message += message.ends_with('?') ? " Known are" : "; known are";
+    for (const std::string& one : known) message.append(" ").append(one);
+    return driver::Error{message + "."};
+  }
   std::vector<const AxisMaker*> found;
   for (const AxisMaker& maker : accuracy_axes()) {
     if (names.empty() || std::find(names.begin(), names.end(), maker.name) != names.end()) {
       found.push_back(&maker);
     }
   }
-  if (names.empty() || found.size() == names.size()) return found;
-  std::string message = "--axis: known are";
-  for (const AxisMaker& maker : accuracy_axes()) message.append(" ").append(maker.name);
-  return driver::Error{message + "; each once."};
+  return found;
 }
+
+/// Measures axes one after the other, and keeps each in the journal.
+class AxisSweep {
+ public:
+  AxisSweep(const AccuracyChoice& choice, std::vector<AccuracyAxis> axes,
+            const std::atomic<bool>& stop)
+      : choice_(choice), axes_(std::move(axes)), stop_(stop) {}
+
+  /// Returns the measured axes; fewer if it was stopped.
+  driver::Result<std::vector<std::unique_ptr<MeasuredAxis>>> run() {
+    std::string key = scene::program_name();
+    for (const AccuracyAxis& axis : axes_) key.append(" ").append(axis.name);
+    if (choice_.count) key += " counted";
+    CellNumbers numbers;
+    auto journal = SweepJournal::open(choice_.folder / "accuracy.journal", key, axes_.size(),
+                                      choice_.resume, numbers);
+    if (!journal) return journal.error();
+    MeasureOptions options{.count = choice_.count, .stop = &stop_};
+    std::size_t all = 0, done = 0;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const auto steps = static_cast<std::size_t>(steps_of(axes_[i], options));
+      all += steps;
+      done += numbers[i].empty() ? 0 : steps;
+    }
+    ProgressBar bar(done, all);
+    bar.show(done);
+    options.advance = [&](int steps) {
+      done += static_cast<std::size_t>(steps);
+      bar.show(done);
+    };
+    std::vector<std::unique_ptr<MeasuredAxis>> measured;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      auto axis = std::make_unique<MeasuredAxis>(
+          numbers[i].empty() ? measure_axis(std::move(axes_[i]), options)
+                             : with_numbers(std::move(axes_[i]), numbers[i]));
+      if (!axis->complete && stop_.load()) return measured;
+      if (!axis->complete) return damaged();
+      numbers[i] = numbers_of(*axis);
+      if (!(*journal)->add(i, numbers[i])) return unwritable();
+      if (options.count && !axis->lines.front().points.front().instructions) {
+        scene::logger().warn("Instructions are not counted: valgrind is not installed, or failed.");
+        options.count = false;
+      }
+      measured.push_back(std::move(axis));
+    }
+    if (auto finished = (*journal)->finish(numbers); !finished) return finished.error();
+    return measured;
+  }
+
+ private:
+  driver::Error damaged() const {
+    return {(choice_.folder / "accuracy.journal").string() +
+            " does not fit to the axes; leave out --resume to begin again."};
+  }
+  driver::Error unwritable() const {
+    return {"The journal " + (choice_.folder / "accuracy.journal").string() +
+            " cannot be written: check that the disk has room."};
+  }
+
+  const AccuracyChoice& choice_;
+  std::vector<AccuracyAxis> axes_;
+  const std::atomic<bool>& stop_;
+};
 
 /// Writes pages of one touch at each quality, which is a point on every axis, into `folder`.
 driver::Result<void> write_runs(const std::filesystem::path& folder) {
@@ -61,27 +142,25 @@ driver::Result<void> write_runs(const std::filesystem::path& folder) {
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string>& axes, bool count,
-                                                   const std::filesystem::path& folder) {
-  const auto makers = named_axes(axes);
+driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
+                                              const std::atomic<bool>& stop) {
+  const std::filesystem::path& folder = choice.folder;
+  const auto makers = named_axes(choice.axes);
   if (!makers) return makers.error();
   const bool draws = has_gnuplot();
   if (auto made = make_picture_folder(folder); !made) return made.error();
-  std::vector<std::unique_ptr<MeasuredAxis>> measured;
+  std::vector<AccuracyAxis> axes;
+  for (const AxisMaker* maker : *makers) axes.push_back(maker->make());
+  const auto measured = AxisSweep(choice, std::move(axes), stop).run();
+  if (!measured) return measured.error();
+  AccuracyReport report;
+  report.stopped = measured->size() < makers->size();
+  if (report.stopped) return report;
   std::vector<AxisSection> sections;
-  std::vector<Figure> figures;
-  bool counted = count;
-  for (const AxisMaker* maker : *makers) {
-    std::printf("\rMeasuring %-40s", std::string(maker->name).c_str());
-    std::fflush(stdout);
-    measured.push_back(
-        std::make_unique<MeasuredAxis>(measure_axis(maker->make(), {.count = counted})));
-    const MeasuredAxis& axis = *measured.back();
+  for (const auto& one : *measured) {
+    if (report.stopped = stop.load(); report.stopped) return report;
+    const MeasuredAxis& axis = *one;
     AxisSection section{.axis = &axis, .pictures = {}};
-    if (counted && !axis.lines.front().points.front().instructions) {
-      std::printf("\rInstructions are not counted: valgrind is not installed, or failed.\n");
-      counted = false;
-    }
     if (auto written = write_text(csv_of(axis), folder / (axis.axis.name + ".csv")); !written) {
       return written.error();
     }
@@ -91,9 +170,8 @@ driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string
       section.pictures = *std::move(drawn);
     }
     sections.push_back(std::move(section));
-    for (Figure& figure : figures_of(axis)) figures.push_back(std::move(figure));
+    for (Figure& figure : figures_of(axis)) report.figures.push_back(std::move(figure));
   }
-  std::printf("\r%60s\r", "");
   if (!draws) std::printf("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
   if (auto written = write_runs(folder / "runs"); !written) return written.error();
   if (auto written = write_accuracy_page(sections, folder); !written) return written.error();
@@ -105,7 +183,7 @@ driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string
                 felt_sentence(*section.axis).c_str(), default_sentence(*section.axis).c_str());
   }
   std::printf("\n");
-  return figures;
+  return report;
 }
 
 }  // namespace thimble::app

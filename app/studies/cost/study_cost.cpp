@@ -14,11 +14,13 @@
 #include <string>
 #include <vector>
 
+#include "log/logger.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/cost/cost_subjects.h"
 #include "studies/cost/instruction_count.h"
 #include "studies/cost/memory_trades.h"
+#include "studies/sweep/progress_bar.h"
 
 namespace thimble::app {
 namespace {
@@ -205,6 +207,19 @@ std::vector<Figure> figures_of(const std::vector<Cost>& costs, const Cost& bare)
   return figures;
 }
 
+/// Counts the instructions of all subjects, if valgrind is installed.
+void count_all(std::vector<Cost>& costs) {
+  ProgressBar bar(0, costs.size());
+  std::size_t done = 0;
+  for (Cost& cost : costs) {
+    bar.show(done++);
+    cost.instructions = instructions_per_tick(cost.subject->name);
+    if (cost.instructions) continue;
+    scene::logger().warn("Instructions are not counted: valgrind is not installed, or failed.");
+    return;
+  }
+}
+
 }  // namespace
 
 driver::Result<std::vector<Figure>> study_cost(const std::filesystem::path& folder) {
@@ -226,16 +241,7 @@ driver::Result<std::vector<Figure>> study_cost(const std::filesystem::path& fold
   for (int round = 0; round < kRounds; ++round) {
     for (Cost& cost : costs) stroke(cost, states);
   }
-  for (Cost& cost : costs) {
-    std::printf("\rCounting instructions: %-40s", cost.subject->name.c_str());
-    std::fflush(stdout);
-    cost.instructions = instructions_per_tick(cost.subject->name);
-    if (!cost.instructions) {
-      std::printf("\rInstructions are not counted: valgrind is not installed.%20s\n", "");
-      break;
-    }
-  }
-  std::printf("\r%64s\r", "");
+  count_all(costs);
   const Cost& bare = *std::find_if(costs.begin(), costs.end(), [](const Cost& cost) {
     return cost.subject->name == kBareSubject;
   });

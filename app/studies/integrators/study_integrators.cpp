@@ -15,6 +15,7 @@
 #include "report/picture_parts.h"
 #include "studies/integrators/membrane.h"
 #include "studies/integrators/poked_body.h"
+#include "studies/sweep/progress_bar.h"
 #include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {
@@ -113,12 +114,13 @@ struct Diagram {
 
 template <int kDof>
 driver::Result<Diagram> measure_all(const PokedBody<kDof>& body, bool membrane, Diagram diagram) {
+  std::size_t all = 0, done = 0;
+  for (const Line& line : lines(membrane)) all += line.substeps.size();
+  ProgressBar bar(0, all);
   for (const Line& line : lines(membrane)) {
     std::vector<WorkPoint> points;
     for (const int substeps : line.substeps) {
-      std::printf("\r%s: %s, %d substeps%20s", diagram.name.c_str(),
-                  std::string(render::name_of(line.scheme)).c_str(), substeps, "");
-      std::fflush(stdout);
+      bar.show(done++);
       auto point = measure(body, line.scheme, substeps);
       if (!point) return point.error();
       points.push_back(*std::move(point));
@@ -126,7 +128,6 @@ driver::Result<Diagram> measure_all(const PokedBody<kDof>& body, bool membrane, 
     diagram.lines.push_back(std::move(points));
   }
   if (auto modal = measure_modal(body)) diagram.lines.push_back({*std::move(modal)});
-  std::printf("\r%76s\r", "");
   return diagram;
 }
 

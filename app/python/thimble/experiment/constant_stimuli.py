@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -22,9 +22,14 @@ class ConstantStimuli(Trials):
         says: str = "correct",
         order: str = "blocks",
         seed: int = 0,
+        subject: Optional[int] = None,
     ) -> None:
-        """Take the levels, in whatever unit; says: the answer's key, True or False, that rises with the level."""
-        super().__init__({"level": [float(one) for one in levels]}, repeats=repeats, order=order, seed=seed)
+        """Take the levels, in whatever unit; says: the answer's key, True or False, that rises with the level.
+
+        order, seed and subject: as of :class:`Trials`; "balanced" needs the subject.
+        """
+        each = {"level": [float(one) for one in levels]}
+        super().__init__(each, repeats=repeats, order=order, seed=seed, subject=subject)
         self.says = says
         self._levels: list[float] = []
         self._answers: list[bool] = []

@@ -8,6 +8,7 @@ from typing import Any, Mapping, Optional, Sequence
 import numpy as np
 
 from .. import ArgumentError
+from .._arguments import whole_of
 
 ORDERS = ("given", "random", "blocks", "balanced")
 
@@ -36,7 +37,8 @@ class Trials:
     conditions: values by the name of each factor (all combinations are taken), or a list of dicts.
     repeats: how often each. order: "given"; "random", all shuffled; "blocks", each block has every
     condition once, shuffled; "balanced", block k of subject s is row s + k of a Williams design.
-    seed: of the shuffling. subject: number from 0 on, for "balanced".
+    seed: of the shuffling. subject: number from 0 on; another one is shuffled otherwise, and "balanced" is
+    refused without it, because it balances over subjects.
     """
 
     def __init__(
@@ -46,13 +48,16 @@ class Trials:
         repeats: int = 1,
         order: str = "random",
         seed: int = 0,
-        subject: int = 0,
+        subject: Optional[int] = None,
     ) -> None:
         each = combinations(conditions) if isinstance(conditions, Mapping) else [dict(one) for one in conditions]
         if not each or repeats < 1:
             raise ArgumentError("conditions: expected at least one, at least once.")
         if order not in ORDERS:
             raise ArgumentError(f"order: expected {', '.join(ORDERS)}, found {order!r}.")
+        if order == "balanced" and subject is None:
+            raise ArgumentError('subject: order="balanced" balances over subjects; give each its number, from 0 on.')
+        subject = whole_of("subject", subject or 0)
         random = np.random.default_rng([seed, subject])
         places = [list(range(len(each))) for _ in range(repeats)]
         if order == "balanced":

@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 
 _QUARTILE = {"logistic": math.log(3.0), "probit": 0.6744897501960817}  # from the middle to 75 %, in widths
 _LAPSES = np.linspace(0.0, 0.06, 13)  # looked through with lapse="fit"; more would be no lapse [chosen]
-_MIDDLES, _WIDTHS = np.linspace(0.05, 0.95, 10), (0.02, 0.07, 0.2, 0.6)  # to begin at, over the levels' span
+# A grid to begin at, over the levels' span, and how many of its valleys are refined.
+_MIDDLES = np.linspace(-0.5, 1.5, 41)
+_LOG_WIDTHS = np.linspace(math.log(0.005), math.log(4.0), 14)
+_BEGINS_MOST = 8
 _STEPS_MOST = 100
 _NARROWEST = 1e-3  # width over the levels' span; what is narrower is a step as far as answers tell
 
@@ -136,7 +139,7 @@ def _loss(p: Array, k: Array, n: Array) -> float:
 def _fitted(
     x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
 ) -> tuple[Psychometric, bool]:
-    """Fit middle and log of the width by Fisher's scoring with halved steps, from the best of a few."""
+    """Fit middle and log of the width by Fisher's scoring with halved steps, from each of a few valleys."""
     first, span = float(x[0]), float(x[-1] - x[0])
     x = (x - first) / span  # from 0 to 1, whatever the unit
     range_ = 1.0 - guess - lapse
@@ -153,28 +156,35 @@ def _fitted(
         weight = 1.0 / (p * (1.0 - p))
         return (by * weight * n) @ by.T, by @ (weight * (k - n * p))
 
+    def nearer(values: Array, step: Array, loss: float) -> tuple[float, Array]:
+        step = step * min(1.0, 1.0 / max(np.abs(step).max(), 1e-300))
+        for halved in range(30):
+            tried = values + step * 0.5**halved
+            tried[1] = min(max(tried[1], narrowest), narrowest + 14.0)
+            there = _loss(at(tried)[0], k, n)
+            if there < loss:
+                return there, tried
+        return loss, values
+
     def improved(values: Array) -> tuple[float, Array]:
         loss = _loss(at(values)[0], k, n)
         for _ in range(_STEPS_MOST):
             matrix, ascent = information(values)
-            scale = 1e-9 * np.trace(matrix) + 1e-300
-            step = np.linalg.solve(matrix + scale * np.eye(2), ascent)
-            step *= min(1.0, 1.0 / max(np.abs(step).max(), 1e-300))
-            for halved in range(30):
-                tried = values + step * 0.5**halved
-                tried[1] = min(max(tried[1], narrowest), narrowest + 14.0)
-                there = _loss(at(tried)[0], k, n)
-                if there < loss:
-                    break
-            else:
+            # Where one level decides, the matrix is all but singular, and damped steps get on better.
+            there, tried = loss, values
+            for damping in (1e-9, 1e-3, 1.0):
+                damped = matrix + (damping * np.trace(matrix) + 1e-300) * np.eye(2)
+                there, tried = min(
+                    (there, tried), nearer(values, np.linalg.solve(damped, ascent), loss), key=lambda one: one[0]
+                )
+            if not there < loss:
                 return loss, values
             gained, loss, values = loss - there, there, tried
             if gained < 1e-12 * (1.0 + loss):
                 return loss, values
         return loss, values
 
-    begins = [np.array([middle, math.log(width)]) for middle in _MIDDLES for width in _WIDTHS]
-    loss, best = improved(min(begins, key=lambda one: _loss(at(one)[0], k, n)))
+    loss, best = min((improved(one) for one in _begins(x, k, n, shape, guess, lapse)), key=lambda one: one[0])
     _refuse_flat(k, n, loss)
     matrix, _ = information(best)
     errors = np.full(2, math.nan)
@@ -196,6 +206,29 @@ def _fitted(
         deviance=max(0.0, 2.0 * (loss - own)),
     )
     return curve, held
+
+
+def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float) -> list[Array]:
+    """Give the values to refine: the best local minima of a grid over middle and log width, apart from each other.
+
+    The loss has several valleys, above all with guess > 0, and the best point of a grid is not always in the
+    deepest. x: the levels, from 0 to 1.
+    """
+    z = (x - _MIDDLES[:, None, None]) / np.exp(_LOG_WIDTHS)[None, :, None]
+    p = np.clip(guess + (1.0 - guess - lapse) * rising(shape, z), 1e-12, 1.0 - 1e-12)
+    grid = -(k * np.log(p) + (n - k) * np.log(1.0 - p)).sum(axis=2)
+    around = np.pad(grid, 1, constant_values=math.inf)
+    rows, columns = grid.shape
+    near = [around[1 + i : 1 + i + rows, 1 + j : 1 + j + columns] for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    valleys = np.argwhere(grid <= np.min(near, axis=0)).tolist()
+    chosen: list[list[int]] = []
+    for valley in sorted(valleys, key=lambda one: float(grid[one[0], one[1]])):
+        # Points of one flat place begin alike.
+        if all(max(abs(valley[0] - one[0]), abs(valley[1] - one[1])) > 2 for one in chosen):
+            chosen.append(valley)
+        if len(chosen) == _BEGINS_MOST:
+            break
+    return [np.array([_MIDDLES[i], _LOG_WIDTHS[j]]) for i, j in chosen]
 
 
 def _refuse_flat(k: Array, n: Array, loss: float) -> None:

@@ -1,5 +1,6 @@
 #include "arm/simulation_section.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -17,12 +18,10 @@ namespace {
 constexpr double kCopperResistance = 0.00393;
 
 std::array<std::uint8_t, 3> joints_of(YamlMap& map, std::string_view key) {
-  const Eigen::Vector3d named = map.optional_vector3(key, {1, 2, 3}, "", 1, 3);
+  const auto named = map.optional_three_whole(key, {1, 2, 3}, "", 1, 3);
   std::array<std::uint8_t, 3> joints{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double joint = named[static_cast<Eigen::Index>(i)];
-    if (joint != std::round(joint)) map.reject(key, "expected whole numbers");
-    joints[i] = static_cast<std::uint8_t>(std::lround(joint) - 1);
+    joints[i] = static_cast<std::uint8_t>(std::max<std::int64_t>(named[i], 1) - 1);
   }
   return joints;
 }
@@ -94,7 +93,8 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   train.current_lag = map.optional_number("current_lag", 0, "s", 0, 0.1);
   train.cogging = amounts("cogging", "N m at the motor", 1);
   train.ripple = amounts("ripple", "", 0.5);
-  train.periods_per_turn = map.optional_number("periods_per_turn", 0, "", 0, 1000);
+  train.periods_per_turn =
+      static_cast<double>(map.optional_whole("periods_per_turn", 0, "", 0, 1000));
   const auto phase = [&map](std::string_view key) {
     return map.optional_vector3(key, {0, 0, 0}, "rad where the joint's angle is zero", -kTurn,
                                 kTurn);

@@ -33,7 +33,7 @@ fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& me
     if (mesh_folder.empty()) {
       auto found = find_scan(name);
       if (!found) {
-        map.reject("mesh", found.error().message);
+        map.refuse("mesh", found.error().message);
         return {};
       }
       path = std::move(found).value();
@@ -45,7 +45,7 @@ fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& me
     }
   }
   if (!is_file(path)) {
-    map.reject("mesh", "expected a file, found none at " + path.lexically_normal().string());
+    map.refuse("mesh", "expected a file, found none at " + path.lexically_normal().string());
   }
   return path.lexically_normal();
 }
@@ -62,7 +62,7 @@ fs::path find_own_arm_file(YamlMap& map, const fs::path& folder) {
       names += (names.empty() ? "; or the name of an arm: " : ", ") + arm.name;
     }
   }
-  map.reject("arm", "expected a file, found none at " + path.string() + names);
+  map.refuse("arm", "expected a file, found none at " + path.string() + names);
   return path;
 }
 

@@ -1,13 +1,13 @@
 #include "thimble/scene/shipped_files.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <map>
 #include <string_view>
 #include <system_error>
 
 #include "files/data_folders.h"
+#include "nearest_word.h"
 #include "user_folders.h"
+#include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
 namespace {
@@ -25,10 +25,11 @@ std::vector<fs::path> installed_arm_folders() {
 std::vector<ShippedFile> list_in(const std::vector<fs::path>& folders) {
   std::map<std::string, fs::path> found;
   for (const fs::path& folder : folders) {
-    std::error_code status;
+    std::error_code status, missing;
     for (fs::directory_iterator entry(folder, status), end; !status && entry != end;
          entry.increment(status)) {
-      if (entry->path().extension() == ".yaml") {
+      // Not a pipe, which nobody should wait for, or a folder.
+      if (entry->path().extension() == ".yaml" && entry->is_regular_file(missing)) {
         found.try_emplace(entry->path().stem().string(), entry->path());
       }
     }
@@ -54,12 +55,16 @@ driver::Result<fs::path> find(const std::string& meant, const char* kind, const 
   if (there || meant.find('/') != std::string::npos) return fs::path(meant);
   const auto files = list(kind);
   std::string names;
+  std::vector<std::string> known;
   for (const ShippedFile& file : files) {
     if (meant == file.name || meant == file.name + ".yaml") return file.path;
     names += (names.empty() ? "" : ", ") + file.name;
+    known.push_back(file.name);
   }
+  const auto near = nearest_word(meant, known);
   return driver::Error{
       meant + ": there is no such file, and no " + noun + " of that name. " +
+      (near ? "Did you mean " + *near + "? " : "") +
       (names.empty()
            ? "None is known by name here; give the path of a file, or say in XDG_DATA_DIRS "
              "which folder holds thimble/ with its scenes and arms."
@@ -92,11 +97,9 @@ bool is_installed_arm(const fs::path& file) {
 }
 
 std::string description_of(const fs::path& file) {
-  try {
-    return YAML::LoadFile(file.string())["description"].as<std::string>("");
-  } catch (const YAML::Exception&) {
-    return {};  // whoever runs it is told what is wrong with it
-  }
+  auto yaml = YamlFile::load(file);
+  // `thimble run` reports what is wrong with a file.
+  return yaml ? yaml->root().optional_string("description", "") : std::string();
 }
 
 driver::Result<fs::path> find_scene(const std::string& meant) {

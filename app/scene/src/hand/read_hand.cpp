@@ -18,7 +18,7 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
   waypoint.time = map.require_number("t", "s", 0, kTimeMax);
   waypoint.stop = map.optional_bool("stop", false);
   if (map.has("at") == map.has("on")) {
-    map.reject("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
+    map.refuse("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
   } else if (map.has("at")) {
     waypoint.p_W = map.require_vector3("at", "m", -kPointMax, kPointMax);
   } else {
@@ -58,14 +58,14 @@ std::vector<HandWaypoint> read_bag_path(YamlMap& map, const std::filesystem::pat
   const std::string text = map.require_string("bag");
   const std::string topic = map.optional_string("topic", "");
   const std::size_t axes = map.optional_choice("axes", 0, {"plain", "omni"});
-  if (map.has("path")) map.reject("path", "cannot stand beside bag; the hand follows one of them");
+  if (map.has("path")) map.refuse("path", "cannot stand beside bag; the hand follows one of them");
   if (text.empty()) return {};
   auto hand =
       read_bag_hand((folder / text).lexically_normal(), topic, static_cast<bag::BagAxes>(axes));
   if (hand) return std::move(hand).value();
   std::string sentence = hand.error().message;  // here it stands within one
   if (sentence.ends_with('.')) sentence.pop_back();
-  map.reject("bag", sentence);
+  map.refuse("bag", sentence);
   return {};
 }
 

@@ -33,7 +33,7 @@ ArmPlace read_place(YamlMap map) {
   const double degrees = map.optional_number("turn_degrees", 0, "degrees", -360, 360);
   const double quarters = degrees / 90;
   if (std::round(quarters) != quarters) {
-    map.reject("turn_degrees",
+    map.refuse("turn_degrees",
                fmt::format("expected a multiple of 90, so that the workspace stays a box along the "
                            "world's axes, found {:g}",
                            degrees));
@@ -65,7 +65,7 @@ driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::pat
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
   };
   if (!std::all_of(entry.name.begin(), entry.name.end(), plain)) {
-    map.reject("name", "expected letters, digits and _, found \"" + entry.name + "\"");
+    map.refuse("name", "expected letters, digits and _, found \"" + entry.name + "\"");
   }
   const std::string text = map.require_string("arm");
   const auto in_entry = [&entry](const driver::Error& error) {
@@ -104,12 +104,12 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
   scene.faults = static_cast<FaultRule>(root.optional_choice("faults", 0, {"together", "apart"}));
   for (const char* key : {"arm", "hand"}) {
     if (root.has(key)) {
-      root.reject(key, "cannot stand beside arms; each entry of arms has its own");
+      root.refuse(key, "cannot stand beside arms; each entry of arms has its own");
     }
   }
-  if (arms.size() == 1) root.reject("arms", "expected two arms or more; of one say arm and hand");
+  if (arms.size() == 1) root.refuse("arms", "expected two arms or more; of one say arm and hand");
   if (arms.size() > kArmsMost) {
-    root.reject("arms", fmt::format("expected at most {} arms, found {}", kArmsMost, arms.size()));
+    root.refuse("arms", fmt::format("expected at most {} arms, found {}", kArmsMost, arms.size()));
     arms.resize(kArmsMost, arms.front());
   }
   std::vector<SceneArm> read;

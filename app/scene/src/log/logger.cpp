@@ -22,7 +22,7 @@ constexpr const char* kSaid = "thimble: %v";
 
 /// The loggers of this process and where they write.
 struct Log {
-  Log(Talk talk, std::shared_ptr<LogFile> to) : file(std::move(to)) {
+  Log(Talk asked_talk, std::shared_ptr<LogFile> to) : file(std::move(to)), talk(asked_talk) {
     const bool more = talk == Talk::kDebug || talk == Talk::kTrace;
     const level_enum level = talk == Talk::kTrace    ? spdlog::level::trace
                              : talk == Talk::kDebug  ? spdlog::level::debug
@@ -43,6 +43,7 @@ struct Log {
   }
 
   std::shared_ptr<LogFile> file;
+  Talk talk;
   std::shared_ptr<spdlog::sinks::sink> runs;
   std::shared_ptr<spdlog::logger> said, asked;
 };
@@ -61,6 +62,10 @@ spdlog::logger& logger() {
 
 spdlog::logger& terminal() {
   return *log()->asked;
+}
+
+Talk talk() {
+  return log()->talk;
 }
 
 std::shared_ptr<spdlog::logger> run_logger(const std::string& run) {

@@ -36,6 +36,9 @@ enum class Talk {
   kTrace,   ///< And all of it, which the file then holds as well.
 };
 
+/// Returns how much a person hears on the console, as `begin_log` was asked.
+Talk talk();
+
 /// Where a process logs to.
 struct LogChoice {
   Talk talk = Talk::kNormal;

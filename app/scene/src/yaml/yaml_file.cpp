@@ -1,13 +1,15 @@
+#include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <set>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
+#include "files/regular_file.h"
 #include "log/logger.h"
 #include "yaml/yaml_reader.h"
 
@@ -66,10 +68,44 @@ void tell_once(const std::string& warning) {
 
 }  // namespace
 
+void YamlMistakes::add_to(Kind& kind, int line, const std::string& sentence) {
+  ++kind.count;
+  if (kind.sentences.size() < kKept) kind.sentences.push_back(in_file(file_name_, line, sentence));
+}
+
+bool YamlMistakes::add_flaw(const TextFlaw& flaw) {
+  const std::string sentence =
+      in_file(file_name_ + ":" + std::to_string(flaw.line) + ":" + std::to_string(flaw.column), 0,
+              flaw.what);
+  const auto& known = values_.sentences;
+  if (std::find(known.begin(), known.end(), sentence) != known.end()) return false;
+  ++values_.count;
+  if (known.size() < kKept) values_.sentences.push_back(sentence);
+  return true;
+}
+
 void YamlMistakes::add(int line, const std::string& sentence) {
-  ++count_;
-  if (sentences_.size() == kKept) return;
-  sentences_.push_back(in_file(file_name_, line, sentence));
+  const auto flaw = std::find_if(misplaced_.begin(), misplaced_.end(),
+                                 [line](const TextFlaw& one) { return one.line == line; });
+  if (flaw == misplaced_.end()) {
+    add_to(values_, line, sentence);
+  } else {
+    add_flaw(*flaw);
+  }
+}
+
+void YamlMistakes::add_syntax_error(int line, const std::string& sentence) {
+  bool explained = false;
+  for (const TextFlaw& flaw : misplaced_) {
+    if (line > 0 && flaw.line > line) break;
+    add_flaw(flaw);
+    explained = true;
+  }
+  if (!explained) add_to(values_, line, sentence);
+}
+
+void YamlMistakes::add_check(int line, const std::string& sentence) {
+  add_to(checks_, line, sentence);
 }
 
 void YamlMistakes::warn(int line, const std::string& sentence) {
@@ -77,37 +113,29 @@ void YamlMistakes::warn(int line, const std::string& sentence) {
 }
 
 std::string YamlMistakes::text() const {
+  const Kind& kind = values_.count > 0 || checks_ignored_ ? values_ : checks_;
   std::string text;
-  for (const std::string& sentence : sentences_) text += (text.empty() ? "" : "\n") + sentence;
-  if (count_ > sentences_.size()) {
-    text.append("\n").append(std::to_string(count_ - sentences_.size()));
+  for (const std::string& sentence : kind.sentences) text += (text.empty() ? "" : "\n") + sentence;
+  if (kind.count > kind.sentences.size()) {
+    text.append("\n").append(std::to_string(kind.count - kind.sentences.size()));
     text.append(" more mistakes follow.");
   }
   return text;
 }
 
 driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
-  std::error_code status;
-  const std::string name = file.filename().string();
-  if (!std::filesystem::is_regular_file(file, status)) {
-    return driver::Error{file.string() + ": there is no such file."};
-  }
-  if (!(std::filesystem::file_size(file, status) <= kFileSizeMax)) {
-    return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm."};
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  // Streaming an empty file sets failbit on `text`, not on `stream`.
-  text << stream.rdbuf();
-  if (!stream) {
-    return driver::Error{file.string() + ": cannot be read; check its permissions."};
-  }
-  return parse(text.str(), name);
+  auto text = read_regular_file(file, kFileSizeMax, "a scene or an arm file");
+  if (!text) return text.error();
+  return parse(*text, file.filename().string());
 }
 
 driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name,
                                          KeyLog* keys) {
   auto mistakes = std::make_shared<YamlMistakes>(name, keys);
+  if (const auto flaw = find_invalid_utf8(text)) {
+    return driver::Error{fmt::format("{}:{}:{}: {}.", name, flaw->line, flaw->column, flaw->what)};
+  }
+  mistakes->set_misplaced(find_misplaced_blanks(text));
   try {
     const int second = line_of_second_document(text);
     const YAML::Node document = second > 0 ? YAML::Node() : YAML::Load(text);
@@ -120,8 +148,8 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
       if (mistakes->empty()) return YamlFile(std::move(root), mistakes);
     }
   } catch (const YAML::Exception& problem) {
-    mistakes->add(problem.mark.is_null() ? 0 : problem.mark.line + 1,
-                  "is not proper YAML (" + problem.msg + ")");
+    mistakes->add_syntax_error(problem.mark.is_null() ? 0 : problem.mark.line + 1,
+                               "is not proper YAML (" + problem.msg + ")");
   } catch (const std::exception& problem) {
     mistakes->add(0, std::string("cannot be read (") + problem.what() + ")");
   }

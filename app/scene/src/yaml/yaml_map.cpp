@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
 
+#include "nearest_word.h"
 #include "thimble/driver/orientation.h"
 #include "yaml/renamed_keys.h"
 #include "yaml/yaml_words.h"
@@ -22,18 +24,18 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
     mistakes_->add(line_, prefix + "expected a map of keys and values, found " + found(node));
     return;
   }
+  std::unordered_map<std::string_view, int> lines;  // of the keys, which `node` keeps
   for (const auto& pair : node) {
     const int key_line = line_of(pair.first, line_);
     if (!pair.first.IsScalar()) {
       mistakes_->add(key_line, "expected a word as key, found " + found(pair.first));
       continue;
     }
-    const std::string key = pair.first.Scalar();
-    const auto same = [&key](const Entry& entry) { return entry.key == key; };
-    const auto first = std::find_if(entries_.begin(), entries_.end(), same);
-    if (first != entries_.end()) {
+    const std::string& key = pair.first.Scalar();
+    const auto [first, fresh] = lines.try_emplace(key, key_line);
+    if (!fresh) {
       mistakes_->add(key_line, key + ": stands twice, first in line " +
-                                   std::to_string(first->line) + "; keep one of them");
+                                   std::to_string(first->second) + "; keep one of them");
       continue;
     }
     entries_.push_back({key, key_line, pair.second});
@@ -90,6 +92,18 @@ bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std:
   return false;
 }
 
+bool YamlMap::read_whole(const Entry& entry, const YAML::Node& node, const std::string& what,
+                         std::int64_t min, std::int64_t max, std::int64_t& number) {
+  const std::optional<std::int64_t> value = to_whole(node);
+  if (value && *value >= min && *value <= max) {
+    number = *value;
+    return true;
+  }
+  mistakes_->add(line_of(node, entry.line),
+                 entry.key + ": expected " + what + ", found " + found(node));
+  return false;
+}
+
 bool YamlMap::has(std::string_view key) {
   if (mistakes_->keys() != nullptr && mistakes_->keys()->looked(place_, key)) return true;
   return find(key, false) != nullptr;
@@ -111,16 +125,77 @@ double YamlMap::optional_number(std::string_view key, double fallback, std::stri
   return has(key) ? require_number(key, unit, min, max) : fallback;
 }
 
+std::int64_t YamlMap::require_whole(std::string_view key, std::string_view unit, std::int64_t min,
+                                    std::int64_t max) {
+  const std::string what = whole_in_words(unit, min, max);
+  note(key, what, true);
+  std::int64_t number = min;
+  if (const Entry* entry = find(key, true)) {
+    read_whole(*entry, entry->value, what, min, max, number);
+  }
+  return number;
+}
+
+std::int64_t YamlMap::optional_whole(std::string_view key, std::int64_t fallback,
+                                     std::string_view unit, std::int64_t min, std::int64_t max) {
+  note(key, whole_in_words(unit, min, max), false, std::to_string(fallback));
+  return has(key) ? require_whole(key, unit, min, max) : fallback;
+}
+
+const YamlMap::Entry* YamlMap::find_three(std::string_view key, std::string_view what) {
+  const Entry* entry = find(key, true);
+  if (entry == nullptr) return nullptr;
+  if (entry->value.IsSequence() && entry->value.size() == 3) return entry;
+  expected(*entry, "a list of three " + std::string(what));
+  return nullptr;
+}
+
+std::array<std::int64_t, 3> YamlMap::require_three_whole(std::string_view key,
+                                                         std::string_view unit, std::int64_t min,
+                                                         std::int64_t max) {
+  const std::string what = whole_in_words(unit, min, max);
+  note(key, "three whole numbers, each" + what.substr(14), true);
+  std::array<std::int64_t, 3> numbers{};
+  const Entry* entry = find_three(key, "whole numbers");
+  for (std::size_t i = 0; entry != nullptr && i < 3; ++i) {
+    if (!read_whole(*entry, entry->value[i], what, min, max, numbers[i])) return {};
+  }
+  return numbers;
+}
+
+std::array<std::int64_t, 3> YamlMap::optional_three_whole(
+    std::string_view key, const std::array<std::int64_t, 3>& fallback, std::string_view unit,
+    std::int64_t min, std::int64_t max) {
+  note(key, "three whole numbers, each" + whole_in_words(unit, min, max).substr(14), false,
+       '[' + std::to_string(fallback[0]) + ", " + std::to_string(fallback[1]) + ", " +
+           std::to_string(fallback[2]) + ']');
+  return has(key) ? require_three_whole(key, unit, min, max) : fallback;
+}
+
+std::array<std::int64_t, 3> YamlMap::require_signs(std::string_view key) {
+  note(key, "three signs, each 1 or -1", true);
+  const Entry* entry = find_three(key, "signs, each 1 or -1");
+  std::array<std::int64_t, 3> signs{1, 1, 1};
+  for (std::size_t i = 0; entry != nullptr && i < 3; ++i) {
+    const auto sign = to_whole(entry->value[i]);
+    if (sign && (*sign == 1 || *sign == -1)) {
+      signs[i] = *sign;
+      continue;
+    }
+    mistakes_->add(line_of(entry->value[i], entry->line),
+                   entry->key + ": expected each to be 1 or -1, found " + found(entry->value[i]));
+    return {1, 1, 1};
+  }
+  return signs;
+}
+
 Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view unit, double min,
                                          double max) {
   note(key, three_in_words(unit, min, max), true);
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-  const Entry* entry = find(key, true);
+  const Entry* entry =
+      find_three(key, "numbers" + (unit.empty() ? "" : " in " + std::string(unit)));
   if (entry == nullptr) return vector;
-  if (!entry->value.IsSequence() || entry->value.size() != 3) {
-    expected(*entry, "a list of three numbers" + (unit.empty() ? "" : " in " + std::string(unit)));
-    return vector;
-  }
   for (std::size_t i = 0; i < 3; ++i) {
     double number = 0;
     if (!read_number(*entry, entry->value[i], number_in_words(unit, min, max), min, max, number)) {
@@ -275,32 +350,35 @@ std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
   return maps;
 }
 
-void YamlMap::reject(std::string_view key, const std::string& sentence) {
+int YamlMap::line_for(std::string_view key) {
   const Entry* entry = key.empty() ? nullptr : find(key, false);
-  const std::string prefix = key.empty() ? "" : std::string(key) + ": ";
-  mistakes_->add(entry != nullptr ? line_of(entry->value, entry->line) : line_, prefix + sentence);
+  return entry != nullptr ? line_of(entry->value, entry->line) : line_;
+}
+
+void YamlMap::reject(std::string_view key, const std::string& sentence) {
+  mistakes_->add_check(line_for(key), (key.empty() ? "" : std::string(key) + ": ") + sentence);
+}
+
+void YamlMap::refuse(std::string_view key, const std::string& sentence) {
+  mistakes_->add(line_for(key), (key.empty() ? "" : std::string(key) + ": ") + sentence);
 }
 
 void YamlMap::finish() {
   for (const Entry& entry : entries_) {
     if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
     std::string sentence = entry.key + ": is no key that is known here";
+    if (mistakes_->full()) {  // it is only counted
+      mistakes_->add(entry.line, sentence);
+      continue;
+    }
     for (const RenamedKey& renamed : kRenamedKeys) {
       if (renamed.place != place_ || renamed.was != entry.key || key_line(renamed.is) == 0)
         continue;
       sentence = entry.key + ": is the old name of " + std::string(renamed.is) +
                  ", which stands here too; keep the new one";
     }
-    const std::string* nearest = nullptr;
-    std::size_t nearest_distance = std::max<std::size_t>(2, entry.key.size() / 3) + 1;
-    for (const std::string& known : asked_) {
-      const std::size_t distance = edit_distance(entry.key, known);
-      if (distance < nearest_distance) {
-        nearest_distance = distance;
-        nearest = &known;
-      }
-    }
-    if (nearest != nullptr) sentence += "; perhaps " + in_quotes(*nearest) + " was meant";
+    const auto near = nearest_word(entry.key, asked_);
+    if (near) sentence += "; perhaps " + in_quotes(*near) + " was meant";
     mistakes_->add(entry.line, sentence);
   }
 }

@@ -3,7 +3,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +14,7 @@
 
 #include "thimble/driver/result.h"
 #include "yaml/key_log.h"
+#include "yaml/yaml_text.h"
 
 namespace thimble::scene {
 
@@ -22,7 +25,9 @@ namespace thimble::scene {
 // mistakes; YamlFile::finish tells them. Nothing here throws. Real-time: never from the servo
 // thread.
 
-/// Collects the mistakes of one file; keeps the first few, for a reader mends them from the top.
+/// Collects the mistakes of one file and keeps the first few. There are two kinds: values that are
+/// wrong by themselves, and checks that compare values. Checks are reported only if all values are
+/// right: a wrong value is replaced by a harmless one, so a check against it would mislead.
 class YamlMistakes {
  public:
   static constexpr std::size_t kKept = 5;
@@ -30,11 +35,28 @@ class YamlMistakes {
   explicit YamlMistakes(std::string file_name, KeyLog* keys = nullptr)
       : file_name_(std::move(file_name)), keys_(keys) {}
 
+  /// Stores misplaced characters of the text, in the order of the text. A mistake in the line of
+  /// one is reported as that character.
+  void set_misplaced(std::vector<TextFlaw> misplaced) { misplaced_ = std::move(misplaced); }
+
   /// Returns where the keys that are asked for are noted; nullptr: nowhere.
   KeyLog* keys() const noexcept { return keys_; }
 
-  /// Notes a mistake at a line (counted from 1; 0 for the file as a whole). `sentence` has no dot.
+  /// Adds a wrong value at a line (counted from 1; 0 for the file as a whole). `sentence` has no
+  /// dot.
   void add(int line, const std::string& sentence);
+
+  /// Adds a syntax error at a line. If misplaced characters precede it, they are reported instead.
+  void add_syntax_error(int line, const std::string& sentence);
+
+  /// Adds a failed check between values that are right by themselves, as above.
+  void add_check(int line, const std::string& sentence);
+
+  /// Drops all checks, because values of another file that they need could not be read.
+  void ignore_checks() { checks_ignored_ = true; }
+
+  /// Returns whether further wrong values would only be counted.
+  bool full() const { return values_.count >= kKept; }
 
   /// Notes what is read nevertheless, but should be written in another way.
   void warn(int line, const std::string& sentence);
@@ -42,17 +64,27 @@ class YamlMistakes {
   /// Returns what was warned of, a sentence each with file and line.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Returns whether nothing was noted.
-  bool empty() const { return count_ == 0; }
+  /// Returns whether nothing is wrong.
+  bool empty() const { return values_.count == 0 && (checks_ignored_ || checks_.count == 0); }
 
   /// Returns the mistakes kept, one per line, and how many more there are.
   std::string text() const;
 
  private:
+  struct Kind {
+    std::vector<std::string> sentences;
+    std::size_t count = 0;
+  };
+
+  void add_to(Kind& kind, int line, const std::string& sentence);
+  bool add_flaw(const TextFlaw& flaw);
+
   std::string file_name_;
   KeyLog* keys_;
-  std::vector<std::string> sentences_, warnings_;
-  std::size_t count_ = 0;
+  std::vector<TextFlaw> misplaced_;
+  std::vector<std::string> warnings_;
+  Kind values_, checks_;
+  bool checks_ignored_ = false;
 };
 
 /// One map of a YAML file. Copies share what was asked of it, so that `finish` knows.
@@ -73,6 +105,28 @@ class YamlMap {
   /// Reads a number like `require_number`, or gives `fallback` if the key is absent.
   double optional_number(std::string_view key, double fallback, std::string_view unit, double min,
                          double max);
+
+  /// Reads a whole number from `min` to `max`, at most 2^53: digits, or a decimal number without a
+  /// fraction. A mistake gives `min`.
+  std::int64_t require_whole(std::string_view key, std::string_view unit, std::int64_t min,
+                             std::int64_t max);
+
+  /// Reads a whole number like `require_whole`, or gives `fallback` if the key is absent.
+  std::int64_t optional_whole(std::string_view key, std::int64_t fallback, std::string_view unit,
+                              std::int64_t min, std::int64_t max);
+
+  /// Reads a list of three whole numbers, each from `min` to `max`. A mistake gives zeros.
+  std::array<std::int64_t, 3> require_three_whole(std::string_view key, std::string_view unit,
+                                                  std::int64_t min, std::int64_t max);
+
+  /// Reads a list like `require_three_whole`, or gives `fallback` if the key is absent.
+  std::array<std::int64_t, 3> optional_three_whole(std::string_view key,
+                                                   const std::array<std::int64_t, 3>& fallback,
+                                                   std::string_view unit, std::int64_t min,
+                                                   std::int64_t max);
+
+  /// Reads a list of three signs, each 1 or -1. A mistake gives 1.
+  std::array<std::int64_t, 3> require_signs(std::string_view key);
 
   /// Reads a list of three numbers, each from `min` to `max`. A mistake gives zeros.
   Eigen::Vector3d require_vector3(std::string_view key, std::string_view unit, double min,
@@ -115,8 +169,15 @@ class YamlMap {
   /// Reads a list of maps with at least one entry. A mistake gives an empty list.
   std::vector<YamlMap> require_maps(std::string_view key);
 
-  /// Notes a mistake that only the caller can see, at the line of `key` (or of this map).
+  /// Adds a failed check of this map's values against each other or against others, at the line of
+  /// `key` (or of this map). It is reported only if all values of the file are right.
   void reject(std::string_view key, const std::string& sentence);
+
+  /// Adds a wrong value that only the caller can detect, at the line of `key` (or of this map).
+  void refuse(std::string_view key, const std::string& sentence);
+
+  /// Drops the failed checks of the whole file; see YamlMistakes::ignore_checks.
+  void ignore_checks() { mistakes_->ignore_checks(); }
 
   /// Notes each key that nobody asked for, with the nearest known key as a suggestion.
   void finish();
@@ -142,6 +203,10 @@ class YamlMap {
   void expected(const Entry& entry, const std::string& what);
   bool read_number(const Entry& entry, const YAML::Node& node, const std::string& what, double min,
                    double max, double& number);
+  bool read_whole(const Entry& entry, const YAML::Node& node, const std::string& what,
+                  std::int64_t min, std::int64_t max, std::int64_t& number);
+  const Entry* find_three(std::string_view key, std::string_view what);
+  int line_for(std::string_view key);
 
   std::vector<Entry> entries_;
   std::vector<std::string> asked_;
@@ -154,8 +219,8 @@ class YamlMap {
 /// One YAML file whose outermost value is a map.
 class YamlFile {
  public:
-  /// Reads a file. Fails on a file that cannot be read, that is empty or beyond 4 MB, or that is
-  /// not YAML (with line).
+  /// Reads a file. Fails on a file that cannot be read, that is empty or beyond 4 MB, that is not
+  /// UTF-8 (with line and column), or that is not YAML (with line).
   static driver::Result<YamlFile> load(const std::filesystem::path& file);
 
   /// Reads YAML from a text; `name` stands in for the file's name in messages.

@@ -1,10 +1,20 @@
 #include "yaml/yaml_settings.h"
 
+#include <cstdint>
 #include <system_error>
 
 namespace thimble::scene {
 
 void YamlSettings::number(std::string_view key, double& value, const render::NumberLimits& limits) {
+  if (limits.whole) {
+    const auto least = static_cast<std::int64_t>(limits.least);
+    const auto most = static_cast<std::int64_t>(limits.most);
+    value = static_cast<double>(
+        limits.required
+            ? map_.require_whole(key, limits.unit, least, most)
+            : map_.optional_whole(key, static_cast<std::int64_t>(value), limits.unit, least, most));
+    return;
+  }
   value = limits.required
               ? map_.require_number(key, limits.unit, limits.least, limits.most)
               : map_.optional_number(key, value, limits.unit, limits.least, limits.most);
@@ -28,7 +38,7 @@ void YamlSettings::file(std::string_view key, std::filesystem::path& value) {
   value = (folder_ / name).lexically_normal();
   std::error_code status;
   if (!std::filesystem::is_regular_file(value, status)) {
-    map_.reject(key, "expected a file, found none at " + value.string());
+    map_.refuse(key, "expected a file, found none at " + value.string());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 #include <system_error>
 
@@ -21,10 +22,13 @@ int line_of(const YAML::Node& node, int fallback) {
 
 std::string in_quotes(std::string_view text) {
   std::string result = "\"";
-  for (const char c : text.substr(0, kFoundLengthMax)) {
+  std::size_t length = std::min(text.size(), kFoundLengthMax);
+  // Not in the middle of a character [RFC 3629].
+  while (length < text.size() && length > 0 && (text[length] & 0xc0) == 0x80) --length;
+  for (const char c : text.substr(0, length)) {
     result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
-  if (text.size() > kFoundLengthMax) result += "...";
+  if (text.size() > length) result += "...";
   result += '"';
   return result;
 }
@@ -71,6 +75,25 @@ std::optional<double> to_number(const YAML::Node& node) {
   return number;
 }
 
+std::optional<std::int64_t> to_whole(const YAML::Node& node) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 53;  // up to here each is a double as well
+  if (!is_plain_scalar(node)) return std::nullopt;
+  std::string_view text = node.Scalar();
+  if (text.starts_with('+')) text.remove_prefix(1);
+  std::int64_t number = 0;
+  const char* const last = text.data() + text.size();
+  if (const auto [end, status] = std::from_chars(text.data(), last, number);
+      end != last || status != std::errc()) {
+    // 1e3 and 7.0 are whole. The limit is exclusive: what is above may have been rounded to it.
+    const std::optional<double> decimal = to_number(node);
+    if (!decimal || !(std::abs(*decimal) < static_cast<double>(kMost))) return std::nullopt;
+    if (*decimal != std::floor(*decimal)) return std::nullopt;
+    number = static_cast<std::int64_t>(*decimal);
+  }
+  if (number > kMost || number < -kMost) return std::nullopt;
+  return number;
+}
+
 std::optional<std::size_t> choice_of(const YAML::Node& node,
                                      const std::vector<std::string_view>& choices) {
   if (!node.IsScalar()) return std::nullopt;
@@ -87,23 +110,14 @@ std::string any_of(const std::vector<std::string_view>& choices) {
   return what;
 }
 
-std::string three_in_words(std::string_view unit, double min, double max) {
-  return "three numbers, each" + number_in_words(unit, min, max).substr(8);
+std::string whole_in_words(std::string_view unit, std::int64_t min, std::int64_t max) {
+  std::string text = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
+std::string three_in_words(std::string_view unit, double min, double max) {
+  return "three numbers, each" + number_in_words(unit, min, max).substr(8);
 }
 
 }  // namespace thimble::scene

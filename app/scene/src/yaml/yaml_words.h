@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,9 @@ std::string number_in_words(std::string_view unit, double min, double max);
 /// Returns the same for three numbers.
 std::string three_in_words(std::string_view unit, double min, double max);
 
+/// Returns "a whole number from `min` to `max` `unit`".
+std::string whole_in_words(std::string_view unit, std::int64_t min, std::int64_t max);
+
 /// Returns the words of a choice: "a, b or c".
 std::string any_of(const std::vector<std::string_view>& choices);
 
@@ -40,11 +44,12 @@ bool is_plain_scalar(const YAML::Node& node);
 /// Returns the number that a node holds; nothing if it is none.
 std::optional<double> to_number(const YAML::Node& node);
 
+/// Returns the whole number that a node holds, written as digits or as a decimal number without a
+/// fraction; nothing if it is none or beyond 2^53.
+std::optional<std::int64_t> to_whole(const YAML::Node& node);
+
 /// Returns which of the words a node holds; nothing if it is none of them.
 std::optional<std::size_t> choice_of(const YAML::Node& node,
                                      const std::vector<std::string_view>& choices);
-
-/// Returns by how many letters two words differ (Levenshtein).
-std::size_t edit_distance(std::string_view a, std::string_view b);
 
 }  // namespace thimble::scene

@@ -1,6 +1,7 @@
 #include "thimble/session/recording.h"
 
 #include <array>
+#include <string_view>
 
 #include "thimble/driver/tick_record.h"
 
@@ -72,6 +73,11 @@ constexpr std::array kColumns{
 };
 
 }  // namespace
+
+bool RecordingColumn::by_axis() const noexcept {
+  const std::string_view own = name;
+  return own == "q" || own == "counts" || own == "heat" || own == "gimbal";
+}
 
 std::size_t RecordingColumn::element() const noexcept {
   switch (type) {

@@ -46,11 +46,8 @@ std::string heading() {
     for (std::size_t k = 0; k < column.width; ++k) {
       if (!line.empty()) line += ',';
       line += column.name;
-      // Joint angles and counts are numbered as the arm's axes are, vectors have x, y, z.
-      const bool axes = std::strcmp(column.name, "q") == 0 ||
-                        std::strcmp(column.name, "counts") == 0 ||
-                        std::strcmp(column.name, "gimbal") == 0;
-      if (column.width == 3) line += std::string(".") + (axes ? "123" : "xyz")[k];
+      // What belongs to the arm's axes is numbered as they are, vectors have x, y, z.
+      if (column.width == 3) line += std::string(".") + (column.by_axis() ? "123" : "xyz")[k];
       if (column.width == 4) line += std::string(".") + "wxyz"[k];
       if (std::strcmp(column.unit, "1") != 0) line += std::string(" [") + column.unit + "]";
     }

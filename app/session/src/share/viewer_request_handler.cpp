@@ -65,6 +65,13 @@ void ViewerRequestHandler::hear_records() {
 
 void ViewerRequestHandler::hear_stop() {
   const bool closed = viewer_ && viewer_->closed();
+  if (closed && !ends_with_viewer_ && !window_missed_ && next_ != nullptr && next_->loops()) {
+    window_missed_ = true;
+    scene::logger().warn(
+        "The window is closed; the run continues and restarts until Ctrl-C. `thimble view {}` "
+        "shows it again.",
+        session_.shared()->name());
+  }
   if (!session_.shared()->stop_asked() && !(closed && ends_with_viewer_)) return;
   if (!ended_) scene::logger().info("The run was ended by a viewer.");
   ended_ = true;
@@ -97,8 +104,8 @@ void ViewerRequestHandler::close() {
 }
 
 std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
-    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments,
-    NextRun* next) {
+    Session& session, ViewerChoice choice, bool ends_with_viewer,
+    const std::vector<std::string>& arguments, NextRun* next) {
   if (session.shared() == nullptr) return nullptr;
   std::unique_ptr<ViewerProcess> viewer;
   const bool watchable = session.real_time() || session.setup().paced();
@@ -109,12 +116,11 @@ std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
     } else {
       scene::logger().error("{}", started.error().message);
     }
-  } else if (choice == ViewerChoice::kAsked) {
+  } else if (choice == ViewerChoice::kAsked && scene::talk() != scene::Talk::kQuiet) {
     scene::terminal().info("No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.",
                            session.shared()->name());
   }
-  return std::make_unique<ViewerRequestHandler>(session, std::move(viewer),
-                                                session.setup().hand_by_mouse(), next);
+  return std::make_unique<ViewerRequestHandler>(session, std::move(viewer), ends_with_viewer, next);
 }
 
 }  // namespace thimble::session

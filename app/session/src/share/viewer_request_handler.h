@@ -51,6 +51,7 @@ class ViewerRequestHandler {
   std::unique_ptr<ViewerProcess> viewer_;
   ViewerWatch watch_;
   bool ends_with_viewer_;
+  bool window_missed_ = false;  // the user knows that the run continues without its window
   NextRun* next_;
   bool ended_ = false;
   std::uint64_t last_order_ = 0;
@@ -71,10 +72,11 @@ constexpr bool opens_viewer(ViewerChoice choice, bool real_time, bool display,
 }
 
 /// Opens the viewer of a session if one is asked for, or says on standard error how to watch
-/// without, and returns who serves all that come; null if the run is not shared. `arguments` are
-/// the viewer's, after its run; `next` as for the handler. Real-time: never from the servo thread.
+/// without, and returns the handler of all viewers; null if the run is not shared.
+/// `ends_with_viewer` and `next`: as for the handler; `arguments`: the viewer's, after its run.
+/// Real-time: never from the servo thread.
 std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
-    Session& session, ViewerChoice choice, const std::vector<std::string>& arguments = {},
-    NextRun* next = nullptr);
+    Session& session, ViewerChoice choice, bool ends_with_viewer,
+    const std::vector<std::string>& arguments = {}, NextRun* next = nullptr);
 
 }  // namespace thimble::session

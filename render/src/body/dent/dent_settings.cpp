@@ -26,11 +26,7 @@ constexpr std::array kSchemes{SpringScheme::kSymplecticEuler, SpringScheme::kVer
 void read_whole(SettingsReader& reader, std::string_view key, int& value, double least,
                 double most) {
   double number = value;
-  reader.number(key, number, {.unit = "", .least = least, .most = most});
-  if (number != std::floor(number)) {
-    reader.reject(key, "expected a whole number");
-    return;
-  }
+  reader.number(key, number, {.unit = "", .least = least, .most = most, .whole = true});
   value = static_cast<int>(number);
 }
 

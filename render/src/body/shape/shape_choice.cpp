@@ -46,8 +46,7 @@ void ClayChoice::read(SettingsReader& reader) {
   keeps_volume = volume == 1;
   if (!reader.has("triangles")) return;
   double count = triangles;
-  reader.number("triangles", count, {.unit = "", .least = 4, .most = kTrianglesMax});
-  if (count != std::floor(count)) reader.reject("triangles", "expected a whole number");
+  reader.number("triangles", count, {.unit = "", .least = 4, .most = kTrianglesMax, .whole = true});
   if (!(edge > 0)) reader.reject("triangles", "needs edge: the length that triangles are split to");
   triangles = static_cast<int>(count);
 }
@@ -79,8 +78,7 @@ void SnapChoice::read(SettingsReader& reader) {
   reader.number("radius", radius, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
   reader.number("speed", speed, {.unit = "m/s", .least = 1e-3, .most = kSpeedMax});
   double count = panels;
-  reader.number("panels", count, {.unit = "", .least = 1, .most = kPanelsMax});
-  if (count != std::floor(count)) reader.reject("panels", "expected a whole number");
+  reader.number("panels", count, {.unit = "", .least = 1, .most = kPanelsMax, .whole = true});
   panels = static_cast<int>(count);
   if (!(radius > depth / 2)) {
     reader.reject("radius", "must be more than half the depth, or the wall would fold");

@@ -40,7 +40,7 @@ void Sandpaper::Settings::read(SettingsReader& reader, const EffectContext& cont
   TextureSettings::read(reader);
   reader.number("wavelength", wavelength, {.unit = "m", .least = 1e-5, .most = 0.1});
   reader.number("roughness", roughness, {.unit = "m", .least = 0, .most = 0.01});
-  reader.number("seed", seed, {.unit = "", .least = 0, .most = 0x1p53});
+  reader.number("seed", seed, {.unit = "", .least = 0, .most = 0x1p53, .whole = true});
   if (!(wavelength > 0)) return;
   check_texture(reader, "roughness", extent(), *this, context);
 }

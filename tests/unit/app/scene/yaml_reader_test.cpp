@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
 #include <string>
 
 namespace thimble::app {
@@ -82,7 +85,7 @@ TEST(YamlReader, TellsTheLineOfASyntaxError) {
   EXPECT_TRUE(
       mistakes_in("name: a\nstiffness: [1, 2\n").starts_with("arm.yaml:3: is not proper YAML"));
   EXPECT_TRUE(
-      mistakes_in("name: a\n\tstiffness: 1\n").starts_with("arm.yaml:2: is not proper YAML"));
+      mistakes_in("name: a\n stiffness: 1\n").starts_with("arm.yaml:2: is not proper YAML"));
   EXPECT_TRUE(mistakes_in("name: *nobody\n").starts_with("arm.yaml:1: is not proper YAML"));
 }
 
@@ -153,6 +156,94 @@ TEST(YamlReader, NamesAFileThatIsNotThere) {
   const auto file = scene::YamlFile::load("no/such/file.yaml");
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.error().message, "no/such/file.yaml: there is no such file.");
+}
+
+// Reads whole numbers, and compares them with each other.
+std::string whole_mistakes_in(const std::string& text) {
+  auto file = scene::YamlFile::parse(text, "arm.yaml");
+  if (!file) return file.error().message;
+  scene::YamlMap& root = file->root();
+  const std::int64_t seed = root.require_whole("seed", "", 1, std::int64_t{1} << 53);
+  const auto home = root.optional_three_whole("home", {0, 0, 0}, "counts", -1000, 1000);
+  if (root.has("sign")) root.require_signs("sign");
+  if (home[0] > seed) root.reject("home", "must not be above seed");
+  root.finish();
+  const auto done = file->finish();
+  return done ? "" : done.error().message;
+}
+
+TEST(YamlWhole, ReadsEveryFormOfAWholeNumber) {
+  for (const std::string value : {"1", "+7", "7.0", "1e3", "0007", "9007199254740992"}) {
+    EXPECT_EQ(whole_mistakes_in("seed: " + value + "\n"), "") << value;
+  }
+}
+
+TEST(YamlWhole, RefusesAllElseWithOneMessage) {
+  for (const std::string value : {"7.5",
+                                  "0x1f",
+                                  "0o17",
+                                  "0b1",
+                                  "1_000",
+                                  "1,000",
+                                  "-1",
+                                  "0",
+                                  "9007199254740993",
+                                  "1e16",
+                                  "9.007199254740993e15",
+                                  "123456789012345678901234",
+                                  "1e999",
+                                  ".inf",
+                                  ".nan",
+                                  "'7'",
+                                  "~",
+                                  "[7]",
+                                  "{a: 7}",
+                                  "true",
+                                  "7 N",
+                                  "--7",
+                                  "7e",
+                                  "0.1"}) {
+    const std::string said = whole_mistakes_in("seed: " + value + "\n");
+    EXPECT_TRUE(said.starts_with(
+        "arm.yaml:1: seed: expected a whole number from 1 to 9007199254740992, found "))
+        << value << " -> " << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
+}
+
+TEST(YamlWhole, ChecksEachOfThree) {
+  EXPECT_EQ(whole_mistakes_in("seed: 9\nhome: [1, 2.5, 3]\n"),
+            "arm.yaml:2: home: expected a whole number from -1000 to 1000 counts, found \"2.5\".");
+  EXPECT_EQ(whole_mistakes_in("seed: 9\nhome: [1, 2]\n"),
+            "arm.yaml:2: home: expected a list of three whole numbers, found a list of 2.");
+}
+
+TEST(YamlWhole, SignsAreOneOrMinusOne) {
+  EXPECT_EQ(whole_mistakes_in("seed: 9\nsign: [1, -1, 1.0]\n"), "");
+  EXPECT_EQ(whole_mistakes_in("seed: 9\nsign: [1, 0, 1]\n"),
+            "arm.yaml:2: sign: expected each to be 1 or -1, found \"0\".");
+}
+
+TEST(YamlReader, ChecksAgainstWrongValuesAreNotReported) {
+  EXPECT_EQ(whole_mistakes_in("seed: 3\nhome: [7, 0, 0]\n"),
+            "arm.yaml:2: home: must not be above seed.");
+  EXPECT_EQ(whole_mistakes_in("seed: 0x3\nhome: [7, 0, 0]\n"),
+            "arm.yaml:1: seed: expected a whole number from 1 to 9007199254740992, found \"0x3\".");
+}
+
+TEST(YamlReader, ManyUnknownKeysTakeTimeByTheirNumber) {
+  // Reads n keys and gives the processor time of it, s.
+  const auto seconds = [](int n) {
+    std::string text = "stiffness: 1\n";
+    for (int i = 0; i < n; ++i) text += "unknown_key_" + std::to_string(i) + ": 1\n";
+    const std::clock_t begin = std::clock();
+    EXPECT_TRUE(mistakes_in(text).ends_with(std::to_string(n - 5) + " more mistakes follow."));
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  };
+  seconds(1000);
+  // Five times the keys take 25 times as long where each is compared with each other.
+  const double few = std::min(seconds(16'000), seconds(16'000));
+  EXPECT_LT(std::min(seconds(80'000), seconds(80'000)), 12 * few);
 }
 
 TEST(YamlReader, NeverThrowsOnCutOrScrambledFiles) {

@@ -64,6 +64,8 @@ class ArmSimulation {
   /// hand stays where it was led last, and the answer is false. On the thread that the arm lives
   /// on. Real-time: safe.
   bool lead(const Eigen::Vector3d& p_WH) noexcept;
+  /// Returns whether `lead` can lead the hand to a point of the world (m). Real-time: safe.
+  bool reaches(const Eigen::Vector3d& p_WH) const noexcept;
   /// Lets the hand stand still, or go on where it stood. On the thread that the arm lives on.
   /// Real-time: safe.
   void hold(bool still) noexcept;

@@ -61,6 +61,10 @@ struct RecordingColumn {
   std::size_t offset;  ///< Of the first in driver::TickRecord, bytes.
   bool later = false;  ///< Older recordings do not have it; there its numbers are 0.
 
+  /// Returns whether its three numbers belong to joints, motors or the gimbal's axes, in the arm's
+  /// order; otherwise three numbers are x, y and z of a vector.
+  bool by_axis() const noexcept;
+
   /// Returns the bytes of one number.
   std::size_t element() const noexcept;
   /// Returns the bytes per tick.

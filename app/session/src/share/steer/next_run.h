@@ -37,6 +37,8 @@ class NextRun {
   /// why not. As soon as it is, the run is closed to what viewers ask (SharedRun::close): they ask
   /// the next one. `stop`: the run shall end and nothing shall come after it.
   void step(bool stop);
+  /// Returns whether the run restarts when it has ended, as asked last.
+  bool loops() const noexcept { return loop_; }
   /// Returns the flag that ends the run that is served.
   const std::atomic<bool>& ended() const noexcept { return end_; }
   /// Returns what to run next, after the run has ended by `end`: what was prepared, what a viewer

@@ -16,6 +16,7 @@ struct NumberLimits {
   double least = 0;       ///< Smallest that is allowed.
   double most = 0;        ///< Largest that is allowed.
   bool required = false;  ///< False: the value that the setting already has is its default.
+  bool whole = false;     ///< Only whole numbers; limits of at most 2^53.
 };
 
 /// Asks whoever knows for the settings of an effect. A scene file answers through the app's reader;

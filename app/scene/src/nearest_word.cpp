@@ -1,0 +1,47 @@
+#include "nearest_word.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace thimble::scene {
+namespace {
+
+/// Returns by how many letters two words differ, where swapped neighbours count once (optimal
+/// string alignment distance).
+std::size_t letters_apart(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before.swap(above);
+    above.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({substituted, above[j] + 1, row[j - 1] + 1});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_word(std::string_view word,
+                                        const std::vector<std::string>& known) {
+  std::optional<std::string> nearest;
+  std::size_t bound = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t longer = std::max(word.size(), candidate.size());
+    const std::size_t shorter = std::min(word.size(), candidate.size());
+    if (longer - shorter >= bound) continue;
+    // Words of which nothing is left are not alike.
+    const std::size_t apart = letters_apart(word, candidate);
+    if (apart >= bound || apart >= longer) continue;
+    bound = apart;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+}  // namespace thimble::scene

@@ -1,0 +1,39 @@
+// The known word that a mistyped one most likely means.
+#include "nearest_word.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace thimble::scene {
+namespace {
+
+const std::vector<std::string> kKnown{"run", "replay", "study", "friction", "bench"};
+
+TEST(NearestWord, IsFoundForEachKindOfSlip) {
+  EXPECT_EQ(nearest_word("rum", kKnown), "run");            // another letter
+  EXPECT_EQ(nearest_word("friktion", kKnown), "friction");  // in a longer word
+  EXPECT_EQ(nearest_word("repay", kKnown), "replay");       // one is missing
+  EXPECT_EQ(nearest_word("sstudy", kKnown), "study");       // one is too many
+  EXPECT_EQ(nearest_word("urn", kKnown), "run");            // two swapped
+}
+
+TEST(NearestWord, IsNoneForWordsThatAreUnlike) {
+  EXPECT_FALSE(nearest_word("elephant", kKnown));
+  EXPECT_FALSE(nearest_word("", kKnown));
+  EXPECT_FALSE(nearest_word("xy", {"ab"}));
+  EXPECT_FALSE(nearest_word("run", {}));
+}
+
+TEST(NearestWord, PrefersTheFirstOfEquallyNear) {
+  EXPECT_EQ(nearest_word("bat", {"cat", "hat"}), "cat");
+}
+
+TEST(NearestWord, SwappedLettersCountOnce) {
+  EXPECT_EQ(nearest_word("urn", {"arn", "run"}), "arn");
+  EXPECT_EQ(nearest_word("nmae", {"main", "name"}), "name");
+}
+
+}  // namespace
+}  // namespace thimble::scene

@@ -1,0 +1,111 @@
+// Characters that a YAML file cannot have at their place: named with line and column.
+#include "yaml/yaml_text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "yaml/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+/// Reads a scene-like text and returns its mistakes.
+std::string mistakes_in(const std::string& text) {
+  auto file = YamlFile::parse(text, "s.yaml");
+  if (!file) return file.error().message;
+  YamlMap& root = file->root();
+  root.optional_string("name", "");
+  if (root.has("object")) {
+    YamlMap object = root.require_map("object");
+    object.optional_number("stiffness", 0, "N/m", 0, 1000);
+    object.finish();
+  }
+  root.optional_number("rate", 0, "Hz", 0, 1000);
+  root.finish();
+  const auto done = file->finish();
+  return done ? "" : done.error().message;
+}
+
+TEST(YamlText, Latin1IsNamedWithLineAndColumn) {
+  EXPECT_EQ(mistakes_in("rate: 7\nname: caf\xe9\n"),
+            "s.yaml:2:10: the byte 0xE9 is not UTF-8; save the file as UTF-8, it may be Latin-1 "
+            "(iconv -f latin1 -t utf8).");
+}
+
+TEST(YamlText, ColumnsCountCharacters) {
+  EXPECT_NE(mistakes_in("name: \xc3\xa9\xf0\x9f\x98\x80\xff\n").find("s.yaml:1:9:"),
+            std::string::npos);
+}
+
+TEST(YamlText, InvalidUtf8IsFoundInComments) {
+  EXPECT_NE(mistakes_in("rate: 7 # 5 \xb5m\n").find("s.yaml:1:13: the byte 0xB5"),
+            std::string::npos);
+}
+
+TEST(YamlText, OnlyShortestFormsOfCharactersAreUtf8) {
+  for (const std::string bad : {"\xc0\x80", "\xe0\x80\x80", "\xf0\x80\x80\x80", "\xed\xa0\x80",
+                                "\xf4\x90\x80\x80", "\xc3", "\xe2\x82", "\x80"}) {
+    EXPECT_TRUE(find_invalid_utf8("a" + bad).has_value());
+  }
+}
+
+TEST(YamlText, AllOfUtf8IsTaken) {
+  EXPECT_FALSE(
+      find_invalid_utf8("a\xc2\x80\xdf\xbf\xe0\xa0\x80\xed\x9f\xbf\xee\x80\x80\xef\xbf\xbf"
+                        "\xf0\x90\x80\x80\xf4\x8f\xbf\xbf\n"));
+}
+
+TEST(YamlText, Utf16IsLeftToTheParser) {
+  std::string wide = "\xff\xfe";
+  for (const char c : std::string("rate: 7\n")) wide += std::string{c, '\0'};
+  EXPECT_EQ(mistakes_in(wide), "");
+}
+
+TEST(YamlText, IndentingTabIsNamed) {
+  EXPECT_EQ(mistakes_in("object:\n\tstiffness: 7\n"),
+            "s.yaml:2:1: a tab cannot indent in YAML; write spaces instead.");
+  EXPECT_EQ(mistakes_in("object:\n  stiffness: 7\n \trate: 7\n"),
+            "s.yaml:3:2: a tab cannot indent in YAML; write spaces instead.");
+}
+
+TEST(YamlText, IndentingNoBreakSpaceIsNamed) {
+  EXPECT_EQ(mistakes_in("object:\n\xc2\xa0 stiffness: 7\n"),
+            "s.yaml:2:1: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
+}
+
+TEST(YamlText, NoBreakSpaceBehindAColonIsNamed) {
+  EXPECT_EQ(mistakes_in("name: a\nrate:\xc2\xa0"
+                        "7\n"),
+            "s.yaml:2:6: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
+}
+
+TEST(YamlText, NoBreakSpaceBehindANumberIsNamed) {
+  EXPECT_EQ(mistakes_in("rate: 7\xc2\xa0\n"),
+            "s.yaml:1:8: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
+  EXPECT_EQ(mistakes_in("rate: 7\xe2\x80\xaf# Hz\n"),
+            "s.yaml:1:8: a narrow no-break space (U+202F) is no blank in YAML; write a space "
+            "instead.");
+}
+
+TEST(YamlText, BlanksWithinTextsAreFree) {
+  EXPECT_EQ(mistakes_in("name: 5\xc2\xa0N\trate\nrate:\t7\t# 5\xc2\xa0Hz\n\t\n"), "");
+  EXPECT_EQ(mistakes_in("name: \"\xc2\xa0\"\nrate: 7\n"), "");
+  EXPECT_EQ(mistakes_in("{\n\t\"rate\": 7\n}\n"), "");
+}
+
+TEST(YamlText, OtherMistakesKeepTheirSentence) {
+  EXPECT_EQ(mistakes_in("name: 5\xc2\xa0N\nrate: fast\n"),
+            "s.yaml:2: rate: expected a number from 0 to 1000 Hz, found \"fast\".");
+  EXPECT_NE(mistakes_in("name: \"a\\\"\xc2\xa0: \"\nrate: [\n").find("is not proper YAML"),
+            std::string::npos);
+}
+
+TEST(YamlText, CutsFoundTextsBetweenCharacters) {
+  std::string text = "rate: ";
+  for (int i = 0; i < 30; ++i) text += "\xe2\x82\xac";
+  EXPECT_FALSE(find_invalid_utf8(mistakes_in(text + "\n")));
+}
+
+}  // namespace
+}  // namespace thimble::scene
