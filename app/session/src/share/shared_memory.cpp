@@ -271,7 +271,14 @@ SharedMemory::~SharedMemory() {
 }
 
 void SharedMemory::remove_name() {
-  if (!name_.empty() && made_) unlink(path_of(name_).c_str());
+  const std::string path = path_of(name_);
+  struct stat own {};
+  struct stat there {};
+  // What another run has put there since somebody removed this one's stays.
+  if (!name_.empty() && made_ && fstat(file_, &own) == 0 && lstat(path.c_str(), &there) == 0 &&
+      own.st_dev == there.st_dev && own.st_ino == there.st_ino) {
+    unlink(path.c_str());
+  }
   made_ = false;
 }
 

@@ -613,6 +613,15 @@ bool is_listed(const std::string& name) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& run) { return run.name == name; });
 }
 
+TEST(Share, RunRemovesNoOtherRunOfItsName) {
+  const std::string name = name_for("again");
+  auto first = session::SharedRun::create(name, small_scene(), 10).value();
+  ASSERT_EQ(unlink(shared_path(name).c_str()), 0);
+  const auto second = session::SharedRun::create(name, small_scene(), 10).value();
+  first.reset();
+  EXPECT_TRUE(is_listed(name));
+}
+
 TEST(Share, FifoDoesNotHangList) {
   const std::string name = name_for("fifo");
   const WrongFile fifo(shared_path(name));
