@@ -92,6 +92,12 @@ std::string mend_for_closed(const FoundArm& arm) {
 
 Finding examine_linked(const FoundArm& arm) {
   const std::string name = arm.arm + " " + arm.name() + ": ";
+  if (arm.certainty == Certainty::kUnknown) {
+    return {Health::kAdvice,
+            name + "what answers on " + arm.address +
+                " is `thimble exec --serve haply`, no service of Haply's.",
+            "--device auto leaves it out; use it by --device " + arm.name()};
+  }
   if (!arm.trouble.empty()) {
     return {Health::kProblem,
             name + "its service on " + arm.address + " has it, but it cannot be used.",

@@ -15,6 +15,10 @@ std::string state_of(const driver::FoundArm& arm, const std::string& root) {
   if (arm.certainty == driver::Certainty::kUnsupported) return "its protocol is not public";
   if (!arm.trouble.empty()) return "not to be used now: thimble doctor";
   if (arm.node.empty()) return "no driver has it: thimble doctor";
+  if (arm.board == driver::BoardKind::kHaplyService &&
+      arm.certainty == driver::Certainty::kUnknown) {
+    return "thimble exec --serve haply: no Inverse3";
+  }
   if (arm.certainty == driver::Certainty::kUnknown) return "board of unknown kind: thimble doctor";
   if (!arm.accessible) return "no access: thimble doctor";
   if (const auto holder = driver::find_holder(arm.node, root)) {

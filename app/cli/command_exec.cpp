@@ -177,9 +177,10 @@ int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
 driver::Result<std::unique_ptr<faces::haply::Service>> make_service(const Asked& asked,
                                                                     faces::ArmServer& server,
                                                                     ExitCode& code) {
-  faces::use_channel(&server.channel());
+  faces::use_channel(&server.channel(), server.address());
   code = kExitBadInput;
-  auto service = faces::haply::Service::listen(asked.port);
+  auto service = faces::haply::Service::listen(
+      asked.port, [](const std::string& sentence) { scene::logger().warn("{}", sentence); });
   if (!service) return service;
   constexpr std::int64_t kLook_ns = 1'000'000;
   while (!(*service)->ready()) server.step(kLook_ns);

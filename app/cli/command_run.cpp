@@ -150,7 +150,7 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   }
   attendance.clear();
   servo.join();
-  session::keep_black_box(session);
+  session::keep_black_boxes(session, true);
   return kExitDone;
 }
 
@@ -260,6 +260,7 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   const ExitCode recorded = end_recording(session, course.recording);
   // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
   // where the arm took no zero.
+  const scene::WritingGuard writing;
   if (zero_assured(session)) guard.reset();
   if (desk) desk->close();
   if (next != nullptr) then = next->take(servo.join(), course.stop.load());

@@ -94,8 +94,14 @@ bool OrderPipe::open(const std::string& path) {
   path_ = path;
   // Open for writing too, so that the pipe stays open when a writer leaves.
   if (mkfifo(path.c_str(), 0600) != 0) return false;
-  file_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  return file_ >= 0;
+  file_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+  struct stat status {};
+  const bool own = file_ >= 0 && fstat(file_, &status) == 0 && S_ISFIFO(status.st_mode) &&
+                   status.st_uid == geteuid();
+  if (own) return true;
+  if (file_ >= 0) close(file_);
+  file_ = -1;
+  return false;
 }
 
 void OrderPipe::poll(Plugged& plugged) {

@@ -208,6 +208,8 @@ std::optional<faces::RosWords> topics_of(const py::object& asked) {
       words.names = py::str(value);
     } else if (name == "domain") {
       words.domain = value.cast<std::uint32_t>();
+    } else if (name == "network") {
+      words.network = value.cast<bool>();
     } else if (name == "force") {
       words.force = py::str(value);
     } else if (name == "limit") {
@@ -218,7 +220,8 @@ std::optional<faces::RosWords> topics_of(const py::object& asked) {
       words.frames = py::str(value);
     } else {
       throw ArgumentError(
-          "ros2: expected namespace, names, domain, force, limit, stale_ms or frames, found \"" +
+          "ros2: expected namespace, names, domain, network, force, limit, stale_ms or frames, "
+          "found \"" +
           name + "\".");
     }
   }

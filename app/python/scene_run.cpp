@@ -184,8 +184,10 @@ void SceneRun::finish() {
   if (finished_) return;
   finished_ = true;
   servo_.reset();  // no longer keeps the processor awake
-  if (const auto kept = session_->keep_black_box(); kept && *kept) {
-    scene::logger().warn("the last seconds before the fault are in {}", (*kept)->string());
+  if (const auto kept = session_->keep_black_boxes(true); kept) {
+    for (const auto& file : *kept) {
+      scene::logger().warn("the last seconds before the fault are in {}", file.string());
+    }
   }
   if (const auto ended = session_->end_recording(); !ended)
     throw ThimbleError(ended.error().message);

@@ -32,6 +32,8 @@ class Visitor {
   tcp::socket& socket() { return stream_.next_layer().socket(); }
   /// Returns whether nothing of it is under way any more.
   bool done() const noexcept { return under_way_ == 0; }
+  /// Returns whether it has been disconnected by this side.
+  bool is_cut() const noexcept { return cut_; }
   /// Returns whether it is a page that is told what goes on.
   bool is_page() const noexcept { return open_; }
   /// Returns whether it has been sent all that there is.
@@ -108,6 +110,7 @@ class Visitor {
   }
   void cut() {
     open_ = false;
+    cut_ = true;
     stream_.next_layer().close();
   }
 
@@ -145,7 +148,7 @@ class Visitor {
   LiveFeed::Place place_;
   std::string message_;
   int under_way_ = 0;
-  bool open_ = false, sending_ = false, closing_ = false;
+  bool open_ = false, sending_ = false, closing_ = false, cut_ = false;
 };
 
 }  // namespace thimble::app

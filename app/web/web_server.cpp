@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "transports/socket_owner.h"
 #include "web/live_feed.h"
 #include "web/request_guard.h"
 #include "web/steer_run.h"
@@ -27,6 +28,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::size_t kConnectionsMost = 64;  // with those that are refused; chosen
+constexpr std::size_t kCutMost = 64;          // more, of those that are just ending; chosen
 
 std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
@@ -117,7 +119,7 @@ class WebServer::Parts {
     coming_.emplace_back(io_, kSaidMost);
     acceptor_.async_accept(coming_.front().socket(), [this](const error_code& failed) {
       if (failed && !acceptor_.is_open()) return coming_.clear();
-      if (!failed && visitors_.size() < kConnectionsMost) {
+      if (!failed && may_come(coming_.front())) {
         Visitor& visitor = coming_.front();
         visitors_.splice(visitors_.end(), coming_);
         visitor.begin([this](Visitor& one, const auto& request) { answer(one, request); });
@@ -125,6 +127,20 @@ class WebServer::Parts {
       coming_.clear();
       accept();
     });
+  }
+
+  /// Returns whether a visitor may come: no program of another user, and not one too many. If all
+  /// places are taken, the one that has asked for nothing the longest gives up its own.
+  bool may_come(Visitor& visitor) {
+    if (!driver::distrust_of_peer(visitor.socket().native_handle()).empty()) return false;
+    visitors_.remove_if([](const Visitor& one) { return one.done(); });
+    if (visitors_.size() < kConnectionsMost) return true;
+    const auto oldest = std::find_if(visitors_.begin(), visitors_.end(), [](const Visitor& one) {
+      return !one.is_page() && !one.is_cut();
+    });
+    if (oldest != visitors_.end()) oldest->cut();
+    // Those that are cut are still there until they have learned of it.
+    return visitors_.size() < kConnectionsMost + kCutMost;
   }
 
   template <class Request>

@@ -29,7 +29,7 @@ class Server {
       std::exit(1);
     }
     server_ = std::move(made).value();
-    use_channel(&server_->channel());
+    use_channel(&server_->channel(), server_->address());
     thread_ = std::thread([this] {
       while (!stop_.load()) server_->step(5'000'000);
     });

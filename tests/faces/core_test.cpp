@@ -1,8 +1,14 @@
 // The core that all faces stand on: what a program asks for reaches the motors through the gate.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <fstream>
+#include <stdexcept>
 
+#include "byte_lock.h"
 #include "faces/exec_rig.h"
 #include "faces/server/hand_path.h"
 
@@ -227,6 +233,119 @@ TEST(FaceCore, LetsNobodyWaitForAnArmWhoseRunHasEnded) {
   EXPECT_FALSE(arms::is_running(0));
   use_channel(nullptr);
   EXPECT_EQ(arms::count(), 0);
+}
+
+/// Another program of the same `thimble exec`, in a process of its own.
+class OtherProgram {
+ public:
+  /// Starts it; `work` begins when `go` is called, and its exit code is what it returns.
+  template <class Work>
+  OtherProgram(ExecRig& rig, Work work) {
+    if (pipe(go_) != 0 || pipe(done_) != 0) throw std::runtime_error("no pipe");
+    process_ = fork();
+    if (process_ != 0) return;
+    close(go_[1]);
+    char byte = 0;
+    if (read(go_[0], &byte, 1) != 1) _exit(90);
+    use_channel(&rig.channel(), rig.address());
+    const int result = work();
+    if (write(done_[1], "d", 1) != 1) _exit(91);
+    // It holds what it has until it is killed, or the test is over.
+    if (result == kStays) static_cast<void>(read(go_[0], &byte, 1));
+    _exit(result);
+  }
+  ~OtherProgram() {
+    close(go_[1]);
+    if (process_ > 0) waitpid(process_, nullptr, 0);
+  }
+  OtherProgram(const OtherProgram&) = delete;
+  OtherProgram& operator=(const OtherProgram&) = delete;
+
+  static constexpr int kStays = 80;
+
+  /// Lets it work, and waits until it has.
+  void go() {
+    char byte = 'g';
+    EXPECT_EQ(write(go_[1], &byte, 1), 1);
+    EXPECT_EQ(read(done_[0], &byte, 1), 1);
+  }
+  int end() {
+    close(go_[1]);
+    int status = 0;
+    waitpid(process_, &status, 0);
+    process_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void kill_it() {
+    kill(process_, SIGKILL);
+    end();
+  }
+
+ private:
+  int go_[2] = {-1, -1}, done_[2] = {-1, -1};
+  pid_t process_ = 0;
+};
+
+int refused_to_other() {
+  return arms::open(0, "other").find("Another program") != std::string::npos ? 0 : 1;
+}
+
+TEST(FaceCore, ProgramThatComesSecondIsRefused) {
+  ExecRig rig;
+  OtherProgram other(rig, refused_to_other);
+  ASSERT_EQ(arms::open(0, "test"), "");
+  other.go();
+  EXPECT_EQ(other.end(), 0);
+}
+
+TEST(FaceCore, ProgramThatComesSecondChangesNoLimit) {
+  ExecRig rig;
+  OtherProgram other(rig, refused_to_other);
+  ASSERT_EQ(arms::open(0, "test"), "");
+  arms::enable_force(0, true);
+  arms::set_force_limit(0, 0.5);
+  arms::set_speed_limit(0, 0.1);
+  arms::set_watchdog(0, 2'000'000);
+  other.go();
+  const ArmChannel& arm = rig.channel().arms[0];
+  EXPECT_TRUE(arms::force_enabled(0));
+  EXPECT_EQ(arm.force_limit.load(), 0.5);
+  EXPECT_EQ(arm.speed_limit.load(), 0.1);
+  EXPECT_EQ(arm.watchdog_ns.load(), 2'000'000);
+  EXPECT_STREQ(arm.face.data(), "test");
+}
+
+TEST(FaceCore, ArmStaysOpenWhenRefusedProgramEnds) {
+  ExecRig rig;
+  OtherProgram other(rig, refused_to_other);
+  ASSERT_EQ(arms::open(0, "test"), "");
+  other.go();
+  ASSERT_EQ(other.end(), 0);
+  ExecRig::wait(0, 300);  // many looks of the server
+  EXPECT_TRUE(arms::is_running(0));
+}
+
+TEST(FaceCore, ArmOfKilledProgramIsFree) {
+  ExecRig rig;
+  OtherProgram other(rig, [] { return arms::open(0, "other").empty() ? OtherProgram::kStays : 1; });
+  other.go();
+  EXPECT_NE(arms::open(0, "test"), "") << "the other program has it";
+  other.kill_it();
+  EXPECT_EQ(arms::open(0, "test"), "");
+}
+
+TEST(FaceCore, ProgramKilledWhileItAskedLeavesArmFree) {
+  ExecRig rig;
+  OtherProgram other(rig, [&] {
+    // As far as a program is that is killed before the server has answered.
+    if (!driver::lock_byte(channel_file(), kFirstOwnerByte)) return 1;
+    rig.channel().arms[0].trouble[0] = 'x';
+    rig.channel().arms[0].state.store(ChannelState::kFailed);
+    return OtherProgram::kStays;
+  });
+  other.go();
+  other.kill_it();
+  EXPECT_EQ(arms::open(0, "test"), "");
 }
 
 }  // namespace

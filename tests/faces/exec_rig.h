@@ -68,7 +68,7 @@ class ExecRig {
     auto made = ArmServer::make(options, stop_);
     if (!made) throw std::runtime_error(made.error().message);
     server_ = std::move(made).value();
-    use_channel(&server_->channel());
+    use_channel(&server_->channel(), server_->address());
     thread_ = std::thread([this] {
       while (!stop_.load()) server_->step(5'000'000);
     });
@@ -81,6 +81,10 @@ class ExecRig {
     end();
     use_channel(nullptr);
   }
+
+  /// Returns what the server shares, and its file.
+  Channel& channel() { return server_->channel(); }
+  std::string address() const { return server_->address(); }
 
   /// Ends the server and returns its report.
   std::string end() {

@@ -2,20 +2,29 @@
 // in this process.
 #include "faces/haply/haply_service.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include "exec_rig.h"
 #include "faces/haply/haply_message.h"
 #include "links/haply/haply_link.h"
 #include "links/haply/haply_message.h"
+#include "links/linked_arms.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/device_settings.h"
+#include "thimble/scene/real_arm.h"
 
 namespace thimble::faces {
 namespace {
@@ -26,7 +35,8 @@ using Eigen::Vector3d;
 class HaplyService : public ::testing::Test {
  protected:
   HaplyService() {
-    auto listening = haply::Service::listen(0);
+    auto listening =
+        haply::Service::listen(0, [this](const std::string& sentence) { refusal_ = sentence; });
     EXPECT_TRUE(listening) << listening.error().message;
     if (listening) service_ = std::move(listening).value();
     // Opening takes its time on a busy machine, and our back end does not wait for it.
@@ -70,6 +80,7 @@ class HaplyService : public ::testing::Test {
 
   ExecRig rig_;
   driver::WallClock clock_{0};
+  std::string refusal_;  // written before `refused` counts one
   std::unique_ptr<haply::Service> service_;
   std::unique_ptr<driver::Device> device_;
 };
@@ -111,6 +122,52 @@ TEST_F(HaplyService, EndsUnderAProgramThatPushes) {
   }
   EXPECT_TRUE(service_->ended());
   EXPECT_FALSE(arms::is_open(0));
+}
+
+TEST_F(HaplyService, ProgramOfOtherUserIsRefused) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root may act as another user";
+  const pid_t other = fork();
+  if (other == 0) {
+    alarm(60);
+    if (setgid(65534) != 0 || setuid(65534) != 0) _exit(2);
+    const int program = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(service_->port());
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (connect(program, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) _exit(3);
+    const std::string request =
+        "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
+    // Closed without a word; a reset is as good.
+    if (send(program, request.data(), request.size(), MSG_NOSIGNAL) < 0) _exit(0);
+    char byte = 0;
+    _exit(recv(program, &byte, 1, 0) > 0 ? 4 : 0);
+  }
+  int status = 0;
+  waitpid(other, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(service_->programs(), 0);
+  EXPECT_EQ(service_->refused(), 1);
+  EXPECT_NE(refusal_.find("a process of user 65534"), std::string::npos) << refusal_;
+}
+
+TEST_F(HaplyService, IsKnownAsStandIn) {
+  const auto arms = driver::haply::find_arms(service_->port(), 30'000'000'000);
+  ASSERT_TRUE(arms) << arms.error().message;
+  EXPECT_TRUE(arms->front().stand_in);
+}
+
+TEST_F(HaplyService, IsNoArmForAuto) {
+  setenv("THIMBLE_HAPLY_PORT", std::to_string(service_->port()).c_str(), 1);
+  const auto found = driver::find_linked_arms();
+  unsetenv("THIMBLE_HAPLY_PORT");
+  ASSERT_EQ(found.size(), 1U);
+  const auto chosen = scene::choose_arm(found, "auto");
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_FALSE(chosen->has_value());
+  EXPECT_NE(scene::boards_left_out(found).find("--serve haply"), std::string::npos);
+  EXPECT_TRUE(scene::choose_arm(found, "0001")->has_value()) << "by its name it is meant";
 }
 
 TEST_F(HaplyService, TwoOnOnePortAreRefusedWithASentence) {

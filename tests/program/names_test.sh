@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Scenes and arms are found by name: in ./app, the user's folder, beside the program, in XDG_DATA_DIRS,
-# in this order; and what is not found is answered with what there is.
+# Scenes and arms are found by name: in the user's folder, beside the program, in XDG_DATA_DIRS, in this order and never in the
+# working folder; and what is not found is answered with what there is.
 source "$(dirname "$0")/expect.sh" "$@"
 export HOME=$work/home XDG_DATA_DIRS=$work/other/share
 unset XDG_DATA_HOME
@@ -23,7 +23,7 @@ expect 2 'vintage: there is no such file, and no arm file of that name.*vintage_
 expect 2 'folder/elephant' "$thimble" run folder/elephant
 expect 2 'SCENE is missing' "$thimble" run --duration 1
 
-# Nearer ones go before: other folders of the system, the user's own, ./app, a file of that name.
+# Nearer ones go before: other folders of the system, the user's own.
 expect 2 'only_there: there is no such file' "$thimble" run only_there
 box_at other/share/thimble/scenes/only_there.yaml 0.02
 expect 0 '^Loop +20 ticks' "$thimble" run only_there
@@ -40,22 +40,42 @@ expect 0 '^Loop +200 ticks' "$thimble" run by_name.yaml --duration 0.2
 sed -i 's#^arm:.*#arm: nobody#' by_name.yaml
 expect 2 'by_name\.yaml:[0-9]+: arm: expected a file, found none at nobody; or the name of an arm: .*mine' \
   "$thimble" run by_name.yaml
-expect 0 'are looked for by name in this order: app.*home/\.local/share/thimble \(there\)' \
+expect 0 'are looked for by name in this order: [^ ]*home/\.local/share/thimble \(there\)' \
   bash -c '"$0" doctor || true' "$thimble"
 box_at xdg/thimble/scenes/only_there.yaml 0.04
 expect 0 '^Loop +40 ticks' env XDG_DATA_HOME="$work/xdg" "$thimble" run only_there
+
+# The working folder may be a stranger's: nothing there has a name of its own. Who means a file says so.
 box_at app/scenes/only_there.yaml 0.05
-expect 0 '^Loop +50 ticks' "$thimble" run only_there
-expect 0 '^  only_there +app/scenes/only_there\.yaml$' "$thimble" run --list
+box_at app/scenes/box.yaml 0.05
+box_at scenes/box.yaml 0.05
+mkdir -p app/arms arms
+sed 's/force_max: .*/force_max: 99/' "$source_dir/app/arms/vintage_phantom.yaml" | tee app/arms/vintage_phantom.yaml >arms/vintage_phantom.yaml
+expect 0 '^Loop +30 ticks' "$thimble" run only_there
+expect 0 '^Loop +200 ticks' "$thimble" run box --duration 0.2
+expect 0 "^  box +$source_dir/app/scenes/box\.yaml\$" "$thimble" run --list
+expect 0 "^  vintage_phantom +$source_dir/app/arms/vintage_phantom\.yaml\$" "$thimble" run --list
+expect 0 '^Loop +50 ticks' "$thimble" run app/scenes/only_there.yaml
 box_at only_there 0.06
-expect 0 '^Loop +60 ticks' "$thimble" run only_there
-rm only_there && mkdir only_there  # a folder is no scene
-expect 0 '^Loop +50 ticks' "$thimble" run only_there
+expect 0 '^Loop +30 ticks' "$thimble" run only_there
+expect 0 '^Loop +60 ticks' "$thimble" run ./only_there
+box_at box.yaml 0.07
+expect 0 '^Loop +70 ticks' "$thimble" run box.yaml
+mv only_there no_name
+expect 0 '^Loop +60 ticks' "$thimble" run no_name
+mkdir only_there  # a folder is no scene
+expect 0 '^Loop +30 ticks' "$thimble" run only_there
+rm -rf app arms scenes box.yaml
 
 # What is broken is listed without its words, and says why when it is run.
-printf '{[' >app/scenes/broken.yaml
-expect 0 '^  broken +app/scenes/broken\.yaml$' "$thimble" run --list
+printf '{[' >home/.local/share/thimble/scenes/broken.yaml
+expect 0 '^  broken .*/scenes/broken\.yaml$' "$thimble" run --list
 expect 2 'broken\.yaml:1' "$thimble" run broken
+# Without HOME, the system's list of users says where the user's folder is; relative folders count for nothing.
+home_of_user=$(getent passwd "$(id -u)" | cut -d: -f6)
+expect 0 "in this order: $home_of_user/\.local/share/thimble" bash -c 'env -u HOME "$0" doctor || true' "$thimble"
+expect 0 "in this order: $home_of_user/\.local/share/thimble" bash -c 'HOME=here XDG_DATA_HOME=there "$0" doctor || true' "$thimble"
+
 # A program that lies alone knows nothing by name, and says so.
 mkdir -p alone && cp "$thimble" alone/thimble
 (

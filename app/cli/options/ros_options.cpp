@@ -29,6 +29,11 @@ void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
       ->capture_default_str()
       ->needs(ros2);
   command
+      .add_flag("--ros-network", arguments.words.network,
+                "Let other computers see the topics and, with --ros-force, give forces; without it "
+                "only programs of this one can")
+      ->needs(ros2);
+  command
       .add_option(
           "--ros-force", arguments.words.force,
           "add: forces of the topic command/wrench (crtk: body/servo_cf, omni: force_feedback) "

@@ -12,6 +12,7 @@
 #include <ctime>
 #include <mutex>
 
+#include "byte_lock.h"
 #include "faces/core/arm_channel.h"
 #include "faces/core/open_channel.h"
 #include "faces/core/shared_wait.h"
@@ -63,8 +64,8 @@ ArmChannel* channel_of(int arm) noexcept {
   return channel == nullptr ? nullptr : &channel->arms[static_cast<std::size_t>(arm)];
 }
 
-bool alive(std::int32_t process) noexcept {
-  return kill(process, 0) == 0 || errno != ESRCH;
+bool is_server_alive() noexcept {
+  return driver::is_byte_locked(channel_file(), kServerByte);
 }
 
 /// Waits by the wall's time.
@@ -132,21 +133,42 @@ bool wait_until(int number, Done done) noexcept {
       permit(arm, ticks + 1);
     }
     wait_while(arm.ticks, ticks, kLook_ns);
-    if (arm.ticks.load() == ticks && !alive(channel->server)) break;
+    if (arm.ticks.load() == ticks && !is_server_alive()) break;
   }
   arm.waiting.fetch_sub(1);
   if (!reached) wait_ns(kPeriod_ns);
   return reached;
 }
 
-/// Asks the server for an arm and waits for its answer: empty, or what is wrong.
-std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
-  ChannelState closed = ChannelState::kClosed;
-  arm.owner.store(getpid());
-  copy_text(arm.face, face);
-  if (!arm.state.compare_exchange_strong(closed, ChannelState::kWanted)) {
-    return "Another program that `thimble exec` started has this arm.";
+/// Makes an arm this program's own, before anything is written of it: of two programs that ask at
+/// once one gets it, and the other one changes nothing.
+bool win(int number, const ArmChannel& arm) noexcept {
+  constexpr std::int64_t kPause_ns = 10'000'000;
+  constexpr int kLooks = 200;  // 2 s: the server closes the arm of a program that has just died
+  for (int look = 0; look < kLooks; ++look) {
+    if (!driver::lock_byte(channel_file(), kFirstOwnerByte + number)) return false;
+    if (arm.state.load() == ChannelState::kClosed) return true;
+    driver::unlock_byte(channel_file(), kFirstOwnerByte + number);
+    if (!is_server_alive()) return false;
+    wait_ns(kPause_ns);
   }
+  return false;
+}
+
+void give_up(int number) noexcept {
+  driver::unlock_byte(channel_file(), kFirstOwnerByte + number);
+}
+
+/// Asks the server for an arm that this program has won, and waits for its answer: empty, or what
+/// is wrong.
+std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
+  copy_text(arm.face, face);
+  // What went before, of a program that was here before, counts no more.
+  arm.enabled.store(0);
+  arm.watchdog_ns.store(0);
+  arm.speed_limit.store(0);
+  arm.force_limit.store(0);
+  arm.state.store(ChannelState::kWanted);
   channel.requests.fetch_add(1);
   wake_all(channel.requests);
   const std::int64_t end_ns = monotonic_ns() + kOpening_ns;
@@ -158,7 +180,7 @@ std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
       arm.state.store(ChannelState::kClosed);
       return trouble.empty() ? "The arm cannot be opened." : trouble;
     }
-    if (!alive(channel.server)) return "The `thimble exec` that started this program has ended.";
+    if (!is_server_alive()) return "The `thimble exec` that started this program has ended.";
     if (monotonic_ns() > end_ns) {
       arm.state.store(ChannelState::kLeaving);
       return "`thimble exec` did not open the arm within two minutes.";
@@ -196,15 +218,16 @@ std::string open(int arm, const char* face) {
     return {};
   }
   ArmChannel& shared = channel->arms[static_cast<std::size_t>(arm)];
-  // What went before, of a program that was here before, counts no more.
-  shared.enabled.store(0);
-  shared.watchdog_ns.store(0);
-  shared.speed_limit.store(0);
-  shared.force_limit.store(0);
+  if (!win(arm, shared)) {
+    return is_server_alive() ? "Another program that `thimble exec` started has this arm."
+                             : "The `thimble exec` that started this program has ended.";
+  }
   trouble = ask_for(*channel, shared, face);
   if (trouble.empty()) {
     own_arm.number = shared.taken.load();
     own_arm.opened.store(1, std::memory_order_release);
+  } else {
+    give_up(arm);
   }
   return trouble;
 }
@@ -217,15 +240,17 @@ bool close(int arm) noexcept {
   shared->enabled.store(0);
   if (shared->state.exchange(ChannelState::kLeaving) == ChannelState::kEnded) {
     shared->state.store(ChannelState::kClosed);  // its run is over: nobody need end it
+    give_up(arm);
     return true;
   }
   Channel* channel = open_channel();
   channel->requests.fetch_add(1);
   wake_all(channel->requests);
   // The same arm may be opened again at once; so it waits until it is free.
-  while (shared->state.load() == ChannelState::kLeaving && alive(channel->server)) {
+  while (shared->state.load() == ChannelState::kLeaving && is_server_alive()) {
     wait_while(shared->state, ChannelState::kLeaving, kLook_ns);
   }
+  give_up(arm);
   return true;
 }
 
@@ -235,8 +260,7 @@ bool is_open(int arm) noexcept {
 
 bool is_running(int arm) noexcept {
   const ArmChannel* channel = channel_of(arm);
-  return channel != nullptr && channel->state.load() == ChannelState::kOpen &&
-         alive(open_channel()->server);
+  return channel != nullptr && channel->state.load() == ChannelState::kOpen && is_server_alive();
 }
 
 const ArmFacts& facts(int arm) noexcept {

@@ -13,10 +13,17 @@ namespace thimble::faces {
 
 // The memory that `thimble exec` and the program that it started share. It begins as zeros. What
 // one side writes the other only reads, but for counters; all that changes while an arm is open is
-// atomic or a snapshot.
+// atomic or a snapshot. Process ids mean nothing across PID namespaces, so each side shows that it
+// lives by a byte of the file that it has locked (byte_lock.h).
 
 /// The environment variable that names the memory's file to the program.
 inline constexpr const char* kChannelVariable = "THIMBLE_EXEC";
+
+/// The byte of the file that `thimble exec` has locked.
+inline constexpr std::int64_t kServerByte = 0;
+/// And on: the bytes of the arms. A program locks an arm's before it writes anything of the arm,
+/// and releases it when it is done with the arm.
+inline constexpr std::int64_t kFirstOwnerByte = 16;
 
 /// Where an arm of the channel is in its life.
 enum class ChannelState : std::uint32_t {
@@ -38,7 +45,6 @@ struct ForceWritten {
 struct ArmChannel {
   std::array<char, 64> name{};                             ///< What `thimble exec` was given.
   std::atomic<ChannelState> state{ChannelState::kClosed};  ///< A futex.
-  std::atomic<std::int32_t> owner{0};                      ///< Process of the program.
   std::array<char, 32> face{};                             ///< Which library it uses.
   std::array<char, 1024> trouble{};                        ///< Of kFailed.
   ArmFacts facts;                                          ///< Written while it is not open.
@@ -68,11 +74,10 @@ struct WrongCall {
 
 /// All of it.
 struct Channel {
-  static constexpr std::uint64_t kMagic = 0x3243'4558'4554'4854;  ///< Form of this memory.
   static constexpr std::size_t kWrongCallsMost = 64;  ///< Functions that are told apart.
 
-  std::atomic<std::uint64_t> magic{0};     ///< kMagic once the rest is ready.
-  std::int32_t server = 0;                 ///< Process of `thimble exec`.
+  /// channel_layout_hash() (channel_layout.h) once the rest is ready; always first.
+  std::atomic<std::uint64_t> layout{0};
   std::int32_t arm_count = 0;              ///< 1 to kArmsMost.
   std::atomic<std::uint32_t> requests{0};  ///< A futex; grows with each request of the program.
   std::array<ArmChannel, kArmsMost> arms;

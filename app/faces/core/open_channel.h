@@ -10,8 +10,12 @@ namespace thimble::faces {
 /// `trouble`, if given, says why. Never from the servo thread.
 Channel* open_channel(std::string* trouble = nullptr);
 
-/// Uses a channel of this process in place of that; null: none any more. For tests, while no arm is
-/// open.
-void use_channel(Channel* channel);
+/// Returns the descriptor of the channel's file, by which this process holds its locks
+/// (arm_channel.h); -1 where there is no channel. Never from the servo thread.
+int channel_file();
+
+/// Uses a channel of this process instead, whose file is `path`; null: none any more. For programs
+/// that are served inside `thimble exec`, and for tests; while no arm is open.
+void use_channel(Channel* channel, const std::string& path = {});
 
 }  // namespace thimble::faces

@@ -11,7 +11,7 @@ class Service::Listener {};
 Service::Service(std::unique_ptr<Listener> listener) : listener_(std::move(listener)) {}
 Service::~Service() = default;
 
-driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t) {
+driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t, Report) {
   return driver::Error{
       "This build serves no programs of the Inverse3: install libboost-dev and nlohmann-json3-dev, "
       "and build it anew."};
@@ -24,6 +24,9 @@ bool Service::ready() const noexcept {
   return true;
 }
 int Service::programs() const noexcept {
+  return 0;
+}
+int Service::refused() const noexcept {
   return 0;
 }
 void Service::leave() {}

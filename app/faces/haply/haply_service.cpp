@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "faces/haply/served_arms.h"
+#include "transports/socket_owner.h"
 
 namespace thimble::faces::haply {
 namespace {
@@ -67,6 +68,9 @@ class Program {
     socket().set_option(tcp::no_delay(true), ignored);
     return true;
   }
+
+  /// Returns why the program is not to be heard, as a phrase; empty: it may be.
+  std::string distrust() { return driver::distrust_of_peer(socket().native_handle()); }
 
   void begin(ServedArms& arms) {
     thread_ = std::thread([this, &arms] {
@@ -117,6 +121,9 @@ class Program {
                                         .idle_timeout = websocket::stream_base::none(),
                                         .keep_alive_pings = false});
     stream_.read_message_max(kMessageMost);
+    stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+      response.set(http::field::server, std::string(kServerName) + " " + THIMBLE_VERSION);
+    }));
     return run([&](auto done) { stream_.async_accept(request, done); });
   }
 
@@ -157,6 +164,7 @@ class Program {
 
 class Service::Listener {
  public:
+  explicit Listener(Report report) : report_(std::move(report)) {}
   ~Listener() {
     leave();
     if (thread_.joinable()) thread_.join();
@@ -179,6 +187,7 @@ class Service::Listener {
   std::uint16_t port() const noexcept { return port_; }
   bool ready() const noexcept { return ready_.load(std::memory_order_acquire); }
   int programs() const noexcept { return came_.load(std::memory_order_relaxed); }
+  int refused() const noexcept { return refused_.load(std::memory_order_acquire); }
   bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
 
   void leave() {
@@ -198,6 +207,10 @@ class Service::Listener {
         std::this_thread::sleep_for(kPause);  // too many files are open, say
         continue;
       }
+      if (const std::string stranger = one.front().distrust(); !stranger.empty()) {
+        refuse(stranger);
+        continue;
+      }
       const std::lock_guard lock(mutex_);
       programs_.remove_if([](const Program& program) { return program.done(); });
       if (leaves_.load(std::memory_order_acquire)) break;
@@ -215,6 +228,14 @@ class Service::Listener {
     ended_.store(true, std::memory_order_release);
   }
 
+  void refuse(const std::string& stranger) {
+    if (refused_.load(std::memory_order_relaxed) == 0 && report_) {
+      report_("Refused " + stranger + " on port " + std::to_string(port_) +
+              ": forces are taken from programs of your own user and of root only.");
+    }
+    refused_.fetch_add(1, std::memory_order_release);
+  }
+
   Program* first() {
     const std::lock_guard lock(mutex_);
     return programs_.empty() ? nullptr : &programs_.front();
@@ -226,7 +247,8 @@ class Service::Listener {
   std::mutex mutex_;
   std::list<Program> programs_;  // that are connected
   std::atomic<bool> ready_{false}, leaves_{false}, ended_{false};
-  std::atomic<int> came_{0};
+  std::atomic<int> came_{0}, refused_{0};
+  Report report_;
   std::uint16_t port_ = 0;
   std::thread thread_;
 };
@@ -234,8 +256,8 @@ class Service::Listener {
 Service::Service(std::unique_ptr<Listener> listener) : listener_(std::move(listener)) {}
 Service::~Service() = default;
 
-driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t port) {
-  auto listener = std::make_unique<Listener>();
+driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t port, Report report) {
+  auto listener = std::make_unique<Listener>(std::move(report));
   const std::string wrong = listener->begin(port);
   if (!wrong.empty()) {
     return driver::Error{
@@ -253,6 +275,9 @@ bool Service::ready() const noexcept {
 }
 int Service::programs() const noexcept {
   return listener_->programs();
+}
+int Service::refused() const noexcept {
+  return listener_->refused();
 }
 void Service::leave() {
   listener_->leave();

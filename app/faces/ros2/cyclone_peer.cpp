@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "dds/dds.h"
+#include "faces/ros2/dds_domain.h"
 #include "faces/ros2/dds_writers.h"
 #include "faces/ros2/echo_peer.h"
 #include "faces/ros2/message_taker.h"
@@ -25,6 +26,7 @@ class CyclonePeer final : public RosPeer {
 
   /// Returns an error of DDS, or 0.
   dds_return_t begin() {
+    if (const dds_return_t opened = domain_.open(options_); opened < 0) return opened;
     participant_ = dds_create_participant(options_.domain, nullptr, nullptr);
     if (participant_ < 0) return participant_;
     writers_ = std::make_unique<DdsWriters>(participant_, options_, scene_);
@@ -94,6 +96,7 @@ class CyclonePeer final : public RosPeer {
   const RosOptions options_;
   const RosScene scene_;
   RosChannel& channel_;
+  DdsDomain domain_;  // outlives what is in it
   dds_entity_t participant_ = 0, waitset_ = 0;
   std::unique_ptr<DdsWriters> writers_;
   std::unique_ptr<MessageTaker> taker_;

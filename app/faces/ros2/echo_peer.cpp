@@ -22,6 +22,7 @@ EchoPeer::~EchoPeer() {
 
 dds_return_t EchoPeer::begin() {
   const RosNames& names = ros_names(options_.style);
+  if (const dds_return_t opened = domain_.open(options_); opened < 0) return opened;
   participant_ = dds_create_participant(options_.domain, nullptr, nullptr);
   if (participant_ < 0) return participant_;
   poses_ = make_reader(participant_, geometry_msgs_msg_dds__PoseStamped__desc,

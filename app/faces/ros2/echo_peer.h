@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "dds/dds.h"
+#include "faces/ros2/dds_domain.h"
 #include "faces/ros2/ros_peer.h"
 
 namespace thimble::faces {
@@ -24,6 +25,7 @@ class EchoPeer final : public RosPeer {
   void serve();
 
   const RosOptions options_;
+  DdsDomain domain_;  // outlives what is in it
   dds_entity_t participant_ = 0, waitset_ = 0, poses_ = 0, forces_ = 0;
   std::atomic<bool> leave_{false};
   std::thread thread_;

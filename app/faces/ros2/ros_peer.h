@@ -23,19 +23,27 @@ enum class RosForce : std::uint8_t {
   kReplace,  ///< They stand in place of the scene's, which is not felt.
 };
 
+/// How far the topics of a run go.
+enum class RosReach : std::uint8_t {
+  kThisComputer,  ///< Programs of this computer find them, and only theirs are heard.
+  kUnseen,        ///< The same, and they are not announced.
+  kNetwork,       ///< Other computers as well, as Cyclone DDS is configured.
+};
+
 /// What the user asked of the topics of a run.
 struct RosOptions {
-  std::string name_space = {};         ///< "/phantom"; empty: none
-  std::string arm_space = {};          ///< "/left", where there are several arms; else empty
-  RosStyle style = RosStyle::kPlain;   ///< of names and axes
-  std::string world_frame = "world";   ///< name of frame W, in the style's axes
-  std::string tip_frame = "tip";       ///< name of frame T
-  std::uint32_t domain = 0;            ///< of DDS
-  RosForce force = RosForce::kNone;    ///< of the topic of forces
-  double force_limit = 0;              ///< N; 0: the arm's own limit
-  std::int64_t stale_ns = 50'000'000;  ///< a force counts for so long
-  bool lead_hand = false;              ///< a topic says where the simulated hand goes
-  bool stepped = false;                ///< virtual time, which a topic moves on
+  std::string name_space = {};               ///< "/phantom"; empty: none
+  std::string arm_space = {};                ///< "/left", where there are several arms; else empty
+  RosStyle style = RosStyle::kPlain;         ///< of names and axes
+  std::string world_frame = "world";         ///< name of frame W, in the style's axes
+  std::string tip_frame = "tip";             ///< name of frame T
+  std::uint32_t domain = 0;                  ///< of DDS
+  RosReach reach = RosReach::kThisComputer;  ///< who may hear and be heard
+  RosForce force = RosForce::kNone;          ///< of the topic of forces
+  double force_limit = 0;                    ///< N; 0: the arm's own limit
+  std::int64_t stale_ns = 50'000'000;        ///< a force counts for so long
+  bool lead_hand = false;                    ///< a topic says where the simulated hand goes
+  bool stepped = false;                      ///< virtual time, which a topic moves on
   bool moves_time = true;  ///< of a stepped run: this arm's topics do, and tell the time
 };
 

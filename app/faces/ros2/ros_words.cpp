@@ -1,4 +1,5 @@
 #include "faces/ros2/ros_words.h"
+#include "faces/ros2/ros_reach.h"
 
 #include <fmt/format.h>
 
@@ -84,6 +85,9 @@ driver::Result<RosOptions> ros_options(const RosWords& words) {
         fmt::format("ROS_DOMAIN_ID: expected 0 to {}, found {}.", kDomainMost, words.domain)};
   }
   options.domain = words.domain;
+  auto reach = ros_reach(words.network);
+  if (!reach) return reach.error();
+  options.reach = *reach;
   if (!(words.force_limit >= 0) || !std::isfinite(words.force_limit)) {
     return driver::Error{fmt::format(
         "The largest force from a topic: expected newtons above 0, found {}.", words.force_limit)};

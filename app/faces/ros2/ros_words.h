@@ -15,6 +15,7 @@ struct RosWords {
   std::string force = "none";        ///< "none", "add" or "replace"
   std::string frames = "world,tip";  ///< names of the world's frame and of the tip's
   std::uint32_t domain = 0;          ///< ROS_DOMAIN_ID, below 233
+  bool network = false;              ///< other computers may hear and be heard
   double stale_ms = 50;              ///< a force counts for so long, 1 to 1000 ms
   double force_limit = 0;            ///< N; 0: the arm's own
 };

@@ -171,7 +171,7 @@ std::string ArmRun::end() {
   servo_->join();
   channel_.ticks.fetch_add(1);
   wake_all(channel_.ticks);
-  session::keep_black_box(*session_);
+  session::keep_black_boxes(*session_, true);
   std::string report = session::summary(session_->figures(servo_->grant())) + own_report();
   const auto recorded = session_->end_recording();
   if (!recorded) {

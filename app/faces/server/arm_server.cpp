@@ -1,13 +1,11 @@
 #include "faces/server/arm_server.h"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <new>
 #include <utility>
 
+#include "faces/core/channel_layout.h"
 #include "faces/core/shared_wait.h"
 #include "faces/server/facts_of.h"
 #include "faces/server/put_text.h"
@@ -69,13 +67,12 @@ ArmServer::ArmServer(const ExecOptions& options, const std::atomic<bool>& stop,
       stop_(stop),
       memory_(std::move(memory)),
       channel_(new (memory_->bytes().data()) Channel) {
-  channel_->server = getpid();
   channel_->arm_count = static_cast<std::int32_t>(options_.arms.size());
   for (std::size_t i = 0; i < options_.arms.size(); ++i) {
     put_text(channel_->arms[i].name, name_of(options_.arms[i]));
     channel_->arms[i].facts = known_facts(options_, options_.arms[i]);
   }
-  channel_->magic.store(Channel::kMagic, std::memory_order_release);
+  channel_->layout.store(channel_layout_hash(), std::memory_order_release);
 }
 
 ArmServer::~ArmServer() {
@@ -96,21 +93,22 @@ void ArmServer::step(std::int64_t wait_ns) {
 void ArmServer::serve(std::size_t index) {
   ArmChannel& shared = channel_->arms[index];
   const ChannelState state = shared.state.load();
-  if (state == ChannelState::kWanted) {
+  if (state == ChannelState::kClosed) return;
+  // A program that has died asks for nothing any more.
+  const bool owned = memory_->locked_elsewhere(kFirstOwnerByte + static_cast<std::int64_t>(index));
+  if (state == ChannelState::kWanted && owned) {
     open(index);
     return;
   }
   ArmRun* run = arms_[index].run.get();
-  if (state == ChannelState::kLeaving) {
+  if (state == ChannelState::kLeaving || (run == nullptr && !owned)) {
     close(index, ChannelState::kClosed);
     return;
   }
   if (run == nullptr) return;
   run->attend(options_.program);
   ended_by_viewer_ = ended_by_viewer_ || run->ended_by_viewer();
-  // A program that has died asks for nothing any more.
-  const std::int32_t owner = shared.owner.load();
-  if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) {
+  if (!owned) {
     scene::logger().warn("{} ended without closing {}; its force is off.", options_.program,
                          shared.facts.name.data());
     close(index, ChannelState::kClosed);

@@ -40,6 +40,11 @@ KnownHeat load_heat(const std::string& name, const driver::HeatSettings& setting
   const fs::file_status status = fs::status(file, missing);
   if (status.type() == fs::file_type::not_found) return known;
   known.heat.fill(1);
+  if (status.type() != fs::file_type::regular) {
+    known.note = "The motors count as hot: " + file.string() +
+                 " is no regular file. If they are cold, delete it.";
+    return known;
+  }
   auto yaml = YamlFile::load(file);
   bool sound = false, running = false;
   double kept_at = 0;
@@ -78,6 +83,7 @@ bool save_heat(const std::string& name, const std::array<double, 3>& heat, doubl
   const fs::path fresh = file.string() + ".new";
   std::error_code trouble;
   fs::create_directories(file.parent_path(), trouble);
+  fs::remove(fresh, trouble);  // a pipe of that name would be waited for
   std::ofstream stream(fresh);
   stream.precision(17);
   stream << "# Heat of the motors of " << name << " after a run: 0 as cold as the room, 1 the "

@@ -20,14 +20,21 @@ inline constexpr std::int64_t kOneRequest_ns = 500'000'000;
 /// pauses for a second]
 inline constexpr std::int64_t kLeavingMost_ns = 2'000'000'000;
 
+/// The time within which SIGTERM ends a program that neither drives an arm nor writes a recording
+/// or a report, whatever it waits for. [chosen: half of what a container's host waits before
+/// SIGKILL]
+inline constexpr std::int64_t kHangingMost_ns = 5'000'000'000;
+
 /// Returns whether a further signal ends the program at once, `since_first_ns` after the first one.
 /// `at_stake`: an arm may hold a force, or a recording is not closed. Real-time: safe.
 constexpr bool ends_at_once(std::int64_t since_first_ns, bool at_stake) noexcept {
   return since_first_ns >= (at_stake ? kLeavingMost_ns : kOneRequest_ns);
 }
 
-/// Makes each of the signals above set a flag that every loop looks at in each tick. What somebody
-/// else has caught stays with him. Returns the flag. Real-time: never from the servo thread.
+/// Makes each of the signals above set a flag that every loop looks at in each tick. A handler that
+/// is not the default stays. A program that still runs kHangingMost_ns after SIGTERM, with no
+/// LeavingGuard or WritingGuard alive, is ended by it: it hangs. Returns the flag. Real-time: never
+/// from the servo thread.
 const std::atomic<bool>& catch_interrupts();
 
 /// Returns whether such a signal came, or `ask_to_stop` was called: for what takes its time while
@@ -48,6 +55,16 @@ class LeavingGuard {
   ~LeavingGuard();
   LeavingGuard(const LeavingGuard&) = delete;
   LeavingGuard& operator=(const LeavingGuard&) = delete;
+};
+
+/// The time in which results are written after a run: a single SIGTERM does not cut it off, a
+/// second one ends the program. Real-time: safe.
+class WritingGuard {
+ public:
+  WritingGuard() noexcept;
+  ~WritingGuard();
+  WritingGuard(const WritingGuard&) = delete;
+  WritingGuard& operator=(const WritingGuard&) = delete;
 };
 
 /// Lets a reader of our output that is gone, and a file that may not grow, be errors of the write

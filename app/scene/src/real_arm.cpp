@@ -182,13 +182,25 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
 }
 
 std::string boards_left_out(const std::vector<FoundArm>& plugged_in) {
-  std::string boards;
+  std::string boards, stand_ins;
   for (const FoundArm& arm : plugged_in) {
     if (arm.certainty != Certainty::kUnknown) continue;
+    if (arm.board == BoardKind::kHaplyService) {
+      stand_ins.append(stand_ins.empty() ? "" : ", ").append(arm.name());
+      continue;
+    }
     boards.append(boards.empty() ? "" : ", ").append(arm.name()).append(": ").append(arm.arm);
   }
-  if (boards.empty()) return {};
-  return "Left out, because they may be anything: " + boards +
+  std::string sentences;
+  if (!stand_ins.empty()) {
+    sentences =
+        "Left out, because what answers there is `thimble exec --serve haply` and no "
+        "Inverse3: " +
+        stand_ins + ". Use it by --device NAME.";
+  }
+  if (boards.empty()) return sentences;
+  return sentences + (sentences.empty() ? "" : " ") +
+         "Left out, because they may be anything: " + boards +
          ". If one is your arm, use it by --device NAME with an arm file that names its board "
          "(`thimble doctor` tells).";
 }

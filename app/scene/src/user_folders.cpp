@@ -1,5 +1,9 @@
 #include "user_folders.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
+#include <array>
 #include <cctype>
 #include <cstdlib>
 
@@ -8,11 +12,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder(const char* variable, const char* below_home) {
+// In place of a home folder where there is none. Nobody can make a folder there, so that whatever
+// would be written fails with a message that has this in it.
+constexpr const char* kNoHome = "/dev/null/HOME-is-not-set";
+
+/// Returns the folder of an environment variable; empty if it is not set, or relative, which counts
+/// as not set [XDG Base Directory Specification].
+fs::path named_by(const char* variable) {
   const char* named = std::getenv(variable);
-  if (named != nullptr && *named != 0) return fs::path(named) / "thimble";
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr ? home : "/") / below_home / "thimble";
+  const fs::path folder = named != nullptr ? named : "";
+  return folder.is_absolute() ? folder : fs::path();
+}
+
+/// Returns the user's home: $HOME, or else what the system's list of users says.
+fs::path home() {
+  if (fs::path named = named_by("HOME"); !named.empty()) return named;
+  std::array<char, 16'384> texts{};
+  passwd user{};
+  passwd* found = nullptr;
+  if (getpwuid_r(geteuid(), &user, texts.data(), texts.size(), &found) == 0 && found != nullptr &&
+      found->pw_dir != nullptr && fs::path(found->pw_dir).is_absolute() &&
+      fs::path(found->pw_dir) != "/") {
+    return found->pw_dir;
+  }
+  return kNoHome;
+}
+
+fs::path folder(const char* variable, const char* below_home) {
+  const fs::path named = named_by(variable);
+  return (named.empty() ? home() / below_home : named) / "thimble";
 }
 
 }  // namespace

@@ -5,6 +5,10 @@
 
 namespace thimble::scene {
 
+// Where HOME is not set, the system's list of users names the home (getpwuid); where that has none
+// either, the folders below lie at a place where nothing can be written. Relative paths in these
+// variables are ignored.
+
 /// Returns where a user's settings for Thimble lie: $XDG_CONFIG_HOME/thimble, or
 /// ~/.config/thimble [XDG Base Directory Specification].
 std::filesystem::path config_folder();

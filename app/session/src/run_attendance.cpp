@@ -7,7 +7,6 @@
 
 #include "log/console.h"
 #include "log/logger.h"
-#include "run_records.h"
 #include "setup.h"
 #include "thimble/driver/heat_guard.h"
 
@@ -31,12 +30,14 @@ std::string HeatWarning::look(const driver::TickRecord& record) {
       100 * heat);
 }
 
-void keep_black_box(Session& session) {
-  const auto kept = session.keep_black_box();
+void keep_black_boxes(Session& session, bool run_is_over) {
+  const auto kept = session.keep_black_boxes(run_is_over);
   if (!kept) {
     scene::logger().error("{}", kept.error().message);
-  } else if (*kept) {
-    scene::logger().warn("the last seconds before the fault are in {}", (*kept)->string());
+    return;
+  }
+  for (const auto& file : *kept) {
+    scene::logger().warn("the last seconds before the fault are in {}", file.string());
   }
 }
 
@@ -52,8 +53,7 @@ RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerReque
 void RunAttendance::step() {
   if (watch_ != nullptr) watch_->step();
   if (desk_ != nullptr) desk_->step();
-  const KeptTicks* kept = session_.records().kept.get();
-  if (kept != nullptr && kept->black_box.full()) keep_black_box(session_);
+  keep_black_boxes(session_, false);
   driver::TickRecord record;
   if (!session_.newest().load(record)) return;
   if (const std::string hot = heat_.look(record); !hot.empty()) {

@@ -23,9 +23,9 @@ class HeatWarning {
   bool given_ = false;
 };
 
-/// Writes the seconds around a fault, if one came, and says on standard error where a person finds
-/// them, or why not. Real-time: never from the servo thread.
-void keep_black_box(Session& session);
+/// Writes the seconds around the faults of all arms (Session::keep_black_boxes), and logs where a
+/// person finds them, or why not. Real-time: never from the servo thread.
+void keep_black_boxes(Session& session, bool run_is_over);
 
 /// What is done beside the servo while a run goes on: a pulled arm is watched for, viewers are
 /// heard, the black box is emptied, and the user is told of heat and progress. Real-time: never

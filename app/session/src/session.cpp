@@ -386,19 +386,27 @@ driver::Result<std::optional<std::filesystem::path>> Session::end_recording() {
 }
 
 driver::Result<std::optional<std::filesystem::path>> Session::keep_black_box() {
-  std::optional<std::filesystem::path> first;
+  auto kept = keep_black_boxes(true);
+  if (!kept) return kept.error();
+  if (kept->empty()) return std::optional<std::filesystem::path>();
+  return std::optional(kept->front());
+}
+
+driver::Result<std::vector<std::filesystem::path>> Session::keep_black_boxes(bool run_is_over) {
+  std::vector<std::filesystem::path> files;
   for (std::size_t arm = 0; arm < arms(); ++arm) {
     KeptTicks* kept = parts_->records_of(arm).kept.get();
-    if (kept == nullptr) continue;
+    // The servo fills one that is not full; it may be full for one arm and not for another.
+    if (kept == nullptr || !(run_is_over || kept->black_box.full())) continue;
     const auto ticks = kept->black_box.release();
     if (ticks.empty()) continue;
     RecordingInfo info = parts_->setup->recording_info(arm);
     if (arms() > 1) info.scene += "_" + arm_name(arm);
     auto written = write_black_box(ticks, info);
     if (!written) return written.error();
-    if (!first) first = std::move(written).value();
+    files.push_back(std::move(written).value());
   }
-  return first;
+  return files;
 }
 
 RecordingInfo Session::recording_info(std::size_t arm) const {
@@ -416,6 +424,9 @@ RunRecords& Session::records() noexcept {
 }
 const RunRecords& Session::records() const noexcept {
   return parts_->records;
+}
+RunRecords& Session::records(std::size_t arm) noexcept {
+  return parts_->records_of(arm);
 }
 driver::Result<void> Session::share(const SessionOptions& options, SharedRun* before) {
   return parts_->share(options, before);

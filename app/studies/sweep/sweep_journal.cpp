@@ -122,7 +122,9 @@ driver::Result<std::unique_ptr<SweepJournal>> SweepJournal::open(const std::file
   } else if (there) {
     std::filesystem::rename(file, file.string() + ".old", status);
   }
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  // O_NONBLOCK: a pipe of that name is an error, and is not waited for.
+  const int descriptor =
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0644);
   if (descriptor < 0) return unwritable(file);
   std::unique_ptr<SweepJournal> journal(
       new SweepJournal(std::move(lock).value(), file, heading, descriptor));

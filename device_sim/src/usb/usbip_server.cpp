@@ -21,8 +21,6 @@
 namespace thimble::device_sim::usb {
 namespace {
 
-constexpr std::size_t kClientsMax = 16;
-
 std::int64_t monotonic_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -81,7 +79,7 @@ void UsbipServer::adopt(int socket) {
   // Each answer is small and somebody waits for it. Not every socket is TCP; then it fails.
   const int yes = 1;
   setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  clients_.push_back({socket, std::make_unique<UsbipSession>(device_, bus_id_), false});
+  clients_.push_back({socket, std::make_unique<UsbipSession>(device_, bus_id_), false, now_ns_});
 }
 
 bool UsbipServer::attached() const noexcept {
@@ -99,20 +97,43 @@ UsbipCounters UsbipServer::counters() const noexcept {
 void UsbipServer::accept_client() {
   const int socket = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
   if (socket < 0) return;
-  if (clients_.size() >= kClientsMax) {
+  if (clients_.size() >= kClientsMax && !make_room()) {
     close(socket);
     return;
   }
   adopt(socket);
 }
 
+/// Disconnects the client that came first and has not the device; false if there is none.
+bool UsbipServer::make_room() {
+  const auto oldest = std::find_if(clients_.begin(), clients_.end(), [](const Client& client) {
+    return client.session->state() != UsbipSession::State::kAttached;
+  });
+  if (oldest == clients_.end()) return false;
+  oldest->heard_all = true;
+  drop_finished();
+  return true;
+}
+
+/// Disconnects clients that let the server wait for too long.
+void UsbipServer::drop_late() {
+  for (Client& client : clients_) {
+    const bool waits = client.session->state() != UsbipSession::State::kAttached ||
+                       !client.session->output().empty();
+    if (waits && now_ns_ - client.since_ns > kPatience_ns) client.heard_all = true;
+  }
+}
+
 void UsbipServer::take(Client& client) {
   std::array<std::byte, 4096> bytes;
+  const bool was_attached = client.session->state() == UsbipSession::State::kAttached;
   const ssize_t size = recv(client.socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (size > 0) {
     const bool available = device_.plugged() && !attached();
     client.session->receive(std::span<const std::byte>(bytes).first(static_cast<std::size_t>(size)),
                             available);
+    const bool attached_now = client.session->state() == UsbipSession::State::kAttached;
+    if (attached_now && !was_attached) client.since_ns = now_ns_;
   } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
     client.heard_all = true;
   }
@@ -120,6 +141,8 @@ void UsbipServer::take(Client& client) {
 
 void UsbipServer::send_ready(Client& client) {
   std::vector<std::byte>& output = client.session->output();
+  const bool attached = client.session->state() == UsbipSession::State::kAttached;
+  if (attached && output.empty()) client.since_ns = now_ns_;
   while (!output.empty()) {
     const ssize_t size =
         send(client.socket, output.data(), output.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -128,6 +151,7 @@ void UsbipServer::send_ready(Client& client) {
       return;
     }
     output.erase(output.begin(), output.begin() + size);
+    if (attached) client.since_ns = now_ns_;
   }
 }
 
@@ -145,14 +169,19 @@ void UsbipServer::drop_finished() {
 void UsbipServer::serve(int timeout_ms) {
   std::vector<pollfd> waits;
   for (const Client& client : clients_) {
-    const bool more = !client.session->output().empty();
-    waits.push_back({client.socket, static_cast<short>(more ? POLLIN | POLLOUT : POLLIN), 0});
+    const int in = client.session->takes_more() ? POLLIN : 0;
+    const int out = client.session->output().empty() ? 0 : POLLOUT;
+    waits.push_back({client.socket, static_cast<short>(in | out), 0});
   }
   const std::size_t known = waits.size();
   if (listener_ >= 0) waits.push_back({listener_, POLLIN, 0});
   if (poll(waits.data(), waits.size(), timeout_ms) <= 0) return;
   for (std::size_t i = 0; i < known; ++i) {
-    if ((waits[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0) take(clients_[i]);
+    if (!clients_[i].session->takes_more()) {
+      if ((waits[i].revents & (POLLHUP | POLLERR)) != 0) clients_[i].heard_all = true;
+    } else if ((waits[i].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
+      take(clients_[i]);
+    }
     send_ready(clients_[i]);
   }
   if (listener_ >= 0 && waits.back().revents != 0) accept_client();
@@ -160,7 +189,9 @@ void UsbipServer::serve(int timeout_ms) {
 }
 
 void UsbipServer::frame(std::int64_t time_ns) {
+  now_ns_ = time_ns;
   device_.advance_to(time_ns);
+  drop_late();
   for (Client& client : clients_) {
     if (client.session->state() != UsbipSession::State::kAttached) continue;
     client.session->frame(time_ns);
@@ -210,7 +241,9 @@ void UsbipServer::wait_for(int timer) {
   waits[count++] = {timer, POLLIN, 0};
   if (listener_ >= 0) waits[count++] = {listener_, POLLIN, 0};
   for (const Client& client : clients_) {
-    if (count < waits.size()) waits[count++] = {client.socket, POLLIN, 0};
+    if (count < waits.size() && client.session->takes_more()) {
+      waits[count++] = {client.socket, POLLIN, 0};
+    }
   }
   poll(waits.data(), count, 100);
 }

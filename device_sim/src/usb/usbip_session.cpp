@@ -100,7 +100,7 @@ template <class Chosen>
 void UsbipSession::run_chosen(std::int64_t frame, Chosen&& chosen) {
   // An endpoint whose transfer waits, or that had its packet in this frame, is done for it.
   std::uint32_t done = 0;
-  for (auto transfer = pending_.begin(); transfer != pending_.end();) {
+  for (auto transfer = pending_.begin(); transfer != pending_.end() && takes_more();) {
     const std::uint32_t bit = bit_of(transfer->address);
     if ((done & bit) != 0 || !chosen(*transfer)) {
       ++transfer;

@@ -30,6 +30,10 @@ class UsbipSession {
   /// How many transfers may wait; a client that hands over more is hung up on.
   static constexpr std::size_t kPendingMax = 256;
 
+  /// How many bytes may wait for a client that does not read them: then nothing more is taken from
+  /// it and no transfer of its is run. One reply may go beyond. [chosen: a second of reports]
+  static constexpr std::size_t kOutputMax = 1U << 16;
+
   /// What a connection is good for.
   enum class State : std::uint8_t {
     kAsking,    ///< Not attached yet.
@@ -54,6 +58,10 @@ class UsbipSession {
   /// Sends bulk data to the device in the running frame. The caller moves the device's time.
   /// Real-time: never from the servo thread.
   void send_bulk();
+
+  /// Returns whether more bytes of the client may be taken: not while too many wait for it to be
+  /// read. Real-time: safe.
+  bool takes_more() const noexcept { return output_.size() < kOutputMax; }
 
   /// Gives the bytes for the client; the caller takes away from the front what it sent.
   std::vector<std::byte>& output() noexcept { return output_; }

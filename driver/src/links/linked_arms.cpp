@@ -41,8 +41,9 @@ std::vector<FoundArm> find_linked_arms() {
     FoundArm one;
     one.kind = ArmKind::kHaply;
     one.board = BoardKind::kHaplyService;
-    one.certainty = Certainty::kProvesItself;
-    one.arm = "Haply Inverse3";
+    // Our own stand-in is an arm that Thimble drives already: only who names it means it.
+    one.certainty = arm.stand_in ? Certainty::kUnknown : Certainty::kProvesItself;
+    one.arm = arm.stand_in ? "stand-in of Thimble" : "Haply Inverse3";
     one.bus = kServiceBus;
     one.address = "port " + std::to_string(port);
     one.node = "ws://localhost:" + std::to_string(port);

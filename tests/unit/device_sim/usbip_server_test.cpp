@@ -1,8 +1,16 @@
 #include "thimble/device_sim/usb/usbip_server.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "support/boards/usb_host.h"
 #include "thimble/device_sim/usb/vhci.h"
@@ -100,6 +108,114 @@ TEST_F(UsbipServerTest, RefusesADeviceThatItDoesNotHave) {
   host.say(encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = "9-9", .size = 0}));
   EXPECT_EQ(host.hear().size(), kImportRefusalSize);
   EXPECT_TRUE(host.hung_up());
+}
+
+/// A client whose socket a test has in its hand, and that reads nothing by itself.
+class DeafClient {
+ public:
+  explicit DeafClient(UsbipServer& server) {
+    int ends[2];
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
+    server.adopt(ends[0]);
+    socket_ = ends[1];
+  }
+  ~DeafClient() { close(socket_); }
+  DeafClient(const DeafClient&) = delete;
+  DeafClient& operator=(const DeafClient&) = delete;
+
+  /// Sends what goes into the socket; returns how much did.
+  std::size_t say(std::span<const std::byte> bytes) const {
+    const auto sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    return sent > 0 ? static_cast<std::size_t>(sent) : 0;
+  }
+  bool hung_up() const {
+    std::array<std::byte, 4096> bytes;
+    ssize_t got = 0;
+    do {
+      got = recv(socket_, bytes.data(), bytes.size(), 0);
+    } while (got > 0);
+    return got == 0 || errno == ECONNRESET;
+  }
+
+ private:
+  int socket_;
+};
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+TEST_F(UsbipServerTest, TakesNoMoreFromClientThatDoesNotRead) {
+  const DeafClient client(server_);
+  client.say(encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}));
+  server_.serve(0);
+  ASSERT_TRUE(server_.attached());
+  const auto unlink = encode_command({.kind = UsbipCommand::Kind::kUnlink, .sequence = 1});
+  std::vector<std::byte> many;
+  for (int i = 0; i < 100; ++i) many.insert(many.end(), unlink.begin(), unlink.end());
+  // What the sockets hold is the kernel's and bounded; beyond that nothing goes in.
+  std::size_t sent = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    sent += client.say(many);
+    server_.serve(0);
+  }
+  EXPECT_LT(sent, std::size_t{4} << 20);
+}
+
+TEST_F(UsbipServerTest, AttachedClientThatDoesNotReadIsDisconnected) {
+  const DeafClient client(server_);
+  client.say(encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}));
+  server_.serve(0);
+  const auto unlink = encode_command({.kind = UsbipCommand::Kind::kUnlink, .sequence = 1});
+  std::vector<std::byte> many;
+  for (int i = 0; i < 100; ++i) many.insert(many.end(), unlink.begin(), unlink.end());
+  for (int i = 0; i < 20'000; ++i) {
+    client.say(many);
+    server_.serve(0);
+  }
+  server_.frame(UsbipServer::kPatience_ns - kSecond_ns);
+  EXPECT_TRUE(server_.attached());
+  server_.frame(UsbipServer::kPatience_ns + kSecond_ns);
+  EXPECT_FALSE(server_.attached());
+  EXPECT_TRUE(client.hung_up());
+}
+
+TEST_F(UsbipServerTest, AttachedClientMayBeSilent) {
+  const DeafClient client(server_);
+  client.say(encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}));
+  server_.serve(0);
+  for (int second = 1; second < 100; ++second) server_.frame(second * kSecond_ns);
+  EXPECT_TRUE(server_.attached());
+}
+
+TEST_F(UsbipServerTest, ClientThatAsksForNothingIsDisconnected) {
+  const DeafClient client(server_);
+  server_.frame(UsbipServer::kPatience_ns - kSecond_ns);
+  EXPECT_FALSE(client.hung_up());
+  server_.frame(UsbipServer::kPatience_ns + kSecond_ns);
+  EXPECT_TRUE(client.hung_up());
+}
+
+TEST_F(UsbipServerTest, IdleClientsDoNotKeepOthersOut) {
+  const auto server = UsbipServer::open(faulty_, {.port = 0});
+  ASSERT_TRUE(server.ok()) << server.error().message;
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons((*server)->port());
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const auto connected = [&] {
+    const int client = socket(AF_INET, SOCK_STREAM, 0);
+    EXPECT_EQ(connect(client, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    (*server)->serve(1000);
+    return client;
+  };
+  std::vector<int> clients;
+  for (std::size_t i = 0; i < 2 * UsbipServer::kClientsMax; ++i) clients.push_back(connected());
+  clients.push_back(connected());
+  const auto request = encode_request({});
+  send(clients.back(), request.data(), request.size(), MSG_NOSIGNAL);
+  (*server)->serve(1000);
+  std::array<std::byte, 4096> bytes;
+  EXPECT_GT(recv(clients.back(), bytes.data(), bytes.size(), MSG_DONTWAIT), 0);
+  for (const int client : clients) close(client);
 }
 
 TEST_F(UsbipServerTest, ListensOnAFreePortOfThisMachine) {

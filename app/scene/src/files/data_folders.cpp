@@ -53,12 +53,14 @@ fs::path own_folder() {
 }
 
 std::vector<fs::path> data_folders() {
-  std::vector<fs::path> folders{"app", data_folder(), own_folder()};
+  // Never the working folder: what lies there may be a stranger's, and sets limits of arms.
+  std::vector<fs::path> folders{data_folder(), own_folder()};
   const char* named = std::getenv("XDG_DATA_DIRS");
   std::string_view rest = named != nullptr && *named != 0 ? named : "/usr/local/share:/usr/share";
   while (!rest.empty()) {
     const std::string_view one = rest.substr(0, rest.find(':'));
-    if (!one.empty()) folders.push_back(fs::path(one) / "thimble");
+    // A relative path is to be ignored [XDG Base Directory Specification].
+    if (fs::path(one).is_absolute()) folders.push_back(fs::path(one) / "thimble");
     rest.remove_prefix(std::min(rest.size(), one.size() + 1));
   }
   return folders;

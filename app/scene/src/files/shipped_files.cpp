@@ -42,9 +42,9 @@ std::vector<ShippedFile> list_in(const std::vector<fs::path>& folders) {
 
 std::vector<ShippedFile> list(std::string_view kind) {
   std::vector<fs::path> places;
+  if (kind == "arms") places.push_back(own_arm_folder());
   for (const fs::path& folder : data_folders()) {
     if (!folder.empty()) places.push_back(folder / kind);
-    if (kind == "arms" && folder == "app") places.push_back(own_arm_folder());
   }
   return list_in(places);
 }
@@ -52,7 +52,10 @@ std::vector<ShippedFile> list(std::string_view kind) {
 driver::Result<fs::path> find(const std::string& meant, const char* kind, const char* noun) {
   std::error_code status;
   const bool there = fs::exists(meant, status) && !fs::is_directory(meant, status);
-  if (there || meant.find('/') != std::string::npos) return fs::path(meant);
+  // A word is a name first; a file of the working folder has an extension or a slash.
+  const bool is_path =
+      meant.find('/') != std::string::npos || (there && !fs::path(meant).extension().empty());
+  if (is_path) return fs::path(meant);
   const auto files = list(kind);
   std::string names;
   std::vector<std::string> known;
@@ -61,6 +64,7 @@ driver::Result<fs::path> find(const std::string& meant, const char* kind, const 
     names += (names.empty() ? "" : ", ") + file.name;
     known.push_back(file.name);
   }
+  if (there) return fs::path(meant);
   const auto near = nearest_word(meant, known);
   return driver::Error{
       meant + ": there is no such file, and no " + noun + " of that name. " +

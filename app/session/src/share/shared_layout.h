@@ -23,12 +23,17 @@ namespace thimble::session {
 // Offsets count bytes from the head and are whole multiples of 64; nothing in it is a pointer.
 // Frames: W world.
 
-/// Changes with every change of this file. A reader of another version refuses.
-inline constexpr std::uint32_t kSharedVersion = 9;
+// Whether both sides mean the same by these bytes is judged by a hash of names, types and offsets
+// (layout/shared_layout_hash.h, where each struct of this file is described), which is checked
+// before anything else is read.
+
 /// Stands in `SharedHead::ready` of a segment that is complete: "thimble1" in ASCII.
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
-inline constexpr std::size_t kViewersMost = 16;         ///< Chosen: more than look on at a time.
+inline constexpr std::size_t kViewersMost = 16;  ///< Chosen: more than look on at a time.
+// The bytes of the file that processes lock (SharedMemory::lock), after that of its maker.
+inline constexpr std::int64_t kTurnByte = 1;  ///< Whoever writes a request of several words.
+inline constexpr std::int64_t kFirstViewerByte = 16;    ///< And on: the viewers, by their places.
 inline constexpr std::size_t kKnobsMost = 64;           ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;       ///< Chosen, as a bound for readers.
 inline constexpr std::size_t kFieldSamplesMost = 4096;  ///< Chosen: more hide each other.
@@ -87,14 +92,12 @@ struct SharedArm {
 
 /// What the segment is. Plain bytes without gaps, so that they can be hashed.
 struct SharedHead {
-  std::atomic<std::uint64_t> ready;  ///< kSharedReady, written last.
-  std::uint32_t version = 0;         ///< kSharedVersion
-  std::uint32_t live_bytes = 0;      ///< sizeof(SharedLive): other builds may lay it out otherwise.
+  std::atomic<std::uint64_t> ready;  ///< kSharedReady, written last. These two stay where they are.
+  std::uint64_t layout = 0;          ///< shared_layout_hash()
   std::uint64_t total_bytes = 0;
   std::uint64_t hash =
       0;                 ///< Of this head with zeros for `ready` and `hash`, and of the tables (*).
-  std::int64_t pid = 0;  ///< Of the run's process.
-  std::uint64_t pid_start = 0;      ///< When that began, in the kernel's clock ticks since boot.
+  std::int64_t pid = 0;  ///< Of the run's process, in its PID namespace; for people.
   std::int64_t began_ns = 0;        ///< When the run was made, on the system's clock.
   std::int64_t period_ns = 0;       ///< Of the loop.
   double force_max = 0;             ///< What the gate lets pass, N.
@@ -178,7 +181,7 @@ struct SharedKnobState {
 struct SharedHand {
   std::array<double, 3> p_WH{};  ///< m
   std::uint64_t active = 0;      ///< 1 while the mouse holds it.
-  std::int64_t pid = 0;          ///< Of the viewer; should that die, it holds no longer.
+  std::uint64_t viewer = 0;  ///< 1 + the place of the viewer; should that die, it holds no longer.
 };
 
 /// What of its run a viewer asks to be begun anew.
@@ -187,20 +190,31 @@ struct SharedRestart {
   SharedText<1024> scene{};  ///< The file to run, absolute; empty: the same once more.
 };
 
-/// What viewers ask for. Viewers take turns by `writer`; the run never waits for them.
+/// What viewers ask for. Viewers take turns by kTurnByte; the run never waits for them.
 struct SharedRequests {
-  std::atomic<std::uint64_t> writer;  ///< pid of the viewer that writes; 0: none.
-  std::atomic<std::uint32_t> pause;   ///< 1: hold the loop.
-  std::atomic<std::uint32_t> stop;    ///< 1: end the run.
-  std::atomic<std::uint32_t> loop;    ///< 1: begin anew whenever the run ends; 0: not.
-  std::atomic<double> speed;          ///< Times real time; nonsense is ignored.
-  std::atomic<std::uint64_t> steps;   ///< Grows by the ticks that a paused run may go on by.
+  std::atomic<std::uint32_t> pause;  ///< kNotPaused, or who holds the loop: see is_pause.
+  std::atomic<std::uint32_t> stop;   ///< 1: end the run.
+  std::atomic<std::uint32_t> loop;   ///< 1: begin anew whenever the run ends; 0: not.
+  std::atomic<double> speed;         ///< Times real time; nonsense is ignored.
+  std::atomic<std::uint64_t> steps;  ///< Grows by the ticks that a paused run may go on by.
+  std::atomic<std::uint64_t> restart_number;  ///< Grows with each order, once `restart` has it.
   driver::Snapshot<SharedRestart> restart;
   std::atomic<std::uint64_t> record_number;  ///< Grows with each order; odd: record, even: stop.
   driver::Snapshot<SharedText<1024>> record_path;  ///< Where to; empty: the run chooses.
   driver::Snapshot<SharedHand> hand;
-  std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;  ///< Their pids; 0: a free place.
+  /// Their pids, for people; 0: a free place. A viewer holds the lock of its place while it lives.
+  std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;
 };
+
+// Values of `pause`. A viewer that has a place pauses by 1 + its place, so that a pause ends with a
+// viewer that dies in it; who has none, by kPausedByNobody.
+inline constexpr std::uint32_t kNotPaused = 0;
+inline constexpr std::uint32_t kPausedByNobody = kViewersMost + 1;
+
+/// Returns whether a value of `pause` asks for a pause; any other but kNotPaused is nonsense.
+constexpr bool is_pause(std::uint32_t value) noexcept {
+  return value >= 1 && value <= kPausedByNobody;
+}
 
 /// Stand in `loop` and `speed` until somebody has asked for anything.
 inline constexpr std::uint32_t kLoopUnasked = 2;

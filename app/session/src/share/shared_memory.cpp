@@ -1,7 +1,9 @@
 #include "share/shared_memory.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,11 +11,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <random>
+#include <system_error>
+#include <utility>
 
+#include "byte_lock.h"
 #include "share/shared_layout.h"
 
 namespace thimble::session {
@@ -21,10 +24,8 @@ namespace {
 
 // Where Linux shows POSIX shared memory as files [shm_overview(7)].
 constexpr const char* kFolder = "/dev/shm";
-// A segment without an owner's pid for so long is one whose run died while it made it.
-constexpr std::time_t kMakingMost = 10;  // s, chosen
 // After the name of a run whose memory takes that name when it is complete. No run's name has a
-// dot.
+// dot, so what follows the first dot of a file's name is no part of it.
 constexpr const char* kNext = ".next";
 
 std::string prefix() {
@@ -34,10 +35,10 @@ std::string prefix() {
   return text;
 }
 
-std::string path_of(const std::string& run) {
-  std::string path = "/";
-  path += prefix();
-  path += run;
+std::string path_of(const std::string& file) {
+  std::string path = kFolder;
+  path += '/';
+  path += file;
   return path;
 }
 
@@ -45,111 +46,161 @@ driver::Error trouble(const std::string& what) {
   return driver::Error{what + ": " + std::strerror(errno) + "."};
 }
 
-/// Says whose a segment is, as far as its first bytes tell.
-enum class Owner { kAlive, kDead, kUnknown };
-
-Owner owner_of(int file, const struct stat& status, std::int64_t* began_ns = nullptr) {
-  // The first bytes alone, by reading: mapping needs a size that can be trusted.
-  SharedHead head{};
-  const auto read_bytes = pread(file, static_cast<void*>(&head), sizeof head, 0);
-  const bool whole = read_bytes == static_cast<ssize_t>(sizeof head);
-  if (!whole || head.pid <= 0) {
-    return std::time(nullptr) - status.st_mtime > kMakingMost ? Owner::kDead : Owner::kUnknown;
-  }
-  if (began_ns != nullptr) *began_ns = head.began_ns;
-  const std::uint64_t start = start_of_process(head.pid);
-  return start != 0 && start == head.pid_start ? Owner::kAlive : Owner::kDead;
+bool is_own(const struct stat& status) {
+  return status.st_uid == geteuid() && (status.st_mode & 077) == 0 && S_ISREG(status.st_mode);
 }
 
-/// Opens a segment if it is this user's own; -1 otherwise.
-int open_own(const std::string& run, int flags, struct stat& status) {
-  const int file = shm_open(path_of(run).c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0);
-  if (file < 0) return -1;
-  if (fstat(file, &status) == 0 && status.st_uid == geteuid() && (status.st_mode & 077) == 0 &&
-      S_ISREG(status.st_mode)) {
-    return file;
-  }
-  close(file);
+/// Opens a file of shared memory if it is this user's own; -1 otherwise. Anybody may put anything
+/// into the folder under any name, so nothing is waited for (a FIFO, a lease), followed (a link) or
+/// believed before the open file itself has been looked at.
+int open_own(const std::string& file, struct stat& status) {
+  const int opened =
+      ::open(path_of(file).c_str(), O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC);
+  if (opened < 0) return -1;
+  if (fstat(opened, &status) == 0 && is_own(status)) return opened;
+  close(opened);
   errno = EACCES;
   return -1;
 }
 
-/// Removes a segment if its run is dead; tells whether it is gone.
-bool remove_if_dead(const std::string& run) {
-  struct stat status {};
-  const int file = open_own(run, O_RDONLY, status);
-  if (file < 0) return errno == ENOENT;
-  const bool dead = owner_of(file, status) == Owner::kDead;
-  close(file);
-  return dead && shm_unlink(path_of(run).c_str()) == 0;
-}
+/// One file of shared memory of this user.
+struct Segment {
+  std::string file;
+  std::string run;
+  std::string end;  // of the file's name, from the first dot on
+};
 
-/// Lists the names of all segments of this user.
-std::vector<std::string> names() {
-  std::vector<std::string> found;
-  std::error_code status;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder, status)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix())) found.push_back(name.substr(prefix().size()));
+/// Lists the shared memory of this user's runs.
+std::vector<Segment> segments() {
+  std::vector<Segment> found;
+  std::error_code ended;
+  const std::string own = prefix();
+  for (std::filesystem::directory_iterator entry(kFolder, ended), none; !ended && entry != none;
+       entry.increment(ended)) {
+    const std::string file = entry->path().filename().string();
+    struct stat status {};
+    if (!file.starts_with(own) || lstat(entry->path().c_str(), &status) != 0 || !is_own(status)) {
+      continue;
+    }
+    const std::string rest = file.substr(own.size());
+    const std::size_t dot = std::min(rest.find('.'), rest.size());
+    found.push_back({file, rest.substr(0, dot), rest.substr(dot)});
   }
   return found;
+}
+
+bool is_next(const Segment& segment) {
+  return segment.end.starts_with(kNext);
+}
+
+/// Removes a segment if the process that made it is gone; returns whether its place is free.
+bool remove_if_dead(const std::string& file) {
+  struct stat status {};
+  const int opened = open_own(file, status);
+  if (opened < 0) return errno == ENOENT;
+  // Whoever removes it holds the lock meanwhile, so that no two do, and the second one would remove
+  // what has taken the place since.
+  bool removed = false;
+  if (driver::lock_byte(opened, SharedMemory::kMakerByte)) {
+    struct stat now {};
+    const std::string path = path_of(file);
+    const bool same = lstat(path.c_str(), &now) == 0 && now.st_dev == status.st_dev &&
+                      now.st_ino == status.st_ino;
+    removed = same && unlink(path.c_str()) == 0;
+  }
+  close(opened);
+  return removed;
+}
+
+/// Returns a word that no other user can foresee.
+std::string unforeseen() {
+  std::uint64_t number = 0;
+  if (getrandom(&number, sizeof number, 0) != sizeof number) number = std::random_device{}();
+  return fmt::format("{:016x}", number);
 }
 
 }  // namespace
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::map(int file, std::size_t bytes,
-                                                                const std::string& run, bool made) {
+                                                                Place place, bool made) {
   void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (at == MAP_FAILED) {
     const auto error = trouble("Shared memory cannot be mapped");
     close(file);
-    if (made && !run.empty()) shm_unlink(path_of(run).c_str());
+    if (made && !place.file.empty()) unlink(path_of(place.file).c_str());
     return error;
   }
   return std::unique_ptr<SharedMemory>(
-      new SharedMemory(file, {static_cast<std::byte*>(at), bytes}, run, made));
+      new SharedMemory(file, {static_cast<std::byte*>(at), bytes}, std::move(place), made));
 }
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_next(const SharedMemory& before,
                                                                         std::size_t bytes) {
-  return create(before.run_ + kNext, bytes);
+  return create_as(before.run_, kNext, bytes);
 }
 
 driver::Result<void> SharedMemory::take_name(SharedMemory& before) {
-  const std::string from = kFolder + path_of(run_), to = kFolder + path_of(before.run_);
   // In one step for whoever looks [rename(2)].
-  if (rename(from.c_str(), to.c_str()) != 0) {
+  if (rename(path_of(name_).c_str(), path_of(before.name_).c_str()) != 0) {
     return trouble("The name \"" + before.run_ + "\" cannot be taken over");
   }
-  run_ = before.run_;
+  name_ = before.name_;
   before.made_ = false;
   return {};
 }
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::string& run,
                                                                    std::size_t bytes) {
-  const std::string path = path_of(run);
-  const int flags = O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC;
-  int file = shm_open(path.c_str(), flags, 0600);
-  if (file < 0 && errno == EEXIST && remove_if_dead(run)) {
-    file = shm_open(path.c_str(), flags, 0600);
-  }
-  if (file < 0 && errno == EEXIST) {
+  for (const Segment& segment : segments()) {
+    if (segment.run != run || is_next(segment) || remove_if_dead(segment.file)) continue;
     return driver::Error{"A run named \"" + run +
                          "\" is already shown; end it, or give this one another --name."};
   }
-  if (file < 0) return trouble("Shared memory " + path + " cannot be made");
+  return create_as(run, "", bytes);
+}
+
+driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std::string& run,
+                                                                      const std::string& end,
+                                                                      std::size_t bytes) {
+  // Without a name first: whoever finds it finds it locked.
+  const int file = ::open(kFolder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file < 0) return trouble("Shared memory cannot be made in " + std::string(kFolder));
   fchmod(file, 0600);
+  driver::lock_byte(file, kMakerByte);
   // Reserves the pages too: where memory is short, that is said here and not by SIGBUS in a tick.
   if (const int full = posix_fallocate(file, 0, static_cast<off_t>(bytes)); full != 0) {
     errno = full;
     const auto error =
         trouble("Shared memory of " + std::to_string(bytes) + " bytes cannot be had");
     close(file);
-    shm_unlink(path.c_str());
     return error;
   }
-  return map(file, bytes, run, true);
+  const std::string own = "/proc/self/fd/" + std::to_string(file);
+  Place place{.file = prefix() + run + end, .run = run};
+  /// Gives the memory its name; returns 0 or an errno.
+  const auto put = [&] {
+    const bool done = linkat(AT_FDCWD, own.c_str(), AT_FDCWD, path_of(place.file).c_str(),
+                             AT_SYMLINK_FOLLOW) == 0;
+    return done ? 0 : errno;
+  };
+  int failed = put();
+  if (failed == EEXIST && remove_if_dead(place.file)) failed = put();
+  if (failed == EEXIST) {
+    struct stat status {};
+    // Another run was quicker; or it is no memory of this user, and nobody can foresee the next
+    // name.
+    const bool ours = lstat(path_of(place.file).c_str(), &status) == 0 && is_own(status);
+    if (!ours) {
+      place.file += '.' + unforeseen();
+      failed = put();
+    }
+  }
+  if (failed == 0) return map(file, bytes, std::move(place), true);
+  close(file);
+  errno = failed;
+  if (failed != EEXIST) return trouble("Shared memory " + path_of(place.file) + " cannot be made");
+  return driver::Error{"A run named \"" + run +
+                       "\" is already shown; end it, or give this one another --name."};
 }
 
 std::string SharedMemory::path() const {
@@ -166,18 +217,34 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_nameless(std:
     close(file);
     return error;
   }
-  return map(file, bytes, "", true);
+  driver::lock_byte(file, kMakerByte);
+  return map(file, bytes, {}, true);
 }
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::string& run) {
   struct stat status {};
-  const int file = open_own(run, O_RDWR, status);
-  if (file < 0) {
-    if (errno == ENOENT) {
-      return driver::Error{"No run named \"" + run +
-                           "\" is shown; `thimble view --list` tells which are."};
+  int file = -1;
+  Place place{.file = {}, .run = run};
+  // A live run before one that was killed and is still there.
+  for (const Segment& segment : segments()) {
+    if (segment.run != run || is_next(segment)) continue;
+    struct stat found {};
+    const int opened = open_own(segment.file, found);
+    if (opened < 0) continue;
+    const bool alive = driver::is_byte_locked(opened, kMakerByte);
+    if (file >= 0 && !alive) {
+      close(opened);
+      continue;
     }
-    return trouble("The run \"" + run + "\" cannot be seen");
+    if (file >= 0) close(file);
+    file = opened;
+    status = found;
+    place.file = segment.file;
+    if (alive) break;
+  }
+  if (file < 0) {
+    return driver::Error{"No run named \"" + run +
+                         "\" is shown; `thimble view --list` tells which are."};
   }
   const auto bytes = static_cast<std::uint64_t>(status.st_size);
   if (bytes < kSharedTablesOffset || bytes > kSharedBytesMost) {
@@ -186,13 +253,14 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::stri
                          "\" is not a run of this version of thimble; end the run and start it "
                          "with the same thimble as the viewer."};
   }
-  return map(file, static_cast<std::size_t>(bytes), run, false);
+  return map(file, static_cast<std::size_t>(bytes), std::move(place), false);
 }
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::again() const {
-  const int file = fcntl(file_, F_DUPFD_CLOEXEC, 0);
+  const std::string own = "/proc/self/fd/" + std::to_string(file_);
+  const int file = ::open(own.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) return trouble("Shared memory cannot be mapped once more");
-  return map(file, bytes_.size(), run_, false);
+  return map(file, bytes_.size(), {.file = name_, .run = run_}, false);
 }
 
 SharedMemory::~SharedMemory() {
@@ -203,21 +271,47 @@ SharedMemory::~SharedMemory() {
 }
 
 void SharedMemory::remove_name() {
-  if (!run_.empty() && made_) shm_unlink(path_of(run_).c_str());
+  const std::string path = path_of(name_);
+  struct stat own {};
+  struct stat there {};
+  // What another run has put there since somebody removed this one's stays.
+  if (!name_.empty() && made_ && fstat(file_, &own) == 0 && lstat(path.c_str(), &there) == 0 &&
+      own.st_dev == there.st_dev && own.st_ino == there.st_ino) {
+    unlink(path.c_str());
+  }
   made_ = false;
+}
+
+bool SharedMemory::maker_alive() const noexcept {
+  return maker_ || driver::is_byte_locked(file_, kMakerByte);
+}
+
+bool SharedMemory::lock(std::int64_t byte) const noexcept {
+  return driver::lock_byte(file_, byte);
+}
+
+void SharedMemory::unlock(std::int64_t byte) const noexcept {
+  driver::unlock_byte(file_, byte);
+}
+
+bool SharedMemory::locked_elsewhere(std::int64_t byte) const noexcept {
+  return driver::is_byte_locked(file_, byte);
 }
 
 std::vector<RunningRun> running_runs() {
   std::vector<RunningRun> runs;
-  for (const std::string& name : names()) {
-    if (name.ends_with(kNext)) continue;
+  for (const Segment& segment : segments()) {
+    if (is_next(segment)) continue;
     struct stat status {};
-    const int file = open_own(name, O_RDONLY, status);
+    const int file = open_own(segment.file, status);
     if (file < 0) continue;
-    RunningRun run{.name = name};
-    const Owner owner = owner_of(file, status, &run.began_ns);
+    RunningRun run{.name = segment.run};
+    // By reading: mapping needs a size that can be trusted.
+    std::int64_t began_ns = 0;
+    const auto got = pread(file, &began_ns, sizeof began_ns, offsetof(SharedHead, began_ns));
+    if (got == static_cast<ssize_t>(sizeof began_ns)) run.began_ns = began_ns;
+    if (driver::is_byte_locked(file, SharedMemory::kMakerByte)) runs.push_back(run);
     close(file);
-    if (owner == Owner::kAlive) runs.push_back(run);
   }
   std::sort(runs.begin(), runs.end(),
             [](const auto& a, const auto& b) { return a.began_ns > b.began_ns; });
@@ -225,7 +319,7 @@ std::vector<RunningRun> running_runs() {
 }
 
 void remove_dead_runs() {
-  for (const std::string& name : names()) remove_if_dead(name);
+  for (const Segment& segment : segments()) remove_if_dead(segment.file);
 }
 
 std::string run_name_of(const std::string& scene) {
@@ -240,22 +334,10 @@ std::string run_name_of(const std::string& scene) {
 }
 
 bool run_name_taken(const std::string& run) {
-  return std::filesystem::exists(kFolder + path_of(run));
-}
-
-std::uint64_t start_of_process(std::int64_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string line;
-  if (!std::getline(file, line)) return 0;
-  // The second field is the program's name in brackets and may hold anything, brackets too.
-  const std::size_t after_name = line.rfind(')');
-  if (after_name == std::string::npos) return 0;
-  std::istringstream rest(line.substr(after_name + 1));
-  std::string field;
-  rest >> field;
-  if (field == "Z" || field == "X") return 0;  // dead, but nobody has asked yet
-  for (int i = 4; i <= 22; ++i) rest >> field;
-  return std::strtoull(field.c_str(), nullptr, 10);
+  const auto found = segments();
+  return std::any_of(found.begin(), found.end(), [&](const Segment& segment) {
+    return segment.run == run && !is_next(segment);
+  });
 }
 
 }  // namespace thimble::session

@@ -1,6 +1,5 @@
 #include "share/shared_reader.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -87,17 +86,27 @@ SharedReader::SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::
 }
 
 SharedReader::~SharedReader() {
-  if (place_ == nullptr) return;
-  auto self = static_cast<std::uint64_t>(getpid());
-  place_->compare_exchange_strong(self, 0);
+  if (!place_) return;
+  // A viewer that leaves leaves its pause to the others; one that dies does not.
+  std::uint32_t own = static_cast<std::uint32_t>(*place_) + 1;
+  live_->requests.pause.compare_exchange_strong(own, kPausedByNobody);
+  live_->requests.viewers[*place_].store(0);
+  memory_->unlock(kFirstViewerByte + static_cast<std::int64_t>(*place_));
 }
 
 void SharedReader::sign_in() noexcept {
-  for (auto& place : live_->requests.viewers) {
-    std::uint64_t nobody = 0;
-    if (!place.compare_exchange_strong(nobody, static_cast<std::uint64_t>(getpid()))) continue;
-    place_ = &place;
-    return;
+  if (!memory_) return;
+  // First the places that are free; then those of viewers that died, where the run has not yet
+  // cleared them.
+  for (const bool cleared : {true, false}) {
+    for (std::size_t place = 0; place < kViewersMost; ++place) {
+      auto& viewer = live_->requests.viewers[place];
+      if (cleared && viewer.load() != 0) continue;
+      if (!memory_->lock(kFirstViewerByte + static_cast<std::int64_t>(place))) continue;
+      viewer.store(static_cast<std::uint64_t>(getpid()));
+      place_ = place;
+      return;
+    }
   }
 }
 
@@ -110,7 +119,7 @@ RunState SharedReader::state() const {
 bool SharedReader::died() const {
   if (memory_ && memory_->broken()) return true;
   if (live_->state.load() == static_cast<std::uint32_t>(RunState::kEnded)) return false;
-  return start_of_process(scene_.pid) != scene_.pid_start;
+  return memory_ && !memory_->maker_alive();
 }
 
 bool SharedReader::newest(driver::TickRecord& record) const noexcept {
@@ -230,21 +239,17 @@ void SharedReader::turn_knob(std::size_t knob, double value) noexcept {
 }
 
 void SharedReader::ask_pause(bool pause) noexcept {
-  live_->requests.pause.store(pause ? 1 : 0);
+  const std::uint32_t own =
+      place_ ? static_cast<std::uint32_t>(*place_) + 1 : std::uint32_t{kPausedByNobody};
+  live_->requests.pause.store(pause ? own : kNotPaused);
 }
 
 bool SharedReader::take_turn() noexcept {
-  const auto self = static_cast<std::uint64_t>(getpid());
-  std::uint64_t holder = 0;
-  auto& writer = live_->requests.writer;
-  if (writer.compare_exchange_strong(holder, self)) return true;
-  // A viewer that died in its turn has none any more [kill(2): signal 0 only asks].
-  const bool dead = holder > INT32_MAX || kill(static_cast<pid_t>(holder), 0) != 0;
-  return dead && writer.compare_exchange_strong(holder, self);
+  return !memory_ || memory_->lock(kTurnByte);
 }
 
 void SharedReader::end_turn() noexcept {
-  live_->requests.writer.store(0);
+  if (memory_) memory_->unlock(kTurnByte);
 }
 
 bool SharedReader::ask_record(const std::string& path) noexcept {
@@ -267,10 +272,10 @@ bool SharedReader::ask_record_stop() noexcept {
 }
 
 bool SharedReader::lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept {
-  if (!p_WH.allFinite() || !take_turn()) return false;
+  if (!p_WH.allFinite() || (memory_ && !place_) || !take_turn()) return false;
   live_->requests.hand.store({.p_WH = {p_WH.x(), p_WH.y(), p_WH.z()},
                               .active = holds ? std::uint64_t{1} : 0,
-                              .pid = getpid()});
+                              .viewer = place_ ? *place_ + 1 : 0});
   end_turn();
   return true;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -92,7 +93,7 @@ class SharedReader {
   /// ended, and if another one takes its place, that is to be asked.
   driver::Result<void> heard() const;
   void ask_pause(bool pause) noexcept;
-  bool pause_asked() const noexcept { return live_->requests.pause.load() == 1; }
+  bool pause_asked() const noexcept { return is_pause(live_->requests.pause.load()); }
   /// Lets a paused run go on by so many ticks, 1 to kStepsMost. The error says why it cannot.
   driver::Result<void> ask_steps(std::uint64_t ticks);
   /// Asks for a pace, kSpeedLeast to kSpeedMost times real time. The error says why the run has
@@ -117,7 +118,8 @@ class SharedReader {
   bool ask_record(const std::string& path = {}) noexcept;
   bool ask_record_stop() noexcept;
   /// Says where the hand shall be (W, m), and whether the mouse holds it. The run brings it into
-  /// the workspace and bounds its speed. False as above, and if it is not finite.
+  /// the workspace and bounds its speed. False as above, if it is not finite, and if this is one of
+  /// too many viewers: should it die, the run would not know.
   bool lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept;
 
   /// Counts what was read from the memory and made no sense.
@@ -140,7 +142,7 @@ class SharedReader {
   std::span<const SharedShaped> shaped_;
   std::span<const SharedSplit> splits_;
   std::span<const SharedRingSlot> ring_;
-  std::atomic<std::uint64_t>* place_ = nullptr;  // among the viewers; null if all were taken
+  std::optional<std::size_t> place_;  // among the viewers; none if all were taken
   mutable std::uint64_t rejected_ = 0;
 };
 

@@ -1,17 +1,18 @@
 #include "share/shared_run.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <limits>
 #include <new>
 #include <span>
 #include <string_view>
 
 #include "mesh/contact_mesh.h"
+#include "share/layout/shared_layout_hash.h"
 #include "share/shared_geometry.h"
 
 namespace thimble::session {
@@ -23,9 +24,12 @@ void put(const std::string& text, SharedText<N>& to) {
   std::copy_n(text.begin(), std::min(text.size(), N - 1), to.begin());
 }
 
-/// Returns whether there is such a process: signal 0 asks and sends nothing [kill(2)].
-bool is_alive(std::uint64_t pid) noexcept {
-  return pid > 0 && pid <= INT32_MAX && kill(static_cast<pid_t>(pid), 0) == 0;
+/// Stores nothing where a viewer was killed in writing: half a request is none. Precondition:
+/// nobody is writing now.
+template <class T>
+void make_whole(driver::Snapshot<T>& snapshot) noexcept {
+  T value;
+  if (snapshot.count() > 0 && !snapshot.load(value, 1)) snapshot.store({});
 }
 
 /// Finds where every table goes, and how long the whole is.
@@ -116,11 +120,9 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   std::memset(memory.data(), 0, memory.size());
   head_ = new (memory.data()) SharedHead{};
   head_->pid = getpid();
-  head_->pid_start = start_of_process(getpid());
   live_ = new (memory.data() + kSharedLiveOffset) SharedLive{};
 
-  head_->version = kSharedVersion;
-  head_->live_bytes = sizeof(SharedLive);
+  head_->layout = shared_layout_hash();
   head_->total_bytes = lay_out(scene, ring_ticks, *head_);
   std::timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
@@ -131,6 +133,7 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
   head_->paced = scene.paced ? 1 : 0;
   head_->restarts = scene.restarts ? 1 : 0;
+  last_hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());
   live_->requests.speed.store(kSpeedUnasked);
   live_->requests.loop.store(kLoopUnasked);
   put(scene.name, head_->scene);
@@ -272,10 +275,11 @@ std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_
   const std::uint64_t newest = live_->requests.record_number.load(std::memory_order_acquire);
   if (newest <= number) return {};
   RecordOrder order{.number = newest, .record = newest % 2 == 1, .path = {}};
+  if (!order.record) return order;
   SharedText<1024> path{};
-  if (order.record && live_->requests.record_path.load(path)) {
-    order.path.assign(path.data(), strnlen(path.data(), path.size() - 1));
-  }
+  // Half a path is none: another viewer writes it, or has died in that and watch_viewers ends it.
+  if (!live_->requests.record_path.load(path)) return {};
+  order.path.assign(path.data(), strnlen(path.data(), path.size() - 1));
   return order;
 }
 
@@ -306,11 +310,12 @@ void SharedRun::set_notice(const std::string& notice) noexcept {
 }
 
 std::optional<SharedRun::RestartOrder> SharedRun::restart_order_after(std::uint64_t number) const {
-  SharedRestart newest;
-  if (!live_->requests.restart.load(newest, 1) || newest.number <= number) return {};
+  const std::uint64_t newest = live_->requests.restart_number.load(std::memory_order_acquire);
+  SharedRestart order;
+  if (newest <= number || !live_->requests.restart.load(order) || order.number != newest) return {};
   return RestartOrder{
-      .number = newest.number,
-      .scene = {newest.scene.data(), strnlen(newest.scene.data(), newest.scene.size() - 1)}};
+      .number = newest,
+      .scene = {order.scene.data(), strnlen(order.scene.data(), order.scene.size() - 1)}};
 }
 
 std::vector<std::uint64_t> SharedRun::viewers() const {
@@ -321,20 +326,47 @@ std::vector<std::uint64_t> SharedRun::viewers() const {
   return pids;
 }
 
-void SharedRun::watch_viewers() noexcept {
-  for (auto& place : live_->requests.viewers) {
-    std::uint64_t pid = place.load();
-    if (pid != 0 && !is_alive(pid)) place.compare_exchange_strong(pid, 0);
+bool SharedRun::is_viewer_alive(std::uint64_t place) const noexcept {
+  return place < kViewersMost &&
+         memory_->locked_elsewhere(kFirstViewerByte + static_cast<std::int64_t>(place));
+}
+
+bool SharedRun::watch_viewers() noexcept {
+  for (std::size_t place = 0; place < kViewersMost; ++place) {
+    auto& viewer = live_->requests.viewers[place];
+    std::uint64_t pid = viewer.load();
+    if (pid != 0 && !is_viewer_alive(place)) viewer.compare_exchange_strong(pid, 0);
   }
+  // Who has the turn is alive, and ends what it has begun.
+  if (memory_->lock(kTurnByte)) {
+    make_whole(live_->requests.restart);
+    make_whole(live_->requests.record_path);
+    release_hand();
+    memory_->unlock(kTurnByte);
+  }
+  return end_pause_of_dead();
+}
+
+void SharedRun::release_hand() noexcept {
   SharedHand seen;
-  if (!live_->requests.hand.load(seen, 1) || seen.active != 1) return;
-  if (seen.pid > 0 && is_alive(static_cast<std::uint64_t>(seen.pid))) return;
-  std::uint64_t nobody = 0;
-  auto& writer = live_->requests.writer;
-  if (!writer.compare_exchange_strong(nobody, static_cast<std::uint64_t>(getpid()))) return;
-  seen.active = 0;
-  live_->requests.hand.store(seen);
-  writer.store(0);
+  if (live_->requests.hand.load(seen, 1)) {
+    last_hand_ = seen;
+    // A viewer without a place is number 0.
+    if (seen.active != 1 || is_viewer_alive(seen.viewer - 1)) return;
+  } else if (live_->requests.hand.count() == 0) {
+    return;  // nobody has led it
+  }
+  last_hand_.active = 0;
+  live_->requests.hand.store(last_hand_);
+}
+
+bool SharedRun::end_pause_of_dead() noexcept {
+  std::uint32_t pause = live_->requests.pause.load();
+  if (head_->wall_clock == 1 || !is_pause(pause) || pause == kPausedByNobody ||
+      is_viewer_alive(pause - 1)) {
+    return false;
+  }
+  return live_->requests.pause.compare_exchange_strong(pause, kNotPaused);
 }
 
 }  // namespace thimble::session

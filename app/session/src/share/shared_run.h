@@ -74,7 +74,7 @@ class SharedRun final : public KnobRequests {
 
   // What viewers ask for. Nothing of it can be trusted: it is checked here. Real-time: safe.
   bool pause_asked() const noexcept {
-    return live_->requests.pause.load(std::memory_order_relaxed) == 1;
+    return is_pause(live_->requests.pause.load(std::memory_order_relaxed));
   }
   bool stop_asked() const noexcept {
     return live_->requests.stop.load(std::memory_order_relaxed) == 1;
@@ -115,7 +115,7 @@ class SharedRun final : public KnobRequests {
   /// Sets what viewers find as asked for, unless one has asked already.
   void set_pace(double speed, bool loop) noexcept;
   /// Lets the run begin paused, as one was asked to be that ended before it could.
-  void begin_paused() noexcept { live_->requests.pause.store(1); }
+  void begin_paused() noexcept { live_->requests.pause.store(kPausedByNobody); }
   /// Ends the hearing: what a viewer asks from now on it is told that nobody hears. What was asked
   /// before can be seen when this returns, and must be looked at once more. Any thread but the
   /// servo's.
@@ -128,9 +128,12 @@ class SharedRun final : public KnobRequests {
   const SharedScene::Knob& knob(std::size_t knob) const noexcept { return knobs_[knob]; }
   /// Returns the pids of the viewers that look on. Real-time: never from the servo thread.
   std::vector<std::uint64_t> viewers() const;
-  /// Lets the hand go if the viewer that holds it has died, and forgets viewers that died.
-  /// Real-time: never from the servo thread.
-  void watch_viewers() noexcept;
+  /// Does for viewers that died what they would have done: lets the hand go that one held, makes
+  /// whole what one was killed in writing, ends the pause that one asked of a run in virtual time
+  /// (which would wait for ever; a loop in real time stays paused, without force), and forgets
+  /// them. Returns whether it has ended a pause. One thread. Real-time: never from the servo
+  /// thread.
+  bool watch_viewers() noexcept;
 
  private:
   explicit SharedRun(std::unique_ptr<SharedMemory> memory) : memory_(std::move(memory)) {}
@@ -139,6 +142,9 @@ class SharedRun final : public KnobRequests {
                                                          const SharedScene& scene,
                                                          std::size_t ring_ticks);
   void write(const SharedScene& scene, std::size_t ring_ticks);
+  bool is_viewer_alive(std::uint64_t place) const noexcept;
+  void release_hand() noexcept;
+  bool end_pause_of_dead() noexcept;
 
   std::unique_ptr<SharedMemory> memory_;
   SharedHead* head_ = nullptr;
@@ -153,6 +159,7 @@ class SharedRun final : public KnobRequests {
   std::uint64_t stored_ = 0;
   std::int64_t last_due_ns_ = 0;
   std::int64_t period_ns_ = 0;
+  SharedHand last_hand_;  // as a viewer has asked for it last; not finite before
 };
 
 }  // namespace thimble::session

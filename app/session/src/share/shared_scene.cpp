@@ -1,5 +1,8 @@
 #include "share/shared_scene.h"
+#include "share/layout/shared_layout_hash.h"
 #include "share/shared_geometry.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -158,19 +161,24 @@ std::uint64_t shared_hash(const SharedHead& head, std::span<const SharedObject> 
 }
 
 driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory) {
-  if (memory.size() < sizeof(SharedHead)) return broken("it is too short");
+  static_assert(offsetof(SharedHead, ready) == 0 && offsetof(SharedHead, layout) == 8);
+  if (memory.size() < 16) return broken("it is too short");
   const auto& in_memory = *reinterpret_cast<const SharedHead*>(memory.data());
   const std::uint64_t ready = in_memory.ready.load(std::memory_order_acquire);
   if (ready == 0) return driver::Error{"The run is still loading; try again in a moment."};
   if (ready != kSharedReady) return broken("it does not begin as a run does");
+  // Before anything else: what follows may mean something else in another build.
+  std::uint64_t layout = 0;
+  std::memcpy(&layout, memory.data() + offsetof(SharedHead, layout), sizeof layout);
+  if (layout != shared_layout_hash()) {
+    return driver::Error{fmt::format(
+        "The run shares memory of layout {:016x}, this viewer reads layout {:016x}: they come from "
+        "different builds of thimble. Start both from the same build.",
+        layout, shared_layout_hash())};
+  }
+  if (memory.size() < kSharedTablesOffset) return broken("it is too short");
   SharedHead head{};
   copy_head(memory, head);
-  if (head.version != kSharedVersion || head.live_bytes != sizeof(SharedLive)) {
-    return driver::Error{"The run shares layout " + std::to_string(head.version) + "." +
-                         std::to_string(head.live_bytes) + ", this viewer reads layout " +
-                         std::to_string(kSharedVersion) + "." + std::to_string(sizeof(SharedLive)) +
-                         ": they come from different builds of thimble; start both from the same."};
-  }
   const std::uint64_t total = memory.size();
   if (head.total_bytes != total) return broken("its size is not what it says");
   if (!lies_in(head.objects, sizeof(SharedObject), total) ||
@@ -232,7 +240,6 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   scene.name = text_of(head.scene);
   scene.file = text_of(head.scene_file);
   scene.pid = head.pid;
-  scene.pid_start = head.pid_start;
   scene.began_ns = head.began_ns;
   scene.period_ns = head.period_ns;
   scene.force_max = head.force_max;

@@ -58,7 +58,6 @@ struct SharedScene {
   std::string name;
   std::string file;
   std::int64_t pid = 0;
-  std::uint64_t pid_start = 0;
   std::int64_t began_ns = 0;   ///< When the run was made, on the system's clock.
   std::int64_t period_ns = 0;  ///< Of the loop; > 0.
   double force_max = 0;        ///< N

@@ -81,7 +81,9 @@ void ViewerRequestHandler::hear_stop() {
 void ViewerRequestHandler::step() {
   SharedRun& shared = *session_.shared();
   const RecordingSwitch& recording = session_.records().recording;
-  shared.watch_viewers();
+  if (shared.watch_viewers()) {
+    scene::logger().warn("The viewer that paused the run has died; the run continues.");
+  }
   driver::TickRecord newest;
   if (session_.newest().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
   hear_records();

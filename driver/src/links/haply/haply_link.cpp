@@ -99,7 +99,10 @@ std::uint16_t port_of_user() {
 Result<std::vector<FoundInverse3>> find_arms(std::uint16_t port, std::int64_t timeout_ns) {
   const auto socket = Socket::connect(port, timeout_ns);
   if (!socket) return socket.error();
-  return read_first((*socket)->first());
+  auto arms = read_first((*socket)->first());
+  if (!arms) return arms;
+  for (FoundInverse3& arm : *arms) arm.stand_in = (*socket)->is_stand_in();
+  return arms;
 }
 
 Result<std::unique_ptr<ArmLink>> open_link(const std::string& device_id, std::uint16_t port,

@@ -30,6 +30,7 @@ struct FoundInverse3 {
   std::string versions;   ///< What it tells of its versions; empty if nothing.
   std::string trouble;    ///< Why it cannot be used now, a sentence; empty: it can.
   ArmState state;         ///< Where it is.
+  bool stand_in = false;  ///< Of Thimble's own stand-in for the service, not of Haply's.
 };
 
 /// Returns the arms in the first message of a service. Fails if it is not one of Haply's: no JSON,

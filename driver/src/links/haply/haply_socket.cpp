@@ -10,9 +10,12 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <utility>
+
+#include "transports/socket_owner.h"
 
 namespace thimble::driver::haply {
 namespace {
@@ -57,7 +60,7 @@ class Socket::Connection {
     stream_.next_layer().set_option(tcp::no_delay(true), ignored);
     stream_.read_message_max(kMessageMost);
     failed = asio::error::timed_out;
-    stream_.async_handshake("localhost:" + std::to_string(port), "/",
+    stream_.async_handshake(answer_, "localhost:" + std::to_string(port), "/",
                             [&failed](const error_code& code) { failed = code; });
     wait(until);
     if (failed) return "What listens on port " + std::to_string(port) + " is no WebSocket.";
@@ -66,10 +69,20 @@ class Socket::Connection {
     wait(until);
     if (failed) return "What listens on port " + std::to_string(port) + " says nothing.";
     first_ = take_text();
+    // Only now has it accepted the connection, so that the kernel knows who has.
+    const std::string stranger = distrust_of_peer(stream_.next_layer().native_handle());
+    if (!stranger.empty()) {
+      return "What listens on port " + std::to_string(port) + " is " + stranger +
+             ", neither yours nor root's, and is not used.";
+    }
     return {};
   }
 
   const std::string& first() const { return first_; }
+  bool is_stand_in() const {
+    const auto server = answer_[beast::http::field::server];
+    return server.starts_with("Thimble");
+  }
 
   void serve(Traffic& traffic) {
     traffic_ = &traffic;
@@ -173,6 +186,7 @@ class Socket::Connection {
   websocket::stream<tcp::socket> stream_{io_};
   asio::posix::stream_descriptor bell_{io_};
   asio::steady_timer deadline_{io_};
+  websocket::response_type answer_;
   beast::flat_buffer buffer_;
   std::array<std::uint64_t, 1> rings_{};
   std::string first_, message_;
@@ -194,6 +208,9 @@ Result<std::unique_ptr<Socket>> Socket::connect(std::uint16_t port, std::int64_t
 
 const std::string& Socket::first() const {
   return connection_->first();
+}
+bool Socket::is_stand_in() const {
+  return connection_->is_stand_in();
 }
 void Socket::serve(Traffic& traffic) {
   connection_->serve(traffic);

@@ -35,7 +35,8 @@ class Traffic {
 class Socket {
  public:
   /// Connects and waits for the first message, at most `timeout_ns` in all. Nothing is sent but
-  /// what opens a WebSocket. Fails if nobody listens, if it is no WebSocket, or if it stays silent.
+  /// what opens a WebSocket. Fails if nobody listens, if it is no WebSocket, if it stays silent, or
+  /// if a process of another user than this one and root speaks.
   /// Real-time: never from the servo thread.
   static Result<std::unique_ptr<Socket>> connect(std::uint16_t port, std::int64_t timeout_ns);
   Socket(const Socket&) = delete;
@@ -44,6 +45,9 @@ class Socket {
 
   /// Returns the first message. Real-time: never from the servo thread.
   const std::string& first() const;
+  /// Returns whether the other side is Thimble's own stand-in for the service (`thimble exec
+  /// --serve haply`), behind which is no Inverse3. Real-time: never from the servo thread.
+  bool is_stand_in() const;
   /// Reads and writes until `leave` or the loss of the other side; by a thread of its own.
   void serve(Traffic& traffic);
   /// Wakes `serve`, which then asks for the next message. Real-time: safe; never waits.

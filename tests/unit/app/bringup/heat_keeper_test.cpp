@@ -50,6 +50,24 @@ TEST_F(HeatKeeperTest, TakesARunThatDidNotEndForHotAndSaysSo) {
   EXPECT_NE(known.note.find("did not end properly"), std::string::npos);
 }
 
+TEST_F(HeatKeeperTest, PipeIsTakenForHot) {
+  ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
+  std::filesystem::remove(scene::heat_file("arm"));
+  ASSERT_EQ(mkfifo(scene::heat_file("arm").c_str(), 0600), 0);
+  const scene::KnownHeat known = scene::load_heat("arm", kSettings, kNow);
+  EXPECT_EQ(known.heat, kHot);
+  EXPECT_NE(known.note.find("is no regular file"), std::string::npos);
+  std::filesystem::remove(scene::heat_file("arm"));
+}
+
+TEST_F(HeatKeeperTest, PipeBesideFileIsReplaced) {
+  ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
+  const std::string pipe = scene::heat_file("arm").string() + ".new";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
+  EXPECT_EQ(scene::load_heat("arm", kSettings, kNow).heat, kHeat);
+}
+
 TEST_F(HeatKeeperTest, TakesADamagedFileForHotAndSaysSo) {
   for (const char* text : {"", "heat: [0, 0, 0]\n", "heat: [0, 0]\ntime: 1\nrunning: \"no\"\n",
                            "heat: [.nan, 0, 0]\ntime: 1\nrunning: \"no\"\n",

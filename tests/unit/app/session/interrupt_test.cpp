@@ -133,6 +133,32 @@ TEST(Interrupt, KeepsAnArmAtStakeAliveThroughABurstAndEndsAProgramThatHangs) {
             100 + SIGINT);
 }
 
+TEST(Interrupt, SigtermEndsProgramThatHangs) {
+  EXPECT_EQ(outcome_of([] {
+              alarm(60);
+              scene::catch_interrupts();
+              std::signal(SIGALRM, SIG_DFL);
+              int ends[2];
+              char byte = 0;
+              if (pipe(ends) != 0) _exit(9);
+              raise(SIGTERM);
+              while (read(ends[0], &byte, 1) != 1) {  // nobody writes
+              }
+            }),
+            100 + SIGTERM);
+}
+
+TEST(Interrupt, SigtermIsNotRepeatedWhileAnArmIsOpen) {
+  EXPECT_EQ(outcome_of([] {
+              scene::catch_interrupts();
+              const scene::LeavingGuard guard;
+              raise(SIGTERM);
+              rest(scene::kHangingMost_ns + scene::kOneRequest_ns);
+              _exit(7);
+            }),
+            7);
+}
+
 TEST(Interrupt, TakesCtrlZForARequestToLeaveWhereAnArmIsOpen) {
   EXPECT_EQ(outcome_of([] {
               const auto& flag = scene::catch_interrupts();

@@ -1,12 +1,18 @@
+#include <fcntl.h>
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <thread>
@@ -432,38 +438,309 @@ void in_a_viewer_that_is_killed(Work work) {
   ASSERT_TRUE(WIFSIGNALED(status));
 }
 
+/// Lets a viewer of its own do something with a run in a child process, and die by SIGKILL.
+template <class Work>
+void viewer_that_is_killed(const Pair& pair, Work work) {
+  in_a_viewer_that_is_killed([&] {
+    const auto own = session::SharedReader::over(pair.run->memory().again().value()).value();
+    work(*own);
+    raise(SIGKILL);  // with its place
+  });
+}
+
+/// Gives what viewers ask of a run, as it lies in the memory.
+session::SharedRequests& requests_of(const Pair& pair) {
+  return reinterpret_cast<session::SharedLive*>(pair.run->memory().bytes().data() +
+                                                session::kSharedLiveOffset)
+      ->requests;
+}
+
+/// Leaves a snapshot as a writer does that is killed in the middle: its first word is odd.
+template <class T>
+void tear(driver::Snapshot<T>& snapshot) {
+  auto& sequence = *reinterpret_cast<std::atomic<std::uint64_t>*>(&snapshot);
+  sequence.store(sequence.load() | 1);
+}
+
+template <class T>
+bool is_torn(const driver::Snapshot<T>& snapshot) {
+  return reinterpret_cast<const std::atomic<std::uint64_t>*>(&snapshot)->load() % 2 != 0;
+}
+
 TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {
   const Pair pair = joined(small_scene());
-  in_a_viewer_that_is_killed([&] { pair.reader->lead_hand({0, 0, 0}, true); });
+  viewer_that_is_killed(pair, [](auto& viewer) { viewer.lead_hand({0, 0, 0}, true); });
   session::SharedHand hand;
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.active, 1U);
   pair.run->watch_viewers();
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.active, 0U);
-  // One that lives keeps it.
+}
+
+TEST(Share, HandStaysWithLiveViewer) {
+  const Pair pair = joined(small_scene());
   ASSERT_TRUE(pair.reader->lead_hand({0, 0, 0}, true));
   pair.run->watch_viewers();
+  session::SharedHand hand;
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.active, 1U);
 }
 
-TEST(Share, HearsTheNextViewerAfterOneWasKilledWhileItWrote) {
+TEST(Share, HalfWrittenHandIsReleasedWhereItWas) {
   const Pair pair = joined(small_scene());
-  auto* live = reinterpret_cast<session::SharedLive*>(pair.run->memory().bytes().data() +
-                                                      session::kSharedLiveOffset);
-  ASSERT_TRUE(pair.reader->lead_hand({1, 1, 1}, true));
-  // What such a death leaves: its turn, and a snapshot half written (its first word is odd).
-  in_a_viewer_that_is_killed(
-      [&] { live->requests.writer.store(static_cast<std::uint64_t>(getpid())); });
-  auto& sequence = *reinterpret_cast<std::atomic<std::uint64_t>*>(&live->requests.hand);
-  sequence.store(sequence.load() + 1);
+  ASSERT_TRUE(pair.reader->lead_hand({1, 2, 3}, true));
+  pair.run->watch_viewers();
+  tear(requests_of(pair).hand);
   session::SharedHand hand;
-  EXPECT_FALSE(pair.run->hand(hand)) << "half of it must not be taken";
+  ASSERT_FALSE(pair.run->hand(hand)) << "half of it must not be taken";
+  pair.run->watch_viewers();
+  ASSERT_TRUE(pair.run->hand(hand));
+  EXPECT_EQ(hand.active, 0U);
+  EXPECT_EQ(hand.p_WH[2], 3);
+}
+
+TEST(Share, HandThatIsBeingWrittenIsLeftAlone) {
+  const Pair pair = joined(small_scene());
+  ASSERT_TRUE(pair.reader->lead_hand({1, 2, 3}, true));
+  const auto writer = pair.run->memory().again().value();
+  ASSERT_TRUE(writer->lock(session::kTurnByte));
+  tear(requests_of(pair).hand);
+  pair.run->watch_viewers();
+  EXPECT_TRUE(is_torn(requests_of(pair).hand));
+}
+
+TEST(Share, HearsTheNextViewerAfterOneWasKilledInItsTurn) {
+  const Pair pair = joined(small_scene());
+  in_a_viewer_that_is_killed([&] {
+    const auto own = pair.run->memory().again().value();
+    if (!own->lock(session::kTurnByte)) return;
+    tear(requests_of(pair).hand);
+    raise(SIGKILL);
+  });
+  ASSERT_TRUE(is_torn(requests_of(pair).hand));
   ASSERT_TRUE(pair.reader->lead_hand({2, 2, 2}, true));
+  session::SharedHand hand;
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.p_WH[0], 2);
-  EXPECT_EQ(sequence.load() % 2, 0U);
+}
+
+TEST(Share, RestartIsHeardAfterHalfWrittenOne) {
+  session::SharedScene scene = small_scene();
+  scene.paced = scene.restarts = true;
+  const Pair pair = joined(scene);
+  ASSERT_TRUE(pair.reader->ask_restart("/first.yaml"));
+  ASSERT_TRUE(pair.run->restart_order_after(0));
+  tear(requests_of(pair).restart);
+  ASSERT_TRUE(pair.reader->ask_restart("/second.yaml"));
+  const auto order = pair.run->restart_order_after(1);
+  ASSERT_TRUE(order) << "its number did not grow";
+  EXPECT_EQ(order->scene, "/second.yaml");
+}
+
+TEST(Share, HalfWrittenRecordingPathIsNoPath) {
+  const Pair pair = joined(small_scene());
+  ASSERT_TRUE(pair.reader->ask_record("touch.h5"));
+  tear(requests_of(pair).record_path);
+  EXPECT_FALSE(pair.run->record_order_after(0));
+}
+
+TEST(Share, PauseOfDeadViewerEnds) {
+  const Pair pair = joined(small_scene());
+  viewer_that_is_killed(pair, [](auto& viewer) { viewer.ask_pause(true); });
+  ASSERT_TRUE(pair.run->pause_asked());
+  EXPECT_TRUE(pair.run->watch_viewers());
+  EXPECT_FALSE(pair.run->pause_asked());
+}
+
+TEST(Share, PauseOfLiveViewerStays) {
+  const Pair pair = joined(small_scene());
+  pair.reader->ask_pause(true);
+  EXPECT_FALSE(pair.run->watch_viewers());
+  EXPECT_TRUE(pair.run->pause_asked());
+}
+
+TEST(Share, PauseOutlivesViewerThatLeaves) {
+  Pair pair = joined(small_scene());
+  pair.reader->ask_pause(true);
+  pair.reader.reset();
+  EXPECT_FALSE(pair.run->watch_viewers());
+  EXPECT_TRUE(pair.run->pause_asked());
+}
+
+TEST(Share, PauseOfRealTimeRunOutlivesDeadViewer) {
+  session::SharedScene scene = small_scene();
+  scene.wall_clock = true;
+  const Pair pair = joined(scene);
+  viewer_that_is_killed(pair, [](auto& viewer) { viewer.ask_pause(true); });
+  EXPECT_FALSE(pair.run->watch_viewers());
+  EXPECT_TRUE(pair.run->pause_asked());
+}
+
+TEST(Share, ForgetsViewersThatDied) {
+  const Pair pair = joined(small_scene());
+  viewer_that_is_killed(pair, [](auto&) {});
+  EXPECT_EQ(pair.run->viewers().size(), 2U);
+  pair.run->watch_viewers();
+  EXPECT_EQ(pair.run->viewers().size(), 1U) << "the reader of this test";
+}
+
+/// A file in the folder of shared memory that is none, for as long as this lives; what hangs on it
+/// is ended by SIGALRM.
+class WrongFile {
+ public:
+  explicit WrongFile(std::string path) : path_(std::move(path)) {
+    alarm(60);
+    EXPECT_EQ(mkfifo(path_.c_str(), 0600), 0) << path_;
+  }
+  ~WrongFile() {
+    alarm(0);
+    unlink(path_.c_str());
+  }
+  WrongFile(const WrongFile&) = delete;
+  WrongFile& operator=(const WrongFile&) = delete;
+
+ private:
+  std::string path_;
+};
+
+std::string shared_path(const std::string& name) {
+  return "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
+}
+
+bool is_listed(const std::string& name) {
+  const auto runs = session::running_runs();
+  return std::any_of(runs.begin(), runs.end(), [&](const auto& run) { return run.name == name; });
+}
+
+TEST(Share, RunRemovesNoOtherRunOfItsName) {
+  const std::string name = name_for("again");
+  auto first = session::SharedRun::create(name, small_scene(), 10).value();
+  ASSERT_EQ(unlink(shared_path(name).c_str()), 0);
+  const auto second = session::SharedRun::create(name, small_scene(), 10).value();
+  first.reset();
+  EXPECT_TRUE(is_listed(name));
+}
+
+TEST(Share, FifoDoesNotHangList) {
+  const std::string name = name_for("fifo");
+  const WrongFile fifo(shared_path(name));
+  EXPECT_FALSE(is_listed(name));
+  session::remove_dead_runs();
+  EXPECT_FALSE(session::SharedReader::attach(name));
+}
+
+TEST(Share, FifoOfItsNameDoesNotStopRun) {
+  const std::string name = name_for("fifo");
+  const WrongFile fifo(shared_path(name));
+  const auto run = session::SharedRun::create(name, small_scene(), 10);
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ((*run)->name(), name);
+  EXPECT_TRUE(is_listed(name));
+  EXPECT_TRUE(session::SharedReader::attach(name));
+  EXPECT_FALSE(session::SharedRun::create(name, small_scene(), 10)) << "it is shown already";
+}
+
+TEST(Share, FifoDoesNotKeepNextRunFromName) {
+  const std::string name = name_for("fifo");
+  const WrongFile fifo(shared_path(name)), next_fifo(shared_path(name) + ".next");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  session::SharedScene other = small_scene();
+  other.name = "other";
+  const auto next = session::SharedRun::create_next(*run, other, 10);
+  ASSERT_TRUE(next) << next.error().message;
+  EXPECT_EQ(session::SharedReader::attach(name).value()->scene().name, "other");
+}
+
+TEST(Share, FileOfAnotherUserDoesNotStopRun) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root may act as another user";
+  const std::string name = name_for("foreign");
+  const std::string path = shared_path(name);
+  const pid_t other = fork();
+  if (other == 0) {
+    const bool is_other = setgid(65534) == 0 && setuid(65534) == 0;
+    _exit(is_other && open(path.c_str(), O_CREAT | O_EXCL | O_RDWR, 0600) >= 0 ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(other, &status, 0);
+  ASSERT_EQ(status, 0);
+  {
+    const auto run = session::SharedRun::create(name, small_scene(), 10);
+    ASSERT_TRUE(run) << run.error().message;
+    EXPECT_TRUE(session::SharedReader::attach(name));
+  }
+  EXPECT_FALSE(session::run_name_taken(name)) << "what is left is not ours";
+  unlink(path.c_str());
+}
+
+/// Runs `work` in a PID namespace of its own with the same /dev/shm, as a container has it that
+/// shares the host's IPC. Returns its exit code; none where the kernel forbids such a namespace.
+template <class Work>
+std::optional<int> in_another_pid_namespace(Work work) {
+  constexpr int kForbidden = 99;
+  const pid_t maker = fork();
+  if (maker == 0) {
+    const uid_t user = geteuid();
+    const gid_t group = getegid();
+    if (unshare(CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNS) != 0) _exit(kForbidden);
+    std::ofstream("/proc/self/setgroups") << "deny";
+    std::ofstream("/proc/self/uid_map") << user << ' ' << user << " 1";
+    std::ofstream("/proc/self/gid_map") << group << ' ' << group << " 1";
+    const pid_t first = fork();
+    if (first == 0) {
+      if (mount("proc", "/proc", "proc", 0, nullptr) != 0) _exit(kForbidden);
+      _exit(work());
+    }
+    int status = 0;
+    waitpid(first, &status, 0);
+    _exit(WIFEXITED(status) ? WEXITSTATUS(status) : kForbidden);
+  }
+  int status = 0;
+  waitpid(maker, &status, 0);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) == kForbidden) return {};
+  return WEXITSTATUS(status);
+}
+
+TEST(Share, LiveRunIsKeptByOtherPidNamespace) {
+  const std::string name = name_for("namespaces");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  const auto listed = in_another_pid_namespace([&] {
+    session::remove_dead_runs();
+    return is_listed(name) ? 1 : 0;
+  });
+  if (!listed) GTEST_SKIP() << "the kernel gives no PID namespace here";
+  EXPECT_EQ(*listed, 1) << "it is alive there too";
+  EXPECT_TRUE(is_listed(name));
+}
+
+TEST(Share, LiveViewerIsKeptByRunInOtherPidNamespace) {
+  const std::string name = name_for("namespaces");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  std::array<int, 2> ready{}, done{};
+  ASSERT_EQ(pipe(ready.data()), 0);
+  ASSERT_EQ(pipe(done.data()), 0);
+  char one = 0;
+  std::thread other([&] {
+    const auto result = in_another_pid_namespace([&] {
+      const auto viewer = session::SharedReader::attach(name).value();
+      viewer->ask_pause(true);
+      if (!viewer->lead_hand({1, 2, 3}, true)) return 1;
+      if (write(ready[1], "y", 1) != 1) return 2;
+      return read(done[0], &one, 1) == 1 ? 0 : 3;
+    });
+    if (!result) static_cast<void>(write(ready[1], "n", 1));
+  });
+  char answer = 0;
+  EXPECT_EQ(read(ready[0], &answer, 1), 1);
+  run->watch_viewers();
+  session::SharedHand hand;
+  const bool held = run->hand(hand) && hand.active == 1;
+  const bool paused = run->pause_asked();
+  EXPECT_EQ(write(done[1], "x", 1), 1);
+  other.join();
+  if (answer == 'n') GTEST_SKIP() << "the kernel gives no PID namespace here";
+  EXPECT_TRUE(held);
+  EXPECT_TRUE(paused);
 }
 
 TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
@@ -601,14 +878,15 @@ void read_all(session::SharedReader& reader) {
   static_cast<void>(session::arm_lines(reader.scene().arm, tick));
 }
 
-TEST(Share, RefusesAnotherVersionWithASentence) {
+TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
-  const std::uint32_t other = session::kSharedVersion + 1;
-  std::memcpy(copy.bytes.data() + offsetof(session::SharedHead, version), &other, sizeof other);
+  // Nothing but the two words that stay where they are makes sense.
+  std::memset(copy.bytes.data() + sizeof(std::uint64_t), 0x41, copy.bytes.size() - 8);
   const auto reader = session::SharedReader::over(copy.bytes);
   ASSERT_FALSE(reader);
-  EXPECT_NE(reader.error().message.find("different builds"), std::string::npos);
+  EXPECT_NE(reader.error().message.find("different builds"), std::string::npos)
+      << reader.error().message;
 }
 
 TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
@@ -674,7 +952,7 @@ TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
   const auto reader = session::SharedReader::attach(name).value();
   read_all(*reader);
   EXPECT_FALSE(reader->died());
-  const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
+  const std::string path = shared_path(name);
   ASSERT_EQ(truncate(path.c_str(), 100), 0);
   read_all(*reader);
   EXPECT_TRUE(reader->died());

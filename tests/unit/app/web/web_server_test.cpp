@@ -1,7 +1,11 @@
 // The server of a page that is live, with programs in this process in place of browsers.
 #include "web/web_server.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -14,6 +18,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "live_updates.h"
 #include "report/page/page_libraries.h"
@@ -230,6 +235,49 @@ TEST_F(WebServerTest, AsksOfTheRunWhatThePageItselfPostsAlone) {
   EXPECT_EQ(post("pause", {"/steer", {}, own}, token), 200U);
   EXPECT_TRUE(run_->pause_asked());
   EXPECT_EQ(post("restart", {"/steer", {}, own}, token), 409U) << "nobody would begin it anew";
+}
+
+TEST_F(WebServerTest, IdleConnectionsDoNotKeepPagesOut) {
+  constexpr std::size_t kMoreThanPlaces = 100;
+  run_ticks(1);
+  std::vector<tcp::socket> idle;
+  for (std::size_t i = 0; i < kMoreThanPlaces; ++i) idle.push_back(connect());
+  EXPECT_EQ(get({"/"}).first, 403U) << "it is answered";
+  Page page(io_);
+  EXPECT_EQ(open(page), 101U);
+}
+
+TEST_F(WebServerTest, OpenPagesOutliveIdleConnections) {
+  run_ticks(1);
+  Page page(io_);
+  ASSERT_EQ(open(page), 101U);
+  ASSERT_EQ(read_ticks(page, 1).size(), 1U);
+  std::vector<tcp::socket> idle;
+  for (std::size_t i = 0; i < 200; ++i) idle.push_back(connect());
+  run_ticks(5);
+  EXPECT_EQ(read_ticks(page, 5).size(), 5U);
+}
+
+TEST_F(WebServerTest, ConnectionOfOtherUserIsRefused) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root may act as another user";
+  const pid_t other = fork();
+  if (other == 0) {
+    alarm(60);
+    if (setgid(65534) != 0 || setuid(65534) != 0) _exit(2);
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port_);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) _exit(3);
+    const std::string request = "GET / HTTP/1.1\r\nHost: " + here() + "\r\n\r\n";
+    if (send(socket, request.data(), request.size(), MSG_NOSIGNAL) < 0) _exit(0);
+    char byte = 0;
+    _exit(recv(socket, &byte, 1, 0) > 0 ? 4 : 0);
+  }
+  int status = 0;
+  waitpid(other, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST_F(WebServerTest, GarbageAndWhatIsTooLongEndAConnectionAndNothingElse) {

@@ -9,11 +9,12 @@
 namespace thimble::scene {
 
 // Scenes and arm files are known by name: "elephant" is elephant.yaml in the first folder that has
-// it. Folders, in this order: app/ below the working folder; the user's own,
-// $XDG_DATA_HOME/thimble; what came with this program or library, found from where it lies, or for
-// a program of somebody else from where the libraries were installed; and thimble/ below each
-// folder of $XDG_DATA_DIRS [XDG Base Directory Specification]. Each has scenes/ and arms/. Arm
-// files are looked for in own_arm_folder() as well, after app/.
+// it. Folders, in this order: the user's own, $XDG_DATA_HOME/thimble; what came with this program
+// or library, found from where it lies, or for another program from where the libraries were
+// installed; and thimble/ below each folder of $XDG_DATA_DIRS [XDG Base Directory Specification].
+// Each has scenes/ and arms/. Arm files are looked for in own_arm_folder() first. The working
+// folder is never searched: a file there is used only if the user names it as a path, with a slash
+// or an extension.
 //
 // Two of these folders count as installed: own_arm_folder(), and arms/ of what came with this
 // program. Only arm files there set the limits of a real arm (terms/limits_policy.h).
@@ -40,9 +41,10 @@ bool is_installed_arm(const std::filesystem::path& file);
 /// or cannot be read.
 std::string description_of(const std::filesystem::path& file);
 
-/// Returns the file of the scene that a user means: a file there is, or else one of a name. What
-/// has a / is a path and is given back as it is, whether it is there or not. The error lists the
-/// names.
+/// Returns the file of the scene that a user means. A word with a / is a path and is returned as it
+/// is, whether the file exists or not; a word with an extension is a file of the working folder if
+/// that exists; any other word is a name first, and a file of the working folder if none has that
+/// name. The error lists the names.
 driver::Result<std::filesystem::path> find_scene(const std::string& meant);
 /// Returns the arm file that a user means, as above.
 driver::Result<std::filesystem::path> find_arm_file(const std::string& meant);

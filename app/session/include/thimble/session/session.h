@@ -255,8 +255,11 @@ class Session {
   /// The error says which ticks it lacks and why. As above.
   driver::Result<std::optional<std::filesystem::path>> end_recording();
   /// Writes the seconds around a fault, if one came, into the user's state folder and returns the
-  /// file. As above.
+  /// file, of several arms the first one's; after the run. As above.
   driver::Result<std::optional<std::filesystem::path>> keep_black_box();
+  /// Writes the seconds around the faults of all arms and returns the files. `run_is_over`: also
+  /// those to which a running servo still adds ticks; else only those that are complete. As above.
+  driver::Result<std::vector<std::filesystem::path>> keep_black_boxes(bool run_is_over);
   /// Returns what this session is, for the recordings of an arm. Real-time: never from the servo
   /// thread.
   RecordingInfo recording_info(std::size_t arm = 0) const;
@@ -268,7 +271,8 @@ class Session {
   const Setup& setup() const noexcept;  ///< As above.
   /// Returns the session's own observers.
   RunRecords& records() noexcept;
-  const RunRecords& records() const noexcept;  ///< As above.
+  const RunRecords& records() const noexcept;     ///< As above.
+  RunRecords& records(std::size_t arm) noexcept;  ///< As above, of one of several arms.
   /// Returns what viewers see; null if the run is not shared.
   SharedRun* shared() noexcept;
   /// Lets viewers see a run that was prepared without, as `options` asks; under the name of

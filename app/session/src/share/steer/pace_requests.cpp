@@ -82,10 +82,10 @@ driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
     return driver::Error{"The path of the scene is too long; copy the file elsewhere."};
   }
   if (!take_turn()) return driver::Error{"Another viewer is just asking for something."};
-  SharedRestart before;
-  order.number = live_->requests.restart.load(before) ? before.number + 1 : 1;
+  order.number = live_->requests.restart_number.load() + 1;
   std::copy(scene.begin(), scene.end(), order.scene.begin());
   live_->requests.restart.store(order);
+  live_->requests.restart_number.store(order.number);
   end_turn();
   return heard();
 }

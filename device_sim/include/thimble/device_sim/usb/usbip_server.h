@@ -35,8 +35,18 @@ struct UsbipServerSettings {
 
 /// Serves one device to USB/IP clients: sockets on one side, frames of the bus on the other. Any
 /// number of clients may ask; one at a time may have the device. One thread.
+///
+/// No client can hold it up: one that does not ask within kPatience_ns, or does not read for so
+/// long what it asked for, is disconnected; meanwhile a bounded number of bytes is kept for it. If
+/// all places are taken, a new client gets the place of the one that has asked for nothing the
+/// longest.
 class UsbipServer {
  public:
+  /// How long a client may ask for nothing, or read nothing, ns of the bus. [chosen]
+  static constexpr std::int64_t kPatience_ns = 5'000'000'000;
+  /// How many clients may be connected.
+  static constexpr std::size_t kClientsMax = 16;
+
   /// Called after each frame with its number.
   using FrameObserver = std::function<void(std::int64_t)>;
 
@@ -82,13 +92,16 @@ class UsbipServer {
   struct Client {
     int socket = -1;
     std::unique_ptr<UsbipSession> session;
-    bool heard_all = false;  // the client has hung up
+    bool heard_all = false;     // the client has hung up
+    std::int64_t since_ns = 0;  // when it came; once attached, when it last read what waits for it
   };
 
   void take(Client& client);
   void wait_for(int timer);
-  static void send_ready(Client& client);
+  void send_ready(Client& client);
   void accept_client();
+  bool make_room();
+  void drop_late();
   void drop_finished();
 
   FaultyDevice& device_;
@@ -98,6 +111,7 @@ class UsbipServer {
   std::vector<Client> clients_;
   UsbipCounters past_;
   std::uint64_t late_frames_ = 0;
+  std::int64_t now_ns_ = 0;  // of the bus
 };
 
 }  // namespace thimble::device_sim::usb

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstdint>
+
+namespace thimble::session {
+
+/// Returns the hash of the layout of all that a run shares with its viewers (shared_layout.h).
+/// Builds that have one hash read each other's memory; others refuse. Real-time: safe.
+std::uint64_t shared_layout_hash() noexcept;
+
+}  // namespace thimble::session

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "layout_hash.h"
+#include "thimble/driver/fault.h"
+#include "thimble/driver/tick_record.h"
+
+// Layout of what a tick is shown as to other processes.
+
+THIMBLE_LAYOUT_ENUM(thimble::driver::DeviceStage, kIdle, kActive, kFault)
+THIMBLE_LAYOUT_ENUM(thimble::driver::Fault, kNone, kTransportLost, kNoReports, kForceNotFinite,
+                    kStateNotFinite, kOverSpeed, kLoopStalled, kRefused, kTimeNotMonotonic,
+                    kMotorsReversed, kEncoderFrozen, kCountsUnchanged, kOtherArm)
+THIMBLE_LAYOUT(thimble::driver::TickRecord, tick, time_ns, due_ns, work_ns, counts, q, p_WT, v_WT,
+               p_WP, n_W, f_wanted_W, f_sent_W, heat, q_WT, gimbal, gripper, depth, feature, object,
+               hops, buttons, in_contact, fresh, has_gripper, stage, fault)
