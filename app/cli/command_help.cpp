@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "scene_keys.h"
 
 namespace thimble::app {
@@ -34,7 +35,7 @@ int print_keys(const HelpOptions& options) {
                       "\"; `thimble help " + options.file + "` lists all."},
         kExitBadInput);
   }
-  std::printf("%s", text.c_str());
+  scene::print_format("%s", text.c_str());
   return kExitDone;
 }
 

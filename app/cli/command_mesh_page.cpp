@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "mesh/contact_mesh.h"
 #include "packed/packed_surface.h"
 #include "page/page_file.h"
@@ -27,8 +28,9 @@ int page_mesh(const PageOptions& options) {
   if (const auto written = render::write_page_file(*surface, options.out); !written) {
     return complain(written.error(), kExitTrouble);
   }
-  std::printf("%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
-              (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
+  scene::print_format(
+      "%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
+      (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
   return kExitDone;
 }
 

@@ -11,6 +11,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "faces/ros2/ros_latency.h"
+#include "log/printed_text.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
 #include "thimble/scene/shipped_files.h"
@@ -57,8 +58,9 @@ int tune_scene(const TuneCommand& command) {
   TuneOptions options{.period_spread = 1e-6 * command.spread_us};
   if (command.measure > 0) {
     options.period_spread = measured_spread(scene->rate, command.measure);
-    std::printf("Measured  periods of this computer spread by %.1f us (standard deviation).\n",
-                1e6 * options.period_spread);
+    scene::print_format(
+        "Measured  periods of this computer spread by %.1f us (standard deviation).\n",
+        1e6 * options.period_spread);
   }
   if (command.topics) {
     constexpr double kDuration = 5;  // s [chosen]
@@ -69,7 +71,7 @@ int tune_scene(const TuneCommand& command) {
         AnswerAges{.median = 1e-9 * ages->percentile(0.5), .most = 1e-9 * ages->percentile(0.99)};
   }
   const TuneResult result = tune(*scene, options);
-  std::printf("%s\n%s", result.text.c_str(), figure_table(result.figures).c_str());
+  scene::print_format("%s\n%s", result.text.c_str(), figure_table(result.figures).c_str());
   if (command.folder.empty()) return kExitDone;
   std::error_code status;
   std::filesystem::create_directories(command.folder, status);
@@ -77,7 +79,7 @@ int tune_scene(const TuneCommand& command) {
   if (const auto written = write_figures(result.figures, file); !written) {
     return complain(written.error(), kExitTrouble);
   }
-  std::printf("Written to %s.\n", file.c_str());
+  scene::print_format("Written to %s.\n", file.c_str());
   return kExitDone;
 }
 

@@ -3,13 +3,16 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <string>
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
 #include "interrupt.h"
+#include "log/console.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "thimble/scene/build_info.h"
 
 namespace {
@@ -60,7 +63,11 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {
     // --help and --version arrive here too, as success.
-    return app.exit(stop) == 0 ? thimble::app::kExitDone : thimble::app::kExitBadInput;
+    std::ostringstream out, wrong;
+    const int code = app.exit(stop, out, wrong);
+    thimble::scene::write_text(stdout, out.str());
+    if (!wrong.str().empty()) thimble::scene::console().write(wrong.str());
+    return code == 0 ? thimble::app::kExitDone : thimble::app::kExitBadInput;
   }
   return exit_code;
 }

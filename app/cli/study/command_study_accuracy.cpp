@@ -9,6 +9,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
+#include "log/printed_text.h"
 #include "report/figure.h"
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/quality_points.h"
@@ -29,7 +30,7 @@ int run_accuracy(const AccuracyOptions& options) {
   if (!options.table.empty()) {
     const auto written = write_text(quality_table_text(), options.table);
     if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Points for --quality auto: %s\n", options.table.c_str());
+    scene::print_format("Points for --quality auto: %s\n", options.table.c_str());
     return kExitDone;
   }
   const std::filesystem::path folder = options.out;
@@ -77,13 +78,13 @@ int run_gating(const GatingOptions& options) {
   const auto report = decide_gating(options.scene, !options.no_count);
   if (!report) return complain(report.error(), kExitBadInput);
   const std::string text = gating_text(*report);
-  std::printf("%s", text.c_str());
+  scene::print_format("%s", text.c_str());
   for (const auto& written : {write_figures(figures_of(*report), folder / "figures.json"),
                               write_text(text, folder / "gating.txt"),
                               write_gating_runs(options.scene, *report, folder)}) {
     if (!written) return complain(written.error(), kExitTrouble);
   }
-  std::printf("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
+  scene::print_format("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
   return kExitDone;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "log/printed_text.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/accuracy/accuracy_axis.h"
@@ -72,14 +73,13 @@ driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string
   std::vector<Figure> figures;
   bool counted = count;
   for (const AxisMaker* maker : *makers) {
-    std::printf("\rMeasuring %-40s", std::string(maker->name).c_str());
-    std::fflush(stdout);
+    scene::show_progress("Measuring " + std::string(maker->name));
     measured.push_back(
         std::make_unique<MeasuredAxis>(measure_axis(maker->make(), {.count = counted})));
     const MeasuredAxis& axis = *measured.back();
     AxisSection section{.axis = &axis, .pictures = {}};
     if (counted && !axis.lines.front().points.front().instructions) {
-      std::printf("\rInstructions are not counted: valgrind is not installed, or failed.\n");
+      scene::print_format("Instructions are not counted: valgrind is not installed, or failed.\n");
       counted = false;
     }
     if (auto written = write_text(csv_of(axis), folder / (axis.axis.name + ".csv")); !written) {
@@ -93,18 +93,20 @@ driver::Result<std::vector<Figure>> study_accuracy(const std::vector<std::string
     sections.push_back(std::move(section));
     for (Figure& figure : figures_of(axis)) figures.push_back(std::move(figure));
   }
-  std::printf("\r%60s\r", "");
-  if (!draws) std::printf("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
+  scene::show_progress("");
+  if (!draws)
+    scene::print_format("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
   if (auto written = write_runs(folder / "runs"); !written) return written.error();
   if (auto written = write_accuracy_page(sections, folder); !written) return written.error();
   if (auto written = write_accuracy_summary(sections, folder / "summary.json"); !written) {
     return written.error();
   }
   for (const AxisSection& section : sections) {
-    std::printf("%s\n  %s\n  %s\n", section.axis->axis.title.c_str(),
-                felt_sentence(*section.axis).c_str(), default_sentence(*section.axis).c_str());
+    scene::print_format("%s\n  %s\n  %s\n", section.axis->axis.title.c_str(),
+                        felt_sentence(*section.axis).c_str(),
+                        default_sentence(*section.axis).c_str());
   }
-  std::printf("\n");
+  scene::print_format("\n");
   return figures;
 }
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "log/printed_text.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/cost/cost_subjects.h"
@@ -227,15 +228,14 @@ driver::Result<std::vector<Figure>> study_cost(const std::filesystem::path& fold
     for (Cost& cost : costs) stroke(cost, states);
   }
   for (Cost& cost : costs) {
-    std::printf("\rCounting instructions: %-40s", cost.subject->name.c_str());
-    std::fflush(stdout);
+    scene::show_progress("Counting instructions: " + cost.subject->name);
     cost.instructions = instructions_per_tick(cost.subject->name);
     if (!cost.instructions) {
-      std::printf("\rInstructions are not counted: valgrind is not installed.%20s\n", "");
+      scene::print_format("Instructions are not counted: valgrind is not installed.\n");
       break;
     }
   }
-  std::printf("\r%64s\r", "");
+  scene::show_progress("");
   const Cost& bare = *std::find_if(costs.begin(), costs.end(), [](const Cost& cost) {
     return cost.subject->name == kBareSubject;
   });

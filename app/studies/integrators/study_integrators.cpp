@@ -1,6 +1,8 @@
 #include "studies/integrators/study_integrators.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +13,7 @@
 
 #include "body/spring/mesh_springs.h"
 #include "files/scanned_meshes.h"
+#include "log/printed_text.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/integrators/membrane.h"
@@ -116,9 +119,8 @@ driver::Result<Diagram> measure_all(const PokedBody<kDof>& body, bool membrane, 
   for (const Line& line : lines(membrane)) {
     std::vector<WorkPoint> points;
     for (const int substeps : line.substeps) {
-      std::printf("\r%s: %s, %d substeps%20s", diagram.name.c_str(),
-                  std::string(render::name_of(line.scheme)).c_str(), substeps, "");
-      std::fflush(stdout);
+      scene::show_progress(
+          fmt::format("{}: {}, {} substeps", diagram.name, render::name_of(line.scheme), substeps));
       auto point = measure(body, line.scheme, substeps);
       if (!point) return point.error();
       points.push_back(*std::move(point));
@@ -126,7 +128,7 @@ driver::Result<Diagram> measure_all(const PokedBody<kDof>& body, bool membrane, 
     diagram.lines.push_back(std::move(points));
   }
   if (auto modal = measure_modal(body)) diagram.lines.push_back({*std::move(modal)});
-  std::printf("\r%76s\r", "");
+  scene::show_progress("");
   return diagram;
 }
 
@@ -260,7 +262,7 @@ driver::Result<std::vector<Figure>> study_integrators(const std::filesystem::pat
     if (!measured) return measured.error();
     diagrams.push_back(*std::move(measured));
   } else {
-    std::printf("The scanned mesh is left out: %s\n", scan.error().message.c_str());
+    scene::print_format("The scanned mesh is left out: %s\n", scan.error().message.c_str());
   }
   if (auto written = write_text(csv_of(diagrams), folder / "integrators.csv"); !written) {
     return written.error();

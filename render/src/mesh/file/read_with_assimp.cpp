@@ -18,8 +18,8 @@
 #include "mesh/file/assimp_scene.h"
 #include "mesh/file/file_unit.h"
 #include "mesh/file/folder_files.h"
-#include "mesh/file/run_apart.h"
 #include "mesh/file/zip_entry.h"
+#include "system/run_apart.h"
 
 namespace thimble::render {
 namespace {
@@ -169,10 +169,10 @@ driver::Result<TriangleMesh> read_with_assimp(const std::string& bytes, const st
                                               MeshFileInfo& info) {
   if (bytes.empty()) return Error{"the file is empty."};
   if (auto unit = read_unit(bytes, ending, info); !unit) return unit.error();
-  const ApartLimits limits{
+  const driver::ApartLimits limits{
       .seconds = kSecondsLeast + static_cast<int>(bytes.size() / kBytesPerSecond),
       .bytes = kMemoryLeast + kMemoryPerByte * bytes.size()};
-  const auto read = run_apart(
+  const auto read = driver::run_apart(
       [&] {
         std::vector<std::string> notes;
         const auto mesh = import_mesh(bytes, ending, folder, notes);
