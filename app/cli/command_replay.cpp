@@ -131,12 +131,19 @@ void print_replay(const std::string& file, const session::Replay& replay) {
   }
 }
 
-/// Says what else may have changed the forces where scene, arm and program are the recording's own.
-void print_reason(const session::Recording& recording, const std::string& scene) {
-  if (!session::check_repeatable(recording, scene)) return;
-  session::print(stdout,
-                 "Scene, arm and program are those of the recording. A recording does not hold "
-                 "what was turned or commanded from outside: were knobs turned in that run?\n");
+/// Prints why forces differ from the recorded ones. Returns false if there is no reason for it:
+/// then the run cannot be repeated although it should.
+bool print_reason(const session::Recording& recording, const std::string& scene) {
+  const auto repeatable = session::check_repeatable(recording, scene);
+  if (!repeatable) {
+    session::print(stdout, "They differ because {}\n", repeatable.error().message);
+    return true;
+  }
+  session::print(
+      stdout,
+      "Scene, options, arm and program are those of the recording, so every force should "
+      "be the recorded one. Please report this with the recording.\n");
+  return false;
 }
 
 int replay_recordings(const ReplayOptions& options) {
@@ -165,11 +172,13 @@ int replay_recordings(const ReplayOptions& options) {
   auto replays =
       session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);
   if (!replays) return complain(replays.error(), kExitBadInput);
-  bool differs = false;
+  bool differs = false, unexplained = false;
   for (std::size_t i = 0; i < replays->size(); ++i) {
     session::Replay& replay = (*replays)[i];
     print_replay(options.files[i], replay);
-    if (replay.compared.differing > 0) print_reason(recordings[i], options.scene);
+    if (replay.compared.differing > 0 && !print_reason(recordings[i], options.scene)) {
+      unexplained = true;
+    }
     differs = differs || replay.compared.differing > 0;
     if (options.record.empty()) continue;
     replay.felt.info.device = "replay of " + options.files[i];
@@ -186,7 +195,7 @@ int replay_recordings(const ReplayOptions& options) {
     }
     session::print(stdout, "Page that plays it: {}\n", options.page);
   }
-  return options.verify && differs ? kExitTrouble : kExitDone;
+  return unexplained || (options.verify && differs) ? kExitTrouble : kExitDone;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "heat_keeper.h"
 #include "paced_clock.h"
+#include "recording/run_choices.h"
 #include "start_pose.h"
 #include "terminal.h"
 #include "thimble/driver/clock.h"
@@ -115,6 +116,8 @@ class Setup {
   /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
   /// the meshes, and what became of limits that the scene names, where the arm is real.
   const std::vector<std::string>& told() const noexcept { return told_; }
+  /// Returns what the quality that was asked for has chosen for the scene, a sentence each.
+  const std::vector<std::string>& quality_choices() const noexcept { return quality_choices_; }
   /// Returns what is known of an arm's feel check.
   scene::FeelCheckState feel_check(std::size_t arm = 0) const noexcept {
     return arms_[arm].feel_check;
@@ -143,7 +146,8 @@ class Setup {
 
   std::filesystem::path scene_file_;
   std::shared_ptr<scene::Scene> scene_;  // of sessions alike; changed only while it is read
-  std::vector<std::string> told_;
+  std::vector<std::string> told_, quality_choices_;
+  RunChoices choices_;
   std::filesystem::path firmware_;
   bool real_time_ = false;
   bool paced_ = false;

@@ -41,6 +41,7 @@ inline constexpr std::array kRecordingTexts{
     RecordingText{"clock", &RecordingInfo::clock, false, true},
     RecordingText{"program", &RecordingInfo::program, false, true},
     RecordingText{"arm_in_scene", &RecordingInfo::arm_in_scene, true, true},
+    RecordingText{"options", &RecordingInfo::options, true},
 };
 
 /// Returns the memory in bytes that a recording may take of which `stored` bytes are on the disk.

@@ -87,6 +87,7 @@ bool write_info(const H5Handle& file, const RecordingInfo& info) {
          write_text(file, "arm_text", info.arm_text) && write_text(file, "device", info.device) &&
          write_text(file, "clock", info.clock) && write_text(file, "program", info.program) &&
          (info.arm_in_scene.empty() || write_text(file, "arm_in_scene", info.arm_in_scene)) &&
+         (info.options.empty() || write_text(file, "options", info.options)) &&
          write_text(file, "faults", faults) &&
          write_number(file, "rate", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, info.rate) &&
          write_number(file, "seed", H5T_STD_U64LE, H5T_NATIVE_UINT64, info.seed) &&

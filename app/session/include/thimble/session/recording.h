@@ -31,6 +31,9 @@ struct RecordingInfo {
   std::uint64_t seed = 0;  ///< Of everything random in the simulation.
   /// What the scene calls the arm, where it has several; each has a recording of its own.
   std::string arm_in_scene{};
+  /// What else was asked for that changes the result, a line each ("quality: draft"); empty if
+  /// nothing was.
+  std::string options{};
 };
 
 /// Returns where the recording of one of several arms lies that is asked for as `path`: beside it,
