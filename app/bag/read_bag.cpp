@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "bag/sqlite_file.h"
+#include "system/printable_text.h"
+#include "system/regular_file.h"
 
 namespace thimble::bag {
 namespace {
@@ -40,14 +41,6 @@ struct OpenBag {
 
 std::string_view word_of(BagKind kind) {
   return kind == BagKind::kPositions ? "/pose" : "/wrench";
-}
-
-/// Returns a text of a bag without what a terminal would obey.
-std::string printable(std::string_view text) {
-  std::string plain(text);
-  std::replace_if(
-      plain.begin(), plain.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
-  return plain;
 }
 
 /// Finds the files of a bag, in the order of their names.
@@ -112,8 +105,9 @@ driver::Result<OpenBag> open_bag(const fs::path& file) {
     const auto row = rows->next();
     if (!row) return damaged(file, row.error().message);
     if (!*row) return bag;
-    bag.topics.push_back({rows->number(0), printable(rows->text(1)), printable(rows->text(2)),
-                          printable(rows->text(3))});
+    bag.topics.push_back({rows->number(0), driver::printable_name(rows->text(1)),
+                          driver::printable_name(rows->text(2)),
+                          driver::printable_name(rows->text(3))});
   }
 }
 
@@ -202,7 +196,7 @@ driver::Result<void> add_messages(const OpenBag& bag, const TopicRow& topic, Bag
       return wrong(
           fmt::format("is told in the frame \"{}\", those before in \"{}\"; expected one "
                       "frame for all.",
-                      printable(message->frame), printable(*frame)));
+                      driver::printable_name(message->frame), driver::printable_name(*frame)));
     }
     if (kept.size() == kMessagesMost) {
       return wrong("is one too many: 20 million can be read; cut the bag.");
@@ -218,10 +212,7 @@ bool is_bag(const std::filesystem::path& path) {
   if (fs::is_directory(path, status)) return true;
   const std::string end = path.extension().string();
   if (end == ".db3" || end == ".mcap") return true;
-  std::ifstream stream(path, std::ios::binary);
-  std::array<char, 16> head{};
-  stream.read(head.data(), head.size());
-  return std::string_view(head.data(), 15) == "SQLite format 3";
+  return driver::read_head(path, 15) == "SQLite format 3";
 }
 
 driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind kind,

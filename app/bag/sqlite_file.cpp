@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include "system/regular_file.h"
+
 namespace thimble::bag {
 
 void SqliteStatement::End::operator()(sqlite3_stmt* statement) const {
@@ -69,6 +71,8 @@ driver::Result<SqliteFile> SqliteFile::open(const std::filesystem::path& file, i
 }
 
 driver::Result<SqliteFile> SqliteFile::open(const std::filesystem::path& file) {
+  // SQLite waits for a writer to a pipe.
+  if (!driver::is_regular(file)) return driver::Error{"it is no regular file"};
   auto opened = open(file, SQLITE_OPEN_READONLY);
   if (!opened) return opened;
   sqlite3* const raw = opened->file_.get();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/file_options.h"
+#include "log/printed_text.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/real_arm_file.h"
 
@@ -85,7 +86,7 @@ SimulatedNote::~SimulatedNote() {
 
 void SimulatedNote::print() const {
   std::fflush(stderr);
-  std::printf("%s\n", line_.c_str());
+  scene::print_format("%s\n", line_.c_str());
   std::fflush(stdout);
 }
 

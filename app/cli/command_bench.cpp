@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "report/figure.h"
 #include "studies/rate_bench.h"
@@ -38,14 +39,15 @@ int run_bench(const BenchOptions& options) {
     const auto bench = bench_rate(*scene, rate, options.seconds, quality);
     if (!bench) return complain(bench.error(), kExitBadInput);
     const RateVerdict verdict = verdict_of(*bench);
-    std::printf("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
+    scene::print_format("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
     std::fflush(stdout);
     for (Figure& figure : figures_of(*bench, verdict)) figures.push_back(std::move(figure));
     advice = bench->advice;
   }
-  if (!advice.empty()) std::printf("%s\n", advice.c_str());
-  std::printf("The simulated arm is in these times; a real one has its wire in its place.\n\n%s",
-              figure_table(figures).c_str());
+  if (!advice.empty()) scene::print_format("%s\n", advice.c_str());
+  scene::print_format(
+      "The simulated arm is in these times; a real one has its wire in its place.\n\n%s",
+      figure_table(figures).c_str());
   if (options.out.empty()) return kExitDone;
   std::error_code status;
   std::filesystem::create_directories(options.out, status);

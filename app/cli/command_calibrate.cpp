@@ -17,6 +17,7 @@
 #include "links/dhd/dhd_link.h"
 #include "links/hd/hd_link.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/real_arm.h"
 
@@ -58,7 +59,7 @@ int wait_for_word() {
 /// Returns how the library's calibration went.
 int tell_calibrated(const driver::Result<void>& done, const std::string& name) {
   if (!done) return complain(done.error(), kExitFault);
-  std::printf("Done. Check it: thimble feel-check --device %s\n", name.c_str());
+  scene::print_format("Done. Check it: thimble feel-check --device %s\n", name.c_str());
   return kExitDone;
 }
 
@@ -68,7 +69,7 @@ int let_library_calibrate(const std::string& name) {
   if (!library) return complain(library.error(), kExitNoDevice);
   const auto how = driver::hd::how_to_calibrate(*library);
   if (!how) return complain(how.error(), kExitNoDevice);
-  std::printf("%s Press Enter.\n", how->c_str());
+  scene::print_format("%s Press Enter.\n", how->c_str());
   if (const int word = wait_for_word(); word != kExitDone) return word;
   return tell_calibrated(driver::hd::calibrate(*library), name);
 }
@@ -78,7 +79,7 @@ int let_library_calibrate(const std::string& name) {
 int let_find_zero(const std::string& name) {
   const auto library = driver::dhd::library();
   if (!library) return complain(library.error(), kExitNoDevice);
-  std::printf(
+  scene::print_format(
       "The arm will MOVE BY ITSELF until it has found its zero. Clear its workspace, let it go, "
       "and "
       "press Enter.\n");
@@ -105,7 +106,7 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
         kExitBadInput);
   }
   const SimulatedNote simulated(*chosen, "calibration");
-  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
   const auto way =
       chosen->real_arm ? decltype(simulated_hand({})){} : simulated_hand(home_of(chosen->file));
   const std::atomic<bool>& stop = scene::catch_interrupts();
@@ -121,7 +122,8 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   constexpr std::array<double, 4> kSimulatedTimes = {1, 3.5, 7.5, 11.5};  // s
   std::array<driver::ArmReading, 4> readings;
   for (std::size_t i = 0; i < kAsks.size(); ++i) {
-    std::printf("%s%s\n", kAsks[i], chosen->real_arm ? " Hold it there and press Enter." : "");
+    scene::print_format("%s%s\n", kAsks[i],
+                        chosen->real_arm ? " Hold it there and press Enter." : "");
     session::EnterKey key = session::EnterKey::kNothing;
     const auto done = [&] {
       if (!chosen->real_arm) return (*bench)->now() >= kSimulatedTimes[i];
@@ -139,10 +141,10 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   auto found = scene::find_calibration(chosen->file, kind, readings[0],
                                        {readings[1], readings[2], readings[3]});
   if (!found) return complain(found.error(), kExitTrouble);
-  std::printf("home_counts  %d %d %d\nencoder_sign %d %d %d\nmotor_sign   %d %d %d\n",
-              found->home_counts[0], found->home_counts[1], found->home_counts[2],
-              found->encoder_sign[0], found->encoder_sign[1], found->encoder_sign[2],
-              found->motor_sign[0], found->motor_sign[1], found->motor_sign[2]);
+  scene::print_format("home_counts  %d %d %d\nencoder_sign %d %d %d\nmotor_sign   %d %d %d\n",
+                      found->home_counts[0], found->home_counts[1], found->home_counts[2],
+                      found->encoder_sign[0], found->encoder_sign[1], found->encoder_sign[2],
+                      found->motor_sign[0], found->motor_sign[1], found->motor_sign[2]);
   if (dry_run || !chosen->real_arm) return kExitDone;
   found->arm_file = chosen->path.stem().string();
   if (auto saved = scene::save_calibration(chosen->name, *found); !saved) {
@@ -151,9 +153,9 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   scene::logger().info("{} is calibrated: home_counts {} {} {}, kept in {}.", chosen->name,
                        found->home_counts[0], found->home_counts[1], found->home_counts[2],
                        scene::calibration_file(chosen->name).string());
-  std::printf("Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
-              scene::calibration_file(chosen->name).c_str(), found->arm_file.c_str(),
-              chosen->name.c_str());
+  scene::print_format(
+      "Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
+      scene::calibration_file(chosen->name).c_str(), found->arm_file.c_str(), chosen->name.c_str());
   return kExitDone;
 }
 

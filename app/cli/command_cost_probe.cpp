@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/probed_stroke.h"
 #include "studies/cost/cost_subjects.h"
@@ -44,7 +45,7 @@ int probe(const ProbeOptions& options) {
     for (int i = 0; i < options.strokes; ++i) {
       for (const auto& state : states) sum += (*touch)->update(state).f_T_W.x();
     }
-    std::printf("%.17g\n", sum);
+    scene::print_format("%.17g\n", sum);
     return kExitDone;
   }
   return complain({"cost-probe knows no \"" + options.subject + "\"."}, kExitBadInput);

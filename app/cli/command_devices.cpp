@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "log/printed_text.h"
 #include "thimble/driver/discovery.h"
 #include "transports/node_lock.h"
 
@@ -29,18 +30,19 @@ std::string state_of(const driver::FoundArm& arm, const std::string& root) {
 
 int list_devices(const std::string& root) {
   constexpr const char* kRow = "%-14s %-16s %-10s %-18s %-22s %s\n";
-  std::printf(kRow, "name", "arm", "bus", "where", "node", "state");
-  std::printf(kRow, "sim", "simulated arm", "-", "-", "-", "ready");
+  scene::print_format(kRow, "name", "arm", "bus", "where", "node", "state");
+  scene::print_format(kRow, "sim", "simulated arm", "-", "-", "-", "ready");
   const auto arms = driver::find_arms(root);
   if (!arms) {
-    std::printf("%s\n", arms.error().message.c_str());
+    scene::print_format("%s\n", arms.error().message.c_str());
     return kExitDone;  // the simulated arm needs no USB
   }
   for (const driver::FoundArm& arm : *arms) {
-    std::printf(kRow, arm.name().c_str(), arm.arm.c_str(), arm.bus.c_str(), arm.address.c_str(),
-                arm.node.empty() ? "-" : arm.node.c_str(), state_of(arm, root).c_str());
+    scene::print_format(kRow, arm.name().c_str(), arm.arm.c_str(), arm.bus.c_str(),
+                        arm.address.c_str(), arm.node.empty() ? "-" : arm.node.c_str(),
+                        state_of(arm, root).c_str());
   }
-  if (arms->empty()) std::printf("No arm that Thimble knows is plugged in on USB.\n");
+  if (arms->empty()) scene::print_format("No arm that Thimble knows is plugged in on USB.\n");
   return kExitDone;
 }
 

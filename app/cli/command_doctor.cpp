@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "files/data_folders.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 
 namespace thimble::app {
 namespace {
@@ -29,11 +30,11 @@ int show_findings(const std::string& root) {
       mark = "PROBLEM ";
       ++problems;
     }
-    std::printf("%s%s\n", mark, finding.what.c_str());
-    if (!finding.mend.empty()) std::printf("          -> %s\n", finding.mend.c_str());
+    scene::print_format("%s%s\n", mark, finding.what.c_str());
+    if (!finding.mend.empty()) scene::print_format("          -> %s\n", finding.mend.c_str());
   }
   if (problems == 0) return kExitDone;
-  std::printf("%d problem%s.\n", problems, problems == 1 ? "" : "s");
+  scene::print_format("%d problem%s.\n", problems, problems == 1 ? "" : "s");
   return kExitNoDevice;
 }
 

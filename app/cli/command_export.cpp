@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "recording/bag_export.h"
 #include "thimble/session/recording.h"
@@ -32,9 +33,9 @@ int export_recording(const ExportOptions& options) {
   const auto recording = session::read_recording(options.file);
   if (!recording) return complain(recording.error(), kExitBadInput);
   const auto tell = [&recording](const std::string& file) {
-    std::printf("%s: %zu ticks of %s at %g Hz%s.\n", file.c_str(), recording->ticks.size(),
-                recording->info.scene.c_str(), recording->info.rate,
-                recording->complete ? "" : "; the recording was cut off");
+    scene::print_format("%s: %zu ticks of %s at %g Hz%s.\n", file.c_str(), recording->ticks.size(),
+                        recording->info.scene.c_str(), recording->info.rate,
+                        recording->complete ? "" : "; the recording was cut off");
   };
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(*recording, options.csv); !written) {

@@ -11,6 +11,7 @@
 #include "enter_key.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "terms/feel_check_record.h"
 
 namespace thimble::app {
@@ -19,9 +20,9 @@ namespace {
 /// Reads the arm with zero force, and tells how well its reports arrive.
 int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
   const Listened heard = listen(bench, duration, stop);
-  std::printf("%s\n", heard.text().c_str());
+  scene::print_format("%s\n", heard.text().c_str());
   if (!heard.whole && !stop.load()) {
-    std::printf("%s\n", std::string(driver::describe(bench.device().fault())).c_str());
+    scene::print_format("%s\n", std::string(driver::describe(bench.device().fault())).c_str());
   }
   return heard.good() ? kExitDone : kExitFault;
 }
@@ -34,8 +35,8 @@ driver::Result<void> keep_result(const ChosenArm& chosen, const std::string& fir
   const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
   auto kept = scene::keep_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
   if (kept) {
-    std::printf("Kept in %s: `thimble run` gives this arm its whole force from now on.\n",
-                scene::feel_check_file(chosen.name).c_str());
+    scene::print_format("Kept in %s: `thimble run` gives this arm its whole force from now on.\n",
+                        scene::feel_check_file(chosen.name).c_str());
   }
   return kept;
 }
@@ -46,7 +47,7 @@ int check_arm(const ArmChoice& choice, double listen) {
     return complain(chosen.error(), exit_code_of(choice));
   }
   const SimulatedNote simulated(*chosen, "record of this check");
-  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
@@ -58,11 +59,12 @@ int check_arm(const ArmChoice& choice, double listen) {
   if (listen > 0) return listen_to(**bench, listen, stop);
   const bool person = !(*bench)->simulated();
   if (person) {
-    std::printf("No force above %.1f N. Keep the arm's switch at hand; Ctrl-C ends the check.\n",
-                scene::kFeelCheckForceMax);
+    scene::print_format(
+        "No force above %.1f N. Keep the arm's switch at hand; Ctrl-C ends the check.\n",
+        scene::kFeelCheckForceMax);
   }
   const Prompt prompt = [&](const std::string& what) {
-    std::printf("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
+    scene::print_format("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
     std::fflush(stdout);
     if (!person) return true;
     session::EnterKey key = session::EnterKey::kNothing;
@@ -74,8 +76,8 @@ int check_arm(const ArmChoice& choice, double listen) {
   bool all = true;
   const auto results = feel_check(**bench, chosen->file, prompt, stop);
   for (const CheckResult& result : results) {
-    std::printf("%-7s %-12s %s\n", result.passed ? "ok" : "FAILED", result.name.c_str(),
-                result.text.c_str());
+    scene::print_format("%-7s %-12s %s\n", result.passed ? "ok" : "FAILED", result.name.c_str(),
+                        result.text.c_str());
     all = all && result.passed;
   }
   if (stop.load()) return kExitInterrupted;

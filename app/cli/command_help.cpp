@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/usage/usage_error.h"
+#include "log/printed_text.h"
 #include "scene_keys.h"
 
 namespace thimble::app {
@@ -37,7 +38,7 @@ int print_keys(const HelpOptions& options) {
                                   "` lists all." + suggestion(options.key, names)},
                     kExitBadInput);
   }
-  std::printf("%s", text.c_str());
+  scene::print_format("%s", text.c_str());
   return kExitDone;
 }
 

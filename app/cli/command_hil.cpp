@@ -14,6 +14,7 @@
 #include "hil/hil_suite.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "terms/feel_check_record.h"
 
@@ -41,12 +42,12 @@ void print(const HilResult& result) {
   const char* const word = result.outcome == HilOutcome::kPassed   ? "ok"
                            : result.outcome == HilOutcome::kFailed ? "FAILED"
                                                                    : "skipped";
-  std::printf("%-7s %-16s %s\n", word, result.name.c_str(), result.text.c_str());
+  scene::print_format("%-7s %-16s %s\n", word, result.name.c_str(), result.text.c_str());
   for (const Figure& figure : result.figures) {
     if (figure.met()) continue;
-    std::printf("        %-16s %s = %.4g %s, not %s%s\n", "", figure.name.c_str(), figure.value,
-                figure.unit.c_str(), figure.goal.c_str(),
-                figure.note.empty() ? "" : ("; " + figure.note).c_str());
+    scene::print_format("        %-16s %s = %.4g %s, not %s%s\n", "", figure.name.c_str(),
+                        figure.value, figure.unit.c_str(), figure.goal.c_str(),
+                        figure.note.empty() ? "" : ("; " + figure.note).c_str());
   }
   std::fflush(stdout);
 }
@@ -54,7 +55,7 @@ void print(const HilResult& result) {
 /// Returns the prompt of a person, or of a simulated hand, which does what is asked.
 Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
   return [person, &stop](const std::string& what) {
-    std::printf("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
+    scene::print_format("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
     std::fflush(stdout);
     session::EnterKey key = person ? session::EnterKey::kNothing : session::EnterKey::kPressed;
     while (key == session::EnterKey::kNothing && !stop.load()) {
@@ -73,8 +74,8 @@ int end_of(const std::vector<HilResult>& results) {
     skipped += result.outcome == HilOutcome::kSkipped ? 1 : 0;
     fault = fault || result.unsafe;
   }
-  std::printf("%zu checks: %zu passed, %d failed, %d skipped.\n", results.size(),
-              results.size() - static_cast<std::size_t>(failed + skipped), failed, skipped);
+  scene::print_format("%zu checks: %zu passed, %d failed, %d skipped.\n", results.size(),
+                      results.size() - static_cast<std::size_t>(failed + skipped), failed, skipped);
   if (fault) return kExitFault;
   return failed > 0 ? kExitUnmet : kExitDone;
 }
@@ -89,7 +90,7 @@ int run_hil(HilCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "result of a real arm");
-  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
@@ -100,7 +101,7 @@ int run_hil(HilCommand command) {
         .path = chosen->path, .file = chosen->file, .why = {}, .told = {}};
     options.checked = scene::has_passed(
         scene::describe_checked(*chosen->real_arm, file, command.choice.firmware));
-    std::printf(
+    scene::print_format(
         "The arm will move by itself, with at most %g N. Put its tip into the middle of the "
         "workspace, with nothing within 5 cm of it. Keep its switch at hand; Ctrl-C ends it.\n",
         kHilForceMax);

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,9 +22,11 @@
 #include "identified/identify_page.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "recording/recording_layout.h"
 #include "terms/feel_check_record.h"
+#include "text_file.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/recording.h"
@@ -79,12 +79,12 @@ driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
                               command.options.force_most);
   if (!bench) return bench;
   if (loaded) {
-    std::printf(
+    scene::print_format(
         "Fix %g kg to the tip so that it cannot swing, in the middle of the workspace, and hold it "
         "from below; let go once you feel that it is carried. Press Enter to begin.\n",
         command.options.known_mass);
   } else {
-    std::printf(
+    scene::print_format(
         "Put the tip into the middle of the workspace, so that it stays there, and take your hand "
         "off. It will shake by some millimetres with at most %g N for %g s%s; %s. Press Enter to "
         "begin.\n",
@@ -114,13 +114,11 @@ driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& pa
                                   const std::vector<driver::TickRecord>& ticks, bool replace) {
   const auto file = scene::find_arm_file(chosen.path.string());
   if (!file) return file.error();
-  std::ostringstream text;
-  text << std::ifstream(*file).rdbuf();
   session::RecordingInfo info;
   info.scene = "identify";
   info.arm = chosen.file.name;
   info.arm_file = file->string();
-  info.arm_text = text.str();
+  info.arm_text = scene::text_of(*file);
   info.device = chosen.name;
   info.clock = chosen.real_arm ? "wall" : "virtual";
   info.program = scene::program_name();
@@ -134,9 +132,10 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const Identifi
          bool writes, const std::atomic<bool>& stop) {
   const bool bad = !found.against.empty();
   const int done = bad ? kExitUnmet : kExitDone;
-  for (const std::string& sentence : found.against) std::printf("BAD FIT  %s\n", sentence.c_str());
+  for (const std::string& sentence : found.against)
+    scene::print_format("BAD FIT  %s\n", sentence.c_str());
   const auto left = [done](const char* why) {
-    std::printf("Nothing was written%s\n", why);
+    scene::print_format("Nothing was written%s\n", why);
     return done;
   };
   if (bad && !command.write_bad_fit) return left(".");
@@ -152,7 +151,8 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const Identifi
   const auto written =
       write_identified(*file, command.output, found, {.date = today(), .arm = chosen.name});
   if (!written) return complain(written.error(), kExitTrouble);
-  std::printf("Written to %s%s.\n", command.output.c_str(), bad ? ", each mark with BAD FIT" : "");
+  scene::print_format("Written to %s%s.\n", command.output.c_str(),
+                      bad ? ", each mark with BAD FIT" : "");
   return done;
 }
 
@@ -160,7 +160,7 @@ int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
-  for (const std::string& sentence : chosen->told) std::printf("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
     return complain({"Identifying pushes the arm by itself, and this arm, with this arm file, has "
                      "not passed its feel check. Run `thimble feel-check` first."},
@@ -199,9 +199,9 @@ int identify_arm(IdentifyCommand command) {
                                        command.options.force_most);
     if (!bench) return bench;
     keys.emplace();
-    std::printf("The tip %s; %s.\n",
-                loaded ? "with the known mass is shaken" : "is shaken by small forces",
-                how_to_stop(keys->listens()));
+    scene::print_format("The tip %s; %s.\n",
+                        loaded ? "with the known mass is shaken" : "is shaken by small forces",
+                        how_to_stop(keys->listens()));
     std::fflush(stdout);
     return bench;
   };
@@ -215,17 +215,17 @@ int identify_arm(IdentifyCommand command) {
   const bool by_key = keys && keys->pressed();
   keys.reset();
   if (stop.load()) {
-    std::printf("%s; nothing was kept.\n", by_key ? "Stopped by a key" : "Stopped");
+    scene::print_format("%s; nothing was kept.\n", by_key ? "Stopped by a key" : "Stopped");
     return kExitInterrupted;
   }
   if (!ticks.empty()) {
     if (auto written = write_motion(*chosen, command.record, ticks, command.force); !written) {
       return complain(written.error(), kExitTrouble);
     }
-    std::printf("The motion was recorded in %s.\n", command.record.c_str());
+    scene::print_format("The motion was recorded in %s.\n", command.record.c_str());
   }
   if (!found) return complain(found.error(), kExitFault);
-  std::printf("%s", constants_table(*found, chosen->file).c_str());
+  scene::print_format("%s", constants_table(*found, chosen->file).c_str());
   if (!command.report.empty()) {
     const auto written = write_identify_page(*found, chosen->file,
                                              {.arm = chosen->file.name,
@@ -239,7 +239,7 @@ int identify_arm(IdentifyCommand command) {
                                               .known_mass = command.options.known_mass},
                                              command.report);
     if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Report in %s/index.html.\n", command.report.c_str());
+    scene::print_format("Report in %s/index.html.\n", command.report.c_str());
   }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
                        found->against.empty() ? "" : ", and its fit is bad");

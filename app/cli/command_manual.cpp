@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "log/printed_text.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::app {
@@ -26,11 +27,11 @@ void print_options(const CLI::App& command) {
     if (option->get_group().empty()) continue;
     const std::string name =
         option->get_positional() ? option->get_name(true) : option->get_name(false, true);
-    std::printf(".TP\n\\fB%s\\fR", roff(name).c_str());
+    scene::print_format(".TP\n\\fB%s\\fR", roff(name).c_str());
     if (option->get_items_expected_max() > 0 && !option->get_positional()) {
-      std::printf(" \\fI%s\\fR", roff(option->get_type_name()).c_str());
+      scene::print_format(" \\fI%s\\fR", roff(option->get_type_name()).c_str());
     }
-    std::printf("\n%s\n", roff(option->get_description()).c_str());
+    scene::print_format("\n%s\n", roff(option->get_description()).c_str());
   }
 }
 
@@ -38,7 +39,8 @@ void print_commands(const CLI::App& above, const std::string& prefix) {
   for (const CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
     if (command->get_group().empty()) continue;  // not for people
     const std::string name = prefix + command->get_name();
-    std::printf(".SS %s\n%s\n", roff(name).c_str(), roff(command->get_description()).c_str());
+    scene::print_format(".SS %s\n%s\n", roff(name).c_str(),
+                        roff(command->get_description()).c_str());
     print_options(*command);
     print_commands(*command, name + " ");
   }
@@ -46,17 +48,19 @@ void print_commands(const CLI::App& above, const std::string& prefix) {
 
 /// Prints the manual page of the whole program, so that it says what `--help` says.
 void print_manual(const CLI::App& program) {
-  std::printf(".TH THIMBLE 1 \"\" \"thimble %s\" \"User Commands\"\n",
-              std::string(scene::build_info().version).c_str());
-  std::printf(".SH NAME\nthimble \\- touch virtual objects by a force\\-feedback arm\n");
-  std::printf(".SH SYNOPSIS\n.B thimble\n.I COMMAND\n.RI [ OPTIONS ]\n");
-  std::printf(".SH DESCRIPTION\n%s\n", roff(program.get_description()).c_str());
-  std::printf("Scenes and arms that came with it lie in the folder share/thimble beside the\n");
-  std::printf("folder of the program.\n.SH OPTIONS\nOf the program and of every command:\n");
+  scene::print_format(".TH THIMBLE 1 \"\" \"thimble %s\" \"User Commands\"\n",
+                      std::string(scene::build_info().version).c_str());
+  scene::print_format(".SH NAME\nthimble \\- touch virtual objects by a force\\-feedback arm\n");
+  scene::print_format(".SH SYNOPSIS\n.B thimble\n.I COMMAND\n.RI [ OPTIONS ]\n");
+  scene::print_format(".SH DESCRIPTION\n%s\n", roff(program.get_description()).c_str());
+  scene::print_format(
+      "Scenes and arms that came with it lie in the folder share/thimble beside the\n");
+  scene::print_format(
+      "folder of the program.\n.SH OPTIONS\nOf the program and of every command:\n");
   print_options(program);
-  std::printf(".SH COMMANDS\n");
+  scene::print_format(".SH COMMANDS\n");
   print_commands(program, "");
-  std::printf(".SH NOTES\n.nf\n%s\n.fi\n", roff(program.get_footer()).c_str());
+  scene::print_format(".SH NOTES\n.nf\n%s\n.fi\n", roff(program.get_footer()).c_str());
 }
 
 }  // namespace

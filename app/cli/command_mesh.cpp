@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/file/off_text.h"
 #include "mesh/repair/orient_mesh.h"
@@ -35,17 +36,18 @@ struct MeshOptions {
 
 void print(const render::MeshFindings& found) {
   const Eigen::Vector3d size = found.box_max - found.box_min;
-  std::printf("  triangles   %zu\n  vertices    %zu", found.triangles, found.vertices);
-  if (found.unused_vertices > 0) std::printf(" (%zu unused)", found.unused_vertices);
-  std::printf("\n  edges       %zu, %.4g to %.4g long, %.4g on average\n", found.edges,
-              found.edge_min, found.edge_max, found.edge_mean);
-  std::printf("  components  %zu, Euler characteristic %ld\n", found.components,
-              found.euler_characteristic);
-  std::printf("  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
-              found.box_min.x(), found.box_min.y(), found.box_min.z(), found.box_max.x(),
-              found.box_max.y(), found.box_max.z(), size.x(), size.y(), size.z());
-  std::printf("  area        %.4g\n", found.area);
-  if (found.touchable()) std::printf("  volume      %.4g\n", found.volume);
+  scene::print_format("  triangles   %zu\n  vertices    %zu", found.triangles, found.vertices);
+  if (found.unused_vertices > 0) scene::print_format(" (%zu unused)", found.unused_vertices);
+  scene::print_format("\n  edges       %zu, %.4g to %.4g long, %.4g on average\n", found.edges,
+                      found.edge_min, found.edge_max, found.edge_mean);
+  scene::print_format("  components  %zu, Euler characteristic %ld\n", found.components,
+                      found.euler_characteristic);
+  scene::print_format(
+      "  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
+      found.box_min.x(), found.box_min.y(), found.box_min.z(), found.box_max.x(), found.box_max.y(),
+      found.box_max.z(), size.x(), size.y(), size.z());
+  scene::print_format("  area        %.4g\n", found.area);
+  if (found.touchable()) scene::print_format("  volume      %.4g\n", found.volume);
 }
 
 // From which size on a mesh without a unit is likely to count in mm: what `run` reports for the
@@ -55,23 +57,23 @@ constexpr double kLargeForArms = scene::kReachesReported * 0.2;
 // Prints which parts of a mesh overlap or touch.
 void print_touching(const render::TriangleMesh& mesh) {
   const std::string parts = render::describe(render::find_touching_parts(mesh));
-  if (!parts.empty()) std::printf("  note        %s\n", parts.c_str());
+  if (!parts.empty()) scene::print_format("  note        %s\n", parts.c_str());
 }
 
 // Returns whether a mesh can be touched, and if not, why.
 int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
   if (found.touchable()) {
-    std::printf("The mesh is closed and wound alike: it can be touched.\n");
+    scene::print_format("The mesh is closed and wound alike: it can be touched.\n");
     return kExitDone;
   }
   const auto contact = render::ContactMesh::build(mesh);
-  std::printf(contact ? "The mesh can be touched; in a scene it is put right:\n"
-                      : "The mesh cannot be touched:\n");
+  scene::print_format(contact ? "The mesh can be touched; in a scene it is put right:\n"
+                              : "The mesh cannot be touched:\n");
   for (const render::MeshFault& fault : found.faults) {
-    std::printf("  - %s\n", render::describe(fault).c_str());
+    scene::print_format("  - %s\n", render::describe(fault).c_str());
   }
   if (contact) {
-    std::printf("  %s\n", render::describe(contact->orientation()).c_str());
+    scene::print_format("  %s\n", render::describe(contact->orientation()).c_str());
     return kExitDone;
   }
   // A surface with one side only shows no other fault than edges wound two ways.
@@ -80,13 +82,13 @@ int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& f
         return fault.kind == render::MeshFault::Kind::kFlippedEdge ||
                fault.kind == render::MeshFault::Kind::kInsideOut;
       });
-  if (only_winding) std::printf("  %s\n", contact.error().message.c_str());
+  if (only_winding) scene::print_format("  %s\n", contact.error().message.c_str());
   return kExitBadInput;
 }
 
 void print(const std::vector<render::RepairChange>& changes) {
   for (const render::RepairChange& change : changes) {
-    std::printf("  - %s\n", render::describe(change).c_str());
+    scene::print_format("  - %s\n", render::describe(change).c_str());
   }
 }
 
@@ -102,11 +104,11 @@ std::string thicken(render::TriangleMesh& mesh, double thickness) {
 void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
   if (repaired.mesh.triangles.empty()) {
-    std::printf("No triangle of it has an area: there is nothing to touch.\n");
+    scene::print_format("No triangle of it has an area: there is nothing to touch.\n");
     return;
   }
   if (render::ContactMesh::build(repaired.mesh)) {
-    std::printf(
+    scene::print_format(
         "A repair makes it touchable: --repair OUT.off here, or repair: true in a scene.\n");
     print(repaired.changes);
     return;
@@ -114,16 +116,17 @@ void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& f
   const double thickness = 0.01 * (found.box_max - found.box_min).maxCoeff();
   const std::string sheets = thicken(repaired.mesh, thickness);
   if (!render::ContactMesh::build(repaired.mesh)) {
-    std::printf("Neither a repair nor sheets make it touchable: mend it in a mesh editor.\n");
+    scene::print_format(
+        "Neither a repair nor sheets make it touchable: mend it in a mesh editor.\n");
     return;
   }
-  std::printf(
+  scene::print_format(
       "What is open can be touched as a sheet: --repair OUT.off --thicken %.1g here, or repair: "
       "true "
       "and open: {thickness: 0.001} in a scene.\n",
       thickness);
   print(repaired.changes);
-  std::printf("  - %s\n", sheets.c_str());
+  scene::print_format("  - %s\n", sheets.c_str());
 }
 
 int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
@@ -136,10 +139,10 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
   if (auto saved = output::write_file(options.repair, output::kMesh, text); !saved) {
     return complain(saved.error(), kExitTrouble);
   }
-  std::printf("Repaired: %s\n", options.repair.c_str());
-  if (repaired.changes.empty() && sheets.empty()) std::printf("  Nothing was changed.\n");
+  scene::print_format("Repaired: %s\n", options.repair.c_str());
+  if (repaired.changes.empty() && sheets.empty()) scene::print_format("  Nothing was changed.\n");
   print(repaired.changes);
-  if (!sheets.empty()) std::printf("  - %s\n", sheets.c_str());
+  if (!sheets.empty()) scene::print_format("  - %s\n", sheets.c_str());
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
   print(found);
   print_touching(repaired.mesh);
@@ -167,25 +170,25 @@ int tell_pages(const MeshOptions& options) {
   low = pages->lattice().origin + step * low;
   high = pages->lattice().origin + step * high;
   const Eigen::Vector3d size = high - low;
-  std::printf(
+  scene::print_format(
       "%s (a mesh in pages, lengths in m)\n  triangles   %d\n  pages       %zu of up to %d\n",
       options.file.c_str(), pages->triangle_count(), pages->boxes().size(), render::kPageTriangles);
-  std::printf("  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n",
-              low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), size.x(), size.y(),
-              size.z());
+  scene::print_format(
+      "  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n", low.x(),
+      low.y(), low.z(), high.x(), high.y(), high.z(), size.x(), size.y(), size.z());
   std::vector<render::PackedTriangle> records(render::kPageTriangles);
   std::size_t damaged = 0;
   for (std::size_t page = 0; page < pages->boxes().size(); ++page) {
     damaged += pages->read_page(static_cast<std::int32_t>(page), records) == 0;
   }
   if (damaged > 0) {
-    std::printf(
+    scene::print_format(
         "%zu pages are damaged: they would be holes that nothing is felt of. Write the file "
         "again.\n",
         damaged);
     return kExitBadInput;
   }
-  std::printf("All pages are whole: it can be touched, with few of them in memory.\n");
+  scene::print_format("All pages are whole: it can be touched, with few of them in memory.\n");
   return kExitDone;
 }
 
@@ -205,16 +208,17 @@ int tell_mesh(const MeshOptions& options) {
   const auto mesh = render::load_mesh(options.file, &info);
   if (!mesh) return complain(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
-  std::printf("%s (lengths in the file's unit)\n", options.file.c_str());
+  scene::print_format("%s (lengths in the file's unit)\n", options.file.c_str());
   print(found);
-  if (info.unit) std::printf("  unit        %g m\n", *info.unit);
-  if (info.up != 0) std::printf("  up          %c\n", info.up);
+  if (info.unit) scene::print_format("  unit        %g m\n", *info.unit);
+  if (info.up != 0) scene::print_format("  up          %c\n", info.up);
   const double side = (found.box_max - found.box_min).maxCoeff();
   if (!info.unit && side > kLargeForArms) {
-    std::printf("  size        %.4g m large in a scene without scale or size; %s\n", side,
-                scene::unit_advice(info.kind).c_str());
+    scene::print_format("  size        %.4g m large in a scene without scale or size; %s\n", side,
+                        scene::unit_advice(info.kind).c_str());
   }
-  for (const std::string& note : info.notes) std::printf("  note        %s\n", note.c_str());
+  for (const std::string& note : info.notes)
+    scene::print_format("  note        %s\n", note.c_str());
   print_touching(*mesh);
   if (!options.picture.empty()) {
     const std::string title = std::filesystem::path(options.file).filename().string();
@@ -222,7 +226,7 @@ int tell_mesh(const MeshOptions& options) {
         !drawn) {
       return complain(drawn.error(), kExitTrouble);
     }
-    std::printf("Picture: %s\n", options.picture.c_str());
+    scene::print_format("Picture: %s\n", options.picture.c_str());
   }
   const int verdict = tell_verdict(*mesh, found);
   if (!options.repair.empty()) return repair(*mesh, options);

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "output/output_file.h"
 #include "page/page_file.h"
 #include "studies/resident_memory.h"
@@ -31,10 +32,10 @@ int generate_mesh(const GenerateOptions& options) {
     return complain(file->named(written.error()), kExitTrouble);
   }
   if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
-  std::printf("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
-              options.out.c_str(), grid.triangle_count(),
-              grid.triangle_count() / render::kPageTriangles,
-              static_cast<double>(resident_memory().most) / (1 << 20));
+  scene::print_format("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
+                      options.out.c_str(), grid.triangle_count(),
+                      grid.triangle_count() / render::kPageTriangles,
+                      static_cast<double>(resident_memory().most) / (1 << 20));
   return kExitDone;
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "log/printed_text.h"
 #include "mesh/contact_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
@@ -36,8 +37,9 @@ int page_mesh(const PageOptions& options) {
     return complain(file->named(written.error()), kExitTrouble);
   }
   if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
-  std::printf("%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
-              (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
+  scene::print_format(
+      "%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
+      (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
   return kExitDone;
 }
 

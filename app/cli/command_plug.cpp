@@ -22,6 +22,7 @@
 #include "cli/usage/usage_error.h"
 #include "interrupt.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "output/output_file.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "thimble/device_sim/usb/usb_fault.h"
@@ -65,7 +66,8 @@ class KernelAttachment {
     thread_ = std::thread([this] {
       const auto attached = usb::attach_to_kernel(port_, bus_id_);
       if (attached) {
-        std::printf("Attached to this kernel, port %d of its virtual USB host.\n", *attached);
+        scene::print_format("Attached to this kernel, port %d of its virtual USB host.\n",
+                            *attached);
       } else {
         scene::logger().error("{}", attached.error().message);
         failed_.store(true);
@@ -137,15 +139,16 @@ usb::HandMotion motion_of(const std::string& name) {
 }
 
 void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) {
-  std::printf("The simulated arm '%s' waits on port %u as USB device %s.\n", options.arm.c_str(),
-              static_cast<unsigned>(server.port()), server.bus_id().c_str());
+  scene::print_format("The simulated arm '%s' waits on port %u as USB device %s.\n",
+                      options.arm.c_str(), static_cast<unsigned>(server.port()),
+                      server.bus_id().c_str());
   if (!options.attach) {
-    std::printf(
+    scene::print_format(
         "Plug it in, as root: modprobe vhci-hcd; usbip --tcp-port %u attach -r 127.0.0.1 "
         "-b %s\n",
         static_cast<unsigned>(server.port()), server.bus_id().c_str());
   }
-  std::printf("Ctrl-C unplugs it.\n");
+  scene::print_format("Ctrl-C unplugs it.\n");
   std::fflush(stdout);
 }
 
@@ -220,7 +223,7 @@ int plug(const PlugOptions& options) {
     if (interrupted.load() || attachment.failed()) stop.store(true);
   });
   const usb::UsbipCounters counters = (*server)->counters();
-  std::printf(
+  scene::print_format(
       "Unplugged. Transfers: %llu asked, %llu done, %llu stalled, %llu too long, %llu taken "
       "back. Frames left out: %llu.\n",
       static_cast<unsigned long long>(counters.submitted),
@@ -232,8 +235,8 @@ int plug(const PlugOptions& options) {
   for (std::size_t kind = 0; kind < usb::kFaultKinds; ++kind) {
     const auto fault = static_cast<usb::FaultKind>(kind);
     if (device.hits(fault) == 0) continue;
-    std::printf("Fault %s hit %llu packets.\n", std::string(usb::name(fault)).c_str(),
-                static_cast<unsigned long long>(device.hits(fault)));
+    scene::print_format("Fault %s hit %llu packets.\n", std::string(usb::name(fault)).c_str(),
+                        static_cast<unsigned long long>(device.hits(fault)));
   }
   return attachment.failed() ? kExitTrouble : kExitDone;
 }

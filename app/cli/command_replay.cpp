@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -11,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "print.h"
 #include "recording/recording_layout.h"
@@ -18,6 +18,7 @@
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
 #include "report/page/touch_page.h"
+#include "system/regular_file.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::app {
@@ -40,24 +41,26 @@ struct ReplayOptions {
 
 /// Tells a recording from a text: by the first byte of an HDF5 file [HDF5 file format, superblock].
 bool is_recording(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return !stream || stream.get() == 0x89;
+  const std::string first = driver::read_head(file, 1);
+  return first.empty() || first.front() == '\x89';
 }
 
 void print_comparison(const std::string& file, const session::TrajectoryComparison& compared,
                       const std::string& scene, bool forces) {
-  std::printf("%s: %zu ticks of %s along the trajectory, %zu of them touching; force %.4g N (rms)",
-              file.c_str(), compared.ticks, scene.c_str(), compared.touching, compared.force_rms);
+  scene::print_format(
+      "%s: %zu ticks of %s along the trajectory, %zu of them touching; force %.4g N (rms)",
+      file.c_str(), compared.ticks, scene.c_str(), compared.touching, compared.force_rms);
   if (!forces) {
-    std::printf(".\n");
+    scene::print_format(".\n");
     return;
   }
-  std::printf(", recorded %.4g N.\n", compared.recorded_rms);
-  std::printf("Force error %.4g N (rms)", compared.error_rms);
+  scene::print_format(", recorded %.4g N.\n", compared.recorded_rms);
+  scene::print_format("Force error %.4g N (rms)", compared.error_rms);
   if (compared.recorded_rms > 0) {
-    std::printf(", %.3g %% of the recorded", 100 * compared.error_rms / compared.recorded_rms);
+    scene::print_format(", %.3g %% of the recorded",
+                        100 * compared.error_rms / compared.recorded_rms);
   }
-  std::printf(
+  scene::print_format(
       "; direction within %.3g degrees in 99 of 100 of %zu ticks; contact differs in %zu.\n",
       compared.direction_p99 * 180 / std::numbers::pi, compared.directions,
       compared.contact_disagrees);
@@ -105,7 +108,8 @@ int replay_a_bag(const ReplayOptions& options) {
   if (!replayed) return complain(replayed.error(), kExitBadInput);
   const session::TrajectoryReplay& replay = replayed->replay;
   print_comparison(file, replay.compared, replay.felt.info.scene, replayed->has_forces);
-  if (replayed->has_forces) std::printf("Largest force error %.3g N.\n", replayed->error_max);
+  if (replayed->has_forces)
+    scene::print_format("Largest force error %.3g N.\n", replayed->error_max);
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(replay.felt, options.csv); !written) {
       return complain(written.error(), kExitTrouble);
@@ -131,12 +135,19 @@ void print_replay(const std::string& file, const session::Replay& replay) {
   }
 }
 
-/// Says what else may have changed the forces where scene, arm and program are the recording's own.
-void print_reason(const session::Recording& recording, const std::string& scene) {
-  if (!session::check_repeatable(recording, scene)) return;
-  session::print(stdout,
-                 "Scene, arm and program are those of the recording. A recording does not hold "
-                 "what was turned or commanded from outside: were knobs turned in that run?\n");
+/// Prints why forces differ from the recorded ones. Returns false if there is no reason for it:
+/// then the run cannot be repeated although it should.
+bool print_reason(const session::Recording& recording, const std::string& scene) {
+  const auto repeatable = session::check_repeatable(recording, scene);
+  if (!repeatable) {
+    session::print(stdout, "They differ because {}\n", repeatable.error().message);
+    return true;
+  }
+  session::print(
+      stdout,
+      "Scene, options, arm and program are those of the recording, so every force should "
+      "be the recorded one. Please report this with the recording.\n");
+  return false;
 }
 
 int replay_recordings(const ReplayOptions& options) {
@@ -172,11 +183,13 @@ int replay_recordings(const ReplayOptions& options) {
   auto replays =
       session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);
   if (!replays) return complain(replays.error(), kExitBadInput);
-  bool differs = false;
+  bool differs = false, unexplained = false;
   for (std::size_t i = 0; i < replays->size(); ++i) {
     session::Replay& replay = (*replays)[i];
     print_replay(options.files[i], replay);
-    if (replay.compared.differing > 0) print_reason(recordings[i], options.scene);
+    if (replay.compared.differing > 0 && !print_reason(recordings[i], options.scene)) {
+      unexplained = true;
+    }
     differs = differs || replay.compared.differing > 0;
     if (options.record.empty()) continue;
     replay.felt.info.device = "replay of " + options.files[i];
@@ -194,7 +207,7 @@ int replay_recordings(const ReplayOptions& options) {
     }
     session::print(stdout, "Page that plays it: {}\n", options.page);
   }
-  return options.verify && differs ? kExitTrouble : kExitDone;
+  return unexplained || (options.verify && differs) ? kExitTrouble : kExitDone;
 }
 
 }  // namespace

@@ -225,6 +225,9 @@ ExitCode run_one(RunCourse& course, session::Session& session,
     if (const auto ended = session.end_recording(); !ended) complain(ended.error(), kExitTrouble);
     return code;
   };
+  for (const std::string& choice : session.setup().quality_choices()) {
+    session::print(stdout, "{}: {}\n", options.quality, choice);
+  }
   tell(session.told());
   for (const std::string& warning : stability_warnings(session.scene())) {
     scene::logger().warn("{} See thimble tune.", warning);

@@ -13,7 +13,9 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "files/scene_inputs.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
+#include "print.h"
 #include "thimble/scene/scene_file.h"
 #include "view/gl/animated_picture_file.h"
 #include "view/gl/film_file.h"
@@ -92,10 +94,11 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
   if (!written) return complain(written.error(), kExitTrouble);
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(options.animate, unknown);
-  fmt::print("Animated picture: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n", options.animate,
-             film ? "by ffmpeg" : "animated PNG", pictures.size(), pictures.front().width,
-             pictures.front().height, frame_time * static_cast<double>(pictures.size()),
-             unknown ? std::string() : fmt::format(", {} kB", (bytes + 999) / 1000));
+  session::print(stdout, "Animated picture: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n",
+                 options.animate, film ? "by ffmpeg" : "animated PNG", pictures.size(),
+                 pictures.front().width, pictures.front().height,
+                 frame_time * static_cast<double>(pictures.size()),
+                 unknown ? std::string() : fmt::format(", {} kB", (bytes + 999) / 1000));
   return kExitDone;
 }
 
@@ -191,7 +194,7 @@ int take_shot(const ShotOptions& options) {
         view::write_png(pictures.front(), options.out,
                         options.all_colours ? view::PngColours::kAll : view::PngColours::k256);
     if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Picture: %s\n", options.out.c_str());
+    scene::print_format("Picture: %s\n", options.out.c_str());
   }
   return animated ? write_animation(pictures, options) : kExitDone;
 }

@@ -11,6 +11,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "faces/ros2/ros_latency.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
@@ -64,12 +65,14 @@ int tune_scene(const TuneCommand& command) {
   // What is wrong with a mesh is wrong for its stiffness too.
   const auto objects = scene::SceneObjects::build(*scene);
   if (!objects) return complain(objects.error(), kExitBadInput);
-  for (const std::string& note : (*objects)->notes()) std::printf("Note      %s\n", note.c_str());
+  for (const std::string& note : (*objects)->notes())
+    scene::print_format("Note      %s\n", note.c_str());
   TuneOptions options{.period_spread = 1e-6 * command.spread_us};
   if (command.measure > 0) {
     options.period_spread = measured_spread(scene->rate, command.measure);
-    std::printf("Measured  periods of this computer spread by %.1f us (standard deviation).\n",
-                1e6 * options.period_spread);
+    scene::print_format(
+        "Measured  periods of this computer spread by %.1f us (standard deviation).\n",
+        1e6 * options.period_spread);
   }
   if (command.topics) {
     constexpr double kDuration = 5;  // s [chosen]
@@ -81,7 +84,7 @@ int tune_scene(const TuneCommand& command) {
   }
   const auto tuned = tune(*scene, options);
   if (!tuned) return complain(tuned.error(), kExitBadInput);
-  std::printf("%s\n%s", tuned->text.c_str(), figure_table(tuned->figures).c_str());
+  scene::print_format("%s\n%s", tuned->text.c_str(), figure_table(tuned->figures).c_str());
   if (!command.folder.empty()) {
     std::error_code status;
     std::filesystem::create_directories(command.folder, status);
@@ -89,11 +92,11 @@ int tune_scene(const TuneCommand& command) {
     if (const auto written = write_figures(tuned->figures, file); !written) {
       return complain(written.error(), kExitTrouble);
     }
-    std::printf("Written to %s.\n", file.c_str());
+    scene::print_format("Written to %s.\n", file.c_str());
   }
   const std::string unmet = unmet_line(tuned->figures);
   if (unmet.empty()) return kExitDone;
-  std::printf("%s\n", unmet.c_str());
+  scene::print_format("%s\n", unmet.c_str());
   return kExitUnmet;
 }
 

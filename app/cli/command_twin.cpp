@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/session/recording.h"
@@ -38,28 +39,32 @@ int compare(const TwinCommand& command) {
   if (!file) return complain(file.error(), kExitBadInput);
   const auto result = compare_twin(*recording, *file, command.options);
   if (!result) return complain(result.error(), kExitBadInput);
-  std::printf("Recording: %s, of the arm %s (%s). Twin: the simulated arm of %s.\n",
-              command.recording.c_str(), recording->info.arm.c_str(),
-              recording->info.device.c_str(), command.arm_file.c_str());
-  for (const std::string& sentence : result->comparison.told) std::printf("%s\n", sentence.c_str());
-  std::printf("%s", twin_table(result->comparison).c_str());
+  scene::print_format("Recording: %s, of the arm %s (%s). Twin: the simulated arm of %s.\n",
+                      command.recording.c_str(), recording->info.arm.c_str(),
+                      recording->info.device.c_str(), command.arm_file.c_str());
+  for (const std::string& sentence : result->comparison.told)
+    scene::print_format("%s\n", sentence.c_str());
+  scene::print_format("%s", twin_table(result->comparison).c_str());
   auto figures = twin_figures(result->comparison, command.fit_least);
-  std::printf("\nForces, RMS over pieces of 60 ms:\n%s", force_table(result->forces).c_str());
+  scene::print_format("\nForces, RMS over pieces of 60 ms:\n%s",
+                      force_table(result->forces).c_str());
   for (Figure& figure : force_figures(result->forces)) figures.push_back(std::move(figure));
   if (const auto foretold = twin_prediction(*file)) {
-    std::printf("\nWhat the twin foretells of its arm:\n%s", prediction_text(*foretold).c_str());
+    scene::print_format("\nWhat the twin foretells of its arm:\n%s",
+                        prediction_text(*foretold).c_str());
     for (Figure& figure : prediction_figures(*foretold)) figures.push_back(std::move(figure));
   } else {
-    std::printf("\nNo wall and no bounce is foretold: %s\n", foretold.error().message.c_str());
+    scene::print_format("\nNo wall and no bounce is foretold: %s\n",
+                        foretold.error().message.c_str());
   }
   if (!command.output.empty()) {
     const auto written = write_twin(*result, figures, file->name, command.output);
     if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Figures and pictures are in %s.\n", command.output.c_str());
+    scene::print_format("Figures and pictures are in %s.\n", command.output.c_str());
   }
   const std::string unmet = unmet_line(figures);
   if (unmet.empty()) return kExitDone;
-  std::printf("%s\n", unmet.c_str());
+  scene::print_format("%s\n", unmet.c_str());
   return kExitUnmet;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "interrupt.h"
+#include "log/printed_text.h"
 #include "report/page/page_libraries.h"
 #include "share/knob_order.h"
 #include "share/run_attachment.h"
@@ -60,20 +61,21 @@ int list_runs() {
   for (const session::RunningRun& run : runs) {
     const auto reader = session::SharedReader::attach(run.name);
     if (!reader) {
-      std::printf("%s: %s\n", run.name.c_str(), reader.error().message.c_str());
+      scene::print_format("%s: %s\n", run.name.c_str(), reader.error().message.c_str());
       continue;
     }
     const session::SharedScene& scene = (*reader)->scene();
-    std::printf("%s: %s, %s (%s), process %lld\n", run.name.c_str(), scene.name.c_str(),
-                scene.arm.name.c_str(), scene.arm.device.c_str(),
-                static_cast<long long>(scene.pid));
+    scene::print_format("%s: %s, %s (%s), process %lld\n", run.name.c_str(), scene.name.c_str(),
+                        scene.arm.name.c_str(), scene.arm.device.c_str(),
+                        static_cast<long long>(scene.pid));
     for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
       const session::SharedScene::Knob& knob = scene.knobs[i];
-      std::printf("    %s = %.4g %s (%.4g to %.4g)\n", knob.name.c_str(), (*reader)->knob(i),
-                  knob.unit.c_str(), knob.least, knob.most);
+      scene::print_format("    %s = %.4g %s (%.4g to %.4g)\n", knob.name.c_str(),
+                          (*reader)->knob(i), knob.unit.c_str(), knob.least, knob.most);
     }
   }
-  if (runs.empty()) std::printf("No run is shown; start one with `thimble run SCENE --view`.\n");
+  if (runs.empty())
+    scene::print_format("No run is shown; start one with `thimble run SCENE --view`.\n");
   return kExitDone;
 }
 
@@ -107,7 +109,7 @@ int save(const session::SharedReader& reader, const ViewOptions& options) {
   const auto saved =
       session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
   if (!saved) return complain(saved.error(), kExitBadInput);
-  std::printf("%s\n", saved->text().c_str());
+  scene::print_format("%s\n", saved->text().c_str());
   return kExitDone;
 }
 
@@ -150,18 +152,18 @@ void print_line(const session::SharedReader& reader) {
   const bool any = reader.newest(tick);
   const session::SharedReader::Counters counters = reader.counters();
   const double force = Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm();
-  std::printf("%s %s: ", reader.name().c_str(), session::name_of(reader.state()));
+  scene::print_format("%s %s: ", reader.name().c_str(), session::name_of(reader.state()));
   if (any) {
-    std::printf("%.3f s, force %.2f N, depth %.2f mm, ", 1e-9 * static_cast<double>(tick.time_ns),
-                force, 1e3 * tick.depth);
+    scene::print_format("%.3f s, force %.2f N, depth %.2f mm, ",
+                        1e-9 * static_cast<double>(tick.time_ns), force, 1e3 * tick.depth);
   }
-  std::printf("%llu ticks, %llu missed", static_cast<unsigned long long>(counters.ticks),
-              static_cast<unsigned long long>(counters.missed));
+  scene::print_format("%llu ticks, %llu missed", static_cast<unsigned long long>(counters.ticks),
+                      static_cast<unsigned long long>(counters.missed));
   if (counters.paused > 0) {
-    std::printf(", %llu paused", static_cast<unsigned long long>(counters.paused));
+    scene::print_format(", %llu paused", static_cast<unsigned long long>(counters.paused));
   }
-  std::printf("%s%s\n", counters.recording ? ", recording to " : "",
-              counters.recording ? reader.recording_path().c_str() : "");
+  scene::print_format("%s%s\n", counters.recording ? ", recording to " : "",
+                      counters.recording ? reader.recording_path().c_str() : "");
   std::fflush(stdout);
 }
 
@@ -175,7 +177,8 @@ int tell(const ViewOptions& options) {
   while (!stop.load()) {
     if (options.seconds > 0 && std::chrono::steady_clock::now() >= end) return kExitDone;
     if (runs.step()) {
-      std::printf("Watching %s: %s\n", runs.name().c_str(), runs.reader()->scene().name.c_str());
+      scene::print_format("Watching %s: %s\n", runs.name().c_str(),
+                          runs.reader()->scene().name.c_str());
       told.clear();
     }
     std::string notice = runs.notice();
@@ -188,7 +191,7 @@ int tell(const ViewOptions& options) {
       print_line(*runs.reader());
       next_line = now + std::chrono::seconds(1);
     }
-    if (!notice.empty() && notice != told) std::printf("%s\n", notice.c_str());
+    if (!notice.empty() && notice != told) scene::print_format("%s\n", notice.c_str());
     std::fflush(stdout);
     told = notice;
     if (runs.over() && !options.follow) return kExitDone;
@@ -207,7 +210,7 @@ int serve(const ViewOptions& options) {
   const session::SharedReader* watched = nullptr;
   auto server = WebServer::listen(runs, options.port);
   if (!server) return complain(server.error(), kExitBadInput);
-  std::printf("Open %s\n", (*server)->address().c_str());
+  scene::print_format("Open %s\n", (*server)->address().c_str());
   std::string told;
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
@@ -216,10 +219,10 @@ int serve(const ViewOptions& options) {
     (*server)->step();
     if (runs.reader() != watched) {
       watched = runs.reader();
-      std::printf("Watching %s: %s\n", runs.name().c_str(), watched->scene().name.c_str());
+      scene::print_format("Watching %s: %s\n", runs.name().c_str(), watched->scene().name.c_str());
     }
     const std::string notice = runs.notice();
-    if (!notice.empty() && notice != told) std::printf("%s\n", notice.c_str());
+    if (!notice.empty() && notice != told) scene::print_format("%s\n", notice.c_str());
     std::fflush(stdout);
     told = notice;
     const bool late = options.seconds > 0 && std::chrono::steady_clock::now() >= end;

@@ -1,8 +1,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <string>
 
 #include "cli/commands.h"
@@ -11,7 +13,9 @@
 #include "cli/log_options.h"
 #include "cli/usage/usage_error.h"
 #include "interrupt.h"
+#include "log/console.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "output/standard_streams.h"
 #include "thimble/scene/build_info.h"
 
@@ -61,13 +65,15 @@ int run(int argc, char** argv) {
   }
   thimble::app::check_numbers(app);
   if (argc <= 1) {
-    std::printf("%s", app.help().c_str());
+    thimble::scene::print_format("%s", app.help().c_str());
     return thimble::app::kExitDone;
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& stop) {  // --help, --version, --list
-    app.exit(stop);
+    std::ostringstream out, wrong;
+    app.exit(stop, out, wrong);
+    thimble::scene::write_text(stdout, out.str());
     return thimble::app::kExitDone;
   } catch (const CLI::ParseError& error) {
     return thimble::app::complain({thimble::app::usage_error(app, error)},

@@ -5,10 +5,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "log/logger.h"
+#include "system/regular_file.h"
 
 namespace thimble::app {
 namespace {
@@ -73,11 +74,13 @@ bool obey(Plugged& plugged, const std::string& line) {
 }
 
 bool obey_file(Plugged& plugged, const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
-    scene::logger().error("cannot read the fault script {}.", path);
+  constexpr std::uint64_t kMaxBytes = 4'000'000;
+  auto text = driver::read_file(path, kMaxBytes);
+  if (!text) {
+    scene::logger().error("fault script {}: {}", path, text.error().message);
     return false;
   }
+  std::istringstream file(std::move(text).value());
   for (std::string line; std::getline(file, line);) {
     if (!obey(plugged, line)) return false;
   }

@@ -94,8 +94,7 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.record = options.record;
   asked.overwrite = options.overwrite;
   asked.meshes = options.meshes;
-  asked.rate_factor = scene::rate_factor_of(*quality);
-  asked.adjust = [quality](scene::Scene& scene) { scene::apply_quality(*quality, scene); };
+  asked.quality = options.quality;
   return asked;
 }
 

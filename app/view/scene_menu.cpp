@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "files/edit_scene.h"
+#include "text_file.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::app::view {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 bool is_scene(const fs::path& file) {
   try {
-    const YAML::Node node = YAML::LoadFile(file.string());
+    const YAML::Node node = YAML::Load(scene::text_of(file));
     return node.IsMap() && node["objects"] && (node["hand"] || node["arms"]);
   } catch (const YAML::Exception&) {
     return true;  // half written, say: whoever chooses it is told what is wrong with it

@@ -79,7 +79,7 @@ upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk
     file = $0; sub(/:.*/, "", file)
     header = $0; sub(/^[^"]*"/, "", header); sub(/".*/, "", header)
     if (header ~ /^thimble\// && header !~ /^thimble\/render\//) next
-    if (header ~ /^math\//) next  # below all layers
+    if (header ~ /^(math|system)\//) next  # below all layers
     from = layer(file); to = layer(header)
     if (from != to && from != "build" && !((from, to) in may)) print file ": " from " must not know " to " (" header ")"
   }')

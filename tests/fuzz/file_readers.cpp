@@ -17,7 +17,6 @@
 #include "mesh/repair/touching_parts.h"
 #include "page/checksum.h"
 #include "page/page_file.h"
-#include "recording/recording_file.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
@@ -214,42 +213,21 @@ bool read_pages(Bytes bytes) {
   return true;
 }
 
-/// Makes a recording of eight ticks whose bytes are all the same, of which the last may be missing;
-/// cut off, as a killed run leaves it.
-std::vector<std::byte> recording_of(int byte, bool whole) {
-  std::vector<driver::TickRecord> ticks(8);
-  std::memset(static_cast<void*>(ticks.data()), byte, ticks.size() * sizeof ticks[0]);
+/// Makes a recording of eight ticks.
+std::vector<std::byte> sound_recording() {
+  const std::vector<driver::TickRecord> ticks(8);
   session::RecordingInfo info;
   info.scene = "fuzz";
   info.rate = 1000;
   const std::filesystem::path path = folder() / "sound.h5";
-  auto file = session::RecordingFile::create(path, info, {.rows_max = ticks.size()}, true);
-  promise(static_cast<bool>(file), "a recording can be begun");
-  const auto some = std::span<const driver::TickRecord>(ticks).first(whole ? 8 : 7);
-  promise(static_cast<bool>(file->append(some)), "a recording can be written");
+  promise(static_cast<bool>(session::write_recording(path, info, ticks)),
+          "a recording can be written");
   return bytes_of(path);
 }
 
 bool read_recording(Bytes bytes) {
-  static const std::vector<std::byte> sound = recording_of(0, true);
-  // What is damaged is what we wrote: numbers of the ticks, and how many there are. What HDF5 keeps
-  // beside them it reads by itself, and release 1.10 does not survive all damage of that.
-  static const std::vector<std::size_t> places = [] {
-    const auto others = recording_of(0xff, true), shorter = recording_of(0, false);
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < sound.size(); ++i) {
-      if (sound[i] != others[i]) found.push_back(i);
-      if (sound[i] == shorter[i]) continue;
-      for (std::size_t k = 0; k < sizeof(std::uint64_t); ++k) found.push_back(i + k);
-    }
-    return found;
-  }();
-  std::vector<std::byte> data(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) data[i] = sound[places[i]];
-  data = damaged(std::move(data), bytes);
-  std::vector<std::byte> file = sound;
-  for (std::size_t i = 0; i < places.size(); ++i) file[places[i]] = data[i];
-  const auto recording = session::read_recording(store(file, "any.h5"));
+  static const std::vector<std::byte> sound = sound_recording();
+  const auto recording = session::read_recording(store(damaged(sound, bytes), "any.h5"));
   if (!told(recording)) return false;
   promise(recording->info.rate > 0, "a recording has a rate");
   for (const driver::TickRecord& tick : recording->ticks) {

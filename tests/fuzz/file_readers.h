@@ -20,8 +20,7 @@ inline constexpr std::array<std::string_view, 14> kFileKinds{
 ///
 /// A recording and a page file are given by what is damaged of a sound one: place (4 bytes, modulo
 /// the size of the file), count (1, at most 16), the bytes to put there, as often as there are
-/// bytes. Before the orders for pages stands a byte: odd, to put the checksums right again. Of a
-/// recording only what we write is damaged, not what the HDF5 library keeps beside it.
+/// bytes. Before the orders for pages stands a byte: odd, to put the checksums right again.
 bool read_any_file(std::string_view kind, std::span<const std::byte> bytes);
 
 }  // namespace thimble::fuzz

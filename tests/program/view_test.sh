@@ -134,13 +134,15 @@ wait $run
 expect 0 '^0$' echo $?
 expect 2 'leave --clock wall away' "$thimble" run ball.yaml --clock wall --speed 2
 
-# Knobs are not in a recording: who replays a run in which one was turned is told.
+# Turned knobs are in the recording, so that it repeats.
 "$thimble" run ball.yaml --clock paced --speed 0.1 --duration 2 --name "$me" --record turned.h5 >turned.log 2>&1 &
 run=$!
 for _ in $(seq 300); do "$thimble" view "$me" --turn 'ball: stiffness=150' >/dev/null 2>&1 && break; sleep 0.1; done
 expect 0 '' "$thimble" view "$me" --speed 4
 wait $run
-expect 0 'were knobs turned in that run' "$thimble" replay turned.h5
+expect 0 'every force is the recorded one to the bit' "$thimble" replay turned.h5 --verify
+"$thimble" export turned.h5 --csv turned.csv >/dev/null
+expect 0 '^1$' awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } $at["setting"] >= 0 { ++turned } END { print turned }' turned.csv
 
 # Killed while it records, at any moment: the recording opens and lacks 100 ms at most, the viewer
 # tells, and the next run clears away what was left.

@@ -9,10 +9,8 @@
 #include "cli/file_options.h"
 #include "faces/ros2/ros_module.h"
 #include "log/logger.h"
-#include "print.h"
 #include "share/shared_layout.h"
 #include "share/viewer_process.h"
-#include "thimble/scene/quality.h"
 
 namespace thimble::app {
 
@@ -125,15 +123,8 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.hand_by_program = options.by_topic();
   asked.homed = options.homed;
   asked.several_arms = true;
-  const scene::Quality quality =
-      scene::quality_named(options.quality).value_or(scene::Quality::kNormal);
-  asked.rate_factor = scene::rate_factor_of(quality);
-  asked.adjust = [&options, quality](scene::Scene& scene) {
-    for (const std::string& choice : scene::apply_quality(quality, scene, options.budget)) {
-      if (scene::talk() == scene::Talk::kQuiet) continue;
-      session::print(stdout, "{}: {}\n", options.quality, choice);
-    }
-  };
+  asked.quality = options.quality;
+  asked.budget = options.budget;
   return asked;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
 #include "interrupt.h"
+#include "log/printed_text.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
 #include "report/figure.h"
@@ -37,7 +38,7 @@ int run_accuracy(const AccuracyOptions& options) {
     const auto written =
         output::write_file(options.table, output::kQualityTable, quality_table_text());
     if (!written) return complain(written.error(), kExitTrouble);
-    std::printf("Points for --quality auto: %s\n", options.table.c_str());
+    scene::print_format("Points for --quality auto: %s\n", options.table.c_str());
     return kExitDone;
   }
   const std::filesystem::path folder = options.out;
@@ -52,7 +53,7 @@ int run_accuracy(const AccuracyOptions& options) {
                                      stop);
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->stopped) {
-    std::printf("Stopped early; the same command with --resume continues.\n");
+    scene::print_format("Stopped early; the same command with --resume continues.\n");
     return kExitInterrupted;
   }
   return end_study(report->figures, folder, "; the page is index.html there");
@@ -92,13 +93,13 @@ int run_gating(const GatingOptions& options) {
   const auto report = decide_gating(options.scene, !options.no_count);
   if (!report) return complain(report.error(), kExitBadInput);
   const std::string text = gating_text(*report);
-  std::printf("%s", text.c_str());
+  scene::print_format("%s", text.c_str());
   for (const auto& written : {write_figures(figures_of(*report), folder / "figures.json"),
                               write_text(text, folder / "gating.txt"),
                               write_gating_runs(options.scene, *report, folder)}) {
     if (!written) return complain(written.error(), kExitTrouble);
   }
-  std::printf("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
+  scene::print_format("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
   return kExitDone;
 }
 

@@ -8,6 +8,7 @@
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
 #include "interrupt.h"
+#include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "studies/stability/study_stability.h"
 #include "studies/trouble/study_trouble.h"
@@ -50,7 +51,7 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->end == SweepEnd::kHelped) return kExitDone;
   if (report->end == SweepEnd::kStopped) {
-    std::printf("Stopped early; the same command with --resume goes on.\n");
+    scene::print_format("Stopped early; the same command with --resume goes on.\n");
     return kExitInterrupted;
   }
   return end_study(report->figures, choice.out);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "cli/complain.h"
+#include "log/printed_text.h"
 
 namespace thimble::app {
 
@@ -11,11 +12,11 @@ ExitCode end_study(const std::vector<Figure>& figures, const std::filesystem::pa
   if (const auto written = write_figures(figures, folder / "figures.json"); !written) {
     return complain(written.error(), kExitTrouble);
   }
-  std::printf("%s\nWritten to %s%s.\n", figure_table(figures).c_str(), folder.c_str(),
-              where_to_look.c_str());
+  scene::print_format("%s\nWritten to %s%s.\n", figure_table(figures).c_str(), folder.c_str(),
+                      where_to_look.c_str());
   const std::string unmet = unmet_line(figures);
   if (unmet.empty()) return kExitDone;
-  std::printf("%s\n", unmet.c_str());
+  scene::print_format("%s\n", unmet.c_str());
   return kExitUnmet;
 }
 

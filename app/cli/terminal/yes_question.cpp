@@ -5,10 +5,12 @@
 
 #include <cstdio>
 
+#include "log/printed_text.h"
+
 namespace thimble::app {
 
 bool says_yes(const std::string& question, const std::atomic<bool>& stop) {
-  std::printf("%s [y/N] ", question.c_str());
+  scene::print_format("%s [y/N] ", question.c_str());
   std::fflush(stdout);
   constexpr int kAnswer_ms = 50;  // a signal does not end a read by itself
   while (!stop.load()) {

@@ -10,6 +10,7 @@
 #include "faces/server/facts_of.h"
 #include "faces/server/put_text.h"
 #include "log/logger.h"
+#include "system/printable_text.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::faces {
@@ -126,7 +127,7 @@ void ArmServer::open(std::size_t index) {
     return;
   }
   scene::logger().error("{}", run.error().message);
-  put_text(shared.trouble, run.error().message);
+  put_text(shared.trouble, driver::printable(run.error().message));
   answer(shared.state, ChannelState::kFailed);
 }
 

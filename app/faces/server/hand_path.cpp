@@ -4,19 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "bag/read_bag.h"
 #include "hand/bag_hand.h"
+#include "system/regular_file.h"
 
 namespace thimble::faces {
 
 driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::filesystem::path& file) {
   if (bag::is_bag(file)) return scene::read_bag_hand(file, {}, bag::BagAxes::kPlain);
-  std::ifstream text(file);
-  if (!text) return driver::Error{file.string() + ": cannot be read."};
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;  // hours at 1 kHz
+  auto content = driver::read_file(file, kMaxBytes);
+  if (!content) return driver::Error{file.string() + ": " + content.error().message};
+  std::istringstream text(std::move(content).value());
   constexpr double kFarthest = 2;    // m, as in a scene
   constexpr double kLatest = 86400;  // s
   std::vector<scene::HandWaypoint> stations;

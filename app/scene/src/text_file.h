@@ -1,20 +1,20 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
-#include <system_error>
+#include <utility>
+
+#include "system/regular_file.h"
 
 namespace thimble::scene {
 
-/// Reads a file as it is; empty if it cannot be read or is no regular file: a pipe would be waited
-/// for. Real-time: never from the servo thread.
+/// Reads a file as it is; empty if it cannot be read, is no regular file or is larger than a scene
+/// or an arm may be. Real-time: never from the servo thread.
 inline std::string text_of(const std::filesystem::path& file) {
-  std::error_code status;
-  if (!std::filesystem::is_regular_file(file, status)) return {};
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 20;
+  auto text = driver::read_file(file, kMaxBytes);
+  return text ? std::move(text).value() : std::string();
 }
 
 }  // namespace thimble::scene

@@ -5,14 +5,15 @@
 #include <cstdio>
 #include <utility>
 
+#include "log/printed_text.h"
+
 namespace thimble::session {
 
-/// Prints as fmt::print does, but lets a write that fails be: whoever prints may hold an arm, which
-/// an exception would leave with its last force, and a terminal that is gone is no reason for that.
+/// Prints as fmt::print does, but printable, and ignores a write that fails (scene::write_text).
 /// Real-time: never from the servo thread.
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Args...> format, Args&&... args) {
-  std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), file);
+  scene::write_text(file, fmt::format(format, std::forward<Args>(args)...));
 }
 
 }  // namespace thimble::session

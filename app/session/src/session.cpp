@@ -41,6 +41,7 @@ struct Session::Parts {
   void add_records();
   void add_knobs();
   driver::Result<void> share(const SessionOptions& options, SharedRun* before = nullptr);
+  void record_changes() noexcept;
   void begin(const std::atomic<bool>& stop) noexcept;
   driver::ForceLaw own_law() noexcept;
   RunRecords& records_of(std::size_t arm) noexcept {
@@ -110,7 +111,19 @@ driver::Result<void> Session::Parts::share(const SessionOptions& options, Shared
   return {};
 }
 
+void Session::Parts::record_changes() noexcept {
+  static constexpr LawChange kOtherLaw{
+      .setting = driver::TickRecord::kOtherLaw, .value = 0, .gain = 1};
+  const LawChange* change = law       ? &kOtherLaw
+                            : control ? &control->change()
+                            : knobs   ? &knobs->change()
+                                      : nullptr;
+  if (change == nullptr) return;
+  for (std::size_t i = 0; i < setup->arms(); ++i) records_of(i).recording.watch(*change);
+}
+
 void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
+  record_changes();
   if (shared) {
     control->join(*shared, setup->hand_by_mouse(), stop, setup->pace());
     shared->set_state(RunState::kRunning);

@@ -12,6 +12,7 @@
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/hand_route.h"
+#include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/shipped_files.h"
 
@@ -76,6 +77,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, s
   std::unique_ptr<Setup> setup(new Setup);
   setup->scene_file_ = other.scene_file_;
   setup->scene_ = other.scene_;
+  setup->choices_ = other.choices_;
   setup->told_ = other.told_;
   setup->firmware_ = other.firmware_;
   setup->paced_ = other.paced_;
@@ -108,14 +110,24 @@ driver::Result<void> Setup::build_objects() {
 
 driver::Result<void> Setup::read(const SessionOptions& options) {
   const bool real = any_real_in(options);
+  const auto quality = scene::quality_named(options.quality);
+  if (!quality) {
+    return driver::Error{fmt::format("There is no quality \"{}\"; choose one of {}.",
+                                     options.quality, fmt::join(scene::kQualityNames, ", "))};
+  }
   auto scene = scene::load_scene(
       scene_file_, {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
                     .mesh_folder = options.mesh_folder,
-                    .rate_factor = real ? 1 : options.rate_factor,
+                    .rate_factor = real ? 1 : options.rate_factor * scene::rate_factor_of(*quality),
                     .several_arms = options.several_arms});
   if (!scene) return scene.error();
   scene_ = std::make_shared<scene::Scene>(std::move(scene).value());
   if (auto fits = check_several(options); !fits) return fits;
+  quality_choices_ = scene::apply_quality(*quality, *scene_, options.budget);
+  choices_ = {.quality = options.quality,
+              .budget = options.budget,
+              .rate_factor = scene_->rate_factor,
+              .adjusted = static_cast<bool>(options.adjust)};
   if (options.adjust) options.adjust(*scene_);
   if (auto used = use_real_arms(options); !used) return used;
   seed_ = options.seed.value_or(scene_->seed);
@@ -399,7 +411,8 @@ RecordingInfo Setup::recording_info(std::size_t arm) const {
           .rate = scene_->rate,
           .seed = seed_ + arm,
           .arm_in_scene = arm_name(arm),
-          .inside_at_start = fmt::format("{}", fmt::join(inside_at_start(arm), ", "))};
+          .inside_at_start = fmt::format("{}", fmt::join(inside_at_start(arm), ", ")),
+          .options = text_of(choices_)};
 }
 
 }  // namespace thimble::session

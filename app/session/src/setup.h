@@ -10,6 +10,7 @@
 
 #include "heat_keeper.h"
 #include "paced_clock.h"
+#include "recording/run_choices.h"
 #include "start_pose.h"
 #include "terminal.h"
 #include "thimble/driver/clock.h"
@@ -122,6 +123,8 @@ class Setup {
   const std::vector<std::string>& inside_at_start(std::size_t arm = 0) const noexcept {
     return arms_[arm].inside_at_start;
   }
+  /// Returns what the quality that was asked for has chosen for the scene, a sentence each.
+  const std::vector<std::string>& quality_choices() const noexcept { return quality_choices_; }
   /// Returns what is known of an arm's feel check.
   scene::FeelCheckState feel_check(std::size_t arm = 0) const noexcept {
     return arms_[arm].feel_check;
@@ -151,7 +154,8 @@ class Setup {
 
   std::filesystem::path scene_file_;
   std::shared_ptr<scene::Scene> scene_;  // of sessions alike; changed only while it is read
-  std::vector<std::string> told_;
+  std::vector<std::string> told_, quality_choices_;
+  RunChoices choices_;
   std::filesystem::path firmware_;
   bool real_time_ = false;
   bool paced_ = false;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "nearest_word.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
@@ -172,17 +173,19 @@ driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
     sections.push_back(std::move(section));
     for (Figure& figure : figures_of(axis)) report.figures.push_back(std::move(figure));
   }
-  if (!draws) std::printf("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
+  if (!draws)
+    scene::print_format("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
   if (auto written = write_runs(folder / "runs"); !written) return written.error();
   if (auto written = write_accuracy_page(sections, folder); !written) return written.error();
   if (auto written = write_accuracy_summary(sections, folder / "summary.json"); !written) {
     return written.error();
   }
   for (const AxisSection& section : sections) {
-    std::printf("%s\n  %s\n  %s\n", section.axis->axis.title.c_str(),
-                felt_sentence(*section.axis).c_str(), default_sentence(*section.axis).c_str());
+    scene::print_format("%s\n  %s\n  %s\n", section.axis->axis.title.c_str(),
+                        felt_sentence(*section.axis).c_str(),
+                        default_sentence(*section.axis).c_str());
   }
-  std::printf("\n");
+  scene::print_format("\n");
   return report;
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/cost/cost_subjects.h"

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "stability/signal.h"
@@ -109,7 +110,7 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
   std::string csv =
       "friction,delay_ticks,rest_force_N,rest_way_m,rest_frequency_Hz,rest_held_N,creep_force_N,"
       "creep_mean_N,slow_mean_N,tremor_force_N\n";
-  std::printf(
+  scene::print_format(
       "Friction of 0.5 N under 1 N from the wire up: vintage arm, encoder cut to 0.03 mm, 1 kHz, "
       "pinch grip.\nForces N and ways um are RMS above 50 Hz; stop from 50 mm/s, creep at 1 mm/s, "
       "slow at 5 mm/s,\ntremor of 300 um.\n\n"
@@ -124,12 +125,12 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
       FrictionMeasures found = measure(which, rig);
       csv += csv_row(which, delay, found);
       if (delay > 0) continue;
-      std::printf("%s", table_row(which, found).c_str());
+      scene::print_format("%s", table_row(which, found).c_str());
       add_measures(figures, which, found);
       undelayed.push_back(std::move(found));
     }
   }
-  std::printf("\n");
+  scene::print_format("\n");
   add_even_sliding(figures);
 
   FrictionRigSettings ideal;

@@ -1,6 +1,8 @@
 #include "studies/integrators/study_integrators.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +13,7 @@
 
 #include "body/spring/mesh_springs.h"
 #include "files/scanned_meshes.h"
+#include "log/printed_text.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/integrators/membrane.h"
@@ -261,7 +264,7 @@ driver::Result<std::vector<Figure>> study_integrators(const std::filesystem::pat
     if (!measured) return measured.error();
     diagrams.push_back(*std::move(measured));
   } else {
-    std::printf("The scanned mesh is left out: %s\n", scan.error().message.c_str());
+    scene::print_format("The scanned mesh is left out: %s\n", scan.error().message.c_str());
   }
   if (auto written = write_text(csv_of(diagrams), folder / "integrators.csv"); !written) {
     return written.error();

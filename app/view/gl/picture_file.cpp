@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "system/regular_file.h"
 #include "view/gl/colour_table.h"
 
 namespace thimble::app::view {
@@ -58,10 +59,18 @@ std::FILE* write_stream(const output::OutputFile& file) {
 }
 
 driver::Result<Picture> read_png(const std::filesystem::path& file) {
+  constexpr std::uint64_t kMaxBytes = 64'000'000;
+  constexpr png_uint_32 kMaxSide = 16384;
+  const auto bytes = driver::read_file(file, kMaxBytes);
+  if (!bytes) return driver::Error{file.string() + ": " + bytes.error().message};
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_file(&image, file.c_str()) == 0) {
+  if (png_image_begin_read_from_memory(&image, bytes->data(), bytes->size()) == 0) {
     return driver::Error{file.string() + ": " + image.message + "."};
+  }
+  if (image.width > kMaxSide || image.height > kMaxSide) {
+    png_image_free(&image);
+    return driver::Error{file.string() + ": is larger than 16384 by 16384 pixels."};
   }
   image.format = PNG_FORMAT_RGB;
   Picture picture{static_cast<int>(image.width), static_cast<int>(image.height),

@@ -1,7 +1,6 @@
 #include "page/page_file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 
 #include "packed/surface_rise.h"
 #include "page/checksum.h"
+#include "system/regular_file.h"
 
 namespace thimble::render {
 namespace {
@@ -224,26 +224,18 @@ driver::Result<void> write_page_file(const PackedSurface& surface,
 }
 
 bool is_page_file(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return false;
-  std::array<char, 8> magic{};
-  const bool read = read_all(descriptor, magic.data(), magic.size(), 0);
-  close(descriptor);
-  return read && magic == kMagic;
+  const std::string head = driver::read_head(file, kMagic.size());
+  return std::equal(head.begin(), head.end(), kMagic.begin(), kMagic.end());
 }
 
 driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   PageFile opened;
-  opened.descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (opened.descriptor_ < 0) {
-    return trouble(file, std::string("it cannot be opened (") + std::strerror(errno) + ").");
-  }
-  struct stat status {};
-  if (fstat(opened.descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    return trouble(file, "this is not a file.");
-  }
+  auto regular = driver::RegularFile::open(file);
+  if (!regular) return trouble(file, regular.error().message);
+  const auto file_bytes = static_cast<std::int64_t>(regular->size());
+  opened.descriptor_ = regular->release();
   Header header;
-  if (status.st_size < static_cast<off_t>(sizeof(Header)) ||
+  if (file_bytes < static_cast<std::int64_t>(sizeof(Header)) ||
       !read_all(opened.descriptor_, &header, sizeof(Header), 0) || header.magic != kMagic) {
     return trouble(file, "this is no page file; write one with `thimble mesh page IN OUT`.");
   }
@@ -265,8 +257,8 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   const std::int64_t size =
       opened.records_at_ +
       header.triangle_count * static_cast<std::int64_t>(sizeof(PackedTriangle));
-  if (status.st_size < size) {
-    return trouble(file, "it ends after " + std::to_string(status.st_size) + " of " +
+  if (file_bytes < size) {
+    return trouble(file, "it ends after " + std::to_string(file_bytes) + " of " +
                              std::to_string(size) + " bytes; write it again.");
   }
   opened.boxes_.resize(static_cast<std::size_t>(pages));

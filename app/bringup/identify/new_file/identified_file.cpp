@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "bringup/identify/new_file/links_section.h"
 #include "output/output_file.h"
 #include "read_scene.h"
+#include "system/regular_file.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::app {
@@ -263,11 +263,12 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
 namespace {
 
 driver::Result<std::string> text_of(const std::filesystem::path& arm_file) {
-  std::ifstream in(arm_file);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in) return driver::Error{"The arm file " + arm_file.string() + " cannot be read."};
-  return content.str();
+  constexpr std::uint64_t kMaxBytes = 4'000'000;  // as of every arm file
+  auto content = driver::read_file(arm_file, kMaxBytes);
+  if (!content) {
+    return driver::Error{"The arm file " + arm_file.string() + ": " + content.error().message};
+  }
+  return content;
 }
 
 driver::Result<void> write_new(const std::filesystem::path& new_file, const std::string& text) {

@@ -6,6 +6,7 @@
 
 #include "files/data_folders.h"
 #include "nearest_word.h"
+#include "text_file.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"
 

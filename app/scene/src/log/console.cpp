@@ -1,11 +1,14 @@
 #include "log/console.h"
 
 #include <cstdio>
-#include <utility>
+#include <string>
+
+#include "system/printable_text.h"
 
 namespace thimble::scene {
 namespace {
 
+// The only control characters of this program; what it shows has none (driver::printable).
 constexpr std::string_view kEraseLine = "\r\033[K";
 
 void put(std::string_view text) {
@@ -17,7 +20,7 @@ void put(std::string_view text) {
 void Console::write(std::string_view line) {
   const std::lock_guard lock(mutex_);
   if (!progress_.empty()) put(kEraseLine);
-  put(line);
+  put(driver::printable(line));
   if (!line.ends_with('\n')) put("\n");
   put(progress_);
   std::fflush(stderr);
@@ -26,7 +29,7 @@ void Console::write(std::string_view line) {
 void Console::show(std::string progress) {
   const std::lock_guard lock(mutex_);
   if (!progress_.empty() || !progress.empty()) put(kEraseLine);
-  progress_ = std::move(progress);
+  progress_ = driver::printable_name(progress);
   put(progress_);
   std::fflush(stderr);
 }

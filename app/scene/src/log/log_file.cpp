@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <utility>
 
 #include "log/console.h"
 #include "output/output_file.h"
+#include "system/printable_text.h"
 
 namespace thimble::scene {
 namespace {
@@ -66,7 +68,7 @@ void LogFile::open_it() {
     file_ = std::make_shared<spdlog::sinks::basic_file_sink_st>(path_.string(), false, handlers);
   }
   file_->set_pattern(kLine);
-  file_->log({"thimble", spdlog::level::info, heading_});
+  file_->log({"thimble", spdlog::level::info, driver::printable(heading_)});
   file_->flush();
 }
 
@@ -87,7 +89,10 @@ void LogFile::sink_it_(const spdlog::details::log_msg& message) {
   if (ended_) return;
   try {
     if (!file_) open_it();
-    file_->log(message);
+    spdlog::details::log_msg shown = message;
+    const std::string text = driver::printable({message.payload.data(), message.payload.size()});
+    shown.payload = text;
+    file_->log(shown);
     file_->flush();
   } catch (const std::exception& trouble) {
     end(trouble.what());

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 
 #include "arm_table.h"
+#include "text_file.h"
 #include "thimble/driver/safety_gate.h"
 #include "user_folders.h"
 
@@ -41,9 +41,7 @@ class Checksum {
 };
 
 std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
+  return text_of(file);
 }
 
 std::string checksum_of(const fs::path& file) {

@@ -6,11 +6,10 @@
 #include <exception>
 #include <mutex>
 #include <set>
-#include <sstream>
 #include <utility>
 
-#include "files/regular_file.h"
 #include "log/logger.h"
+#include "system/regular_file.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
@@ -124,9 +123,16 @@ std::string YamlMistakes::text() const {
 }
 
 driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
-  auto text = read_regular_file(file, kFileSizeMax, "a scene or an arm file");
-  if (!text) return text.error();
-  return parse(*text, file.filename().string());
+  const std::string name = file.filename().string();
+  const auto text = driver::read_file(file, kFileSizeMax);
+  if (!text) {
+    std::error_code status;
+    if (driver::is_regular(file) && std::filesystem::file_size(file, status) > kFileSizeMax) {
+      return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm."};
+    }
+    return driver::Error{file.string() + ": " + text.error().message};
+  }
+  return parse(*text, name);
 }
 
 driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name,

@@ -12,6 +12,8 @@
 
 #include "recording/h5_handle.h"
 #include "recording/h5_types.h"
+#include "system/regular_file.h"
+#include "system/run_apart.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::session {
@@ -84,6 +86,7 @@ bool write_info(const H5Handle& file, const RecordingInfo& info) {
          write_text(file, "arm_text", info.arm_text) && write_text(file, "device", info.device) &&
          write_text(file, "clock", info.clock) && write_text(file, "program", info.program) &&
          (info.arm_in_scene.empty() || write_text(file, "arm_in_scene", info.arm_in_scene)) &&
+         (info.options.empty() || write_text(file, "options", info.options)) &&
          (info.inside_at_start.empty() ||
           write_text(file, "inside_at_start", info.inside_at_start)) &&
          write_text(file, "faults", faults) &&
@@ -99,8 +102,8 @@ H5Handle access_without_locks() {
   return access;
 }
 
-/// Returns whether an existing file is a recording; an HDF5 file of another program is not.
-bool is_recording(const std::filesystem::path& path) {
+/// Returns whether an HDF5 file holds what every recording holds.
+bool holds_recording(const std::filesystem::path& path) {
   silence_hdf5();
   if (H5Fis_hdf5(path.c_str()) <= 0) return false;
   const H5Handle access = access_without_locks();
@@ -108,6 +111,15 @@ bool is_recording(const std::filesystem::path& path) {
   return file.good() && H5Aexists(file.id(), "format") > 0 &&
          H5Lexists(file.id(), "scene_text", H5P_DEFAULT) > 0 &&
          H5Lexists(file.id(), "rows", H5P_DEFAULT) > 0;
+}
+
+/// Returns whether an existing file is a recording; an HDF5 file of another program is not. HDF5
+/// may crash on a damaged file, so it looks at the file in a process of its own.
+bool is_recording(const std::filesystem::path& path) {
+  if (!driver::is_regular(path)) return false;
+  const auto found =
+      driver::run_apart([&] { return std::string(holds_recording(path) ? "recording" : ""); }, {});
+  return found && !found->empty();
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "law_change.h"
 #include "recording/recorder.h"
+#include "thimble/driver/tick_record.h"
 #include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
@@ -20,11 +22,15 @@ class RecordingSwitch final : public TickObserver {
     // Told before the recorder is looked at, so that nobody takes it away meanwhile.
     busy_.store(true, std::memory_order_seq_cst);
     if (Recorder* recorder = current_.load(std::memory_order_seq_cst)) {
-      (*recorder)(tick);
+      (*recorder)(change_ != nullptr && change_->any() ? changed(tick) : tick);
       if (!by_thread_ && recorder->waiting() >= Recorder::kRingTicks / 2) recorder->serve();
     }
     busy_.store(false, std::memory_order_release);
   }
+
+  /// Records with each tick what was done to its law; `change` must outlive the run. Real-time:
+  /// never from the servo thread.
+  void watch(const LawChange& change) noexcept { change_ = &change; }
 
   /// Begins a recording of at most `ticks_max` ticks; ends the one before. With `by_thread` a
   /// thread writes, otherwise the servo's own, for virtual time. `replace` as for Recorder::open.
@@ -43,6 +49,14 @@ class RecordingSwitch final : public TickObserver {
   Recorder* recorder() noexcept { return recorder_.get(); }
 
  private:
+  driver::TickRecord changed(driver::TickRecord tick) const noexcept {
+    tick.setting = change_->setting;
+    tick.setting_value = change_->value;
+    tick.gain = change_->gain;
+    return tick;
+  }
+
+  const LawChange* change_ = nullptr;
   std::unique_ptr<Recorder> recorder_;
   std::atomic<Recorder*> current_{nullptr};
   std::atomic<bool> busy_{false};

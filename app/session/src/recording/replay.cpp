@@ -7,10 +7,13 @@
 #include <utility>
 
 #include "recording/replay_watch.h"
+#include "recording/replayed_law.h"
+#include "recording/run_choices.h"
 #include "text_file.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/scene/build_info.h"
+#include "thimble/scene/quality.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
 #include "thimble/scene/shipped_files.h"
@@ -99,18 +102,21 @@ Replay begin_replay(const Recording& recording, const scene::Scene& scene,
 
 /// Gives the arm's state of one tick to a scene's force law again, and compares its answer. A hand
 /// whose arm was in fault felt nothing, and gives nothing.
-template <class Touch>
-void feel_again(const Recording& recording, std::size_t i, Touch& touch, Replay& replay) {
+void feel_again(const Recording& recording, std::size_t i, ReplayedLaw& law, Replay& replay) {
   const TickRecord& then = recording.ticks[i];
   const std::int64_t before_ns = recording.ticks[i == 0 ? 0 : i - 1].time_ns;
   // As the device reckons it, so that it is the same to the bit.
   const double dt = static_cast<double>(then.time_ns - before_ns) * 1e-9;
   // A fault that the reading of the arm found came before the law, one of the gate after it; where
   // the law was not asked nothing was felt.
+  const driver::DeviceState state = state_of(then, dt);
+  const Eigen::Vector3d wanted = vector(then.f_wanted_W);
   const bool off = !recording.info.arm_in_scene.empty() && then.fault != driver::Fault::kNone &&
-                   !then.in_contact && vector(then.f_wanted_W).isZero(0);
-  const driver::ForceCommand command = off ? driver::ForceCommand{} : touch(state_of(then, dt));
+                   !then.in_contact && (wanted.isZero(0) || wanted == law.carried(state));
+  const driver::ForceCommand command =
+      off ? driver::ForceCommand{.f_T_W = wanted, .touch = {}} : law(state, then);
   replay.felt.ticks.push_back(with_answer(then, command));
+  law.take(replay.felt.ticks.back());
   compare(then, replay.felt.ticks.back(), replay.compared);
 }
 
@@ -133,7 +139,8 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
   const Recording& first = recordings.front();
   for (const Recording& one : recordings) {
     const bool same = one.ticks.size() == first.ticks.size() && one.info.rate == first.info.rate &&
-                      one.info.scene_text == first.info.scene_text;
+                      one.info.scene_text == first.info.scene_text &&
+                      one.info.options == first.info.options;
     if (!same || recordings.size() != names.size()) {
       return driver::Error{file.string() + ": the recordings are not of one run of its " +
                            std::to_string(names.size()) + " arms."};
@@ -145,6 +152,20 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
 }  // namespace
 
 namespace {
+
+/// Loads the scene of a recording with what its run was asked for.
+driver::Result<scene::Scene> load_scene_of(const Recording& recording,
+                                           const std::filesystem::path& file,
+                                           const std::string& arm, bool several_arms) {
+  const auto choices = run_choices(recording.info.options);
+  if (!choices) return choices.error();
+  auto scene = scene::load_scene(
+      file, {.arm = arm, .rate_factor = choices->rate_factor, .several_arms = several_arms});
+  if (!scene) return scene;
+  const auto quality = scene::quality_named(choices->quality);
+  scene::apply_quality(quality.value_or(scene::Quality::kNormal), *scene, choices->budget);
+  return scene;
+}
 
 /// Builds the objects of a scene and shows them to who looks on.
 driver::Result<std::shared_ptr<scene::SceneObjects>> build(const scene::Scene& scene,
@@ -160,14 +181,15 @@ driver::Result<Replay> replay_alone(const Recording& recording, const std::strin
                                     ReplayWatch* watch) {
   const auto file = scene_of(recording, scene_name);
   if (!file) return file.error();
-  const auto scene = scene::load_scene(*file, {.arm = recording.info.arm_file});
+  const auto scene = load_scene_of(recording, *file, recording.info.arm_file, false);
   if (!scene) return scene.error();
   const auto objects = build(*scene, watch);
   if (!objects) return objects.error();
 
   Replay replay = begin_replay(recording, *scene, *file);
+  ReplayedLaw law(recording, *scene, scene->arm, (*objects)->touch());
   for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
-    feel_again(recording, i, (*objects)->touch(), replay);
+    feel_again(recording, i, law, replay);
     (*objects)->serve_pages();
     if (watch != nullptr) watch->take(replay.felt.ticks.back());
   }
@@ -198,7 +220,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
   }
   const auto file = scene_of(recordings.front(), scene_name);
   if (!file) return file.error();
-  const auto scene = scene::load_scene(*file, {.arm = {}, .several_arms = true});
+  const auto scene = load_scene_of(recordings.front(), *file, {}, true);
   if (!scene) return scene.error();
   const auto order = arms_of(recordings, *scene, *file);
   if (!order) return order.error();
@@ -208,12 +230,18 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
   for (const Recording& recording : recordings) {
     replays.push_back(begin_replay(recording, *scene, *file));
   }
+  std::vector<std::unique_ptr<ReplayedLaw>> laws;
+  for (std::size_t arm = 0; arm < order->size(); ++arm) {
+    const scene::ArmFile& own = arm == 0 ? scene->arm : scene->more_arms[arm - 1].arm;
+    laws.push_back(std::make_unique<ReplayedLaw>(recordings[(*order)[arm]], *scene, own,
+                                                 (*objects)->touch(arm)));
+  }
   const double period = 1 / recordings.front().info.rate;
   for (std::size_t i = 0; i < recordings.front().ticks.size(); ++i) {
     // As in the run: each arm in the scene's order, then the bodies that all of them touch.
     for (std::size_t arm = 0; arm < order->size(); ++arm) {
       const std::size_t k = (*order)[arm];
-      feel_again(recordings[k], i, (*objects)->touch(arm), replays[k]);
+      feel_again(recordings[k], i, *laws[arm], replays[k]);
     }
     (*objects)->step_bodies(period);
     (*objects)->serve_pages();
@@ -234,11 +262,28 @@ driver::Result<void> check_repeatable(const Recording& recording, const std::str
   if (!ticks.empty() && ticks.front().tick != 0) {
     return driver::Error{"the recording does not begin with the run's first tick."};
   }
+  const auto other_law = [](const TickRecord& tick) {
+    return tick.setting == TickRecord::kOtherLaw;
+  };
+  if (std::any_of(ticks.begin(), ticks.end(), other_law)) {
+    return driver::Error{
+        "the forces of this run are not the scene's only: a program's law or a topic gave them."};
+  }
+  const auto choices = run_choices(recording.info.options);
+  if (!choices) return choices.error();
+  if (choices->adjusted) {
+    return driver::Error{"a program changed the scene of this run after it was read."};
+  }
   const auto file = scene_of(recording, scene);
   if (!file) return file.error();
   if (scene::text_of(*file) != recording.info.scene_text) {
     return driver::Error{file->string() +
                          " is not the scene that was recorded; it has been changed since."};
+  }
+  const std::filesystem::path arm = recording.info.arm_file;
+  if (!arm.empty() && scene::text_of(arm) != recording.info.arm_text) {
+    return driver::Error{arm.string() +
+                         " is not the arm file that was recorded; it has been changed since."};
   }
   if (scene::program_name() != recording.info.program) {
     return driver::Error{"recorded by " + recording.info.program + ", this is " +

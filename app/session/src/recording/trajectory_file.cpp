@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
+
+#include "system/regular_file.h"
 
 namespace thimble::session {
 namespace {
@@ -62,8 +64,10 @@ driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesyst
                                                              const TrajectoryForm& form) {
   const auto columns = read_columns(form.columns);
   if (!columns) return columns.error();
-  std::ifstream stream(file);
-  if (!stream) return driver::Error{file.string() + ": no such file."};
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;  // hours at 1 kHz
+  auto text = driver::read_file(file, kMaxBytes);
+  if (!text) return driver::Error{file.string() + ": " + text.error().message};
+  std::istringstream stream(std::move(text).value());
   std::vector<TrajectoryPoint> trajectory;
   std::size_t number = 0;
   const auto wrong = [&](const std::string& what) {

@@ -41,7 +41,11 @@ driver::ForceCommand HeldKnobs::operator()(const driver::DeviceState& state) noe
   if (asked_.load(std::memory_order_relaxed)) {
     turning_ = asked_.exchange(false, std::memory_order_acquire);
   }
-  if (turning_) turning_ = knobs_.step(*this, last_, state.dt);
+  change_ = {};
+  if (turning_) {
+    turning_ = knobs_.step(*this, last_, state.dt);
+    change_ = knobs_.change();
+  }
   return touch_(state);
 }
 

@@ -43,6 +43,8 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
 
   /// Takes one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override { last_ = record; }
+  /// Returns what was done to the law in the last tick. Real-time: safe.
+  const LawChange& change() const noexcept { return change_; }
   std::optional<double> knob_wanted(std::size_t knob) const noexcept override;
   void store_knob(std::size_t knob, double now) noexcept override {
     states_[knob].now.store(now, std::memory_order_relaxed);
@@ -59,6 +61,7 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
   std::vector<State> states_;
   std::atomic<bool> asked_{false};  // somebody has turned a knob since the last tick
   bool turning_ = false;
+  LawChange change_;
   driver::TickRecord last_;
 };
 

@@ -27,12 +27,17 @@ void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<
 }
 
 driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) noexcept {
-  if (!several_) knobs_.step(*shared_, last_, state.dt);
+  change_ = {};
+  if (!several_) {
+    knobs_.step(*shared_, last_, state.dt);
+    change_ = knobs_.change();
+  }
   driver::ForceCommand command = touch_(state);
   if (real_time_) {
     const double way = state.dt / kFade;
     gain_ = std::clamp(gain_ + (paused_ ? -way : way), 0.0, 1.0);
     if (gain_ < 1) command.f_T_W *= gain_;
+    change_.gain = gain_;
   }
   return command;
 }

@@ -56,6 +56,9 @@ class LiveControl final : public TickObserver {
   /// Real-time: safe.
   double gain() const noexcept { return gain_; }
 
+  /// Returns what was done to the law in the last tick. Real-time: safe.
+  const LawChange& change() const noexcept { return change_; }
+
   /// Takes one tick. Real-time: safe; in virtual time it waits while the run is paused.
   void take(const driver::TickRecord& record) noexcept override;
 
@@ -76,6 +79,7 @@ class LiveControl final : public TickObserver {
   bool hand_by_mouse_ = false;
   bool paused_ = false;
   double gain_ = 1;
+  LawChange change_;
   driver::TickRecord last_;
   SharedHand hand_;
 };

@@ -28,7 +28,8 @@ LiveKnobs::LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch) {
       if (setting.name == "stiffness") stiffness = static_cast<std::ptrdiff_t>(knobs_.size());
       Knob knob{.name = scene.objects[i].name + ": " + setting.name,
                 .setting = setting,
-                .now = setting.value};
+                .now = setting.value,
+                .target = setting.value};
       // Two effects of a kind on one object.
       const auto taken = [&](const std::string& name) {
         return std::any_of(knobs_.begin(), knobs_.end(),
@@ -61,10 +62,19 @@ std::vector<SharedScene::Knob> LiveKnobs::described() const {
 
 bool LiveKnobs::step(KnobRequests& requests, const driver::TickRecord& last, double dt) noexcept {
   bool turning = false;
+  change_ = {};
+  for (std::size_t i = 0; i < knobs_.size(); ++i) {
+    const double wanted = requests.knob_wanted(i).value_or(knobs_[i].target);
+    if (wanted == knobs_[i].target) continue;
+    turning = true;
+    if (change_.setting != driver::TickRecord::kNoSetting) break;  // the next tick begins with it
+    knobs_[i].target = wanted;
+    change_.setting = static_cast<std::int16_t>(i);
+    change_.value = wanted;
+  }
   for (std::size_t i = 0; i < knobs_.size(); ++i) {
     Knob& knob = knobs_[i];
-    const double wanted = requests.knob_wanted(i).value_or(knob.now);
-    if (wanted == knob.now) continue;
+    if (knob.target == knob.now) continue;
     turning = true;
     const render::ForceSensitivity& sensitivity = knob.setting.sensitivity;
     const double stiffness =
@@ -79,9 +89,9 @@ bool LiveKnobs::step(KnobRequests& requests, const driver::TickRecord& last, dou
     // Written so that NaN turns nothing.
     if (!(newtons >= 0)) continue;
     if (newtons > 0) most = std::min(most, kForceRate / kWithFriction * dt / newtons);
-    const double way = wanted - knob.now;
+    const double way = knob.target - knob.now;
     // Ends on the very value that is wanted.
-    knob.now = std::abs(way) <= most ? wanted : knob.now + std::copysign(most, way);
+    knob.now = std::abs(way) <= most ? knob.target : knob.now + std::copysign(most, way);
     knob.setting.set(knob.setting.stage, knob.now);
     requests.store_knob(i, knob.now);
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "law_change.h"
 #include "share/knob_requests.h"
 #include "share/shared_scene.h"
 #include "thimble/driver/tick_record.h"
@@ -37,6 +38,10 @@ class LiveKnobs {
   /// whether a knob is still on its way. Real-time: safe; does next to nothing while no knob turns.
   bool step(KnobRequests& requests, const driver::TickRecord& last, double dt) noexcept;
 
+  /// Returns the knob that `step` began to turn in the last tick, and to what: at most one a tick,
+  /// so that a tick of a recording holds it. Real-time: safe.
+  const LawChange& change() const noexcept { return change_; }
+
   /// Returns a value as it is felt now. Real-time: safe.
   double value(std::size_t knob) const noexcept { return knobs_[knob].now; }
 
@@ -45,10 +50,12 @@ class LiveKnobs {
     std::string name;
     render::LiveSetting setting;
     double now = 0;
+    double target = 0;              // that it is on its way to
     std::ptrdiff_t stiffness = -1;  // the knob of the same surface's stiffness, if it has one
   };
 
   std::vector<Knob> knobs_;
+  LawChange change_;
 };
 
 }  // namespace thimble::session

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "share/split_edge.h"
+#include "system/printable_text.h"
 
 namespace thimble::session {
 namespace {
@@ -27,12 +29,8 @@ bool finite(const std::array<double, N>& numbers) noexcept {
 
 template <std::size_t N>
 std::string printable(const SharedText<N>& shared, bool lines = false) {
-  std::string text(shared.data(), strnlen(shared.data(), shared.size() - 1));
-  for (char& c : text) {
-    if (lines && c == '\n') continue;
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return text;
+  const std::string_view text(shared.data(), strnlen(shared.data(), shared.size() - 1));
+  return lines ? driver::printable(text) : driver::printable_name(text);
 }
 
 template <class T>

@@ -36,6 +36,10 @@ std::string_view name(LinkState state) noexcept;
 /// Holds everything one tick did, as plain numbers: what the snapshot shows, the recorder keeps and
 /// reports are made of. Trivially copyable. Frames: W world, T tip, P proxy.
 struct TickRecord {
+  static constexpr std::int16_t kNoSetting = -1;  ///< `setting`: none was turned in this tick.
+  /// `setting`: the force is not, or not only, the scene's: a program's law or a topic gave it.
+  static constexpr std::int16_t kOtherLaw = -2;
+
   std::uint64_t tick = 0;    ///< number of the tick, from 0; gaps are ticks that were missed
   std::int64_t time_ns = 0;  ///< When the tick began, on the loop's clock.
   std::int64_t due_ns = 0;   ///< When it should have begun.
@@ -53,10 +57,13 @@ struct TickRecord {
   std::array<float, 3> gimbal{};           ///< rad; zeros where there is none
   float gripper = 0;                       ///< opening, m; 0: closed, or none
   double depth = 0;                        ///< m
+  double setting_value = 0;                ///< what `setting` was asked to become; in recordings
+  double gain = 1;                         ///< share of the scene's force; in recordings
   std::int32_t feature = -1;               ///< active triangle
   std::int16_t object = -1;                ///< which of the scene's objects
   std::uint16_t hops = 0;                  ///< triangles crossed in this tick
   std::uint16_t buttons = 0;               ///< one bit each; bit 0 is the arm's first
+  std::int16_t setting = kNoSetting;       ///< of the scene, that was turned; in recordings
   bool in_contact = false;                 ///< the tip is held outside an object
   bool fresh = false;                      ///< a new report came for this tick
   bool has_gripper = false;                ///< the arm has a gripper

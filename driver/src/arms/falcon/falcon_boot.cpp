@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <fstream>
+#include <filesystem>
 #include <string>
 #include <thread>
+
+#include "system/regular_file.h"
 
 namespace thimble::driver::falcon {
 namespace {
@@ -69,21 +71,20 @@ std::size_t send_blocks(SerialLine& line, std::span<const std::byte> firmware, i
 Result<std::vector<std::byte>> read_firmware(const std::filesystem::path& file) {
   constexpr std::size_t kLargest =
       65536;  // the processor has 36 kB of RAM (TMS320C281x data sheet)
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
+  const auto bytes = read_file(file, kLargest);
+  std::error_code status;
+  const bool too_large = is_regular(file) && std::filesystem::file_size(file, status) > kLargest;
+  if (!bytes && !too_large) {
     return Error{"The firmware file " + file.string() +
                  " cannot be read. Give the path of the image that came with the Falcon's "
                  "software; Thimble does not ship it."};
   }
-  std::vector<char> bytes(kLargest + 1);
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  const auto size = static_cast<std::size_t>(stream.gcount());
-  if (size == 0 || size > kLargest) {
+  if (!bytes || bytes->empty()) {
     return Error{file.string() + " is no Falcon firmware: it holds " +
-                 (size == 0 ? "nothing." : "more than 64 kB.")};
+                 (bytes ? "nothing." : "more than 64 kB.")};
   }
-  std::vector<std::byte> firmware(size);
-  std::transform(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), firmware.begin(),
+  std::vector<std::byte> firmware(bytes->size());
+  std::transform(bytes->begin(), bytes->end(), firmware.begin(),
                  [](char c) { return static_cast<std::byte>(c); });
   return firmware;
 }

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string_view>
-#include <system_error>
 #include <utility>
+
+#include "system/regular_file.h"
 
 namespace thimble::render {
 
@@ -27,12 +26,12 @@ Assimp::IOStream* FolderFiles::Open(const char* file, const char* mode) {
   }
   const std::filesystem::path path = find(file);
   if (path.empty()) return nullptr;
-  std::ifstream stream(path, std::ios::binary);
-  const std::string read{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) return nullptr;
-  auto* const owned = new std::uint8_t[read.size() + 1];
-  std::copy(read.begin(), read.end(), owned);
-  return new Assimp::MemoryIOStream(owned, read.size(), true);
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // as of the mesh file itself
+  const auto read = driver::read_file(path, kMaxBytes);
+  if (!read) return nullptr;
+  auto* const owned = new std::uint8_t[read->size() + 1];
+  std::copy(read->begin(), read->end(), owned);
+  return new Assimp::MemoryIOStream(owned, read->size(), true);
 }
 
 std::filesystem::path FolderFiles::find(const std::string& file) const {
@@ -43,9 +42,8 @@ std::filesystem::path FolderFiles::find(const std::string& file) const {
   for (const auto& step : relative) {
     if (step == "..") return {};
   }
-  std::error_code status;
   const std::filesystem::path path = folder_ / relative;
-  return std::filesystem::is_regular_file(path, status) ? path : std::filesystem::path();
+  return driver::is_regular(path) ? path : std::filesystem::path();
 }
 
 }  // namespace thimble::render

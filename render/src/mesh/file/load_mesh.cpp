@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
+#include <cstdint>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "mesh/file/gltf/read_gltf.h"
@@ -18,12 +17,17 @@
 #include "mesh/file/read_stl.h"
 #include "mesh/file/read_with_assimp.h"
 #include "mesh/file/weld_mesh.h"
+#include "system/regular_file.h"
 
 namespace thimble::render {
 namespace {
 
 constexpr std::array<std::string_view, 10> kEndings{"off", "obj", "stl", "ply", "gltf",
                                                     "glb", "3mf", "dae", "amf", "3ds"};
+
+// 80 million triangles of the tersest format (binary STL). [chosen: a file of this size takes four
+// times as much memory as contact]
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 
 std::string ending_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
@@ -37,22 +41,6 @@ std::string capitals(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
-}
-
-driver::Result<std::string> read_bytes(const std::filesystem::path& file) {
-  std::error_code status;
-  if (!std::filesystem::exists(file, status)) return driver::Error{"there is no such file."};
-  if (!std::filesystem::is_regular_file(file, status)) {
-    return driver::Error{"this is not a file; give the mesh file itself."};
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return driver::Error{"the file cannot be opened; check its permissions."};
-  std::string bytes(std::filesystem::file_size(file, status), '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (stream.bad() || static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
-    return driver::Error{"reading the file failed."};
-  }
-  return bytes;
 }
 
 // Takes the byte order mark away that editors put before a text.
@@ -91,7 +79,7 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
     return error("the ending \"" + ending + "\" is not known; give an " + kMeshEndings + " file.");
   }
-  auto bytes = read_bytes(file);
+  auto bytes = driver::read_file(file, kMaxFileBytes);
   if (!bytes) return error(bytes.error().message);
   MeshFileInfo found;
   found.kind = mesh_kind_of(*bytes, ending);

@@ -71,7 +71,7 @@ std::string parcel_of(const driver::Result<TriangleMesh>& mesh, const MeshFileIn
 
 }  // namespace
 
-ApartLimits limits_of(std::size_t bytes) {
+driver::ApartLimits limits_of(std::size_t bytes) {
   return {.seconds = kSecondsMin + static_cast<int>(bytes / kBytesPerSecond),
           .bytes = kMemoryMin + kMemoryPerByte * bytes};
 }
@@ -84,8 +84,8 @@ driver::Error unreadable(const std::string& kind, const std::string& reason) {
 }
 
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
-                                           const ApartLimits& limits, MeshFileInfo& info) {
-  auto done = run_apart(
+                                           const driver::ApartLimits& limits, MeshFileInfo& info) {
+  auto done = driver::run_apart(
       [&read] {
         MeshFileInfo found;
         const auto mesh = read(found);

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "mesh/file/run_apart.h"
+#include "system/run_apart.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -16,7 +16,7 @@ using MeshReader = std::function<driver::Result<TriangleMesh>(MeshFileInfo& info
 
 /// Returns the limits of reading a file of so many bytes: twenty times the time per byte of the
 /// slowest format, and four times the memory of the hungriest.
-ApartLimits limits_of(std::size_t bytes);
+driver::ApartLimits limits_of(std::size_t bytes);
 
 /// Returns the error about a file that is damaged: "this is no GLTF file that can be read (it
 /// ...)".
@@ -26,6 +26,6 @@ driver::Error unreadable(const std::string& kind, const std::string& reason);
 /// or `unreadable` where the process came to its limits or crashed. Real-time: never from the servo
 /// thread.
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
-                                           const ApartLimits& limits, MeshFileInfo& info);
+                                           const driver::ApartLimits& limits, MeshFileInfo& info);
 
 }  // namespace thimble::render

@@ -16,6 +16,7 @@
 #include "mesh/file/folder_files.h"
 #include "mesh/file/package/zip_archive.h"
 #include "mesh/file/read_in_child.h"
+#include "system/run_apart.h"
 
 namespace thimble::render {
 namespace {

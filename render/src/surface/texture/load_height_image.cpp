@@ -1,11 +1,14 @@
 #include <png.h>
+#include <unistd.h>
 
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "surface/texture/height_image.h"
+#include "system/regular_file.h"
 
 namespace thimble::render {
 namespace {
@@ -84,8 +87,17 @@ driver::Error broken(const std::filesystem::path& file, const std::string& why) 
 }  // namespace
 
 driver::Result<HeightImage> HeightImage::load(const std::filesystem::path& file) {
-  const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "rbe"));
-  if (!stream) return broken(file, "it cannot be opened");
+  // Sixteen bits of every colour and of transparency, uncompressed, and what else a file may hold.
+  constexpr std::uint64_t kMaxBytes = 8 * kSideMax * kSideMax + 30'000'000;
+  auto regular = driver::RegularFile::open(file);
+  if (!regular) return driver::Error{file.string() + ": " + regular.error().message};
+  if (regular->size() > kMaxBytes) return broken(file, "it has more than 64 MB");
+  const int descriptor = regular->release();
+  const std::unique_ptr<std::FILE, CloseFile> stream(fdopen(descriptor, "rb"));
+  if (!stream) {
+    close(descriptor);
+    return broken(file, "it cannot be opened");
+  }
   PngReader reader;
   if (!reader.begin(stream.get())) return broken(file, reader.said());
   Picture picture{.width = reader.width(), .height = reader.height(), .grey = {}, .rows = {}};

@@ -439,7 +439,7 @@ TEST(Recording, TellsNamesThatCannotMoveATerminal) {
   }
   const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->info.scene, "red ?[31m bell ? wide ??31m \303\244");
+  EXPECT_EQ(read->info.scene, "red ?[31m bell ? wide ?31m \303\244");
   EXPECT_EQ(read->info.scene_text, info.scene_text);
 }
 
@@ -466,23 +466,12 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
     return std::string((std::istreambuf_iterator<char>(in)), {});
   };
   const std::string good = bytes_of(0);
-  std::vector<std::size_t> places;
-#if defined(__SANITIZE_ADDRESS__)
-  // HDF5 1.10 reads its own damaged tables after it freed them: here only what we write is damaged.
-  const std::string others = bytes_of(100);
-  for (std::size_t i = 0; i < good.size() && i < others.size(); ++i) {
-    if (good[i] != others[i]) places.push_back(i);
-  }
-  ASSERT_GT(places.size(), 500U);
-#else
-  for (std::size_t i = 0; i < good.size(); ++i) places.push_back(i);
-#endif
   std::mt19937 random(5);
   int refused = 0;
   const int rounds = support::long_form() ? 20'000 : 300;
   for (int round = 0; round < rounds; ++round) {
     std::string bad = good;
-    bad[places[random() % places.size()]] = static_cast<char>(random());
+    bad[random() % good.size()] = static_cast<char>(random());
     std::ofstream(path, std::ios::binary) << bad;
     const auto read = session::read_recording(path);
     if (!read) {
@@ -493,9 +482,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
     }
   }
   // A damaged number is read, and an unsound tick left out; only a damaged table is refused.
-#if !defined(__SANITIZE_ADDRESS__)
   EXPECT_GT(refused, 0);
-#endif
 }
 
 TEST(Recording, CutShortAnywhereIsReadOrRefused) {

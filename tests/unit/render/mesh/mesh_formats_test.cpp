@@ -1,15 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <atomic>
-#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <new>
 #include <string>
 
-#include "mesh/file/run_apart.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
@@ -180,43 +176,6 @@ TEST(MeshFormats, AreGivenUpSoonWhereTheirReaderNeverEnds) {
   EXPECT_TRUE(told.find("needs more memory than its size allows") != std::string::npos ||
               told.find("takes more than 2 s") != std::string::npos)
       << told;
-}
-
-TEST(RunApart, GivesWhatTheWorkGives) {
-  const std::string much(20'000'000, 'x');
-  const auto done = run_apart([&] { return much; }, {});
-  ASSERT_TRUE(done.ok()) << done.error().message;
-  EXPECT_TRUE(*done == much);
-  EXPECT_EQ(*run_apart([] { return std::string(); }, {}), "");
-}
-
-TEST(RunApart, SurvivesWorkThatCrashesHangsOrAsksForTooMuch) {
-  const auto crashed = run_apart(
-      []() -> std::string {
-        std::raise(SIGSEGV);
-        return "";
-      },
-      {});
-  ASSERT_FALSE(crashed.ok());
-  EXPECT_EQ(crashed.error().message, "breaks its reader");
-  const auto left = run_apart([]() -> std::string { std::_Exit(0); }, {});
-  EXPECT_FALSE(left.ok());
-  const auto hung = run_apart(
-      []() -> std::string {
-        for (std::atomic<int> i = 0;; ++i) {
-        }
-      },
-      {.seconds = 1, .bytes = 1 << 20});
-  ASSERT_FALSE(hung.ok());
-  EXPECT_EQ(hung.error().message, "takes more than 1 s");
-  const auto greedy = run_apart([]() -> std::string { throw std::bad_alloc(); }, {});
-  ASSERT_FALSE(greedy.ok());
-  EXPECT_EQ(greedy.error().message, "needs more memory than its size allows");
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  EXPECT_FALSE(
-      run_apart([] { return std::string(100'000'000, 'x'); }, {.seconds = 10, .bytes = 10'000'000})
-          .ok());
-#endif
 }
 
 }  // namespace

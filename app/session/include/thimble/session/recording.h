@@ -33,6 +33,9 @@ struct RecordingInfo {
   std::string arm_in_scene{};
   /// Names of the objects that the tip of a simulated arm starts in, a comma between two.
   std::string inside_at_start{};
+  /// What else was asked for that changes the result, a line each ("quality: draft"); empty if
+  /// nothing was.
+  std::string options{};
 };
 
 /// Returns where the recording of one of several arms lies that is asked for as `path`: beside it,

@@ -100,7 +100,10 @@ struct SessionOptions {
   std::string share_name = {};  ///< under which; empty: the scene's, with a number if it is taken
   double rate_factor = 1;  ///< of the loop, over the scene's (scene::SceneReading); not with a real
                            ///< arm, which has its own
-  /// Changes the scene before anything is built of it.
+  /// How much of what cannot be felt the run spends time on (scene::kQualityNames).
+  std::string quality = "normal";
+  std::optional<double> budget = {};  ///< ns per tick that `quality` "auto" may spend
+  /// Changes the scene before anything is built of it. A recording cannot hold it, and says so.
   std::function<void(scene::Scene&)> adjust = {};
   /// Meshes that this session shares with others (scene/shared_meshes.h); its own if null.
   std::shared_ptr<scene::SharedMeshes> meshes = {};

@@ -41,7 +41,7 @@ constexpr std::array<std::string_view, 12> kKnownExtensions{kInstancing,
                                                             "KHR_animation_pointer"};
 
 // What reading may use: a small file may name large ones beside it.
-constexpr ApartLimits kGltfLimits{.seconds = 20, .bytes = std::size_t{4} << 30};
+constexpr driver::ApartLimits kGltfLimits{.seconds = 20, .bytes = std::size_t{4} << 30};
 
 // How primitives are built of their corners [glTF 2.0, 3.7.2.1].
 constexpr std::size_t kTriangles = 4, kStrip = 5, kFan = 6;

@@ -1,0 +1,59 @@
+#include "recording/run_choices.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <sstream>
+
+#include "thimble/scene/quality.h"
+
+namespace thimble::session {
+namespace {
+
+/// Reads a number > 0.
+std::optional<double> number_of(const std::string& text) {
+  double value = 0;
+  const auto [end, trouble] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good =
+      trouble == std::errc() && end == text.data() + text.size() && value > 0 && value <= 1e12;
+  return good ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::string text_of(const RunChoices& choices) {
+  const RunChoices none;
+  std::string text;
+  if (choices.quality != none.quality) text += "quality: " + choices.quality + "\n";
+  // In the shortest form that reads back to the same bits.
+  if (choices.budget) text += fmt::format("budget: {}\n", *choices.budget);
+  if (choices.rate_factor != 1) text += fmt::format("rate_factor: {}\n", choices.rate_factor);
+  if (choices.adjusted) text += "adjusted: yes\n";
+  return text;
+}
+
+driver::Result<RunChoices> run_choices(const std::string& text) {
+  RunChoices choices;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t colon = line.find(": ");
+    const std::string key = line.substr(0, colon);
+    const std::string value = colon == std::string::npos ? "" : line.substr(colon + 2);
+    const auto number = number_of(value);
+    if (key == "quality" && scene::quality_named(value)) {
+      choices.quality = value;
+    } else if (key == "budget" && number) {
+      choices.budget = number;
+    } else if (key == "rate_factor" && number) {
+      choices.rate_factor = *number;
+    } else if (key == "adjusted" && value == "yes") {
+      choices.adjusted = true;
+    } else {
+      return driver::Error{"the recording holds the option \"" + line +
+                           "\", which this program does not know; use the program that made it."};
+    }
+  }
+  return choices;
+}
+
+}  // namespace thimble::session

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Fails if a source prints by itself: all texts of the program go through scene::write_text, print_format and Console,
+# which leave out what a terminal would obey (names come from files of unknown origin). First it plants a print of
+# each kind in a copy and checks that each is found.
+#   tests/arch/printing.sh SOURCE_DIR
+set -euo pipefail
+source=$1
+
+# prints FOLDER: file:line of every print to a terminal in its sources.
+prints() {
+  (
+    cd "$1"
+    # A file of its own (std::fprintf(file_, ...)) is no terminal.
+    grep -rnE '\b(printf|vprintf|puts|putchar|perror|psignal)\(|\bfprintf\((stdout|stderr)|\b(fputs|fputc|fwrite|putc|vfprintf)\(.*\bstd(out|err)\b|\bstd::(cout|cerr|clog)\b|\bfmt::print\(|\bwrite\((1|2|STDOUT_FILENO|STDERR_FILENO),|\bdprintf\(' \
+      app driver render device_sim --include='*.h' --include='*.cpp' |
+      grep -vE '^app/examples/|^app/scene/src/log/(console|printed_text)\.(h|cpp):|gnu::format\(printf|//.*printf' |
+      # In programs of others: the error of their library, which `thimble exec` made printable.
+      grep -vE '^app/faces/hd/hd_device\.cpp:|^app/faces/include/' || true
+  )
+}
+
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+mkdir -p "$copy"/{app/cli,driver,render,device_sim}
+planted=('std::printf("%s", name);' 'std::puts(name);' 'std::fprintf(stderr, "%s", name);' 'std::fputs(name, stdout);'
+  'std::fwrite(name, 1, 2, stderr);' 'std::cout << name;' 'std::cerr << name;' 'fmt::print("{}", name);'
+  'perror(name);' 'write(2, name, 3);' 'std::putchar(name[0]);' 'dprintf(2, "%s", name);')
+printf '%s\n' "${planted[@]}" >"$copy/app/cli/planted.cpp"
+found=$(prints "$copy" | wc -l)
+if [ "$found" -ne "${#planted[@]}" ]; then
+  echo "FAILED: of ${#planted[@]} planted prints $found were found:"
+  prints "$copy"
+  exit 1
+fi
+
+found=$(prints "$source")
+if [ -n "$found" ]; then
+  echo "Print by scene::print_format, session::print, the loggers or scene::console (app/scene/src/log):"
+  echo "$found"
+  exit 1
+fi
