@@ -171,7 +171,11 @@ function(thimble_write_optional_parts)
   thimble_part(viewer HAS TARGET thimble_window OFF "${no_app}")
   thimble_has_programs(has_gnuplot gnuplot)
   thimble_part(plots HAS has_gnuplot OFF "${no_app}")
-  thimble_part(scans HAS EXISTS "${THIMBLE_MESHES}/elephant.off" OFF "${no_app}"
+  set(meshes "${PROJECT_SOURCE_DIR}/build/meshes")
+  if(THIMBLE_MESHES)
+    set(meshes "${THIMBLE_MESHES}")
+  endif()
+  thimble_part(scans HAS EXISTS "${meshes}/elephant.off" OFF "${no_app}"
     WHY "run app/fetch_meshes.sh")
   thimble_has_modules(has_numpy numpy)
   thimble_part(python HAS TARGET thimble_python AND has_numpy OFF "${no_python}")

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Fails if a line of a list of tests names no test of a build, or names one without the label, or if a test has the label
 # that no line names.
-#   tests/test_list.sh BUILD_FOLDER LIST [LABEL]
+#   tests/test_list.sh BUILD_FOLDER LIST
+#   tests/test_list.sh BUILD_FOLDER LIST LABEL
 set -euo pipefail
 list=$(dirname "$0")/$2
 # By a folder of its own, for a ctest that lists tests takes the log from the one that runs them.
