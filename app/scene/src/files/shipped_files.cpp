@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "files/data_folders.h"
-#include "text_file.h"
 #include "user_folders.h"
 
 namespace thimble::scene {
@@ -94,7 +93,7 @@ bool is_installed_arm(const fs::path& file) {
 
 std::string description_of(const fs::path& file) {
   try {
-    return YAML::Load(text_of(file))["description"].as<std::string>("");
+    return YAML::LoadFile(file.string())["description"].as<std::string>("");
   } catch (const YAML::Exception&) {
     return {};  // whoever runs it is told what is wrong with it
   }

@@ -1,13 +1,14 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "log/logger.h"
-#include "system/regular_file.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
@@ -86,16 +87,22 @@ std::string YamlMistakes::text() const {
 }
 
 driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
+  std::error_code status;
   const std::string name = file.filename().string();
-  const auto text = driver::read_file(file, kFileSizeMax);
-  if (!text) {
-    std::error_code status;
-    if (driver::is_regular(file) && std::filesystem::file_size(file, status) > kFileSizeMax) {
-      return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm."};
-    }
-    return driver::Error{file.string() + ": " + text.error().message};
+  if (!std::filesystem::is_regular_file(file, status)) {
+    return driver::Error{file.string() + ": there is no such file."};
   }
-  return parse(*text, name);
+  if (!(std::filesystem::file_size(file, status) <= kFileSizeMax)) {
+    return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm."};
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  // Streaming an empty file sets failbit on `text`, not on `stream`.
+  text << stream.rdbuf();
+  if (!stream) {
+    return driver::Error{file.string() + ": cannot be read; check its permissions."};
+  }
+  return parse(text.str(), name);
 }
 
 driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name,

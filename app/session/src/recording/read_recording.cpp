@@ -95,9 +95,9 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   if (!file) return wrong(file.error().message);
   const std::uint64_t stored = file->stored();
   constexpr std::uint64_t kBytesPerSecond = 10'000'000;
-  const driver::ApartLimits limits{.seconds = 1 + static_cast<int>(std::min<std::uint64_t>(
-                                                       stored / kBytesPerSecond, 1'000'000)),
-                                   .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
+  const driver::ApartLimits limits{
+      .seconds = 1 + static_cast<int>(std::min<std::uint64_t>(stored / kBytesPerSecond, 1'000'000)),
+      .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
   const auto read = driver::run_apart(
       [&](driver::ApartWriter& out) { read_h5(file->descriptor(), file->size(), stored, out); },
       limits);
