@@ -13,6 +13,7 @@
 #include "log/console.h"
 #include "log/log_file.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "support/scratch.h"
 
 namespace thimble::scene {
@@ -187,6 +188,43 @@ TEST_F(LogTest, AFileThatTheUserNamedMustBeOneThatCanBeWritten) {
   EXPECT_EQ(begun.error().message.rfind("/dev/full: the log cannot be written there (", 0), 0u)
       << begun.error().message;
   EXPECT_FALSE(begin_log({.file = folder_}));
+}
+
+// What a name from a file could do to a terminal or to a log that is shown on one.
+constexpr const char* kHostile = "a\x1b]0;title\a\x1b[31m\r\xC2\x9Bm\xE2\x80\xAE\xFFz";
+constexpr const char* kShown = "a?]0;title??[31m??m??z";
+
+TEST_F(LogTest, ConsoleShowsNamesPrintable) {
+  const std::string said = said_by([] { logger().error("{}", kHostile); });
+  EXPECT_EQ(said, std::string("thimble: ") + kShown + "\n");
+}
+
+TEST_F(LogTest, LogFileHoldsNamesPrintable) {
+  const fs::path file = folder_ / "hostile.log";
+  ASSERT_TRUE(begin_log({.file = file, .heading = kHostile}));
+  said_by([] { logger().error("{}", kHostile); });
+  ASSERT_TRUE(begin_log({.file = folder_ / "next.log"}));
+  const auto lines = lines_of(file);
+  ASSERT_EQ(lines.size(), 2U);
+  for (const std::string& line : lines) {
+    EXPECT_TRUE(line.ends_with(std::string(": ") + kShown)) << line;
+  }
+}
+
+TEST_F(LogTest, PrintedTextIsPrintable) {
+  testing::internal::CaptureStdout();
+  print_format("%s %d\n", kHostile, 7);
+  write_text(stdout, kHostile);
+  std::fflush(stdout);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), std::string(kShown) + " 7\n" + kShown);
+}
+
+TEST_F(LogTest, PrintedTextHasAnyLength) {
+  const std::string text(100'000, 'x');
+  testing::internal::CaptureStdout();
+  print_format("%s", text.c_str());
+  std::fflush(stdout);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), text);
 }
 
 }  // namespace
