@@ -30,7 +30,7 @@ expect 2 '^thimble: "sphere" is one argument too many for `thimble run`' "$thimb
 expect 2 '^thimble: --duration: expected 0\.001 to 86400 seconds, found three\.$' "$thimble" run box --duration three
 expect 2 '^thimble: --duration: its value is missing; expected a number\. See `thimble run --help`\.$' "$thimble" run box --duration
 expect 2 '^thimble: --seed: expected a whole number of 0 or more, found "many"\.$' "$thimble" run box --seed many
-for seed in 7.5 0x10 -1 1e3 nan ''; do
+for seed in 7.5 0x10 -1 1e3 nan 010x; do
   expect 2 "^thimble: --seed: expected a whole number of 0 or more, found \"$seed\"\\.\$" "$thimble" run box "--seed=$seed"
 done
 expect 0 '' "$thimble" run box --duration 0.01 --seed 18446744073709551615

@@ -272,9 +272,9 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
     if (message == "A subcommand is required") return incomplete(command);
     const std::string name = before(message, " is required");
     if (const std::size_t list = message.find('['); list != std::string::npos) {
-      const std::string names = message.substr(list + 1, message.rfind(']') - list - 1);
-      return fmt::format("`{}` needs {}.{}", call_of(command), joined(split(names, ", ")),
-                         see_help(command));
+      auto names = split(message.substr(list + 1, message.rfind(']') - list - 1), ",");
+      std::erase(names, "");  // options that only show help
+      return fmt::format("`{}` needs {}.{}", call_of(command), joined(names), see_help(command));
     }
     return missing(command, find_option(command, name), name);
   }

@@ -101,7 +101,6 @@ driver::Gimbal read_gimbal(YamlMap map) {
     map.refuse("axes", "expected three axes, from the link to the stylus");
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
     if (axes.size() == 3) gimbal.axes[i] = static_cast<driver::FrameAxis>(axes[i]);
     gimbal.sign[i] = static_cast<double>(sign[i]);
     gimbal.counts_per_turn[i] = static_cast<double>(counts[i]);

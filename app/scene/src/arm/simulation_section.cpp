@@ -93,8 +93,7 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   train.current_lag = map.optional_number("current_lag", 0, "s", 0, 0.1);
   train.cogging = amounts("cogging", "N m at the motor", 1);
   train.ripple = amounts("ripple", "", 0.5);
-  train.periods_per_turn =
-      static_cast<double>(map.optional_whole("periods_per_turn", 0, "", 0, 1000));
+  train.periods_per_turn = map.optional_number("periods_per_turn", 0, "", 0, 1000);
   const auto phase = [&map](std::string_view key) {
     return map.optional_vector3(key, {0, 0, 0}, "rad where the joint's angle is zero", -kTurn,
                                 kTurn);

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -331,6 +332,52 @@ MeasuredAxis measured_by_hand() {
   }
   axis.lines.push_back(line);
   return measure_axis(axis, {.rounds = 0, .count = false});
+}
+
+TEST(MeasuredAxis, IsTheSameFromItsNumbers) {
+  const MeasuredAxis measured = measured_by_hand();
+  const MeasuredAxis again = with_numbers(measured.axis, numbers_of(measured));
+  EXPECT_TRUE(again.complete);
+  EXPECT_EQ(again.lines[0].slope, measured.lines[0].slope);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(again.lines[0].points[i].error, measured.lines[0].points[i].error);
+    EXPECT_EQ(again.lines[0].points[i].on_front, measured.lines[0].points[i].on_front);
+    EXPECT_FALSE(again.lines[0].points[i].instructions);
+  }
+}
+
+TEST(MeasuredAxis, OfTooFewNumbersIsNotComplete) {
+  const MeasuredAxis measured = measured_by_hand();
+  std::vector<double> numbers = numbers_of(measured);
+  numbers.pop_back();
+  EXPECT_FALSE(with_numbers(measured.axis, numbers).complete);
+}
+
+TEST(MeasuredAxis, IsStoppedBetweenTwoPoints) {
+  AccuracyAxis axis = measured_by_hand().axis;
+  std::atomic<bool> stop{false};
+  int errors = 0, steps = 0;
+  for (AccuracyPoint& point : axis.lines[0].points) {
+    point.error = [&] {
+      stop = ++errors == 2;
+      return 1.0;
+    };
+  }
+  const MeasuredAxis measured = measure_axis(
+      std::move(axis),
+      {.rounds = 5, .count = true, .stop = &stop, .advance = [&](int done) { steps += done; }});
+  EXPECT_FALSE(measured.complete);
+  EXPECT_EQ(errors, 2);
+  EXPECT_EQ(steps, 2);
+}
+
+TEST(MeasuredAxis, ReportsAsManyStepsAsItAnnounces) {
+  AccuracyAxis axis = measured_by_hand().axis;
+  int steps = 0;
+  MeasureOptions options{.rounds = 5, .count = false, .advance = [&](int done) { steps += done; }};
+  const int announced = steps_of(axis, options);
+  measure_axis(std::move(axis), options);
+  EXPECT_EQ(steps, announced);
 }
 
 TEST(MeasuredAxis, FindsSlopeDefaultAndThePointBeyondWhichNothingIsFelt) {
