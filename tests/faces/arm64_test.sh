@@ -26,7 +26,7 @@ library() {
   for source in "$faces/$face"/*.cpp "$faces"/core/*.cpp; do
     objects+=("$face/$(basename "$source").o")
     aarch64-linux-gnu-g++ -std=c++20 -O1 -fPIC -Wno-psabi \
-      -DTHIMBLE_VERSION="\"$version\"" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" \
+      -DTHIMBLE_VERSION="\"$version\"" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" -I"$source_dir/driver/src" \
       -isystem "$eigen" -c "$source" -o "${objects[-1]}" || return
   done
   {
