@@ -49,7 +49,9 @@ template <class T>
 struct Layout {
   static constexpr std::uint64_t hash() noexcept {
     std::uint64_t hash = mix(kBegin, sizeof(T));
-    if constexpr (std::is_arithmetic_v<T>) {
+    if constexpr (std::is_same_v<T, char>) {
+      return mix(hash, "text");  // signed on one processor and not on another
+    } else if constexpr (std::is_arithmetic_v<T>) {
       hash = mix(hash, std::is_floating_point_v<T> ? "float" : "integer");
       return mix(hash, std::is_same_v<T, bool> ? 2 : std::is_signed_v<T> ? 1 : 0);
     } else if constexpr (std::is_enum_v<T>) {

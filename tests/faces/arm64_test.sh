@@ -25,7 +25,7 @@ library() {
   for source in "$faces/$face"/*.cpp "$faces"/core/*.cpp; do
     objects+=("$face/$(basename "$source").o")
     aarch64-linux-gnu-g++ -std=c++20 -O1 -fPIC -Wno-psabi \
-      -I"$version_folder" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" \
+      -I"$version_folder" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" -I"$source_dir/driver/src" \
       -isystem "$eigen" -c "$source" -o "${objects[-1]}" || return
   done
   {

@@ -45,7 +45,7 @@ expect 0 'are looked for by name in this order: [^ ]*home/\.local/share/thimble 
 box_at xdg/thimble/scenes/only_there.yaml 0.04
 expect 0 '^Loop +40 ticks' env XDG_DATA_HOME="$work/xdg" "$thimble" run only_there
 
-# The working folder may be a stranger's: nothing there has a name of its own. Who means a file says so.
+# The working folder may be a stranger's: nothing there is found by name, only by path.
 box_at app/scenes/only_there.yaml 0.05
 box_at app/scenes/box.yaml 0.05
 box_at scenes/box.yaml 0.05

@@ -55,7 +55,7 @@ if [ "$(id -u)" != 0 ] || ! command -v setpriv >/dev/null; then
 fi
 as_other() { setpriv --reuid 65534 --regid 65534 --clear-groups "$@"; }
 
-# A pipe of another user under the name of a run's shared memory: nobody waits for it.
+# A pipe of another user under the name of a run's shared memory: no command waits for it.
 name=other-users-$$
 pipe=/dev/shm/thimble-0-$name
 as_other mkfifo -m 666 "$pipe"

@@ -163,7 +163,7 @@ void give_up(int number) noexcept {
 /// is wrong.
 std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
   copy_text(arm.face, face);
-  // What went before, of a program that was here before, counts no more.
+  // Settings of an earlier program do not count.
   arm.enabled.store(0);
   arm.watchdog_ns.store(0);
   arm.speed_limit.store(0);

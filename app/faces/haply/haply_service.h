@@ -45,8 +45,8 @@ class Service {
   bool ready() const noexcept;
   /// Returns how many programs have come.
   int programs() const noexcept;
-  /// Returns how many connections were refused because another user, or nobody, held their other
-  /// end.
+  /// Returns how many connections were refused because their other end was not held by a process of
+  /// this user or of root.
   int refused() const noexcept;
   /// Closes all connections. Any thread.
   void leave();

@@ -30,8 +30,7 @@ std::map<std::uint32_t, OpenDomain>& domains() {
 }
 
 // Participants of this computer find each other by multicast over the loopback interface, or at the
-// ports of the first 32 of a domain, as those of ROS 2 do that are told to stay here (rmw's
-// LOCALHOST).
+// ports of the first 32 of a domain, as participants of ROS 2 do with the range LOCALHOST.
 constexpr const char* kHere =
     "<CycloneDDS><Domain id=\"any\"><General>"
     "<Interfaces><NetworkInterface address=\"127.0.0.1\" "
@@ -39,7 +38,7 @@ constexpr const char* kHere =
     "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
     "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
-// The same for who wants to be found by nobody.
+// The same without any announcement.
 constexpr const char* kHereUnseen =
     "<CycloneDDS><Domain id=\"any\"><General>"
     "<Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"

@@ -38,7 +38,7 @@ struct RosOptions {
   std::string world_frame = "world";         ///< name of frame W, in the style's axes
   std::string tip_frame = "tip";             ///< name of frame T
   std::uint32_t domain = 0;                  ///< of DDS
-  RosReach reach = RosReach::kThisComputer;  ///< who may hear and be heard
+  RosReach reach = RosReach::kThisComputer;  ///< which programs can hear and be heard
   RosForce force = RosForce::kNone;          ///< of the topic of forces
   double force_limit = 0;                    ///< N; 0: the arm's own limit
   std::int64_t stale_ns = 50'000'000;        ///< a force counts for so long

@@ -96,7 +96,8 @@ def open(
     the loop gets no real-time priority. ros2: publish the run as topics of ROS 2 (package
     thimble-ros2): True, or what ``thimble run --ros2`` takes as a dict, ``{"namespace": "/phantom",
     "names": "omni", "domain": 5, "force": "add", "limit": 1, "stale_ms": 50, "frames":
-    "world,tip"}``, each of them as you like. Raises Error with what to do.
+    "world,tip", "network": False}``, each of them as you like; with ``"network": True`` other
+    computers can read the topics and give forces. Raises Error with what to do.
     """
     path_of("device", device, "\"sim\", \"auto\" or a name")
     if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath

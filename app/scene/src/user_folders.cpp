@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In place of a home folder where there is none. Nobody can make a folder there, so that whatever
-// would be written fails with a message that has this in it.
+// The home folder of a user that has none. No folder can be made there, so that each write fails
+// with a message that contains this path.
 constexpr const char* kNoHome = "/dev/null/HOME-is-not-set";
 
 /// Returns the folder of an environment variable; empty if it is not set, or relative, which counts

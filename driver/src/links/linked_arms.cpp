@@ -41,7 +41,7 @@ std::vector<FoundArm> find_linked_arms() {
     FoundArm one;
     one.kind = ArmKind::kHaply;
     one.board = BoardKind::kHaplyService;
-    // Our own stand-in is an arm that Thimble drives already: only who names it means it.
+    // Our own stand-in is an arm that Thimble drives already: it is used only if it is named.
     one.certainty = arm.stand_in ? Certainty::kUnknown : Certainty::kProvesItself;
     one.arm = arm.stand_in ? "stand-in of Thimble" : "Haply Inverse3";
     one.bus = kServiceBus;

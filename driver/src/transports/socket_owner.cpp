@@ -19,7 +19,7 @@ namespace {
 /// order, and the port.
 struct Address {
   std::array<std::uint32_t, 4> words{};
-  bool four = false;  // IPv4: the first word alone
+  bool four = false;  // IPv4: only the first word counts
   std::uint16_t port = 0;
 };
 

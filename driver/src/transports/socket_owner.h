@@ -9,7 +9,7 @@ namespace thimble::driver {
 
 /// Returns the user whose process holds the other end of a TCP connection within this computer, as
 /// the kernel lists it [proc(5), /proc/net/tcp]. Nothing if the other end is on another computer,
-/// is not accepted yet or was closed: then nobody answers for it. Real-time: never from the servo
+/// is not accepted yet or was closed: then no process holds it. Real-time: never from the servo
 /// thread.
 std::optional<uid_t> user_of_peer(int socket);
 

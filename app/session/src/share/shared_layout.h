@@ -32,7 +32,7 @@ inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
 inline constexpr std::size_t kViewersMost = 16;  ///< Chosen: more than look on at a time.
 // The bytes of the file that processes lock (SharedMemory::lock), after that of its maker.
-inline constexpr std::int64_t kTurnByte = 1;  ///< Whoever writes a request of several words.
+inline constexpr std::int64_t kTurnByte = 1;  ///< Held while a request of several words is written.
 inline constexpr std::int64_t kFirstViewerByte = 16;    ///< And on: the viewers, by their places.
 inline constexpr std::size_t kKnobsMost = 64;           ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;       ///< Chosen, as a bound for readers.
@@ -192,7 +192,7 @@ struct SharedRestart {
 
 /// What viewers ask for. Viewers take turns by kTurnByte; the run never waits for them.
 struct SharedRequests {
-  std::atomic<std::uint32_t> pause;  ///< kNotPaused, or who holds the loop: see is_pause.
+  std::atomic<std::uint32_t> pause;  ///< kNotPaused, or which viewer holds the loop: see is_pause.
   std::atomic<std::uint32_t> stop;   ///< 1: end the run.
   std::atomic<std::uint32_t> loop;   ///< 1: begin anew whenever the run ends; 0: not.
   std::atomic<double> speed;         ///< Times real time; nonsense is ignored.
@@ -207,7 +207,7 @@ struct SharedRequests {
 };
 
 // Values of `pause`. A viewer that has a place pauses by 1 + its place, so that a pause ends with a
-// viewer that dies in it; who has none, by kPausedByNobody.
+// viewer that dies in it; one without a place pauses by kPausedByNobody.
 inline constexpr std::uint32_t kNotPaused = 0;
 inline constexpr std::uint32_t kPausedByNobody = kViewersMost + 1;
 

@@ -50,7 +50,7 @@ bool is_own(const struct stat& status) {
   return status.st_uid == geteuid() && (status.st_mode & 077) == 0 && S_ISREG(status.st_mode);
 }
 
-/// Opens a file of shared memory if it is this user's own; -1 otherwise. Anybody may put anything
+/// Opens a file of shared memory if it is this user's own; -1 otherwise. Any user may put anything
 /// into the folder under any name, so nothing is waited for (a FIFO, a lease), followed (a link) or
 /// believed before the open file itself has been looked at.
 int open_own(const std::string& file, struct stat& status) {
@@ -98,7 +98,7 @@ bool remove_if_dead(const std::string& file) {
   struct stat status {};
   const int opened = open_own(file, status);
   if (opened < 0) return errno == ENOENT;
-  // Whoever removes it holds the lock meanwhile, so that no two do, and the second one would remove
+  // The lock is held meanwhile, so that no two processes do this: the second one would remove
   // what has taken the place since.
   bool removed = false;
   if (driver::lock_byte(opened, SharedMemory::kMakerByte)) {
@@ -162,7 +162,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::st
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std::string& run,
                                                                       const std::string& end,
                                                                       std::size_t bytes) {
-  // Without a name first: whoever finds it finds it locked.
+  // Without a name first: it is locked before any process can find it.
   const int file = ::open(kFolder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file < 0) return trouble("Shared memory cannot be made in " + std::string(kFolder));
   fchmod(file, 0600);
@@ -187,7 +187,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
   if (failed == EEXIST && remove_if_dead(place.file)) failed = put();
   if (failed == EEXIST) {
     struct stat status {};
-    // Another run was quicker; or it is no memory of this user, and nobody can foresee the next
+    // Another run was quicker; or it is no memory of this user, and no user can foresee the next
     // name.
     const bool ours = lstat(path_of(place.file).c_str(), &status) == 0 && is_own(status);
     if (!ours) {
@@ -274,7 +274,7 @@ void SharedMemory::remove_name() {
   const std::string path = path_of(name_);
   struct stat own {};
   struct stat there {};
-  // What another run has put there since somebody removed this one's stays.
+  // What another run has put there since this one's was removed stays.
   if (!name_.empty() && made_ && fstat(file_, &own) == 0 && lstat(path.c_str(), &there) == 0 &&
       own.st_dev == there.st_dev && own.st_ino == there.st_ino) {
     unlink(path.c_str());

@@ -25,7 +25,7 @@ void put(const std::string& text, SharedText<N>& to) {
 }
 
 /// Stores nothing where a viewer was killed in writing: half a request is none. Precondition:
-/// nobody is writing now.
+/// no viewer is writing now.
 template <class T>
 void make_whole(driver::Snapshot<T>& snapshot) noexcept {
   T value;
@@ -337,7 +337,7 @@ bool SharedRun::watch_viewers() noexcept {
     std::uint64_t pid = viewer.load();
     if (pid != 0 && !is_viewer_alive(place)) viewer.compare_exchange_strong(pid, 0);
   }
-  // Who has the turn is alive, and ends what it has begun.
+  // A viewer that has the turn is alive, and ends what it has begun.
   if (memory_->lock(kTurnByte)) {
     make_whole(live_->requests.restart);
     make_whole(live_->requests.record_path);
@@ -354,7 +354,7 @@ void SharedRun::release_hand() noexcept {
     // A viewer without a place is number 0.
     if (seen.active != 1 || is_viewer_alive(seen.viewer - 1)) return;
   } else if (live_->requests.hand.count() == 0) {
-    return;  // nobody has led it
+    return;  // no viewer has led it
   }
   last_hand_.active = 0;
   live_->requests.hand.store(last_hand_);

@@ -69,7 +69,7 @@ class Socket::Connection {
     wait(until);
     if (failed) return "What listens on port " + std::to_string(port) + " says nothing.";
     first_ = take_text();
-    // Only now has it accepted the connection, so that the kernel knows who has.
+    // Only now has it accepted the connection, so that the kernel knows its process.
     const std::string stranger = distrust_of_peer(stream_.next_layer().native_handle());
     if (!stranger.empty()) {
       return "What listens on port " + std::to_string(port) + " is " + stranger +

@@ -1,10 +1,13 @@
 #include "heat_keeper.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "support/scratch.h"
 
