@@ -7,9 +7,20 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
+namespace {
+
+// Faces that lean by more, as a cosine, are the back of a thin part (as in SurfaceTracker).
+constexpr double kBackOfThinPart = -0.25;
+
+}  // namespace
+
 TrackerStep NormalProjectionTracker::follow(const Vector3d& p_WT) noexcept {
   TrackerStep step;
+  const std::int32_t before = active_;
   step.hops = walk(p_WT);
+  if (step.hops == kHopsMax) {
+    step.hops = static_cast<std::uint16_t>(step.hops + walk_on(p_WT, before));
+  }
   const double depth = mesh_->depth(active_, p_WT);
   step.touching = depth >= 0;
   if (step.touching) step.depth = depth;
@@ -41,8 +52,23 @@ std::uint16_t NormalProjectionTracker::walk(const Vector3d& p_WT) noexcept {
     active_ = next;
   }
   ++counters_.long_walks;
-  active_ = best;
   return kHopsMax;
+}
+
+// Around a vertex of many faces the best of the triangles visited may be the one where the walk
+// began, and each tick would end there again (as in OffsetTracker).
+std::uint16_t NormalProjectionTracker::walk_on(const Vector3d& p_WT, std::int32_t before) noexcept {
+  const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
+  if (hit.triangle < 0 ||
+      !(mesh_->cell(hit.triangle).face.n.dot(mesh_->cell(before).face.n) > kBackOfThinPart)) {
+    return 0;
+  }
+  active_ = hit.triangle;
+  ++counters_.found_far;
+  const std::uint16_t hops = walk(p_WT);
+  // Beside the vertex itself many are equally near.
+  if (hops == kHopsMax) active_ = hit.triangle;
+  return hops;
 }
 
 }  // namespace thimble::render

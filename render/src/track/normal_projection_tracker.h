@@ -19,12 +19,15 @@ namespace thimble::render {
 /// prisms overlap, and the depth d jumps by d (1 - cos a) on the way over; below a concave edge
 /// they leave a gap, where the least left triangle stays active. Contact ends when the depth turns
 /// negative, as in the paper, so it can be lost while the tip is inside. Not for touching things:
-/// SurfaceTracker and OffsetTracker have neither fault. Real-time: safe; at worst `kHopsMax` cells.
+/// SurfaceTracker and OffsetTracker have neither fault. A walk that reaches `kHopsMax` continues
+/// from the nearest triangle, as OffsetTracker's. Real-time: safe; at worst twice `kHopsMax` cells
+/// and one question to the search.
 class NormalProjectionTracker {
  public:
-  /// Keeps a reference: the mesh must outlive the tracker. The search is not needed: contact that
-  /// is lost stays lost.
-  NormalProjectionTracker(const ContactMesh& mesh, const ContactSearch&) noexcept : mesh_(&mesh) {}
+  /// Keeps references: mesh and search must outlive the tracker. The search serves walks that reach
+  /// `kHopsMax` alone; contact that is lost stays lost.
+  NormalProjectionTracker(const ContactMesh& mesh, const ContactSearch& search) noexcept
+      : mesh_(&mesh), search_(&search) {}
 
   /// Makes a triangle active, where the tip has just entered.
   void start(std::int32_t triangle) noexcept { active_ = triangle; }
@@ -50,8 +53,10 @@ class NormalProjectionTracker {
 
  private:
   std::uint16_t walk(const Eigen::Vector3d& p_WT) noexcept;
+  std::uint16_t walk_on(const Eigen::Vector3d& p_WT, std::int32_t before) noexcept;
 
   const ContactMesh* mesh_;
+  const ContactSearch* search_;
   std::int32_t active_ = -1;
   TrackerCounters counters_;
 };

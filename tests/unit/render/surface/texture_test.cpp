@@ -201,6 +201,40 @@ TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
   EXPECT_GT(highest, -1e-5);  // and its peaks do lie in the surface
 }
 
+// A picture that no turn and no mirror leaves as it is.
+TEST(HeightMaps, ReadTheSameWayRoundOnEveryFaceFromOutside) {
+  HeightMap::Settings settings;
+  std::vector<float> values(64, 0.5f);
+  for (std::size_t i = 0; i < 5; ++i) values[i * 8] = 1;  // an L
+  for (std::size_t i = 0; i < 3; ++i) values[i] = 0.8f;
+  settings.image = std::make_shared<const HeightImage>(8, 8, std::move(values));
+  settings.width = 0.008;
+  settings.height = 0.001;
+  settings.along = HeightMap::Along::kAll;
+  const HeightMap map(settings, {});
+  support::Random random(6);
+  for (int i = 0; i < 200; ++i) {
+    const double u = random.uniform(0, 0.008), v = random.uniform(0, 0.008);
+    const double wanted = map.at({u, v, 0}, Vector3d::UnitZ()).height;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {1.0, -1.0}) {
+        const Vector3d n = side * Vector3d::Unit(axis);
+        const Vector3d up = Vector3d::Unit((axis + 2) % 3);
+        const Vector3d right = up.cross(n);  // as seen from outside, looking along -n
+        const TextureHeight found = map.at(u * right + v * up, n);
+        EXPECT_NEAR(found.height, wanted, 1e-12) << axis << " " << side;
+        // The slope belongs to the height.
+        const double e = 1e-8;
+        EXPECT_NEAR(found.slope_M.dot(right),
+                    (map.at((u + e) * right + v * up, n).height -
+                     map.at((u - e) * right + v * up, n).height) /
+                        (2 * e),
+                    1e-4);
+      }
+    }
+  }
+}
+
 TEST(Textures, GiveNoForceForNaNAndNeverPull) {
   const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
