@@ -70,12 +70,12 @@ void look_at_forces(HHD handle, Device& device) noexcept {
         keep_error(HD_DEVICE_FAULT, handle, static_cast<int>(now.fault));
     }
   }
-  if (now.link != device.link_told) {
-    device.link_told = now.link;
+  if (now.link != device.link_reported) {
+    device.link_reported = now.link;
     // An arm can be pulled because of, or after, another fault.
-    const bool told_by_fault =
+    const bool named_by_fault =
         now.fault == driver::Fault::kTransportLost || now.fault == driver::Fault::kNoReports;
-    if (now.link == driver::LinkState::kLost && !told_by_fault) {
+    if (now.link == driver::LinkState::kLost && !named_by_fault) {
       keep_error(HD_COMM_ERROR, handle, static_cast<int>(driver::Fault::kTransportLost));
     }
   }

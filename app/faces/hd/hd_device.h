@@ -36,7 +36,7 @@ struct Device {
   std::int64_t enabled_ns = 0;               ///< When force was switched on, by the arm's clock.
   std::uint64_t framed_tick = 0;             ///< Of the newest frame, plus one.
   driver::Fault fault_told = driver::Fault::kNone;
-  driver::LinkState link_told = driver::LinkState::kConnected;
+  driver::LinkState link_reported = driver::LinkState::kConnected;
   bool warm_told = false;
 };
 

@@ -96,13 +96,13 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
           .fault = record.fault});
   }
   // Where the fault is the news of the link, it says so itself.
-  const bool told_by_fault =
+  const bool named_by_fault =
       record.fault != fault_ &&
       (record.fault == driver::Fault::kTransportLost || record.fault == driver::Fault::kNoReports);
   // A new link is silent until its first report.
   const bool new_link =
       link_ == driver::LinkState::kLost && record.link == driver::LinkState::kSilent;
-  if (record.link != link_ && !told_by_fault && !new_link) {
+  if (record.link != link_ && !named_by_fault && !new_link) {
     push({.tick = record.tick,
           .time_ns = record.time_ns,
           .kind = EventKind::kLinkChanged,

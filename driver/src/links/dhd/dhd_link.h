@@ -24,7 +24,7 @@ namespace thimble::driver::dhd {
 /// The library has one arm for all links: while a link works no other can be opened, and a lost one
 /// is shut down before its successor opens the arm.
 ///
-/// Fails if there is no arm, or more than one: nothing tells then which of them is meant; and while
+/// Fails if there is no arm, or more than one: nothing says which of them is meant; and while
 /// another link of this program works.
 /// Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
 Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
