@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "faces/haply/served_arms.h"
+#include "thimble/version.h"
 #include "transports/socket_owner.h"
 
 namespace thimble::faces::haply {

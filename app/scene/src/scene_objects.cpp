@@ -100,7 +100,7 @@ Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMe
     pages.emplace_back(std::move(opened).value());
     const render::PagedPlace place = place_pages(pages.back()->file(), object);
     const auto judged =
-        judge_size(object, {.side = side_of_pages(pages.back()->file(), place)}, reach);
+        judge_size(object, {.side = side_of_pages(pages.back()->file(), place), .kind = {}}, reach);
     if (!judged) return judged.error();
     return render::build_paged_touch(pages.back(), place, surface_of(object));
   }
