@@ -11,8 +11,7 @@ installed_packages() {
 
 # missing_packages PACKAGE...: prints a line for each that is not installed.
 missing_packages() {
-  [ $# -gt 0 ] || return 0
-  printf '%s\n' "$@" | grep -vxF -f <(installed_packages "$@" | cut -d ' ' -f 1) || true
+  printf '%s\n' "$@" | grep . | sort -u | grep -vxF -f <(installed_packages "$@" | cut -d ' ' -f 1) || true
 }
 
 # install_packages PACKAGE...: installs them. Returns 3 if this user may not or this system has no apt-get, 1 if apt-get

@@ -72,7 +72,7 @@ run() {
   }
 }
 : >"$log"
-# Whatever has been installed or removed since is found or left out only by configuring again.
+# CMake looks for packages only while it configures, so it does that again if any of them was installed or removed.
 folder=build/$preset
 if [ ! -f "$folder/build.ninja" ] || ! app/optional_parts.sh state | cmp -s - "$folder/optional_packages.txt"; then
   echo "Configuring $folder ..."

@@ -79,6 +79,7 @@ target_link_libraries(version PRIVATE thimble::driver)
 END
 cmake -S consumer -B consumer/build -G Ninja -DCMAKE_PREFIX_PATH="$work/usr" >log 2>&1 && cmake --build consumer/build >log 2>&1 ||
   fail "$(cat log)"
+rm -f touch.h5
 env -i HOME="$work/nothing" PATH="$PATH" consumer/build/touch >said 2>&1 || fail "README.md by CMake: $(cat said)"
 grep -q '^Force ' said || fail "README.md by CMake printed: $(cat said)"
 version=$(consumer/build/version) || fail "the numbers of thimble/version.h are not those of its text: $version"
