@@ -47,9 +47,13 @@ bool begins(const path& file, std::string_view with) {
 }
 
 bool is_table(const path& file) {
-  const std::string text = beginning(file, 4096);
+  std::string text = beginning(file, 4096);
+  while (text.starts_with('#') && text.find('\n') != std::string::npos) {
+    text.erase(0, text.find('\n') + 1);
+  }
   const std::string line = text.substr(0, text.find('\n'));
   if (line.empty() || !is_text(line)) return false;
+  if (line.find_first_not_of("0123456789+-.eE ,;\t") == std::string::npos) return true;  // numbers
   // The first line of a YAML file may hold a comma as well.
   const bool other = line.find(": ") != std::string::npos || line.ends_with(':') ||
                      std::string_view("#%{[<\"'").find(line.front()) != std::string_view::npos;

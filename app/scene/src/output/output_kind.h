@@ -22,7 +22,7 @@ struct OutputKind {
 };
 
 // Recognised by their first bytes.
-extern const OutputKind kTable;         ///< CSV with a heading of several columns.
+extern const OutputKind kTable;         ///< CSV: a heading of several columns, or numbers.
 extern const OutputKind kSound;         ///< WAV
 extern const OutputKind kPng;           ///< PNG, animated or not.
 extern const OutputKind kSvg;           ///< SVG
