@@ -239,6 +239,7 @@ std::vector<session::Recording> recorded_hands(scene::FaultRule rule, int fault_
   session::SessionOptions options;
   options.several_arms = true;
   options.record = file;
+  options.overwrite = true;
   options.adjust = [rule](scene::Scene& scene) { scene.faults = rule; };
   auto opened = session::Session::open(kTwoHands, options);
   if (!opened) {
