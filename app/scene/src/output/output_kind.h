@@ -19,6 +19,7 @@ struct OutputKind {
   Existing existing = Existing::kReplace;
   bool owner_only = false;  ///< Mode 0600, whatever the umask.
   bool needs_file = false;  ///< Not written to devices and pipes.
+  bool shared = false;      ///< Several programs append to it: it is not locked.
 };
 
 // Recognised by their first bytes.
