@@ -135,7 +135,7 @@ const OutputKind kArmFile{
     .name = "a new arm file", .matches = is_nothing, .existing = Existing::kKeep};
 const OutputKind kQualityTable{.name = "a table of qualities", .matches = is_quality_table};
 const OutputKind kMotionTrace{.name = "a motion trace", .matches = is_motion_trace};
-const OutputKind kLogFile{.name = "a log", .matches = is_log, .owner_only = true};
+const OutputKind kLogFile{.name = "a log", .matches = is_log, .owner_only = true, .shared = true};
 const OutputKind kPlainText{.name = "text", .matches = is_plain_text};
 const OutputKind kPlotData{.name = "data of a plot", .matches = is_anything};
 
