@@ -210,7 +210,7 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   for (const std::string& arm : asked.arms) plan.read(arm);
   plan.read(asked.options.hand);
   plan.read(asked.options.firmware);
-  plan.check("--record", asked.options.record, session::kRecordingOutput, asked.options.overwrite);
+  plan.write("--record", asked.options.record, session::kRecordingOutput, asked.options.overwrite);
   if (const auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto libraries = faces::face_folder();
   if (!libraries) return complain(libraries.error(), kExitTrouble);

@@ -178,7 +178,7 @@ int identify_arm(IdentifyCommand command) {
   output::OutputPlan plan;
   plan.read(chosen->path);
   plan.read(command.choice.firmware);
-  if (writes) plan.check("--output", command.output, output::kArmFile);
+  if (writes) plan.write("--output", command.output, output::kArmFile);
   plan.write("--record", command.record, session::kRecordingOutput, command.force);
   plan.write_folder("--report", command.report, {"figures.json", "index.html"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);

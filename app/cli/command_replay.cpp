@@ -154,20 +154,21 @@ int replay_recordings(const ReplayOptions& options) {
   output::OutputPlan plan;
   for (const std::string& file : options.files) plan.read(file);
   plan.read(options.scene);
-  plan.check("--record", options.record, session::kRecordingOutput, options.force);
+  const bool one = options.files.size() == 1;
+  const bool from_bag = one && bag::is_bag(options.files.front());
+  const bool from_text = one && !from_bag && !is_recording(options.files.front());
+  if (from_bag || from_text) {
+    plan.write("--record", options.record, session::kRecordingOutput, options.force);
+  }
   plan.write("--page", options.page, output::kWebPage);
   plan.write("--csv", options.csv, output::kTable);
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  if (options.files.size() == 1 && bag::is_bag(options.files.front())) {
-    return replay_a_bag(options);
-  }
+  if (from_bag) return replay_a_bag(options);
   if (!options.csv.empty()) {
     return complain({"--csv is of a bag; of others say --record FILE, then thimble export."},
                     kExitBadInput);
   }
-  if (options.files.size() == 1 && !is_recording(options.files.front())) {
-    return replay_probe(options);
-  }
+  if (from_text) return replay_probe(options);
   std::vector<session::Recording> recordings;
   for (const std::string& file : options.files) {
     auto recording = session::read_recording(file);
@@ -179,6 +180,12 @@ int replay_recordings(const ReplayOptions& options) {
     }
     recordings.push_back(std::move(recording).value());
   }
+  for (const session::Recording& recording : recordings) {
+    if (options.record.empty()) break;
+    plan.write("--record", session::file_of_arm(options.record, recording.info.arm_in_scene),
+               session::kRecordingOutput, options.force);
+  }
+  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   ReplayPage page;
   auto replays =
       session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);

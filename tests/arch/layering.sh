@@ -162,6 +162,17 @@ needs() {  # needs CALL HEADERS: who calls it includes one of the headers, or it
 needs 'cross(' 'Geometry'
 needs 'inverse()' 'LU|Geometry|Eigenvalues|Dense'
 
+# One rule for all outputs: what a user names is written through app/scene/src/output. Others write the program's own
+# state, drafts that they rename, and files in a folder that they have just made.
+own_writers='app/(examples/|bag/write_bag|scene/src/(output/|calibration|heat_keeper|files/kept_scene|terms/feel_check_record)|session/src/share/steer/save_knobs|faces/server/free_scene)|render/src/mesh/file/save_mesh'
+written=$(grep -rnE 'std::ofstream|fopen\([^)]*"[wa]' app render driver device_sim --include='*.h' --include='*.cpp' |
+  grep -vE "^($own_writers)" || true)
+if [ -n "$written" ]; then
+  echo "A file is written without app/scene/src/output:"
+  echo "$written" | sed 's/^/  /'
+  bad=1
+fi
+
 # Who looks for something reads a folder from end to end: headers and sources of a layer of render count together.
 full=$(find driver device_sim render app tests -name '*.h' -o -name '*.cpp' -o -name '*.inc' |
   sed -E 's#^render/(include/thimble/render|src)/#render/#; s#/[^/]*$##' |

@@ -150,7 +150,7 @@ lost_most=0
 for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
   # Any run that begins on this machine clears dead ones away: then once more.
   for _ in 1 2 3 4 5; do
-    "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 60 --name "$me" --record killed.h5 \
+    "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 60 --name "$me" --record killed.h5 --force \
       >/dev/null 2>&1 &
     run=$!
     # Only a run with more ticks than may be lost can show that no more were lost.

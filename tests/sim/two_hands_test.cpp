@@ -239,6 +239,7 @@ std::vector<session::Recording> recorded_hands(scene::FaultRule rule, int fault_
   session::SessionOptions options;
   options.several_arms = true;
   options.record = file;
+  options.overwrite = true;
   options.adjust = [rule](scene::Scene& scene) { scene.faults = rule; };
   auto opened = session::Session::open(kTwoHands, options);
   if (!opened) {
@@ -323,6 +324,23 @@ TEST(TwoHands, AreRefusedWithASentenceWhereOneArmIsMeant) {
   EXPECT_NE(refusal(other).find("the arm \"right\": At "), std::string::npos) << refusal(other);
   other.adjust = [](scene::Scene& scene) { scene.objects[0].body.shape.clay.emplace(); };
   EXPECT_NE(refusal(other).find("by one arm alone"), std::string::npos) << refusal(other);
+}
+
+TEST(TwoHands, OneExistingRecordingLeavesAllFilesAsTheyWere) {
+  const std::filesystem::path file = support::scratch_folder() / "kept.h5";
+  session::SessionOptions options;
+  options.several_arms = true;
+  options.duration = 0.01;
+  options.record = file;
+  {
+    const auto first = session::Session::open(kTwoHands, options);
+    ASSERT_TRUE(first) << first.error().message;
+    ASSERT_TRUE((*first)->end_recording());
+  }
+  ASSERT_TRUE(std::filesystem::remove(session::file_of_arm(file, "left")));
+  EXPECT_FALSE(session::Session::open(kTwoHands, options));
+  EXPECT_FALSE(std::filesystem::exists(session::file_of_arm(file, "left")));
+  EXPECT_TRUE(session::read_recording(session::file_of_arm(file, "right")));
 }
 
 }  // namespace

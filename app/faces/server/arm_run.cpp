@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "faces/core/shared_wait.h"
@@ -63,6 +65,13 @@ driver::Result<void> ArmRun::prepare(int number) {
   asked.firmware = options_.firmware;
   asked.record = recording_of(options_.record, index_, number);
   asked.overwrite = options_.overwrite;
+  // Those after the first take the next free number: the program is at work, and cannot be asked.
+  std::error_code unknown;
+  const bool first = index_ == 0 && number == 0;
+  for (int next = number; !first && !asked.overwrite && !asked.record.empty() &&
+                          std::filesystem::exists(asked.record, unknown);) {
+    asked.record = recording_of(options_.record, index_, ++next);
+  }
   asked.log = true;
   asked.homed = options_.homed;
   asked.hand_by_mouse = options_.hand == "mouse" && !arm->real;

@@ -15,7 +15,7 @@ wait $run || fail "the run ended with $?: $(cat run.txt)"
 see 'stopped early' cat run.txt
 
 says guide/recording.md 'It is one file and loads nothing, so it can be mailed or put on a web server as it is.'
-says guide/recording.md 'thimble replay can.h5 --page can.html'
+says guide/recording.md 'thimble replay tin_can.h5 --page can.html'
 thimble run clay --duration 3 --record class.h5 >said 2>&1 || fail "$(cat said)"
 thimble replay class.h5 --page class.html >said 2>&1 || grep -q 'libjs-three' said || fail "$(cat said)"
 if [ -e class.html ]; then

@@ -31,6 +31,7 @@ Seen see(const std::string& scene, const std::vector<double>& times) {
   options.several_arms = true;
   options.duration = times.back() + 0.05;
   options.record = folder / "run.h5";
+  options.overwrite = true;
   std::vector<std::string> arms = {""};
   Seen seen;
   {

@@ -57,7 +57,8 @@ driver::Result<void> check_replaceable(const fs::path& path, const OutputPath& p
   }
   if (place.stream || !place.exists) return {};
   if (place.is_folder) return cannot_write(path, "it is a folder. Name a file in it.");
-  const int existing = ::open(place.target.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  const int existing =
+      kind.shared ? -1 : ::open(place.target.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (existing >= 0) {
     const bool taken = lock_to_write(existing) == Locked::kBusy;
     std::optional<driver::Error> error;

@@ -47,9 +47,13 @@ bool begins(const path& file, std::string_view with) {
 }
 
 bool is_table(const path& file) {
-  const std::string text = beginning(file, 4096);
+  std::string text = beginning(file, 4096);
+  while (text.starts_with('#') && text.find('\n') != std::string::npos) {
+    text.erase(0, text.find('\n') + 1);
+  }
   const std::string line = text.substr(0, text.find('\n'));
   if (line.empty() || !is_text(line)) return false;
+  if (line.find_first_not_of("0123456789+-.eE ,;\t") == std::string::npos) return true;  // numbers
   // The first line of a YAML file may hold a comma as well.
   const bool other = line.find(": ") != std::string::npos || line.ends_with(':') ||
                      std::string_view("#%{[<\"'").find(line.front()) != std::string_view::npos;
@@ -131,7 +135,7 @@ const OutputKind kArmFile{
     .name = "a new arm file", .matches = is_nothing, .existing = Existing::kKeep};
 const OutputKind kQualityTable{.name = "a table of qualities", .matches = is_quality_table};
 const OutputKind kMotionTrace{.name = "a motion trace", .matches = is_motion_trace};
-const OutputKind kLogFile{.name = "a log", .matches = is_log, .owner_only = true};
+const OutputKind kLogFile{.name = "a log", .matches = is_log, .owner_only = true, .shared = true};
 const OutputKind kPlainText{.name = "text", .matches = is_plain_text};
 const OutputKind kPlotData{.name = "data of a plot", .matches = is_anything};
 

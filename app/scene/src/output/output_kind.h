@@ -19,10 +19,11 @@ struct OutputKind {
   Existing existing = Existing::kReplace;
   bool owner_only = false;  ///< Mode 0600, whatever the umask.
   bool needs_file = false;  ///< Not written to devices and pipes.
+  bool shared = false;      ///< Several programs append to it: it is not locked.
 };
 
 // Recognised by their first bytes.
-extern const OutputKind kTable;         ///< CSV with a heading of several columns.
+extern const OutputKind kTable;         ///< CSV: a heading of several columns, or numbers.
 extern const OutputKind kSound;         ///< WAV
 extern const OutputKind kPng;           ///< PNG, animated or not.
 extern const OutputKind kSvg;           ///< SVG

@@ -70,7 +70,7 @@ void OutputPlan::write_new_folder(const std::string& option, const fs::path& pat
 driver::Result<void> OutputPlan::make_folder(const Output& output) {
   std::vector<fs::path> missing;
   std::error_code failed;
-  fs::path folder = fs::absolute(output.path).lexically_normal();
+  fs::path folder = fs::absolute(output.path);
   if (!folder.has_filename()) folder = folder.parent_path();
   for (fs::path up = folder; !fs::exists(up, failed) && up.has_relative_path();
        up = up.parent_path()) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "log/logger.h"
+
 namespace thimble::session {
 
 driver::Result<std::unique_ptr<Recorder>> Recorder::open(const std::filesystem::path& path,
@@ -32,6 +34,12 @@ void Recorder::stop_thread() {
   if (writer_.joinable()) writer_.join();
 }
 
+driver::Error Recorder::full() const {
+  return driver::Error{path().string() + ": the recording is full after " +
+                       std::to_string(file_.rows()) +
+                       " ticks; those after them are missing. Record long runs in several files."};
+}
+
 void Recorder::serve() noexcept {
   // An end that comes in two pieces takes two rounds; what comes meanwhile waits for the next time.
   for (int piece = 0; piece < 2; ++piece) {
@@ -41,9 +49,12 @@ void Recorder::serve() noexcept {
     if (!trouble_) {
       try {
         if (auto written = file_.append(ticks); !written) trouble_ = written.error();
+        if (!trouble_ && file_.left_out() > 0) trouble_ = full();
       } catch (const std::exception& out_of_memory) {
         trouble_ = driver::Error{std::string("The recording ends: ") + out_of_memory.what()};
       }
+      // At once: a long run is not over for hours.
+      if (trouble_) scene::logger().warn("{} The run continues without it.", trouble_->message);
     }
     ring_.drop(ticks.size());
   }
@@ -55,12 +66,6 @@ driver::Result<void> Recorder::finish() {
   auto finished = file_.finish(!trouble_ && dropped() == 0);
   if (trouble_) return *trouble_;
   if (!finished) return finished;
-  if (file_.left_out() > 0) {
-    return driver::Error{path().string() + ": the recording is full after " +
-                         std::to_string(file_.rows()) + " ticks; the " +
-                         std::to_string(file_.left_out()) +
-                         " after them are missing. Record long runs in several files."};
-  }
   if (dropped() > 0) {
     return driver::Error{path().string() + ": the disk was too slow for " +
                          std::to_string(dropped()) +

@@ -18,7 +18,8 @@ namespace thimble::session {
 /// Records every tick of a run; a sink for the servo loop, which never waits for the disk.
 ///
 /// A thread of its own writes what has come every 20 ms, so a process that is killed loses less
-/// than 100 ms. Where the disk is full the recording ends, the touch goes on, and `finish` tells.
+/// than 100 ms. Where the disk or the recording is full the recording ends and the run continues;
+/// the log says so at once, and `finish` again.
 class Recorder {
  public:
   /// The room for ticks on their way to the disk: 8 s at 1 kHz, for disks that pause.
@@ -61,6 +62,7 @@ class Recorder {
 
  private:
   explicit Recorder(RecordingFile file) : file_(std::move(file)) {}
+  driver::Error full() const;
   void stop_thread();
 
   RecordingFile file_;

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -244,6 +245,14 @@ TEST_F(OutputFileTest, DescriptorIsNotInherited) {
   const auto output = OutputFile::open(folder_ / "a.csv", kTable);
   ASSERT_TRUE(output);
   EXPECT_NE(fcntl(output->descriptor(), F_GETFD) & FD_CLOEXEC, 0);
+}
+
+TEST_F(OutputFileTest, SharedLogIsNotLocked) {
+  const fs::path path = file("a.log", "2026-01-31T12:00:00.000+00:00 info 1 a: b\n");
+  const int other = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0);
+  EXPECT_TRUE(check_replaceable(path, resolve_output(path).value(), kLogFile, false));
+  ::close(other);
 }
 
 using OutputPlanTest = OutputTest;

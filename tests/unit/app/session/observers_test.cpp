@@ -134,7 +134,7 @@ TEST(RecordingSwitch, RecordsFromItsBeginningToItsEndAndNothingBesides) {
     std::size_t i = 0;
     for (; i < 50; ++i) recording.take(run[i]);
     EXPECT_FALSE(recording.on());
-    ASSERT_TRUE(recording.begin(file, small_info(), run.size(), by_thread));
+    ASSERT_TRUE(recording.begin(file, small_info(), run.size(), by_thread, true));
     // More than the ring holds: without a thread it must be emptied by the servo itself.
     const std::size_t until = by_thread ? 5'000 : 19'000;
     for (; i < until; ++i) recording.take(run[i]);

@@ -251,7 +251,7 @@ TEST(Recording, BeyondItsLongestTimeIsNotComplete) {
   for (std::uint64_t i = 0; i < 150; ++i) (**recorder)(tick_number(i));
   const auto finished = (*recorder)->finish();
   ASSERT_FALSE(finished);
-  EXPECT_NE(finished.error().message.find("the 50 after them are missing"), std::string::npos)
+  EXPECT_NE(finished.error().message.find("full after 100 ticks"), std::string::npos)
       << finished.error().message;
   const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;

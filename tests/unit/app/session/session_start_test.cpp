@@ -49,6 +49,7 @@ class SessionStart : public ::testing::Test {
     options_.terms->arm.path = file;
     options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
+    options_.overwrite = true;  // of the test before
     options_.share = true;
     options_.open_link = [this](
                              const scene::ArmFile&,
