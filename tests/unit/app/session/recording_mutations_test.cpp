@@ -21,7 +21,7 @@ namespace {
 
 using support::Random;
 
-std::string bytes_of(const std::filesystem::path& path) {
+std::string file_bytes(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -36,7 +36,7 @@ std::string recording_of(int byte) {
   info.rate = 1000;
   const auto path = support::scratch_folder() / "sound.h5";
   EXPECT_TRUE(session::write_recording(path, info, ticks));
-  return bytes_of(path);
+  return file_bytes(path);
 }
 
 /// Damages recordings. What it does follows from its seed only.
