@@ -35,6 +35,7 @@ std::string recording_of(int byte) {
   info.arm_in_scene = "left";
   info.rate = 1000;
   const auto path = support::scratch_folder() / "sound.h5";
+  std::filesystem::remove(path);
   EXPECT_TRUE(session::write_recording(path, info, ticks));
   return file_bytes(path);
 }

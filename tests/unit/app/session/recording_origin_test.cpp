@@ -38,8 +38,11 @@ const session::RecordingInfo kOrigin{.scene = "box",
                                      .rate = 1000,
                                      .seed = 1};
 
+/// Returns a place where nothing is.
 fs::path scratch_file(const char* name) {
-  return support::scratch_folder() / name;
+  fs::path path = support::scratch_folder() / name;
+  fs::remove(path);
+  return path;
 }
 
 std::vector<TickRecord> some_ticks() {
