@@ -310,8 +310,8 @@ int run_scene(RunOptions& options) {
   output::OutputPlan outputs;
   plan_outputs(options, outputs);
   if (const auto begun = outputs.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  RunCourse course{
-      options, *arms, stop, session_options(options, *arms), {}, {}, {}, 1, options.record};
+  RunCourse course{options, *arms, stop,          session_options(options, *arms), {}, {},
+                   {},      1,     options.record};
   if (options.stepped()) {
     course.asked.own_clock = course.clock = std::make_shared<faces::SteppedClock>(stop);
   }

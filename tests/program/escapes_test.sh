@@ -16,11 +16,11 @@ bad_bytes() {
   iconv -f UTF-8 -t UTF-8 "$1" >/dev/null 2>&1 || echo "no UTF-8"
 }
 
-# plain COMMAND...: prints something, and nothing that a terminal would obey; into a pipe, and on a terminal.
+# plain COMMAND...: prints something, and nothing that a terminal would obey.
 plain() {
   local bad
   checks=$((checks + 1))
-  "$@" >out 2>&1 </dev/null
+  timeout 60 "$@" >out 2>&1 </dev/null
   if [ $? -ge 128 ]; then
     echo "FAILED: $(printf '%q ' "$@"): a signal"
     failures=$((failures + 1))
@@ -48,7 +48,7 @@ scene=scenes/hostile.yaml
 
 # A scene with such names, and every way to run it.
 plain "$thimble" run $scene --duration 0.05 --record rec.h5 --report report --save-mesh all.off --log run.log
-plain "$thimble" run $scene --duration 0.05 --save-mesh one.off --save-object nobody
+plain "$thimble" run $scene --duration 0.05 --save-mesh one.off --save-object absent
 plain "$thimble" run "scenes/$hostile.yaml" --duration 0.05 --record "$hostile.h5" --report "$hostile" --save-mesh "$hostile.off"
 plain "$thimble" run "$hostile"
 plain "$thimble" run box --arm "$hostile"
@@ -76,8 +76,9 @@ plain "$thimble" identify --device "$hostile"
 plain "$thimble" hil --device "$hostile" --suite full
 plain "$thimble" exec --arm "$hostile" -- true
 plain "$thimble" plug "$hostile"
-plain "$thimble" plug vintage_phantom --script "$hostile"
-plain "$thimble" view "$hostile" --text
+plain "$thimble" plug vintage_phantom --faults "$hostile"
+plain "$thimble" view "$hostile" --text --for 2
+plain "$thimble" view "$hostile" --pause
 plain "$thimble" view --list
 plain "$thimble" run $scene --duration 0.05 --clock paced --speed 10 --name "$hostile"
 

@@ -38,10 +38,12 @@ table='
 --budget        | recorded | --quality auto --budget 400 | options
 --report        | same     | --report report           | after the run
 --record        | same     |                           | the recording itself
+--force         | same     | --force                   | an older recording of that name is replaced
 --save-mesh     | same     | --save-mesh out.off       | after the run
 --save-object   | same     | --save-mesh one.off --save-object can | after the run
 --ros2          | same     |                           | topics of the run
 --ros-namespace | same     |                           | names of topics
+--ros-network   | same     |                           | who sees the topics
 --ros-names     | same     |                           | names of topics
 --ros-domain    | same     |                           | of the topics
 --ros-force     | arm      |                           | forces of a topic: setting is -2 in each tick

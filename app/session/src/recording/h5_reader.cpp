@@ -178,6 +178,8 @@ H5Handle open_file(int descriptor) {
   // The library opens by name; this name is the file that was found to be a regular one.
   const std::string name = "/proc/self/fd/" + std::to_string(descriptor);
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  // A recording is read while it grows, whatever lock its writer holds.
+  H5Pset_file_locking(access.id(), false, true);
   return {H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose};
 }
 

@@ -72,7 +72,7 @@ bool take_ticks(const H5Head& head, std::span<const std::byte> bytes, Recording&
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if ((head.columns >> i & 1) != 0) row_bytes += columns[i].bytes();
   }
-  // As many as there are bytes, and no more.
+  // Exactly as many as there are bytes.
   if (row_bytes == 0 || head.rows != bytes.size() / row_bytes || bytes.size() % row_bytes != 0) {
     return false;
   }

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <system_error>
 
 #include "thimble/scene/quality.h"
 
@@ -11,7 +14,7 @@ namespace thimble::session {
 namespace {
 
 /// Reads a number > 0.
-std::optional<double> number_of(const std::string& text) {
+std::optional<double> positive_number(const std::string& text) {
   double value = 0;
   const auto [end, trouble] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool good =
@@ -39,7 +42,7 @@ driver::Result<RunChoices> run_choices(const std::string& text) {
     const std::size_t colon = line.find(": ");
     const std::string key = line.substr(0, colon);
     const std::string value = colon == std::string::npos ? "" : line.substr(colon + 2);
-    const auto number = number_of(value);
+    const auto number = positive_number(value);
     if (key == "quality" && scene::quality_named(value)) {
       choices.quality = value;
     } else if (key == "budget" && number) {

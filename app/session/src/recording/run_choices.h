@@ -13,7 +13,7 @@ struct RunChoices {
   std::string quality = "normal";     ///< One of scene::kQualityNames.
   std::optional<double> budget = {};  ///< ns per tick, of "auto".
   double rate_factor = 1;             ///< Of the loop, over the scene's.
-  bool adjusted = false;  ///< A program changed the scene after it was read, nobody knows how.
+  bool adjusted = false;              ///< A program changed the scene after it was read.
 };
 
 /// Returns them as lines "key: value"; empty if all are as they begin.

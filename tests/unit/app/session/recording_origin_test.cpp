@@ -1,5 +1,5 @@
-// Recordings of unknown origin: whatever an HDF5 file says, no other file is read, no more memory
-// is taken than its bytes allow, and a crash of the library is an error like any other.
+// Recordings of unknown origin: whatever an HDF5 file says, no other file is read, only as much
+// memory is taken as its bytes allow, and a crash of the library is an error like any other.
 
 #include <gtest/gtest.h>
 
@@ -26,20 +26,23 @@ using session::H5Handle;
 constexpr std::size_t kTicks = 64;
 constexpr double kSecret = 12345.678;
 
-const session::RecordingInfo kInfo{.scene = "box",
-                                   .scene_file = "scenes/box.yaml",
-                                   .scene_text = "name: box\n",
-                                   .arm = "arm",
-                                   .arm_file = "arms/arm.yaml",
-                                   .arm_text = "name: arm\n",
-                                   .device = "sim",
-                                   .clock = "virtual",
-                                   .program = "test",
-                                   .rate = 1000,
-                                   .seed = 1};
+const session::RecordingInfo kOrigin{.scene = "box",
+                                     .scene_file = "scenes/box.yaml",
+                                     .scene_text = "name: box\n",
+                                     .arm = "arm",
+                                     .arm_file = "arms/arm.yaml",
+                                     .arm_text = "name: arm\n",
+                                     .device = "sim",
+                                     .clock = "virtual",
+                                     .program = "test",
+                                     .rate = 1000,
+                                     .seed = 1};
 
-fs::path scratch(const char* name) {
-  return support::scratch_folder() / name;
+/// Returns a place where nothing is.
+fs::path scratch_file(const char* name) {
+  fs::path path = support::scratch_folder() / name;
+  fs::remove(path);
+  return path;
 }
 
 std::vector<TickRecord> some_ticks() {
@@ -53,8 +56,8 @@ std::vector<TickRecord> some_ticks() {
 
 /// Writes a recording whose column "q" is replaced by what `make` puts into the file.
 fs::path with_column(const char* name, const std::function<void(hid_t file)>& make) {
-  const fs::path path = scratch(name);
-  EXPECT_TRUE(session::write_recording(path, kInfo, some_ticks()));
+  const fs::path path = scratch_file(name);
+  EXPECT_TRUE(session::write_recording(path, kOrigin, some_ticks()));
   const H5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
   EXPECT_GE(H5Ldelete(file.id(), "q", H5P_DEFAULT), 0);
   make(file.id());
@@ -87,7 +90,7 @@ void expect_refused(const fs::path& path, const std::string& what) {
 
 /// Writes a file of numbers that no recording may show.
 fs::path secret_file() {
-  const fs::path path = scratch("secret.bin");
+  const fs::path path = scratch_file("secret.bin");
   std::ofstream out(path, std::ios::binary);
   for (std::size_t i = 0; i < 3 * kTicks; ++i) {
     out.write(reinterpret_cast<const char*>(&kSecret), sizeof kSecret);
@@ -107,8 +110,8 @@ TEST(RecordingOrigin, ColumnInAnotherFileIsRefused) {
 }
 
 TEST(RecordingOrigin, ExternalLinkIsRefused) {
-  const fs::path other = scratch("other.h5");
-  ASSERT_TRUE(session::write_recording(other, kInfo, some_ticks()));
+  const fs::path other = scratch_file("other.h5");
+  ASSERT_TRUE(session::write_recording(other, kOrigin, some_ticks()));
   const auto path = with_column("external_link.h5", [&](hid_t file) {
     ASSERT_GE(H5Lcreate_external(other.c_str(), "/q", file, "q", H5P_DEFAULT, H5P_DEFAULT), 0);
   });
@@ -123,8 +126,8 @@ TEST(RecordingOrigin, SoftLinkIsRefused) {
 }
 
 TEST(RecordingOrigin, VirtualColumnIsRefused) {
-  const fs::path other = scratch("source.h5");
-  ASSERT_TRUE(session::write_recording(other, kInfo, some_ticks()));
+  const fs::path other = scratch_file("source.h5");
+  ASSERT_TRUE(session::write_recording(other, kOrigin, some_ticks()));
   const auto path = with_column("virtual.h5", [&](hid_t file) {
     const hsize_t sizes[2] = {kTicks, 3};
     const H5Handle space(H5Screate_simple(2, sizes, nullptr), H5Sclose);
@@ -167,8 +170,8 @@ TEST(RecordingOrigin, CompressedColumnIsRead) {
 
 /// Makes a recording of a few kilobytes that claims `claimed` ticks, none of which it stores.
 fs::path hollow_recording(const char* name, hsize_t claimed, bool chunked) {
-  const fs::path path = scratch(name);
-  EXPECT_TRUE(session::write_recording(path, kInfo, some_ticks()));
+  const fs::path path = scratch_file(name);
+  EXPECT_TRUE(session::write_recording(path, kOrigin, some_ticks()));
   const H5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
   for (const session::RecordingColumn& column : session::recording_columns()) {
     EXPECT_GE(H5Ldelete(file.id(), column.name, H5P_DEFAULT), 0);
@@ -225,7 +228,7 @@ TEST(RecordingOrigin, HoleCountsAsNoTicks) {
 }
 
 TEST(RecordingOrigin, PipeIsRefused) {
-  const fs::path path = scratch("pipe.h5");
+  const fs::path path = scratch_file("pipe.h5");
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
   expect_refused(path, "not a regular file");
 }
@@ -236,9 +239,9 @@ TEST(RecordingOrigin, DeviceIsRefused) {
 
 /// Writes a recording that says it was made from another scene file.
 session::Recording of_scene(const fs::path& scene) {
-  session::RecordingInfo info = kInfo;
+  session::RecordingInfo info = kOrigin;
   info.scene_file = scene.string();
-  const fs::path path = scratch("of_scene.h5");
+  const fs::path path = scratch_file("of_scene.h5");
   EXPECT_TRUE(session::write_recording(path, info, some_ticks()));
   auto read = session::read_recording(path);
   EXPECT_TRUE(read);
@@ -256,7 +259,7 @@ TEST(RecordingOrigin, SceneThatIsADeviceIsNotRead) {
 }
 
 TEST(RecordingOrigin, SceneThatIsAPipeIsNotWaitedFor) {
-  const fs::path pipe = scratch("scene_pipe.yaml");
+  const fs::path pipe = scratch_file("scene_pipe.yaml");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const session::Recording recording = of_scene(pipe);
   EXPECT_FALSE(session::check_repeatable(recording));
@@ -267,7 +270,7 @@ TEST(RecordingOrigin, SceneThatIsAPipeIsNotWaitedFor) {
 TEST(RecordingOrigin, FilesOfASceneThatArePipesAreRefused) {
   for (const char* name :
        {"pipe.off", "pipe.stl", "pipe.gltf", "pipe.pages", "pipe.png", "pipe.yaml", "pipe.db3"}) {
-    ASSERT_EQ(mkfifo(scratch(name).c_str(), 0600), 0);
+    ASSERT_EQ(mkfifo(scratch_file(name).c_str(), 0600), 0);
   }
   const std::string arm = THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml";
   const std::string path = "hand: {path: [{t: 0, at: [0, 0, 0.05]}, {t: 1, at: [0, 0, 0.04]}]}\n";
@@ -290,7 +293,7 @@ TEST(RecordingOrigin, FilesOfASceneThatArePipesAreRefused) {
                    "hand: {bag: pipe.db3}\n");
   for (const std::string& text : scenes) {
     SCOPED_TRACE(text);
-    const fs::path scene = scratch("hostile.yaml");
+    const fs::path scene = scratch_file("hostile.yaml");
     std::ofstream(scene) << text;
     const auto replayed = session::replay(of_scene(scene));
     ASSERT_FALSE(replayed);

@@ -27,6 +27,7 @@ class ReplayOptions : public ::testing::Test {
   static session::Recording recorded(const std::string& scene, session::SessionOptions options,
                                      Meanwhile&& meanwhile) {
     const auto path = support::scratch_folder() / "options.h5";
+    std::filesystem::remove(path);
     options.record = path;
     auto opened = session::Session::open(scene, options);
     EXPECT_TRUE(opened) << opened.error().message;
