@@ -79,6 +79,7 @@ py::dict info_of(const session::RecordingInfo& info) {
   told["rate"] = info.rate;
   told["seed"] = info.seed;
   told["arm_in_scene"] = info.arm_in_scene;
+  told["inside_at_start"] = info.inside_at_start;
   return told;
 }
 
