@@ -44,7 +44,7 @@ class KeptError {
                   py::object(trace_).release().ptr());
     throw py::error_already_set();
   }
-  int visit(visitproc visit, void* arg) const {
+  int visit(visitproc visitor, void* arg) const {
     Py_VISIT(type_.ptr());
     Py_VISIT(value_.ptr());
     Py_VISIT(trace_.ptr());

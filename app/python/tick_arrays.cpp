@@ -80,6 +80,7 @@ py::dict info_of(const session::RecordingInfo& info) {
   told["seed"] = info.seed;
   told["arm_in_scene"] = info.arm_in_scene;
   told["options"] = info.options;
+  told["inside_at_start"] = info.inside_at_start;
   return told;
 }
 

@@ -34,7 +34,7 @@ std::string mesh_kind_of(std::string_view bytes, const std::string& ending) {
   if (bytes.starts_with("glTF")) return "glb";
   if (bytes.starts_with("PK\3\4")) return kind_of_archive(bytes);
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return "ply";
-  if (is_stl_text(bytes)) return "stl";
+  if (is_stl_binary(bytes) || is_stl_text(bytes)) return "stl";
   const std::string_view head = bytes.substr(0, kXmlHead);
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return ending;
@@ -45,7 +45,6 @@ std::string mesh_kind_of(std::string_view bytes, const std::string& ending) {
     if (head.find("<amf") != std::string_view::npos) return "amf";
   }
   if (is_off(begin.substr(0, begin.find_first_of(" \t\r\n#")))) return "off";
-  if (is_stl_binary(bytes)) return "stl";
   // A chunk that spans the whole file, and nothing else, shows 3DS.
   if (bytes.size() > 6 && bytes.starts_with("MM")) {
     std::size_t length = 0;

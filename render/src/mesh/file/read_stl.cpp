@@ -68,26 +68,27 @@ class StlText {
   bool ended_ = false;  // by endsolid
 };
 
-// Skips the name of a solid: the rest of its line, or up to a facet where all is on one line.
+// Skips the name of a solid: the rest of its line, or up to a facet where all is on one line. A
+// name may have any words in it.
 void StlText::skip_name() {
-  for (word_ = words_.next_on_line(); !word_.empty() && !is_word(word_, "facet");) {
-    word_ = words_.next_on_line();
+  for (word_ = words_.next_on_line(); !word_.empty(); word_ = words_.next_on_line()) {
+    if (!is_word(word_, "facet")) continue;
+    TextWords ahead = words_;
+    const std::string_view after = ahead.next_on_line();
+    if (is_word(after, "normal") || is_word(after, "outer")) return;
   }
-  if (word_.empty()) word_ = words_.next();
+  word_ = words_.next();
 }
 
 std::optional<Error> StlText::read() {
   word_ = words_.next();
   while (!word_.empty()) {
-    if (is_word(word_, "solid")) {
+    if (is_word(word_, "facet")) {
       ended_ = false;
-      skip_name();
-    } else if (is_word(word_, "facet")) {
       if (auto error = read_facet()) return error;
-    } else if (is_word(word_, "endsolid")) {
-      ended_ = true;
-      words_.skip_line();
-      word_ = words_.next();
+    } else if (is_word(word_, "solid") || is_word(word_, "endsolid")) {
+      ended_ = is_word(word_, "endsolid");
+      skip_name();
     } else {
       return words_.error("expected facet, endsolid or solid, found " + shown_word(word_) + ".");
     }

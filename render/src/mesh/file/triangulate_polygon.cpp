@@ -9,8 +9,12 @@ namespace {
 using Eigen::Vector3d;
 
 // Ear cutting looks at every corner for every ear: beyond this size one face of a hostile file
-// would take minutes.
+// would take seconds.
 constexpr std::size_t kEarCuttingMax = 2000;
+
+// How often all corners are looked at again where no ear is left: corners on each other's edges
+// hide ears, and a polygon that crosses itself may have none.
+constexpr int kLooksMax = 8;
 
 // Is a polygon seen along its mean normal, with the area of three of its corners as the only
 // question.
@@ -42,17 +46,86 @@ class FlatPolygon {
   Vector3d normal_;
 };
 
-bool is_ear(const FlatPolygon& polygon, const std::vector<std::int32_t>& rest, std::size_t i) {
-  const std::size_t size = rest.size();
-  const std::int32_t a = rest[(i + size - 1) % size];
-  const std::int32_t b = rest[i];
-  const std::int32_t c = rest[(i + 1) % size];
-  if (!(polygon.turn(a, b, c) > 0)) return false;
-  for (const std::int32_t other : rest) {
-    if (other != a && other != b && other != c && polygon.covers(a, b, c, other)) return false;
+// Cuts a polygon ear by ear, always the first one. Which corners are ears is kept; a cut changes it
+// at its two neighbours.
+class EarCutting {
+ public:
+  EarCutting(const FlatPolygon& polygon, std::span<const std::int32_t> corners)
+      : polygon_(polygon),
+        corners_(corners),
+        next_(corners.size()),
+        last_(corners.size()),
+        is_ear_(corners.size()) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      next_[i] = (i + 1) % corners.size();
+      last_[next_[i]] = i;
+    }
   }
-  return true;
-}
+
+  void run(std::vector<std::array<std::int32_t, 3>>& triangles) {
+    look_at_all();
+    for (std::size_t left = corners_.size(); left > 3; --left) {
+      const std::size_t ear = first_ear();
+      triangles.push_back(triangle(ear));
+      cut(ear);
+    }
+    triangles.push_back({corners_[first_], corners_[next_[first_]], corners_[last_[first_]]});
+  }
+
+ private:
+  std::array<std::int32_t, 3> triangle(std::size_t i) const {
+    return {corners_[last_[i]], corners_[i], corners_[next_[i]]};
+  }
+
+  void look_at(std::size_t i) {
+    const auto [a, b, c] = triangle(i);
+    is_ear_[i] = polygon_.turn(a, b, c) > 0;
+    for (std::size_t k = next_[next_[i]]; k != last_[i] && is_ear_[i]; k = next_[k]) {
+      const std::int32_t other = corners_[k];
+      is_ear_[i] = other == a || other == b || other == c || !polygon_.covers(a, b, c, other);
+    }
+  }
+
+  void look_at_all() {
+    ++looks_;
+    std::size_t i = first_;
+    do {
+      look_at(i);
+      i = next_[i];
+    } while (i != first_);
+  }
+
+  // Returns the first ear; where none is left cutting anywhere keeps the count right.
+  std::size_t first_ear() {
+    for (;;) {
+      std::size_t i = first_;
+      do {
+        if (is_ear_[i]) return i;
+        i = next_[i];
+      } while (i != first_);
+      if (looked_in_vain_ || looks_ > kLooksMax) return first_;
+      look_at_all();
+      looked_in_vain_ = true;
+    }
+  }
+
+  void cut(std::size_t ear) {
+    looked_in_vain_ = false;
+    next_[last_[ear]] = next_[ear];
+    last_[next_[ear]] = last_[ear];
+    if (ear == first_) first_ = next_[ear];
+    look_at(last_[ear]);
+    look_at(next_[ear]);
+  }
+
+  const FlatPolygon& polygon_;
+  std::span<const std::int32_t> corners_;
+  std::vector<std::size_t> next_, last_;  // of each corner that is left
+  std::vector<bool> is_ear_;
+  std::size_t first_ = 0;
+  int looks_ = 0;
+  bool looked_in_vain_ = false;
+};
 
 }  // namespace
 
@@ -76,21 +149,7 @@ bool triangulate_polygon(const std::vector<Vector3d>& vertices,
     }
     return true;
   }
-  std::vector<std::int32_t> rest(corners.begin(), corners.end());
-  while (rest.size() > 3) {
-    // A polygon that crosses itself may have no ear left; cutting anywhere keeps the count right.
-    std::size_t ear = 0;
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      if (is_ear(polygon, rest, i)) {
-        ear = i;
-        break;
-      }
-    }
-    const std::size_t left = rest.size();
-    triangles.push_back({rest[(ear + left - 1) % left], rest[ear], rest[(ear + 1) % left]});
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  triangles.push_back({rest[0], rest[1], rest[2]});
+  EarCutting(polygon, corners).run(triangles);
   return true;
 }
 

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
@@ -106,6 +109,21 @@ TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
   counts_ = {};
   EXPECT_TRUE(session::Session::open(scene(), options_));
   EXPECT_EQ(forced_, 0);
+}
+
+TEST_F(SessionStart, FindsTheObjectsThatARealTipStartsIn) {
+  const std::filesystem::path file = support::scratch_folder() / "around_the_arm.yaml";
+  std::ofstream(file) << "name: around\narm: vintage_phantom\nduration: 1\nobjects:\n"
+                         "  - {name: ball, sphere: {radius: 1}, stiffness: 500}\n"
+                         "hand:\n  path:\n    - {t: 0, at: [0, 0, 0]}\n";
+  options_.record.clear();
+  const auto prepared = session::Session::prepare(file, options_);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  EXPECT_TRUE((*prepared)->setup().inside_at_start().empty())
+      << "its place is not known before it is opened";
+  const auto opened = session::Session::open(file, options_);
+  ASSERT_TRUE(opened) << opened.error().message;
+  EXPECT_EQ((*opened)->setup().inside_at_start(), std::vector<std::string>{"ball"});
 }
 
 TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {

@@ -146,6 +146,25 @@ TEST(MeshFormats, RefuseAUnitThatTheyDoNotKnow) {
   EXPECT_NE(mesh.error().message.find("a unit that its format does not know"), std::string::npos);
 }
 
+TEST(MeshFormats, RefuseMorphWeightsOfDae) {
+  std::string text = bytes_of(kMeshes / "box.dae");
+  const std::size_t scenes = text.find(" <library_visual_scenes>");
+  ASSERT_NE(scenes, std::string::npos);
+  text.insert(scenes,
+              R"( <library_controllers><controller id="m"><morph source="#box" method="NORMALIZED">
+  <source id="t"><IDREF_array id="ta" count="1">box</IDREF_array><technique_common><accessor source="#ta" count="1" stride="1"><param name="MORPH_TARGET" type="IDREF"/></accessor></technique_common></source>
+  <source id="w"><float_array id="wa" count="1">0.5</float_array><technique_common><accessor source="#wa" count="1" stride="1"><param name="MORPH_WEIGHT" type="float"/></accessor></technique_common></source>
+  <targets><input semantic="MORPH_TARGET" source="#t"/><input semantic="MORPH_WEIGHT" source="#w"/></targets>
+ </morph></controller></library_controllers>
+)");
+  const std::string plain = R"(<instance_geometry url="#box"/>)";
+  text.replace(text.find(plain), plain.size(), R"(<instance_controller url="#m"/>)");
+  const auto mesh = load_bytes("morph.dae", text);
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_NE(mesh.error().message.find("morph targets with weights"), std::string::npos)
+      << mesh.error().message;
+}
+
 TEST(MeshFormats, AnswerGarbageWithASentence) {
   std::string garbage;
   std::uint32_t seed = 7;

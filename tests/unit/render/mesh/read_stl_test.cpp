@@ -93,6 +93,23 @@ TEST(ReadStl, ReadsATextOnOneLine) {
   EXPECT_TRUE(load_text("line.stl", text).ok());
 }
 
+TEST(ReadStl, ReadsEverySolidOnOneLine) {
+  std::string text =
+      facet_text(kTriangle) + facet_text("vertex 0 0 1\nvertex 1 0 1\nvertex 0 1 1\n");
+  for (char& c : text) c = c == '\n' ? ' ' : c;
+  MeshFileInfo info;
+  const auto mesh = load_text("solids.stl", text, &info);
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 2U);
+  EXPECT_TRUE(info.notes.empty());
+}
+
+TEST(ReadStl, TakesEveryWordInANameOfASolid) {
+  std::string text = facet_text(kTriangle);
+  text.replace(text.find("solid a"), 7, "solid outer facet of a solid");
+  EXPECT_TRUE(load_text("name.stl", text).ok());
+}
+
 TEST(ReadStl, RefusesBinaryCornersThatAreNoNumbers) {
   EXPECT_TRUE(load_text("binary.stl", binary_triangle(0)).ok());
   EXPECT_EQ(refusal("binary.stl", binary_triangle(std::numeric_limits<float>::quiet_NaN())),
@@ -124,6 +141,10 @@ TEST(LoadMesh, ReadsAFileAsWhatItsContentsAre) {
             {"e.gltf", "box.glb", "GLB"},      {"f.obj", "box.3mf", "3MF"},
             {"g.stl", "box.dae", "DAE"},       {"h.off", "box.amf", "AMF"},
             {"i.obj", "box.3ds", "3DS"},       {"k.glb", "box.gltf", "GLTF"}};
+  // The comment of a binary STL file may begin like any other format.
+  std::string comment = binary_triangle(0);
+  comment.replace(0, 6, "OFF {<");
+  EXPECT_TRUE(load_text("comment.stl", comment).ok());
   for (const auto& now : cases) {
     MeshFileInfo info;
     const auto mesh = load_text(now.name, bytes_of_file(kMeshFolder / now.source), &info);

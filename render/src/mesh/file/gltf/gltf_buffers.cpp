@@ -193,7 +193,9 @@ driver::Result<std::string_view> GltfBuffers::buffer(std::size_t index) {
   if (!files_.contains(file)) {
     auto bytes = bytes_of_file(folder_, file);
     // Names that were written as they are, with a per cent sign in them.
-    if (!bytes && file != name) bytes = bytes_of_file(folder_, name);
+    if (!bytes && file != name) {
+      if (auto plain = bytes_of_file(folder_, name)) bytes = std::move(plain);
+    }
     if (!bytes) return bytes.error();
     files_.emplace(file, std::move(bytes).value());
   }
