@@ -76,7 +76,7 @@ py::custom_type_setup collected() {
     type->tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
       Py_VISIT(Py_TYPE(self));
       const HeldRun* held = held_by(self);
-      return held != nullptr && held->law ? held->law->visit(visit, arg) : 0;
+      return held != nullptr && held->law ? held->law->traverse(visit, arg) : 0;
     };
     type->tp_clear = [](PyObject* self) {
       const HeldRun* held = held_by(self);

@@ -146,13 +146,14 @@ class BlankSearch {
     if (character == "\t") {
       // Tabs may stand between brackets and in empty lines.
       if (!indentation_ || depth_ > 0 || begins_with_any(behind_blanks(rest), "\r\n#")) return {};
-      return TextFlaw{.what = "a tab cannot indent in YAML; write spaces instead"};
+      return TextFlaw{.what = "a tab cannot indent in YAML; write spaces instead", .indents = true};
     }
     if (const OddBlank* odd = odd_blank(character)) {
       const bool at_end = begins_with_any(behind_blanks(rest), "\r\n#,]}:");
       if (!indentation_ && !after_sign_ && !at_end) return {};
-      return TextFlaw{.what =
-                          fmt::format("{} is no blank in YAML; write a space instead", odd->name)};
+      return TextFlaw{
+          .what = fmt::format("{} is no blank in YAML; write a space instead", odd->name),
+          .indents = indentation_};
     }
     if (character == " ") return {};
     if (character == "#" && (is_blank(before_) || before_ == "\n")) {
