@@ -63,6 +63,7 @@ struct HeldRun {
 /// Returns the run that a Python object holds; null while it is being made.
 HeldRun* held_by(PyObject* self) {
   auto* instance = reinterpret_cast<py::detail::instance*>(self);
+  if (!instance->simple_layout) return nullptr;  // its memory is not laid out yet
   const py::detail::value_and_holder value = instance->get_value_and_holder();
   return value.holder_constructed() ? value.value_ptr<HeldRun>() : nullptr;
 }
