@@ -79,6 +79,11 @@ py::custom_type_setup collected() {
       const HeldRun* held = held_by(self);
       return held != nullptr && held->law ? held->law->traverse(visit, arg) : 0;
     };
+    // The collector may run while the run ends, without Python's lock, and may not see it then.
+    type->tp_dealloc = [](PyObject* self) {
+      PyObject_GC_UnTrack(self);
+      py::detail::pybind11_object_dealloc(self);
+    };
     type->tp_clear = [](PyObject* self) {
       const HeldRun* held = held_by(self);
       if (held != nullptr && held->law) held->law->clear();
