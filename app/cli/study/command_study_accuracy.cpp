@@ -51,7 +51,7 @@ int run_accuracy(const AccuracyOptions& options) {
                                      stop);
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->stopped) {
-    std::printf("Stopped early; the same command with --resume goes on.\n");
+    std::printf("Stopped early; the same command with --resume continues.\n");
     return kExitInterrupted;
   }
   return end_study(report->figures, folder, "; the page is index.html there");

@@ -54,7 +54,7 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->end == SweepEnd::kHelped) return kExitDone;
   if (report->end == SweepEnd::kStopped) {
-    std::printf("Stopped early; the same command with --resume goes on.\n");
+    std::printf("Stopped early; the same command with --resume continues.\n");
     return kExitInterrupted;
   }
   return end_study(report->figures, choice.out);
