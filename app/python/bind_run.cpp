@@ -63,6 +63,7 @@ struct HeldRun {
 /// Returns the run that a Python object holds; null while it is being made.
 HeldRun* held_by(PyObject* self) {
   auto* instance = reinterpret_cast<py::detail::instance*>(self);
+  if (!instance->simple_layout) return nullptr;  // its memory is not laid out yet
   const py::detail::value_and_holder value = instance->get_value_and_holder();
   return value.holder_constructed() ? value.value_ptr<HeldRun>() : nullptr;
 }
@@ -76,7 +77,12 @@ py::custom_type_setup collected() {
     type->tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
       Py_VISIT(Py_TYPE(self));
       const HeldRun* held = held_by(self);
-      return held != nullptr && held->law ? held->law->visit(visit, arg) : 0;
+      return held != nullptr && held->law ? held->law->traverse(visit, arg) : 0;
+    };
+    // The collector may run while the run ends, without Python's lock, and may not see it then.
+    type->tp_dealloc = [](PyObject* self) {
+      PyObject_GC_UnTrack(self);
+      py::detail::pybind11_object_dealloc(self);
     };
     type->tp_clear = [](PyObject* self) {
       const HeldRun* held = held_by(self);

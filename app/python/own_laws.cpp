@@ -44,7 +44,7 @@ class KeptError {
                   py::object(trace_).release().ptr());
     throw py::error_already_set();
   }
-  int visit(visitproc visitor, void* arg) const {
+  int traverse(visitproc visit, void* arg) const {
     Py_VISIT(type_.ptr());
     Py_VISIT(value_.ptr());
     Py_VISIT(trace_.ptr());
@@ -87,9 +87,9 @@ class PythonLaw final : public OwnLaw {
   void rethrow() override {
     if (error_) error_.raise();
   }
-  int visit(visitproc visit, void* arg) override {
+  int traverse(visitproc visit, void* arg) override {
     Py_VISIT(law_.ptr());
-    return error_.visit(visit, arg);
+    return error_.traverse(visit, arg);
   }
   void clear() override {
     law_ = py::object();
@@ -121,7 +121,7 @@ class CompiledLaw final : public OwnLaw {
               wanted.data(), command.f_T_W.data(), data_);
   }
   // What is kept is part of the function: it is visited, and cleared with the run alone.
-  int visit(visitproc visit, void* arg) override {
+  int traverse(visitproc visit, void* arg) override {
     Py_VISIT(kept_.ptr());
     return 0;
   }

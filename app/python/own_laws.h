@@ -20,7 +20,7 @@ class OwnLaw {
   /// Throws what went wrong in the law, each time that it is called.
   virtual void rethrow() {}
   /// Visits the Python objects that the law holds, for the garbage collector (tp_traverse).
-  virtual int visit(visitproc visit, void* arg) = 0;
+  virtual int traverse(visitproc visit, void* arg) = 0;
   /// Drops those of them that may be part of a cycle (tp_clear): the run is unreachable.
   virtual void clear() {}
   /// Finds the force of a tick; `command` is the scene's own.

@@ -2,15 +2,19 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "thimble/driver/result.h"
+#include "utf8.h"
 
 namespace thimble::python {
 
-/// What becomes thimble.Error in Python: a sentence that tells the user what to do.
+/// What becomes thimble.Error in Python: a sentence that tells the user what to do. Python takes
+/// only UTF-8, and file names in a sentence may be anything.
 struct ThimbleError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit ThimbleError(const std::string& sentence)
+      : std::runtime_error(scene::as_utf8(sentence)) {}
 };
 
 /// What becomes thimble.ArgumentError in Python: an argument that names nothing that there is, or

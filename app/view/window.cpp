@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "print.h"
+#include "log/logger.h"
 #include "view/felt/touch_thread.h"
 #include "view/gl/picture_file.h"
 #include "view/hand/hand_panel.h"
@@ -63,7 +63,7 @@ class Content {
     choice_.paint.fine = !software_draws();
     hand_.input().choose(choice.hand);
     if (!felt_.trouble().empty()) {
-      session::print(stderr, "{}\n", felt_.trouble());
+      scene::logger().warn("{}", felt_.trouble());
       tell(felt_.trouble());
     }
   }

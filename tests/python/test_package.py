@@ -156,7 +156,13 @@ def test_scenes_are_listed_whatever_bytes_the_users_have(tmp_path):
     (folder / "broken.yaml").write_bytes(b"description: [\n")
     os.mkfifo(folder / "pipe.yaml")
     open(os.fsencode(folder) + b"/caf\xe9.yaml", "wb").close()
-    program = "import thimble; print({one.name: one.description for one in thimble.scenes()})"
+    program = """import thimble
+print({one.name: one.description for one in thimble.scenes()})
+try:
+    thimble.run("none of them")
+except thimble.ArgumentError as wrong:
+    print("ArgumentError", ascii(str(wrong)))
+"""
     done = subprocess.run(
         [sys.executable, "-X", "utf8", "-c", program],
         env={**os.environ, "XDG_DATA_HOME": str(tmp_path)},
@@ -168,6 +174,7 @@ def test_scenes_are_listed_whatever_bytes_the_users_have(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "'latin1': ''" in done.stdout and "'utf8': 'caf\u00e9'" in done.stdout and "'broken': ''" in done.stdout
     assert "pipe" not in done.stdout and "'caf\\udce9'" in done.stdout
+    assert "ArgumentError" in done.stdout and "caf\\ufffd" in done.stdout  # the names that there are
 
 
 def test_hands_are_led_only_if_all_arms_reach_theirs():

@@ -49,6 +49,11 @@ driver::Result<void> check_run_options(RunOptions& options) {
                          " leads the simulated arm's hand; a real arm has yours."};
   }
   if (options.by_topic()) return {};
+  if (options.clock == "virtual" && !options.duration) {
+    return driver::Error{
+        "--hand " + options.hand +
+        " without an end needs real time: leave --clock away, or give --duration."};
+  }
   if (!options.no_view && !has_window()) {
     return driver::Error{"--hand " + options.hand +
                          " needs the window, which this build does not have (app/setup.sh release "
@@ -60,11 +65,6 @@ driver::Result<void> check_run_options(RunOptions& options) {
         " needs the window, and there is no screen: DISPLAY and WAYLAND_DISPLAY are not set. Start "
         "it on a desktop, or add --no-view and lead the hand from `thimble view --hand " +
         options.hand + "`."};
-  }
-  if (options.clock == "virtual" && !options.duration) {
-    return driver::Error{
-        "--hand " + options.hand +
-        " without an end needs real time: leave --clock away, or give --duration."};
   }
   return {};
 }

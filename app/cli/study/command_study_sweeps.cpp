@@ -51,7 +51,7 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->end == SweepEnd::kHelped) return kExitDone;
   if (report->end == SweepEnd::kStopped) {
-    scene::print_format("Stopped early; the same command with --resume goes on.\n");
+    scene::print_format("Stopped early; the same command with --resume continues.\n");
     return kExitInterrupted;
   }
   return end_study(report->figures, choice.out);

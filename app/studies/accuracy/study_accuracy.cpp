@@ -83,13 +83,16 @@ class AxisSweep {
     };
     std::vector<std::unique_ptr<MeasuredAxis>> measured;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-      auto axis = std::make_unique<MeasuredAxis>(
-          numbers[i].empty() ? measure_axis(std::move(axes_[i]), options)
-                             : with_numbers(std::move(axes_[i]), numbers[i]));
-      if (!axis->complete && stop_.load()) return measured;
+      const bool kept = !numbers[i].empty();
+      auto axis =
+          std::make_unique<MeasuredAxis>(kept ? with_numbers(std::move(axes_[i]), numbers[i])
+                                              : measure_axis(std::move(axes_[i]), options));
+      if (!axis->complete && !kept) return measured;  // it was stopped
       if (!axis->complete) return damaged();
-      numbers[i] = numbers_of(*axis);
-      if (!(*journal)->add(i, numbers[i])) return unwritable();
+      if (!kept) {
+        numbers[i] = numbers_of(*axis);
+        if (!(*journal)->add(i, numbers[i])) return unwritable();
+      }
       if (options.count && !axis->lines.front().points.front().instructions) {
         scene::logger().warn("Instructions are not counted: valgrind is not installed, or failed.");
         options.count = false;

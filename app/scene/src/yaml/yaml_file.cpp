@@ -72,15 +72,14 @@ void YamlMistakes::add_to(Kind& kind, int line, const std::string& sentence) {
   if (kind.sentences.size() < kKept) kind.sentences.push_back(in_file(file_name_, line, sentence));
 }
 
-bool YamlMistakes::add_flaw(const TextFlaw& flaw) {
+void YamlMistakes::add_flaw(const TextFlaw& flaw) {
   const std::string sentence =
-      in_file(file_name_ + ":" + std::to_string(flaw.line) + ":" + std::to_string(flaw.column), 0,
-              flaw.what);
-  const auto& known = values_.sentences;
-  if (std::find(known.begin(), known.end(), sentence) != known.end()) return false;
-  ++values_.count;
-  if (known.size() < kKept) values_.sentences.push_back(sentence);
-  return true;
+      in_file(fmt::format("{}:{}:{}", file_name_, flaw.line, flaw.column), 0, flaw.what);
+  flaws_explain_all_ = flaws_explain_all_ || flaw.indents;
+  const auto& known = flaws_.sentences;
+  if (std::find(known.begin(), known.end(), sentence) != known.end()) return;
+  ++flaws_.count;
+  if (known.size() < kKept) flaws_.sentences.push_back(sentence);
 }
 
 void YamlMistakes::add(int line, const std::string& sentence) {
@@ -94,13 +93,12 @@ void YamlMistakes::add(int line, const std::string& sentence) {
 }
 
 void YamlMistakes::add_syntax_error(int line, const std::string& sentence) {
-  bool explained = false;
   for (const TextFlaw& flaw : misplaced_) {
     if (line > 0 && flaw.line > line) break;
     add_flaw(flaw);
-    explained = true;
+    flaws_explain_all_ = true;
   }
-  if (!explained) add_to(values_, line, sentence);
+  if (!flaws_explain_all_) add_to(values_, line, sentence);
 }
 
 void YamlMistakes::add_check(int line, const std::string& sentence) {
@@ -112,13 +110,20 @@ void YamlMistakes::warn(int line, const std::string& sentence) {
 }
 
 std::string YamlMistakes::text() const {
-  const Kind& kind = values_.count > 0 || checks_ignored_ ? values_ : checks_;
   std::string text;
-  for (const std::string& sentence : kind.sentences) text += (text.empty() ? "" : "\n") + sentence;
-  if (kind.count > kind.sentences.size()) {
-    text.append("\n").append(std::to_string(kind.count - kind.sentences.size()));
-    text.append(" more mistakes follow.");
-  }
+  std::size_t kept = 0, count = 0;
+  const auto append = [&](const Kind& kind) {
+    for (const std::string& sentence : kind.sentences) {
+      if (kept == kKept) break;
+      text += (text.empty() ? "" : "\n") + sentence;
+      ++kept;
+    }
+    count += kind.count;
+  };
+  append(flaws_);
+  if (!flaws_explain_all_) append(values_);
+  if (count == 0 && !checks_ignored_) append(checks_);
+  if (count > kept) text += fmt::format("\n{} more mistakes follow.", count - kept);
   return text;
 }
 

@@ -36,7 +36,7 @@ class YamlMistakes {
       : file_name_(std::move(file_name)), keys_(keys) {}
 
   /// Stores misplaced characters of the text, in the order of the text. A mistake in the line of
-  /// one is reported as that character.
+  /// one is reported as that character; if it is in indentation, nothing else is reported.
   void set_misplaced(std::vector<TextFlaw> misplaced) { misplaced_ = std::move(misplaced); }
 
   /// Returns where the keys that are asked for are noted; nullptr: nowhere.
@@ -65,7 +65,9 @@ class YamlMistakes {
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Returns whether nothing is wrong.
-  bool empty() const { return values_.count == 0 && (checks_ignored_ || checks_.count == 0); }
+  bool empty() const {
+    return flaws_.count == 0 && values_.count == 0 && (checks_ignored_ || checks_.count == 0);
+  }
 
   /// Returns the mistakes kept, one per line, and how many more there are.
   std::string text() const;
@@ -77,13 +79,14 @@ class YamlMistakes {
   };
 
   void add_to(Kind& kind, int line, const std::string& sentence);
-  bool add_flaw(const TextFlaw& flaw);
+  void add_flaw(const TextFlaw& flaw);
 
   std::string file_name_;
   KeyLog* keys_;
   std::vector<TextFlaw> misplaced_;
   std::vector<std::string> warnings_;
-  Kind values_, checks_;
+  Kind flaws_, values_, checks_;
+  bool flaws_explain_all_ = false;
   bool checks_ignored_ = false;
 };
 

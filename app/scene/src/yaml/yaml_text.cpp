@@ -7,31 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "utf8.h"
+
 namespace thimble::scene {
 namespace {
-
-/// Returns how many bytes the character at the beginning of a text has; 0 if it is not UTF-8
-/// [RFC 3629, 4].
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&text](std::size_t i) {
-    return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
-  };
-  const auto follows = [&byte](std::size_t i, std::uint8_t least = 0x80, std::uint8_t most = 0xbf) {
-    return byte(i) >= least && byte(i) <= most;
-  };
-  const std::uint8_t first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xc2 && first <= 0xdf) return follows(1) ? 2 : 0;
-  if (first >= 0xe0 && first <= 0xef) {
-    const bool good = follows(1, first == 0xe0 ? 0xa0 : 0x80, first == 0xed ? 0x9f : 0xbf);
-    return good && follows(2) ? 3 : 0;
-  }
-  if (first >= 0xf0 && first <= 0xf4) {
-    const bool good = follows(1, first == 0xf0 ? 0x90 : 0x80, first == 0xf4 ? 0x8f : 0xbf);
-    return good && follows(2) && follows(3) ? 4 : 0;
-  }
-  return 0;
-}
 
 /// Returns whether a text is UTF-16 or UTF-32: by its mark, or by the zeros of its first character
 /// [YAML 1.2, 5.2].
@@ -146,13 +125,14 @@ class BlankSearch {
     if (character == "\t") {
       // Tabs may stand between brackets and in empty lines.
       if (!indentation_ || depth_ > 0 || begins_with_any(behind_blanks(rest), "\r\n#")) return {};
-      return TextFlaw{.what = "a tab cannot indent in YAML; write spaces instead"};
+      return TextFlaw{.what = "a tab cannot indent in YAML; write spaces instead", .indents = true};
     }
     if (const OddBlank* odd = odd_blank(character)) {
       const bool at_end = begins_with_any(behind_blanks(rest), "\r\n#,]}:");
       if (!indentation_ && !after_sign_ && !at_end) return {};
-      return TextFlaw{.what =
-                          fmt::format("{} is no blank in YAML; write a space instead", odd->name)};
+      return TextFlaw{
+          .what = fmt::format("{} is no blank in YAML; write a space instead", odd->name),
+          .indents = indentation_};
     }
     if (character == " ") return {};
     if (character == "#" && (is_blank(before_) || before_ == "\n")) {

@@ -9,9 +9,10 @@ namespace thimble::scene {
 
 /// A byte or character of a text that a YAML file cannot have at its place.
 struct TextFlaw {
-  int line = 0;      ///< From 1.
-  int column = 0;    ///< From 1, in characters.
-  std::string what;  ///< A sentence without a dot, with the remedy.
+  int line = 0;          ///< From 1.
+  int column = 0;        ///< From 1, in characters.
+  std::string what;      ///< A sentence without a dot, with the remedy.
+  bool indents = false;  ///< It is in indentation, so that YAML sees another structure.
 };
 
 /// Returns the first byte of a text that is not UTF-8 [RFC 3629], as in files saved as Latin-1;

@@ -65,8 +65,8 @@ void ViewerRequestHandler::hear_records() {
 
 void ViewerRequestHandler::hear_stop() {
   const bool closed = viewer_ && viewer_->closed();
-  if (closed && !ends_with_viewer_ && !window_missed_ && next_ != nullptr && next_->loops()) {
-    window_missed_ = true;
+  if (closed && !ends_with_viewer_ && next_ != nullptr && next_->loops()) {
+    viewer_.reset();  // so that the user is told once
     scene::logger().warn(
         "The window is closed; the run continues and restarts until Ctrl-C. `thimble view {}` "
         "shows it again.",

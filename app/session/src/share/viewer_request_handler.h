@@ -51,7 +51,6 @@ class ViewerRequestHandler {
   std::unique_ptr<ViewerProcess> viewer_;
   ViewerWatch watch_;
   bool ends_with_viewer_;
-  bool window_missed_ = false;  // the user knows that the run continues without its window
   NextRun* next_;
   bool ended_ = false;
   std::uint64_t last_order_ = 0;

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "utf8.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
@@ -54,6 +55,12 @@ TEST(YamlText, AllOfUtf8IsTaken) {
   EXPECT_FALSE(
       find_invalid_utf8("a\xc2\x80\xdf\xbf\xe0\xa0\x80\xed\x9f\xbf\xee\x80\x80\xef\xbf\xbf"
                         "\xf0\x90\x80\x80\xf4\x8f\xbf\xbf\n"));
+}
+
+TEST(Utf8, OtherBytesAreReplaced) {
+  EXPECT_EQ(as_utf8("caf\xe9.off"), "caf\xef\xbf\xbd.off");
+  EXPECT_EQ(as_utf8("\xe2\x82"), "\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(as_utf8("caf\xc3\xa9"), "caf\xc3\xa9");
 }
 
 TEST(YamlText, Utf16IsLeftToTheParser) {
