@@ -9,7 +9,9 @@
 THIMBLE_LAYOUT_ENUM(thimble::driver::DeviceStage, kIdle, kActive, kFault)
 THIMBLE_LAYOUT_ENUM(thimble::driver::Fault, kNone, kTransportLost, kNoReports, kForceNotFinite,
                     kStateNotFinite, kOverSpeed, kLoopStalled, kRefused, kTimeNotMonotonic,
-                    kMotorsReversed, kEncoderFrozen, kCountsUnchanged, kOtherArm)
+                    kMotorsReversed, kEncoderFrozen, kCountsUnchanged, kOtherArm, kCountsJumped)
+THIMBLE_LAYOUT_ENUM(thimble::driver::LinkState, kConnected, kSilent, kLost)
 THIMBLE_LAYOUT(thimble::driver::TickRecord, tick, time_ns, due_ns, work_ns, counts, q, p_WT, v_WT,
-               p_WP, n_W, f_wanted_W, f_sent_W, heat, q_WT, gimbal, gripper, depth, feature, object,
-               hops, buttons, in_contact, fresh, has_gripper, stage, fault)
+               p_WP, n_W, f_wanted_W, f_sent_W, heat, q_WT, gimbal, gripper, depth, setting_value,
+               gain, feature, object, hops, buttons, setting, in_contact, fresh, has_gripper, stage,
+               fault, link, home_needed)

@@ -13,7 +13,7 @@ THIMBLE_LAYOUT(thimble::faces::ArmFacts, name, serial, build, simulated, has_ori
 THIMBLE_LAYOUT(thimble::faces::GateCuts, limited, rise_limited, soft_started, damped)
 THIMBLE_LAYOUT(thimble::faces::ArmReading, tick, time_ns, p_WT, v_WT, R_WT, w_WT, q, J_WT, gimbal,
                gripper, counts, buttons, f_client_W, f_asked_W, f_sent_W, heat, cuts, stalled,
-               stage, fault)
+               stage, fault, link)
 THIMBLE_LAYOUT(thimble::faces::ForceAsked, f_W, torque_W, gripper)
 THIMBLE_LAYOUT(thimble::faces::ForceWritten, asked, number)
 THIMBLE_LAYOUT(thimble::faces::ArmChannel, name, state, face, trouble, facts, reading, ticks,
