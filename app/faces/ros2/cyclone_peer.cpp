@@ -114,8 +114,9 @@ RosPeer* begun(std::unique_ptr<Peer> peer, std::uint32_t domain, char* error, st
   if (const dds_return_t status = peer->begin(); status < 0) {
     std::snprintf(
         error, size,
-        "ROS 2 topics of domain %u cannot be opened: Cyclone DDS says \"%s\". Look at the "
-        "network's interfaces and at CYCLONEDDS_URI, and use a domain below 233.",
+        "ROS 2 topics of domain %u cannot be opened: Cyclone DDS says \"%s\". Check that the "
+        "loopback interface is up (with --ros-network: the network's interfaces and "
+        "CYCLONEDDS_URI), and use a domain below 233.",
         domain, dds_strretcode(status));
     return nullptr;
   }

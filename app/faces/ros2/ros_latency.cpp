@@ -36,8 +36,9 @@ driver::Result<session::Histogram> measure_ros_latency(const std::string& scene,
   const session::Histogram ages = (*run)->law()->ages();
   if (ages.count() == 0) {
     return driver::Error{
-        "No force came back over the topics: look whether the network's interface takes multicast "
-        "(ip link), and at CYCLONEDDS_URI."};
+        "No force came back over the topics: check that the loopback interface is up (ip link set "
+        "lo "
+        "up)."};
   }
   return ages;
 }

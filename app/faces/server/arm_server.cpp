@@ -102,11 +102,18 @@ void ArmServer::serve(std::size_t index) {
     return;
   }
   ArmRun* run = arms_[index].run.get();
-  if (state == ChannelState::kLeaving || (run == nullptr && !owned)) {
+  if (state == ChannelState::kLeaving) {
     close(index, ChannelState::kClosed);
     return;
   }
-  if (run == nullptr) return;
+  if (run == nullptr) {
+    // Its program died before it knew of the answer. Another one may have asked since.
+    ChannelState left = state;
+    if (!owned && shared.state.compare_exchange_strong(left, ChannelState::kClosed)) {
+      wake_all(shared.state);
+    }
+    return;
+  }
   run->attend(options_.program);
   ended_by_viewer_ = ended_by_viewer_ || run->ended_by_viewer();
   if (!owned) {

@@ -1,9 +1,10 @@
 #include "studies/trouble/study_trouble.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <numeric>
 #include <string>
 #include <system_error>
@@ -27,9 +28,11 @@ constexpr double kGivenMuch = 1e-3;  // J, told
 /// A folder for scene files of this process; it goes with the object.
 class SceneFolder {
  public:
-  SceneFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("thimble_trouble_" + std::to_string(getpid()))) {}
+  SceneFolder() {
+    // A name that no other user can foresee. Without a folder, writing the first file fails.
+    std::string name = (std::filesystem::temp_directory_path() / "thimble-XXXXXX").string();
+    path_ = mkdtemp(name.data()) != nullptr ? name : "/dev/null/no-temporary-folder";
+  }
   ~SceneFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);

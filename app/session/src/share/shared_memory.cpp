@@ -140,7 +140,15 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_next(const Sh
 }
 
 driver::Result<void> SharedMemory::take_name(SharedMemory& before) {
-  // In one step for whoever looks [rename(2)].
+  struct stat own {};
+  struct stat there {};
+  const bool is_there = lstat(path_of(before.name_).c_str(), &there) == 0;
+  if (is_there && (fstat(before.file_, &own) != 0 || own.st_dev != there.st_dev ||
+                   own.st_ino != there.st_ino)) {
+    return driver::Error{"Another run has taken the name \"" + before.run_ +
+                         "\"; give this one another --name."};
+  }
+  // In one step for all readers [rename(2)].
   if (rename(path_of(name_).c_str(), path_of(before.name_).c_str()) != 0) {
     return trouble("The name \"" + before.run_ + "\" cannot be taken over");
   }

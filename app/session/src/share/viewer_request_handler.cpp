@@ -83,6 +83,7 @@ void ViewerRequestHandler::step() {
   const RecordingSwitch& recording = session_.records().recording;
   if (shared.watch_viewers()) {
     scene::logger().warn("The viewer that paused the run has died; the run continues.");
+    watch_.forget_pause();
   }
   driver::TickRecord newest;
   if (session_.newest().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));

@@ -23,6 +23,9 @@ class ViewerWatch {
   /// Watches what viewers do to `shared`, which must outlive it, and tells `log`.
   ViewerWatch(const SharedRun& shared, std::shared_ptr<spdlog::logger> log);
 
+  /// Takes the end of a pause as known: it is logged already.
+  void forget_pause() noexcept { paused_ = false; }
+
   /// Looks once; `now` is what a line begins with (at_tick).
   void step(const std::string& now);
 

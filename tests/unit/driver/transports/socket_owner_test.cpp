@@ -74,7 +74,7 @@ TEST_P(SocketOwner, IsThisUserForOwnConnection) {
   close(server);
 }
 
-TEST_P(SocketOwner, IsNobodyOnceClosed) {
+TEST_P(SocketOwner, HasNoUserOnceClosed) {
   const Port port(GetParam());
   const int client = port.connect_here();
   const int server = port.accept_one();
@@ -84,7 +84,7 @@ TEST_P(SocketOwner, IsNobodyOnceClosed) {
   close(server);
 }
 
-TEST_P(SocketOwner, IsNobodyBeforeItIsAccepted) {
+TEST_P(SocketOwner, HasNoUserBeforeItIsAccepted) {
   const Port port(GetParam());
   const int client = port.connect_here();
   EXPECT_EQ(user_of_peer(client), std::nullopt);
