@@ -161,7 +161,7 @@ TEST(PhysicsOfDents, ReleasedDentsSwingAsTheirModesDo) {
                     "largest error over a period after letting go, trapezoid, w h = %g at %g kHz",
                     omega_h, rate / 1e3);
       expect_physics(
-          {kDent, words, "sum of modes a cos(w t) + c / w sin(w t)", "of the dent", 0, 0.01, 1},
+          {kDent, words, "sum of modes a cos(w t) + c / w sin(w t)", "of the dent", 0, 0.005, 1},
           error);
     }
   }
