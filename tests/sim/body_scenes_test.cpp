@@ -151,6 +151,16 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
   EXPECT_GT(2 * std::acos(std::min(std::abs(q[0]), 1.0)), 0.05) << "rad";
 }
 
+// The weight that sinks by less than 3 mm is all the energy there is: 0.6 mJ.
+TEST(UndampedScene, GivesTheHandNoMoreThanTheWeightThatSinks) {
+  const auto session = session::Session::open(
+      std::filesystem::path(THIMBLE_TEST_DATA) / "scenes/undamped_drop.yaml", {});
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_EQ((*session)->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  EXPECT_GT((*session)->statistics().contact_time(), 0.1);
+  EXPECT_LT((*session)->statistics().energy_to_hand_max(), 6e-4);
+}
+
 TEST(FloatingBlockScene, DriftsAndTurns) {
   const auto session = support::open_shipped("floating_block");
   ASSERT_TRUE(session);

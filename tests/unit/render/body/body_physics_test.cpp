@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <numbers>
 
 #include "body/motion/mass_properties.h"
 #include "body/motion/rigid_body.h"
@@ -74,7 +75,7 @@ TEST(PhysicsOfBodies, ASpinningBlockWobblesAtTheRateOfEuler) {
                                        (inertia[1] * inertia[2]));
   expect_physics({"rigid body", "wobble of a block spun about its long axis at 20 rad/s",
                   "w sqrt((I3 - I1)(I2 - I1) / (I2 I3))", "rad/s", rate, 1e-5},
-                 2 * EIGEN_PI * (crossings - 1) / ((last - first) * 1e-3));
+                 2 * std::numbers::pi * (crossings - 1) / ((last - first) * 1e-3));
 }
 
 TEST(PhysicsOfBodies, ATimeScaleMakesABodyHeavier) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -321,7 +322,7 @@ TEST(PhysicsOfCoupling, AHeldBodySwingsAtTheFrequencyOfItsSpring) {
     before = x;
   }
   expect_physics({"held body", "frequency, 100 g held by 500 N/m, undamped", "sqrt(k / m) / (2 pi)",
-                  "Hz", std::sqrt(500 / mass) / (2 * EIGEN_PI), 1e-3},
+                  "Hz", std::sqrt(500 / mass) / (2 * std::numbers::pi), 1e-3},
                  (crossings - 1) * rate / (last - first));
   motion.grip->damping = 2;
   auto damped = move_object(build_object_touch(cube(), {}, surface_of(400, 0, 0, 1 / rate)).value(),
@@ -345,8 +346,8 @@ TEST(PhysicsOfCoupling, ABlockComesBackFromATipAsItCame) {
   const double zeta = 1 / (2 * std::sqrt(1000 * 0.1));
   const double damped =
       restitution(motion, surface_of(1000, 1, 0, 1 / rate), 1000, 1 / rate, 0.1, 0.5, 1, 0);
-  // The spring-damper never pulls: contact ends where the force ends [Brach], at the phase of the
-  // closed form.
+  // The spring-damper never pulls: contact ends where the force ends [Schwager], at the phase of
+  // the closed form.
   const double root = std::sqrt(1 - zeta * zeta);
   const double end = std::atan2(2 * zeta * root, 2 * zeta * zeta - 1);
   expect_physics({"tip and body", "the same with 1 N s/m",

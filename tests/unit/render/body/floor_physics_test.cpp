@@ -417,7 +417,6 @@ TEST(FloorImpulses, AreBoundedInTimeAndUseNoHeap) {
   for (const double mu : {0.0, 0.3, 1.0, 10.0}) {
     support::Random random(14);
     for (int i = 0; i < 100; ++i) {
-      RigidBody body = block({0.02, 0.02, 0.01}, {.friction = mu});
       FloorImpulses impulses(0.1, {1e-4, 1.2e-4, 1.5e-4}, {0, 0, 1}, mu);
       for (std::size_t k = 0; k < FloorImpulses::kPointsMax; ++k) {
         impulses.add(random.in_box(0.05) + Vector3d(0, 0, -0.06), 0);
