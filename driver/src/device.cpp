@@ -237,7 +237,7 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
 }
 
 /// Returns whether the arm has been silent for too long while it was listened to. Its counts are
-/// doubted then, unless no message went out: an arm that speaks only when spoken to is silent
+/// doubted then, unless the caller sent nothing: an arm that speaks only when spoken to is silent
 /// because the caller is.
 bool Device::follow_silence(std::int64_t now_ns) noexcept {
   listened_ns_ = now_ns;
@@ -422,10 +422,10 @@ void Device::book(const LinkWrite& sent, const GatedForce& force) noexcept {
 }
 
 LinkWrite Device::send(const GatedForce& force) noexcept {
+  spoken_ = true;
   const LinkWrite sent = link_->write(force, sample(), settings_.R_WB);
   if (sent.status == LinkStatus::kOk) {
     refused_in_a_row_ = 0;
-    spoken_ = true;
   } else {
     count_refusal(sent.status);
   }

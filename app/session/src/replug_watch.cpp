@@ -14,7 +14,6 @@ namespace {
 using driver::LinkState;
 
 constexpr int kStepsBetweenSearches = 5;  // half a second; chosen
-constexpr const char* kPlugIn = " Plug it in, in its home pose.";
 
 /// Returns where the tip must be. The counters of a simulated arm never restart, and no person
 /// could put it into its home pose.
@@ -48,11 +47,11 @@ void ReplugWatch::step() {
     fault_reported_ = true;
     terminal_.tell("\nForce is off (" + std::string(name(record.fault)) + "). " +
                    std::string(describe(record.fault)));
-    if (record.link != LinkState::kLost) {
+    const bool home_asked_next = record.home_needed && place_.has_home();
+    if (record.link != LinkState::kLost && !home_asked_next) {
       terminal_.tell("Press Enter to let forces through again.");
-    } else if (record.fault == driver::Fault::kTransportLost) {
-      gone_ = true;  // the fault says so itself
     }
+    if (record.fault == driver::Fault::kTransportLost) gone_ = true;  // the fault says so itself
     terminal_.key();
   }
   follow_link(record);
@@ -62,8 +61,7 @@ void ReplugWatch::step() {
 void ReplugWatch::follow_link(const driver::TickRecord& record) {
   if (record.link == LinkState::kLost) {
     if (!gone_) {
-      terminal_.tell(std::string(returned_ ? "The arm is gone again." : "The arm is gone.") +
-                     kPlugIn);
+      terminal_.tell((returned_ ? "The arm is gone again. " : "The arm is gone. ") + plug_in());
     }
     gone_ = true;
     search();
@@ -89,6 +87,10 @@ void ReplugWatch::follow_link(const driver::TickRecord& record) {
   }
 }
 
+std::string ReplugWatch::plug_in() const {
+  return place_.has_home() ? "Plug it in, in its home pose." : "Plug it in.";
+}
+
 void ReplugWatch::search() {
   if (pause_-- > 0) return;
   pause_ = kStepsBetweenSearches;
@@ -108,13 +110,11 @@ void ReplugWatch::search() {
 }
 
 void ReplugWatch::let_through(const driver::TickRecord& record) {
-  if (record.link == LinkState::kLost)
-    return terminal_.tell(std::string("The arm is gone.") + kPlugIn);
+  if (record.link == LinkState::kLost) return terminal_.tell("The arm is gone. " + plug_in());
   if (record.link == LinkState::kSilent) {
     return terminal_.tell(
-        "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it "
-        "and "
-        "plug it in again, in its home pose.");
+        "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it. " +
+        plug_in());
   }
   const Eigen::Map<const Eigen::Vector3d> p_WT(record.p_WT.data());
   const std::string trouble = place_.trouble(p_WT, record.home_needed);

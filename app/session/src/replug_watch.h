@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "start_pose.h"
@@ -40,6 +41,7 @@ class ReplugWatch {
 
  private:
   void follow_link(const driver::TickRecord& record);
+  std::string plug_in() const;
   void search();
   void let_through(const driver::TickRecord& record);
 

@@ -158,6 +158,18 @@ TEST_F(DhdFace, VelocityThresholdOfTheProgramSwitchesForceOff) {
   EXPECT_EQ(status()[DHD_STATUS_FORCE_OFF_CAUSE], 2);
 }
 
+TEST_F(DhdFace, StatusNamesALossAfterAnotherFault) {
+  begin_and_open({});
+  dhdEnableExpertMode();
+  EXPECT_EQ(dhdSetVelocityThreshold(1), 0);
+  fake::change(0, [](ArmReading& now) { now.v_WT = {0, 1.1, 0}; });
+  dhdSetForce(2, 0, 0);
+  EXPECT_EQ(status()[DHD_STATUS_CONNECTED], 1);
+  fake::change(0, [](ArmReading& now) { now.link = driver::LinkState::kLost; });
+  EXPECT_EQ(status()[DHD_STATUS_CONNECTED], 0);
+  EXPECT_EQ(status()[DHD_STATUS_FORCE_OFF_CAUSE], 2) << "the first reason stays";
+}
+
 TEST_F(DhdFace, VibrationIsAddedToTheForce) {
   begin_and_open({});
   EXPECT_EQ(dhdSetVibration(600, 1, 0), -1);

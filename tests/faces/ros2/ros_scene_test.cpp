@@ -22,7 +22,7 @@ std::vector<std::string> links_of(const std::string& urdf) {
 }
 
 TEST(RosScene, TwoArmsOfOneKindHaveNamesOfTheirOwn) {
-  auto session = session::Session::open("two_hands");
+  auto session = session::Session::open("two_hands", {.several_arms = true});
   ASSERT_TRUE(session) << session.error().message;
   const RosOptions options;
   const RosScene left = ros_scene(**session, options, 0), right = ros_scene(**session, options, 1);

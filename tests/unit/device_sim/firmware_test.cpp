@@ -130,6 +130,19 @@ TEST(Firmware, SamplesAnglesThatAreAboutRightOnlyWhereTheCountsAreSure) {
   }
 }
 
+TEST(Firmware, RestartCountsFromZeroWithMotorsOff) {
+  Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
+  const SerialPose pose = steps_from_home(1500, 800, -300);
+  firmware.receive(drive_message(100, 200, 300), 0);
+  EXPECT_TRUE(firmware.motors_on());
+  firmware.restart(pose.angles());
+  EXPECT_FALSE(firmware.motors_on());
+  EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(sampled(firmware, pose), driver::hfab::InputReport{});
+  EXPECT_EQ(sampled(firmware, steps_from_home(0, 0, 0)).counts,
+            (std::array<std::int16_t, 6>{-1500, -800, 300, 0, 0, 0}));
+}
+
 TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose pose = steps_from_home(10.3, 20.3, 30.3);

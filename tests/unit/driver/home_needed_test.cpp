@@ -95,6 +95,15 @@ TEST_F(HomeNeeded, AfterASilence) {
   expect_home_needed();
 }
 
+TEST_F(HomeNeeded, AfterASilenceInWhichMessagesAreRefused) {
+  tick(kAway);
+  wire_.refusals = 1000;
+  for (int k = 0; k < 500; ++k) missing();
+  wire_.refusals = 0;
+  EXPECT_EQ(device_->link_state(), LinkState::kSilent);
+  expect_home_needed();
+}
+
 TEST_F(HomeNeeded, AfterAJumpAcrossAGapOfAnyLength) {
   for (int gap = 1; gap <= 19; ++gap) {
     SetUp();

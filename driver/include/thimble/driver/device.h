@@ -232,7 +232,7 @@ class Device {
   bool reported_ = false;        // a report came over this link
   bool known_to_stand_ = false;  // f_sent_W_ is what the arm took last, over this link
   bool silent_ = false;          // no report for the silence limit, and none since
-  bool spoken_ = false;          // a message went out since the last report
+  bool spoken_ = false;          // a message was sent, or refused, since the last report
   bool home_needed_ = false;
   bool insisted_ = false;  // on a zero that was not taken
   int refused_in_a_row_ = 0;

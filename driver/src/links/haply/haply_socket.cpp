@@ -12,6 +12,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cerrno>
 #include <chrono>
 #include <utility>
 
@@ -95,8 +96,11 @@ class Socket::Connection {
 
   void ring() noexcept {
     const std::uint64_t one = 1;
-    // Fails only where the bell rings already.
-    [[maybe_unused]] const auto written = ::write(ring_fd_, &one, sizeof one);
+    // Fails only where the bell rings already, or where a signal interrupts it.
+    constexpr int kInterruptionsMax = 16;  // chosen: more than a timer sends in a tick
+    for (int i = 0; i < kInterruptionsMax; ++i) {
+      if (::write(ring_fd_, &one, sizeof one) >= 0 || errno != EINTR) break;
+    }
   }
 
   void leave() noexcept {
