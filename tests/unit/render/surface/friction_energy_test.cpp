@@ -97,7 +97,9 @@ class LoadStiffenedLaw {
   void forget() noexcept { bend_.setZero(); }
 
   static constexpr std::string_view kName = "load_stiffened";
-  struct Settings {};
+  struct Settings {
+    void read(SettingsReader&, const EffectContext&) {}
+  };
   explicit LoadStiffenedLaw(const Settings&) noexcept {}
   CoulombSettings& coulomb() noexcept { return coulomb_; }
 
