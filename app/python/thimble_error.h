@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "text/utf8.h"
 #include "thimble/driver/result.h"
-#include "utf8.h"
 
 namespace thimble::python {
 

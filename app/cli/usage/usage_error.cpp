@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "nearest_word.h"
+#include "text/nearest_word.h"
 
 namespace thimble::app {
 namespace {

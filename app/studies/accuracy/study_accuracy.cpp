@@ -8,7 +8,6 @@
 
 #include "log/logger.h"
 #include "log/printed_text.h"
-#include "nearest_word.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
 #include "studies/accuracy/accuracy_axis.h"
@@ -20,6 +19,7 @@
 #include "studies/sweep/progress_bar.h"
 #include "studies/sweep/sweep.h"
 #include "studies/sweep/sweep_journal.h"
+#include "text/nearest_word.h"
 #include "thimble/scene/build_info.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/shipped_files.h"

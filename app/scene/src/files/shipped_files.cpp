@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "files/data_folders.h"
-#include "nearest_word.h"
+#include "text/nearest_word.h"
 #include "text_file.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <unordered_map>
 
-#include "nearest_word.h"
+#include "text/nearest_word.h"
 #include "thimble/driver/orientation.h"
 #include "yaml/renamed_keys.h"
 #include "yaml/yaml_words.h"

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "utf8.h"
+#include "text/utf8.h"
 
 namespace thimble::scene {
 namespace {

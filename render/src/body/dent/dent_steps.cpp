@@ -158,10 +158,10 @@ void DentMotion::implicit(double share) noexcept {
   }
 }
 
-// Solves for w by conjugate gradients from v on, and scales it as SpringMotion does. The rounds find
-// the change of velocity, and end where the remainder is a share of what springs and dampers have
-// to change: measured against the momentum itself, a slow dent, whose springs change little of it
-// in a step, would get no force at all.
+// Solves for w by conjugate gradients from v on, and scales it as SpringMotion does. The rounds
+// find the change of velocity, and end where the remainder is a share of what springs and dampers
+// have to change: measured against the momentum itself, a slow dent, whose springs change little of
+// it in a step, would get no force at all.
 void DentMotion::solve(const Weights& system) noexcept {
   const std::size_t n = vertices_.size();
   float rz = 0;

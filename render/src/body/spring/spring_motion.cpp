@@ -231,8 +231,8 @@ void SpringMotion<kDof>::solve() noexcept {
     start += d * b_[at(i)].squaredNorm();
     rz += d * r_[at(i)].squaredNorm();
   }
-  // Measured against what springs and dampers have to change: of a slow motion they change little of
-  // the momentum in a step.
+  // Measured against what springs and dampers have to change: of a slow motion they change little
+  // of the momentum in a step.
   const double end = std::max(options_.remainder * options_.remainder * rz,
                               kRoundingOfSum * kRoundingOfSum * start);
   double beta = 0;

@@ -201,9 +201,9 @@ TEST(ArmFile, DescribesTheGimbalThatIsMounted) {
     return mistake_with("\nbase:", "\n" + gimbal + more + "\nbase:");
   };
   EXPECT_EQ(mistake(good), "");
-  EXPECT_NE(
-      mistake(good, "  home_counts: [0.5, 0, 0]\n").find("home_counts: expected a whole number from -1000000"),
-      std::string::npos);
+  EXPECT_NE(mistake(good, "  home_counts: [0.5, 0, 0]\n")
+                .find("home_counts: expected a whole number from -1000000"),
+            std::string::npos);
   EXPECT_NE(mistake("gimbal:\n  axes: [x, y]\n  counts_per_turn: [9, 9, 9]\n  sign: [1, 1, 1]\n")
                 .find("axes: expected three axes"),
             std::string::npos);

@@ -1,5 +1,5 @@
 // The known word that a mistyped one most likely means.
-#include "nearest_word.h"
+#include "text/nearest_word.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "utf8.h"
+#include "text/utf8.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::scene {

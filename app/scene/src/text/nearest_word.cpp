@@ -1,4 +1,4 @@
-#include "nearest_word.h"
+#include "text/nearest_word.h"
 
 #include <algorithm>
 #include <cstddef>
