@@ -69,7 +69,7 @@ TEST(ObjectSize, SaysNothingWhereTheSizeIsStated) {
   SceneObject stated;
   stated.size = 10;
   EXPECT_EQ(*judge_size(stated, {.side = 10, .kind = "STL", .has_unit = false}, 0.2), "");
-  const SceneObject plain;
+  const SceneObject plain{};
   EXPECT_EQ(*judge_size(plain, {.side = 10, .kind = "GLTF", .has_unit = true}, 0.2), "");
   EXPECT_EQ(*judge_size(plain, {.side = 10, .kind = "STL", .has_unit = false}, 0), "");
 }
