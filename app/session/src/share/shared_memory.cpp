@@ -1,7 +1,6 @@
 #include "share/shared_memory.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/random.h>
 #include <sys/stat.h>
@@ -116,7 +115,7 @@ bool remove_if_dead(const std::string& file) {
 std::string unforeseen() {
   std::uint64_t number = 0;
   if (getrandom(&number, sizeof number, 0) != sizeof number) number = std::random_device{}();
-  return fmt::format("{:016x}", number);
+  return std::to_string(number);
 }
 
 }  // namespace

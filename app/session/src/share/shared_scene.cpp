@@ -2,8 +2,6 @@
 #include "share/layout/shared_layout_hash.h"
 #include "share/shared_geometry.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -171,10 +169,10 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   std::uint64_t layout = 0;
   std::memcpy(&layout, memory.data() + offsetof(SharedHead, layout), sizeof layout);
   if (layout != shared_layout_hash()) {
-    return driver::Error{fmt::format(
-        "The run shares memory of layout {:016x}, this viewer reads layout {:016x}: they come from "
-        "different builds of thimble. Start both from the same build.",
-        layout, shared_layout_hash())};
+    return driver::Error{"The run shares memory of layout " + std::to_string(layout) +
+                         ", this viewer reads layout " + std::to_string(shared_layout_hash()) +
+                         ": they come from different builds of thimble. Start both from the same "
+                         "build."};
   }
   if (memory.size() < kSharedTablesOffset) return broken("it is too short");
   SharedHead head{};
