@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using driver::TickRecord;
 using session::H5Handle;
 
-constexpr std::size_t kTicks = 64;
+constexpr std::size_t kRecordedTicks = 64;
 constexpr double kSecret = 12345.678;
 
 const session::RecordingInfo kOrigin{.scene = "box",
@@ -46,8 +46,8 @@ fs::path scratch_file(const char* name) {
 }
 
 std::vector<TickRecord> some_ticks() {
-  std::vector<TickRecord> ticks(kTicks);
-  for (std::size_t i = 0; i < kTicks; ++i) {
+  std::vector<TickRecord> ticks(kRecordedTicks);
+  for (std::size_t i = 0; i < kRecordedTicks; ++i) {
     ticks[i].tick = i;
     ticks[i].q = {0.1 * static_cast<double>(i), 1, 2};
   }
@@ -65,8 +65,8 @@ fs::path with_column(const char* name, const std::function<void(hid_t file)>& ma
 }
 
 /// Makes a data set of joint angles; `change` says how its bytes are kept. Writes `rows` rows.
-void make_column(hid_t file, const std::function<void(hid_t how)>& change, hsize_t claimed = kTicks,
-                 bool write = true, const char* name = "q") {
+void make_column(hid_t file, const std::function<void(hid_t how)>& change,
+                 hsize_t claimed = kRecordedTicks, bool write = true, const char* name = "q") {
   const hsize_t sizes[2] = {claimed, 3};
   const H5Handle space(H5Screate_simple(2, sizes, nullptr), H5Sclose);
   const H5Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -92,7 +92,7 @@ void expect_refused(const fs::path& path, const std::string& what) {
 fs::path secret_file() {
   const fs::path path = scratch_file("secret.bin");
   std::ofstream out(path, std::ios::binary);
-  for (std::size_t i = 0; i < 3 * kTicks; ++i) {
+  for (std::size_t i = 0; i < 3 * kRecordedTicks; ++i) {
     out.write(reinterpret_cast<const char*>(&kSecret), sizeof kSecret);
   }
   return path;
@@ -103,8 +103,10 @@ TEST(RecordingOrigin, ColumnInAnotherFileIsRefused) {
   const auto path = with_column("external.h5", [&](hid_t file) {
     make_column(
         file,
-        [&](hid_t how) { H5Pset_external(how, secret.c_str(), 0, 3 * kTicks * sizeof(double)); },
-        kTicks, false);
+        [&](hid_t how) {
+          H5Pset_external(how, secret.c_str(), 0, 3 * kRecordedTicks * sizeof(double));
+        },
+        kRecordedTicks, false);
   });
   expect_refused(path, "column q");
 }
@@ -129,14 +131,14 @@ TEST(RecordingOrigin, VirtualColumnIsRefused) {
   const fs::path other = scratch_file("source.h5");
   ASSERT_TRUE(session::write_recording(other, kOrigin, some_ticks()));
   const auto path = with_column("virtual.h5", [&](hid_t file) {
-    const hsize_t sizes[2] = {kTicks, 3};
+    const hsize_t sizes[2] = {kRecordedTicks, 3};
     const H5Handle space(H5Screate_simple(2, sizes, nullptr), H5Sclose);
     make_column(
         file,
         [&](hid_t how) {
           ASSERT_GE(H5Pset_virtual(how, space.id(), other.c_str(), "/q", space.id()), 0);
         },
-        kTicks, false);
+        kRecordedTicks, false);
   });
   expect_refused(path, "column q");
 }
@@ -164,8 +166,8 @@ TEST(RecordingOrigin, CompressedColumnIsRead) {
   });
   const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
-  ASSERT_EQ(read->ticks.size(), kTicks);
-  for (std::size_t i = 0; i < kTicks; ++i) EXPECT_EQ(read->ticks[i].q, some_ticks()[i].q);
+  ASSERT_EQ(read->ticks.size(), kRecordedTicks);
+  for (std::size_t i = 0; i < kRecordedTicks; ++i) EXPECT_EQ(read->ticks[i].q, some_ticks()[i].q);
 }
 
 /// Makes a recording of a few kilobytes that claims `claimed` ticks, none of which it stores.
