@@ -48,7 +48,7 @@ file() {
     ln "$input" "hard$ending"
     for link in "soft$ending" "hard$ending"; do
       mapfile -t words < <(with "$link" "$@")
-      refused "$input" "$link cannot be written" "$thimble" "${words[@]}"
+      refused "$input" "$link (cannot be written|is there already)" "$thimble" "${words[@]}"
     done
   done
   mapfile -t words < <(with "locked$ending" "$@")
@@ -117,7 +117,7 @@ table="$table all:--log "
 # makes a pipe, and --record of view asks the run to record.
 "$thimble" manual >manual
 awk '/^\.SS/ { command = $2; next } /^\.TP/ { getline; option = $0; getline
-    if (/[Tt]o write|^Write|Folder for|OFF file for|File to log to/) print command, option }' manual |
+    if (/[Tt]o write|^Write|Folder for|OFF file for|File to log to/) print (command == "" ? "all" : command), option }' manual |
   sed -E 's/\\fB|\\fR.*//g; s/\\-/-/g' >writes
 checks=$((checks + 1))
 while read -r command option; do

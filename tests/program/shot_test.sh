@@ -38,7 +38,7 @@ if command -v ffmpeg >/dev/null; then
     stream=width,height,nb_read_frames -of csv=p=0 c.mp4
   expect 0 'by ffmpeg' "$thimble" shot "$scene" --at 1 --until 1.3 --pace 10 --size 160x120 --animate c.gif
   expect 0 '^GIF89a$' head -c 6 c.gif
-  expect 1 'cannot be written by ffmpeg' "$thimble" shot "$scene" --at 1 --size 160x120 --animate no/such/c.gif
+  expect 2 'cannot be written: the folder .* does not exist' "$thimble" shot "$scene" --at 1 --size 160x120 --animate no/such/c.gif
 else
   echo "NOT TESTED: MP4 and GIF, for want of ffmpeg."
 fi

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <mutex>
 #include <utility>
 
 namespace thimble::session {
@@ -27,6 +28,14 @@ class H5Handle {
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+/// Returns the lock that whatever uses the library in this process holds, and whatever forks a
+/// child that uses it: of a lock of the library's own that another thread holds at that moment the
+/// child would wait for ever.
+inline std::mutex& hdf5_mutex() noexcept {
+  static std::mutex mutex;
+  return mutex;
+}
 
 /// Keeps the library from printing its own stack of errors: Thimble says what happened. Before
 /// anything else of the library: then it does not tidy up at the program's end either, which on a

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "recording/h5_handle.h"
 #include "recording/h5_reader.h"
 #include "system/printable_text.h"
 #include "system/regular_file.h"
@@ -102,6 +104,7 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   const driver::ApartLimits limits{
       .seconds = 1 + static_cast<int>(std::min<std::uint64_t>(stored / kBytesPerSecond, 1'000'000)),
       .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
+  const std::lock_guard library(hdf5_mutex());
   const auto read = driver::run_apart(
       [&](driver::ApartWriter& out) { read_h5(file->descriptor(), file->size(), stored, out); },
       limits);

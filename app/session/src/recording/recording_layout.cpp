@@ -7,6 +7,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -117,6 +118,7 @@ bool holds_recording(const std::filesystem::path& path) {
 /// may crash on a damaged file, so it looks at the file in a process of its own.
 bool is_recording(const std::filesystem::path& path) {
   if (!driver::is_regular(path)) return false;
+  const std::lock_guard library(hdf5_mutex());
   const auto found =
       driver::run_apart([&] { return std::string(holds_recording(path) ? "recording" : ""); }, {});
   return found && !found->empty();
@@ -139,6 +141,7 @@ driver::Result<RecordingLayout> RecordingLayout::create(output::OutputFile file,
 }
 
 driver::Result<void> RecordingLayout::lay_out(const RecordingInfo& info) {
+  const std::lock_guard library(hdf5_mutex());
   silence_hdf5();
   const auto refused = [this] {
     return output::cannot_write(

@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <atomic>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -289,6 +290,23 @@ TEST(Recording, GrowsAsItIsWritten) {
   EXPECT_TRUE(read->complete);
   ASSERT_EQ(read->ticks.size(), kTicks);
   for (std::uint64_t i = 0; i < kTicks; ++i) ASSERT_TRUE(same(read->ticks[i], tick_number(i))) << i;
+}
+
+// Recordings are read by a child of this process, which must not wait for a lock of another thread.
+TEST(Recording, IsReadWhileAnotherThreadMakesOne) {
+  const auto path = scratch("read.h5");
+  ASSERT_TRUE(session::write_recording(path, kInfo, {}));
+  std::atomic<bool> stop{false};
+  std::thread maker([&] {
+    while (!stop.load()) {
+      EXPECT_TRUE(session::RecordingFile::create(scratch("made.h5"), kInfo, {}, true));
+    }
+  });
+  int refused = 0;
+  for (int i = 0; i < 30; ++i) refused += session::read_recording(path) ? 0 : 1;
+  stop.store(true);
+  maker.join();
+  EXPECT_EQ(refused, 0);
 }
 
 // A file system without holes (FAT) has no room for a whole day at once.
