@@ -129,7 +129,7 @@ expect 2 'small.h5 cannot be written: there is no room for' bash -c \
   'ulimit -f 100; exec "$0" run "$1" --duration 60 --no-view --record small.h5' "$thimble" "$scenes/rubber.yaml"
 cell "file size limit" "opening" "refused with a sentence, no crash"
 expect 0 '' "$thimble" run "$scenes/rubber.yaml" --duration 1 --no-view --record good.h5
-expect 1 'full: cannot be written' "$thimble" export good.h5 --csv /dev/full
+expect 1 'full cannot be written: No space left' "$thimble" export good.h5 --csv /dev/full
 cell "disk full" "table of a recording" "refused with a sentence"
 cat >on_full_disk.sh <<'END'
 mkdir -p disk
@@ -151,7 +151,7 @@ if unshare -rm true 2>/dev/null; then
     expect 0 'left with zero force|force is off' cat full
     expect 0 'full.csv: [1-9][0-9]+ ticks of rubber.*cut off' cat full_disk
     cell "disk full" "recording" "the touch goes on; what was written can be read; told, exit code 1"
-    expect 0 'second.h5: a recording cannot be written here' cat full_disk
+    expect 0 'second.h5 cannot be written: there is no room for' cat full_disk
     expect 0 '^code 2$' tail -1 full_disk
     cell "disk full" "opening" "refused with a sentence, no crash"
   fi
