@@ -151,7 +151,7 @@ if unshare -rm true 2>/dev/null; then
     expect 0 'left with zero force|force is off' cat full
     expect 0 'full.csv: [1-9][0-9]+ ticks of rubber.*cut off' cat full_disk
     cell "disk full" "recording" "the touch goes on; what was written can be read; told, exit code 1"
-    expect 0 'second.h5 cannot be written: ' cat full_disk
+    expect 0 'second.h5 cannot be written: there is no room for' cat full_disk
     expect 0 '^code 2$' tail -1 full_disk
     cell "disk full" "opening" "refused with a sentence, no crash"
   fi

@@ -7,7 +7,7 @@ mkdir -p "$HOME" "$XDG_STATE_HOME"
 cp -r "$source_dir/app/arms" "$source_dir/app/scenes" .
 sed -E 's/stiffness: 300/stiffness: 200/' arms/vintage_phantom.yaml >arms/other.yaml
 sed -i '/^name:/s/.*/name: another_arm/' arms/other.yaml
-scene=scenes/tin_can.yaml
+scene=scenes/water_balloon.yaml
 
 # option | class | arguments to try (none: it is named without a trial) | why
 #   same      the ticks are those of the run without it
@@ -23,8 +23,8 @@ table='
 --homed         | arm      |                           | asks nothing of a real arm
 --no-real-time  | arm      |                           | the priority of the loop
 --duration      | recorded | --duration 0.4            | the number of ticks
---clock         | same     | --clock paced --speed 50  | paced ticks are the virtual ones; wall: clock
---speed         | same     | --speed 50                | the pace alone
+--clock         | same     | --clock paced --speed 4   | paced ticks are the virtual ones; wall: clock
+--speed         | same     | --speed 4                 | the pace alone
 --reload        | same     | --reload                  | between two runs
 --no-reload     | same     | --no-reload               | between two runs
 --hand          | hand     |                           | who leads the hand: its path is in each tick
@@ -40,7 +40,7 @@ table='
 --record        | same     |                           | the recording itself
 --force         | same     | --force                   | an older recording of that name is replaced
 --save-mesh     | same     | --save-mesh out.off       | after the run
---save-object   | same     | --save-mesh one.off --save-object can | after the run
+--save-object   | same     | --save-mesh one.off --save-object balloon | after the run
 --ros2          | same     |                           | topics of the run
 --ros-namespace | same     |                           | names of topics
 --ros-network   | same     |                           | who sees the topics
@@ -63,11 +63,9 @@ table='
 row() { grep -E "^$1 +\|" <<<"$table"; }
 field() { cut -d'|' -f"$1" | sed 's/^ *//; s/ *$//'; }
 
-# Every option is in the table, and the table names no option that is not there.
-for list in run; do
-  "$thimble" $list --help 2>&1 | grep -oE '^ +(-[a-zA-Z],)?--[a-z0-9-]+(, *--[a-z0-9-]+|,--[a-z0-9-]+)*|\{false\}|!--[a-z-]+' |
-    grep -oE -- '--[a-z0-9-]+' | sort -u >options
-done
+# Every option of the command and of the program is in the table, and the table names no option that is not there.
+{ "$thimble" run --help && "$thimble" --help; } 2>&1 | grep -oE '^ +(-[a-zA-Z],)?--[a-z0-9-]+(, *--[a-z0-9-]+|,--[a-z0-9-]+)*|\{false\}|!--[a-z-]+' |
+  grep -oE -- '--[a-z0-9-]+' | sort -u >options
 checks=$((checks + 1))
 [ "$(wc -l <options)" -ge 30 ] || { echo "FAILED: only $(wc -l <options) options were found"; failures=$((failures + 1)); }
 while read -r option; do

@@ -92,6 +92,10 @@ void LogFile::sink_it_(const spdlog::details::log_msg& message) {
     spdlog::details::log_msg shown = message;
     const std::string text = driver::printable({message.payload.data(), message.payload.size()});
     shown.payload = text;
+    // The name of a run, which is that of its scene or of --name.
+    const std::string name =
+        driver::printable_name({message.logger_name.data(), message.logger_name.size()});
+    shown.logger_name = name;
     file_->log(shown);
     file_->flush();
   } catch (const std::exception& trouble) {

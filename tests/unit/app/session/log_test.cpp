@@ -211,6 +211,16 @@ TEST_F(LogTest, LogFileHoldsNamesPrintable) {
   }
 }
 
+TEST_F(LogTest, LogFileHoldsRunNamesPrintable) {
+  const fs::path file = folder_ / "hostile_run.log";
+  ASSERT_TRUE(begin_log({.file = file}));
+  said_by([] { run_logger(kHostile)->info("open"); });
+  ASSERT_TRUE(begin_log({.file = folder_ / "next.log"}));
+  const auto lines = lines_of(file);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_TRUE(lines.back().ends_with(std::string(" ") + kShown + ": open")) << lines.back();
+}
+
 TEST_F(LogTest, PrintedTextIsPrintable) {
   testing::internal::CaptureStdout();
   print_format("%s %d\n", kHostile, 7);

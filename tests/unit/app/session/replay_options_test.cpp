@@ -66,7 +66,8 @@ TEST_F(ReplayOptions, ReferenceRepeats) {
 }
 
 TEST_F(ReplayOptions, BudgetRepeats) {
-  const auto recording = recorded("tin_can", {.duration = 1, .quality = "auto", .budget = 400.25});
+  const auto recording =
+      recorded("water_balloon", {.duration = 1.5, .quality = "auto", .budget = 400.25});
   EXPECT_NE(recording.info.options.find("budget: 400.25\n"), std::string::npos);
   expect_repeats(recording);
 }
