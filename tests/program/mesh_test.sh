@@ -80,7 +80,7 @@ expect 0 'All pages are whole' "$thimble" mesh good.pages
 expect 0 'bumpy ring of 2048 triangles in 2 pages' "$thimble" mesh generate ring.pages --triangles 2000
 expect 0 'triangles   2048' "$thimble" mesh ring.pages
 expect 2 'neither drawn nor repaired' "$thimble" mesh ring.pages --repair ring.off
-expect 1 'cannot be written' "$thimble" mesh generate no_folder/ring.pages
+expect 2 'cannot be written' "$thimble" mesh generate no_folder/ring.pages
 printf 'x' | dd of=ring.pages bs=1 seek=10000 conv=notrunc status=none
 expect 2 '1 pages are damaged' "$thimble" mesh ring.pages
 expect 2 'FILE is missing' "$thimble" mesh
