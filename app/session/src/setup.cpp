@@ -280,6 +280,9 @@ std::string Setup::find_start_inside(std::size_t i, const Eigen::Vector3d& p_WT)
   inside.clear();
   const render::SceneTouch& touch = objects_->touch(i);
   for (std::size_t object = 0; object < touch.size(); ++object) {
+    // What the hand holds is around the tip from the first tick.
+    const auto& motion = scene_->objects[object].body.motion;
+    if (motion && motion->grip) continue;
     if (touch.object(object).inside(p_WT)) inside.push_back(scene_->objects[object].name);
   }
   if (inside.empty()) return {};

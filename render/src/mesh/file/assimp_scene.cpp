@@ -30,12 +30,6 @@ Matrix4d matrix_of(const aiMatrix4x4& m) {
 
 // Returns the triangles of one part of a scene, in its own frame.
 driver::Result<TriangleMesh> part_of(const aiMesh& part) {
-  for (unsigned i = 0; i < part.mNumAnimMeshes; ++i) {
-    if (part.mAnimMeshes[i]->mWeight == 0) continue;
-    return Error{
-        "it has morph targets with weights, which are read of glTF 2.0 only. Export the "
-        "shape that they give."};
-  }
   TriangleMesh mesh;
   mesh.vertices.reserve(part.mNumVertices);
   for (unsigned i = 0; i < part.mNumVertices; ++i) {

@@ -9,11 +9,13 @@
 #include <exception>
 #include <new>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "mesh/file/assimp_scene.h"
 #include "mesh/file/file_unit.h"
 #include "mesh/file/folder_files.h"
+#include "mesh/file/package/xml_tags.h"
 #include "mesh/file/package/zip_archive.h"
 #include "mesh/file/read_in_child.h"
 #include "system/run_apart.h"
@@ -44,6 +46,16 @@ void keep_importers(Assimp::Importer& importer, const std::string& ending) {
   }
 }
 
+// Returns whether the text of a DAE file has a controller that morphs a mesh.
+bool has_morph_controller(std::string_view text) {
+  XmlTags tags(text);
+  XmlTag tag;
+  while (tags.next(tag)) {
+    if (tag.opens && tag.name == "morph") return true;
+  }
+  return false;
+}
+
 // Returns the text of an AMF file, which may be packed.
 driver::Result<std::string> unpacked_amf(const std::string& bytes) {
   const auto archive = ZipArchive::open(bytes);
@@ -66,6 +78,11 @@ driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::stri
   }
   if (ending == "3ds") info.up = 'z';
   if (ending == "dae") {
+    // Assimp 5.2.5 leaves them out, with the mesh that they move.
+    if (has_morph_controller(bytes)) {
+      return Error{
+          "it has a morph controller, which is not read of DAE. Export the shape without."};
+    }
     info.unit = 1;
     info.up = up_axis_of_dae(bytes);
   } else if (ending == "amf") {
@@ -89,6 +106,8 @@ driver::Result<TriangleMesh> import_by_assimp(const std::string& bytes, const st
     keep_importers(importer, ending);
     // Axes stay the file's own.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    // A file without a mesh is no mesh of its bones.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     const bool beside = ending == "gltf" || ending == "glb";
     importer.SetIOHandler(new FolderFiles(bytes, name, beside ? folder : ""));
     const aiScene* const scene = importer.ReadFile(name, 0);

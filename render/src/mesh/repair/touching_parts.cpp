@@ -15,17 +15,22 @@ namespace thimble::render {
 namespace {
 
 using Eigen::AlignedBox3d;
+using Eigen::AlignedBox3f;
 using Eigen::Vector3d;
 
 // The pairs of boxes that are looked at, about a second's worth.
-constexpr std::size_t kBoxPairsMax = 20'000'000;
+constexpr std::size_t kBoxPairsMax = 5'000'000;
 
 // What is compared one by one, not cut further.
 constexpr std::size_t kTouchLeaf = 4;
 
-// A triangle of a part whose box meets that of another part.
+// The least share of a node's triangles on one side of the middle; else they are halved by number.
+constexpr std::size_t kShareMin = 16;
+
+// A triangle of a part whose box meets that of another part. The box is about the mesh's middle; it
+// is larger than the triangle by more than what rounding takes.
 struct PartTriangle {
-  AlignedBox3d box;
+  AlignedBox3f box;
   std::int32_t number = 0;
   std::int32_t part = 0;
 };
@@ -56,14 +61,14 @@ bool are_apart(const std::array<Vector3d, 3>& a, const std::array<Vector3d, 3>& 
   return false;
 }
 
-// A tree of boxes over triangles of parts, which is compared with itself.
+// A tree of boxes over triangles of parts, which is compared with itself. Nodes are cut when they
+// are looked into: much of the mesh never is.
 class TouchSearch {
  public:
   TouchSearch(const TriangleMesh& mesh, std::vector<PartTriangle> triangles, const Vector3d& middle,
               double tolerance)
       : mesh_(mesh), triangles_(std::move(triangles)), middle_(middle), tolerance_(tolerance) {
-    nodes_.reserve(triangles_.size());
-    build(0, triangles_.size());
+    add_node(0, triangles_.size());
   }
 
   TouchingParts run() {
@@ -74,16 +79,18 @@ class TouchSearch {
 
  private:
   struct Node {
-    AlignedBox3d box;
+    AlignedBox3f box;
     std::int32_t part_min = 0, part_max = 0;
     std::size_t begin = 0, end = 0;
-    std::size_t left = 0, right = 0;  // 0: a leaf
+    std::size_t left = 0, right = 0;  // 0: not cut yet
 
-    bool is_leaf() const { return left == 0; }
+    std::size_t size() const { return end - begin; }
+    bool is_leaf() const { return size() <= kTouchLeaf; }
     bool is_one_part() const { return part_min == part_max; }
   };
 
-  std::size_t build(std::size_t begin, std::size_t end);
+  std::size_t add_node(std::size_t begin, std::size_t end);
+  Node cut(std::size_t node);
   void within(std::size_t node);
   void between(std::size_t a, std::size_t b);
   void compare(const PartTriangle& a, const PartTriangle& b);
@@ -111,52 +118,67 @@ class TouchSearch {
   TouchingParts found_;
 };
 
-std::size_t TouchSearch::build(std::size_t begin, std::size_t end) {
-  const std::size_t number = nodes_.size();
-  nodes_.push_back({.box = {}, .begin = begin, .end = end});
-  Node node = nodes_.back();
+std::size_t TouchSearch::add_node(std::size_t begin, std::size_t end) {
+  Node node;
+  node.begin = begin;
+  node.end = end;
   node.part_min = node.part_max = triangles_[begin].part;
-  AlignedBox3d centers;
   for (std::size_t i = begin; i < end; ++i) {
     node.box.extend(triangles_[i].box);
-    centers.extend(triangles_[i].box.center());
     node.part_min = std::min(node.part_min, triangles_[i].part);
     node.part_max = std::max(node.part_max, triangles_[i].part);
   }
-  if (end - begin > kTouchLeaf) {
-    Eigen::Index axis = 0;
-    centers.sizes().maxCoeff(&axis);
-    const auto middle = static_cast<std::ptrdiff_t>(begin + (end - begin) / 2);
-    std::nth_element(triangles_.begin() + static_cast<std::ptrdiff_t>(begin),
-                     triangles_.begin() + middle,
-                     triangles_.begin() + static_cast<std::ptrdiff_t>(end),
-                     [axis](const PartTriangle& a, const PartTriangle& b) {
-                       return a.box.center()[axis] < b.box.center()[axis];
-                     });
-    node.left = build(begin, static_cast<std::size_t>(middle));
-    node.right = build(static_cast<std::size_t>(middle), end);
-  }
-  nodes_[number] = node;
-  return number;
+  nodes_.push_back(node);
+  return nodes_.size() - 1;
 }
 
-void TouchSearch::within(std::size_t node) {
-  const Node& here = nodes_[node];
-  if (here.is_one_part()) return;
-  if (!here.is_leaf()) {
-    within(here.left);
-    within(here.right);
-    between(here.left, here.right);
+// Returns a node with its halves.
+TouchSearch::Node TouchSearch::cut(std::size_t number) {
+  const Node node = nodes_[number];
+  if (node.is_leaf() || node.left != 0) return node;
+  Eigen::Index axis = 0;
+  node.box.sizes().maxCoeff(&axis);
+  const auto twice_center = [axis](const PartTriangle& triangle) {
+    return triangle.box.min()[axis] + triangle.box.max()[axis];
+  };
+  const float twice_middle = node.box.min()[axis] + node.box.max()[axis];
+  const auto begin = triangles_.begin() + static_cast<std::ptrdiff_t>(node.begin);
+  const auto end = triangles_.begin() + static_cast<std::ptrdiff_t>(node.end);
+  auto middle = std::partition(begin, end, [&](const PartTriangle& triangle) {
+    return twice_center(triangle) < twice_middle;
+  });
+  const auto low = static_cast<std::size_t>(middle - begin);
+  if (std::min(low, node.size() - low) < std::max<std::size_t>(1, node.size() / kShareMin)) {
+    middle = begin + static_cast<std::ptrdiff_t>(node.size() / 2);
+    std::nth_element(begin, middle, end, [&](const PartTriangle& a, const PartTriangle& b) {
+      return twice_center(a) < twice_center(b);
+    });
+  }
+  const auto cut_at = static_cast<std::size_t>(middle - triangles_.begin());
+  const std::size_t left = add_node(node.begin, cut_at);
+  const std::size_t right = add_node(cut_at, node.end);
+  nodes_[number].left = left;
+  nodes_[number].right = right;
+  return nodes_[number];
+}
+
+void TouchSearch::within(std::size_t number) {
+  if (nodes_[number].is_one_part()) return;
+  const Node node = cut(number);
+  if (!node.is_leaf()) {
+    within(node.left);
+    within(node.right);
+    between(node.left, node.right);
     return;
   }
-  for (std::size_t i = here.begin; i < here.end; ++i) {
-    for (std::size_t k = here.begin; k < i; ++k) compare(triangles_[k], triangles_[i]);
+  for (std::size_t i = node.begin; i < node.end; ++i) {
+    for (std::size_t k = node.begin; k < i; ++k) compare(triangles_[k], triangles_[i]);
   }
 }
 
 void TouchSearch::between(std::size_t a, std::size_t b) {
-  const Node& first = nodes_[a];
-  const Node& second = nodes_[b];
+  const Node first = nodes_[a];
+  const Node second = nodes_[b];
   if (first.is_one_part() && second.is_one_part() &&
       (first.part_min == second.part_min || known(first.part_min, second.part_min))) {
     return;
@@ -173,14 +195,14 @@ void TouchSearch::between(std::size_t a, std::size_t b) {
     return;
   }
   // The larger one is cut.
-  const bool cut_first =
-      !first.is_leaf() && (second.is_leaf() || first.end - first.begin > second.end - second.begin);
-  if (cut_first) {
-    between(first.left, b);
-    between(first.right, b);
+  if (!first.is_leaf() && (second.is_leaf() || first.size() > second.size())) {
+    const Node halves = cut(a);
+    between(halves.left, b);
+    between(halves.right, b);
   } else {
-    between(a, second.left);
-    between(a, second.right);
+    const Node halves = cut(b);
+    between(a, halves.left);
+    between(a, halves.right);
   }
 }
 
@@ -251,8 +273,11 @@ TouchingParts find_touching_parts(const TriangleMesh& mesh) {
     if (mesh.vertices[v].allFinite()) whole.extend(mesh.vertices[v]);
   }
   if (parts < 2 || whole.isEmpty()) return {};
-  const double tolerance = kFlushTolerance * whole.diagonal().norm();
-  const Vector3d margin = Vector3d::Constant(tolerance);
+  const double size = whole.diagonal().norm();
+  constexpr double kSizeMax = 1e30;  // its boxes are in single precision
+  if (!(size < kSizeMax)) return {};
+  const double tolerance = kFlushTolerance * size;
+  const Vector3d margin = Vector3d::Constant(2 * tolerance);
   std::vector<AlignedBox3d> boxes(parts);
   const auto box_of = [&](std::size_t t) {
     AlignedBox3d box;
@@ -268,16 +293,20 @@ TouchingParts find_touching_parts(const TriangleMesh& mesh) {
     if (is_whole(t)) boxes[static_cast<std::size_t>(part_of_triangle(t))].extend(box_of(t));
   }
   const std::vector<bool> near = find_near_parts(boxes);
+  const Vector3d middle = whole.center();
   std::vector<PartTriangle> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!is_whole(t)) continue;
     const std::int32_t part = part_of_triangle(t);
     if (near[static_cast<std::size_t>(part)]) {
-      triangles.push_back({box_of(t), static_cast<std::int32_t>(t), part});
+      const AlignedBox3d box = box_of(t);
+      triangles.push_back(
+          {AlignedBox3f((box.min() - middle).cast<float>(), (box.max() - middle).cast<float>()),
+           static_cast<std::int32_t>(t), part});
     }
   }
   if (triangles.empty()) return {};
-  return TouchSearch(mesh, std::move(triangles), whole.center(), tolerance).run();
+  return TouchSearch(mesh, std::move(triangles), middle, tolerance).run();
 }
 
 std::string describe(const TouchingParts& parts) {

@@ -146,7 +146,7 @@ TEST(MeshFormats, RefuseAUnitThatTheyDoNotKnow) {
   EXPECT_NE(mesh.error().message.find("a unit that its format does not know"), std::string::npos);
 }
 
-TEST(MeshFormats, RefuseMorphWeightsOfDae) {
+TEST(MeshFormats, RefuseMorphControllersOfDae) {
   std::string text = bytes_of(kMeshes / "box.dae");
   const std::size_t scenes = text.find(" <library_visual_scenes>");
   ASSERT_NE(scenes, std::string::npos);
@@ -161,8 +161,18 @@ TEST(MeshFormats, RefuseMorphWeightsOfDae) {
   text.replace(text.find(plain), plain.size(), R"(<instance_controller url="#m"/>)");
   const auto mesh = load_bytes("morph.dae", text);
   ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(mesh.error().message.find("morph targets with weights"), std::string::npos)
+  EXPECT_NE(mesh.error().message.find("it has a morph controller, which is not read of DAE"),
+            std::string::npos)
       << mesh.error().message;
+}
+
+TEST(MeshFormats, RefuseDaeWithoutAMesh) {
+  std::string text = bytes_of(kMeshes / "box.dae");
+  const std::string used = R"(<instance_geometry url="#box"/>)";
+  text.erase(text.find(used), used.size());
+  const std::size_t geometries = text.find(" <library_geometries>");
+  text.erase(geometries, text.find(" <library_visual_scenes>") - geometries);
+  EXPECT_FALSE(load_bytes("bones.dae", text).ok()) << "its bones are no mesh";
 }
 
 TEST(MeshFormats, AnswerGarbageWithASentence) {

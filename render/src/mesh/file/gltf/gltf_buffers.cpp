@@ -4,11 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <system_error>
 #include <utility>
+
+#include "system/regular_file.h"
 
 namespace thimble::render {
 namespace {
@@ -25,6 +24,9 @@ enum AccessorType : std::size_t {
   kUnsignedInt = 5125,
   kFloat = 5126
 };
+
+// Of a file that is named, as of a mesh file itself, bytes.
+constexpr std::uint64_t kFileMax = std::uint64_t{4} << 30;
 
 std::size_t size_of(std::size_t type) {
   if (type == kByte || type == kUnsignedByte) return 1;
@@ -108,14 +110,12 @@ driver::Result<std::string> bytes_of_file(const std::filesystem::path& folder,
   if (relative.empty() || relative.is_absolute() || leaves) {
     return Error{"it names a file outside of its folder, " + shown(name)};
   }
-  std::error_code status;
-  const std::filesystem::path path = folder / relative;
-  if (!std::filesystem::is_regular_file(path, status)) {
-    return Error{"it names " + shown(name) + ", which is not there"};
+  auto bytes = driver::read_file(folder / relative, kFileMax);
+  if (!bytes) {
+    std::string reason = bytes.error().message;
+    if (reason.ends_with('.')) reason.pop_back();
+    return Error{"it names " + shown(name) + ": " + reason};
   }
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) return Error{"it names " + shown(name) + ", which cannot be opened"};
   return bytes;
 }
 
