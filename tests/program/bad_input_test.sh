@@ -110,7 +110,7 @@ expect 2 'tab\.yaml:3:1: a tab cannot indent' "$thimble" run scenes/tab.yaml
 printf 'name: a\nduration:\xc2\xa010\n' >scenes/nbsp.yaml
 expect 2 'nbsp\.yaml:2:10: a no-break space \(U\+00A0\) is no blank in YAML' "$thimble" run scenes/nbsp.yaml
 mkfifo scenes/pipe.yaml
-expect 2 'pipe\.yaml: this is not a file' timeout 20 "$thimble" run scenes/pipe.yaml
+expect 2 'pipe\.yaml: this is not a regular file' timeout 20 "$thimble" run scenes/pipe.yaml
 mkdir -p app/scenes && mkfifo app/scenes/pipe.yaml
 expect 0 '^Arms:' timeout 20 "$thimble" run --list
 rm -r app
