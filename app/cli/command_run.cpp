@@ -226,7 +226,7 @@ ExitCode run_one(RunCourse& course, session::Session& session,
     return code;
   };
   for (const std::string& choice : session.setup().quality_choices()) {
-    session::print(stdout, "{}: {}\n", options.quality, choice);
+    report("{}: {}\n", options.quality, choice);
   }
   tell(session.told());
   for (const std::string& warning : stability_warnings(session.scene())) {

@@ -34,7 +34,7 @@ stopped() {
   wait $pid
 }
 expect 130 '[0-9]+:[0-9]{2} left' /usr/bin/python3 "$source_dir/tests/program/at_terminal.py" wait ' left' keys '\x03' -- \
-  "$thimble" study accuracy --axis encoder --no-count --out terminal
+  "$thimble" study accuracy --no-count --out terminal
 expect 0 '' mkdir stopped
 stopped --no-count
 expect 0 '^130$' echo $?

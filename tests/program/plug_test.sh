@@ -8,7 +8,7 @@ done
 expect 0 'mbed board, HID 1234:0006, 14-byte reports' "$thimble" plug --help
 expect 0 'all mbed boards: 0123456789' "$thimble" plug --help
 expect 0 'bit_errors, unplug, lost' "$thimble" plug --help
-expect 2 'there are: woodenhaptics, polhem, polhem-64, falcon' "$thimble" plug excalibur --port 0
+expect 2 'expected one of woodenhaptics, polhem, polhem-64, falcon' "$thimble" plug excalibur --port 0
 expect 2 'hand' "$thimble" plug polhem --hand fist
 expect 2 '70000' "$thimble" plug polhem --port 70000
 expect 1 'is not an IPv4 address' "$thimble" plug polhem --port 0 --listen nowhere

@@ -37,7 +37,8 @@ expect 0 '' "$thimble" run box --duration 0.01 --seed 18446744073709551615
 expect 2 '^thimble: --seed: expected a whole number of 0 or more, found "18446744073709551616"' "$thimble" run box --seed 18446744073709551616
 expect 2 '^thimble: --speed: expected a number from [0-9.]+ to [0-9.]+, found "nan"\.$' "$thimble" run box --speed nan
 expect 2 '^thimble: --at: expected a number from 0 to 86400, found "0x10"\.$' "$thimble" shot box --at 0x10
-expect 2 '^thimble: --rate: expected a whole number from 100 to 50000, found "5"\.$' "$thimble" bench box --rate 5
+expect 2 '^thimble: --rate: expected a number from 100 to 50000, found "5"\.$' "$thimble" bench box --rate 5
+expect 2 '^thimble: --jobs: expected a whole number from 0 to 1024, found "2000"\.$' "$thimble" study trouble --arm polhem --jobs 2000
 expect 2 '^thimble: --thicken: expected a number above 0, found "-1"\.$' "$thimble" mesh a.off --repair b.off --thicken -1
 expect 2 '^thimble: --direction: expected 3 values, found 2\. See' \
   "$thimble" study stability --arm vintage_phantom --direction 1 2
@@ -59,8 +60,8 @@ expect 2 '^thimble: .*elefant: there is no such file, .*Did you mean elephant\?'
 expect 2 '^thimble: .*vintage_fantom: .*Did you mean vintage_phantom\?' "$thimble" run box --arm vintage_fantom
 expect 2 '^thimble: --axis: velocty is no axis; did you mean velocity\?' "$thimble" study accuracy --axis velocty --out out
 expect 2 '^thimble: No key of scene files is called "stifness".* Did you mean stiffness\?' "$thimble" help scene stifness
-expect 2 '^thimble: --save-object: the scene has no object "bux"\. Did you mean box\?' \
-  "$thimble" run box --duration 0.01 --save-mesh a.off --save-object bux
+expect 2 '^thimble: --save-object: the scene has no object "wegdes"\. Did you mean wedges\?' \
+  "$thimble" run box --duration 0.01 --save-mesh a.off --save-object wegdes
 expect 2 '^thimble: .*polhm.* Did you mean polhem\?' "$thimble" plug polhm
 
 # What one command is asked in vain.
@@ -81,7 +82,7 @@ expect 2 '^thimble: ' "$thimble" run no_such --quiet
 # A scene that asks for too much, and one that cannot be opened.
 sed "s/stiffness: .*/stiffness: 20000/; s#\.\./arms#$source_dir/app/arms#" "$source_dir/app/scenes/box.yaml" >stiff.yaml
 expect 5 '^NOT MET: .*margin' "$thimble" tune stiff.yaml
-expect 0 'margin' "$thimble" tune "$source_dir/app/scenes/honey.yaml"
+expect 0 'rest_oscillation .*: met' "$thimble" tune "$source_dir/app/scenes/honey.yaml"
 printf 'OFF\n0 0 0\n' >empty.off
 cat >broken.yaml <<END
 name: broken

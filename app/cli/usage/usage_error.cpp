@@ -215,15 +215,21 @@ std::string before(const std::string& message, std::string_view text) {
   return end == std::string::npos ? std::string() : message.substr(0, end);
 }
 
-/// Returns whether a text is a finite decimal number, or a whole one.
-bool is_number(std::string_view text, bool whole) {
+/// Returns whether all of a text is a number of a type, in decimal form.
+template <class Number>
+bool is_decimal(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0;
+  Number number{};
   const char* const last = text.data() + text.size();
   const auto [end, status] = std::from_chars(text.data(), last, number);
-  if (status != std::errc() || end != last || !std::isfinite(number)) return false;
-  return !whole || std::all_of(text.begin() + (text.starts_with('-') ? 1 : 0), text.end(),
-                               [](char c) { return c >= '0' && c <= '9'; });
+  return status == std::errc() && end == last && std::isfinite(static_cast<double>(number));
+}
+
+/// Returns whether a text is what an option of a type takes: a finite number, or a whole one that
+/// fits.
+bool is_number_of(std::string_view type, std::string_view text) {
+  if (type == "UINT") return is_decimal<std::uint64_t>(text);
+  return type == "INT" ? is_decimal<std::int64_t>(text) : is_decimal<double>(text);
 }
 
 }  // namespace
@@ -323,13 +329,12 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
 
 void check_numbers(CLI::App& program) {
   for (CLI::Option* option : program.get_options([](CLI::Option*) { return true; })) {
-    const std::string type = option->get_type_name();
-    const bool whole = type.starts_with("INT") || type.starts_with("UINT");
-    if (!whole && !type.starts_with("FLOAT")) continue;
+    const std::string type = split(option->get_type_name(), ":").front();
+    if (type != "INT" && type != "UINT" && type != "FLOAT") continue;
     if (option->get_items_expected_max() == 0) continue;  // a flag that counts
     option->check(CLI::Validator(
-        [option, whole](const std::string& text) {
-          if (is_number(text, whole)) return std::string();
+        [option, type](const std::string& text) {
+          if (is_number_of(type, text)) return std::string();
           const auto words = expectation_of(*option).words;
           return fmt::format("expected {}, found \"{}\"", words, text);
         },
