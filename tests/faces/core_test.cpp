@@ -231,6 +231,7 @@ TEST(FaceCore, LetsNobodyWaitForAnArmWhoseRunHasEnded) {
   EXPECT_GT(after, before) << "it hangs";
   EXPECT_LT(after - before, 400) << "it spins";
   EXPECT_FALSE(arms::is_running(0));
+  EXPECT_TRUE(arms::close(0));
   use_channel(nullptr);
   EXPECT_EQ(arms::count(), 0);
 }

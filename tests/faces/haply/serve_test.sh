@@ -77,7 +77,7 @@ done
 export THIMBLE_HAPLY_PORT
 THIMBLE_HAPLY_PORT=$(grep -oE 'ws://localhost:[0-9]+' served.txt | grep -oE '[0-9]+$')
 expect 0 'two: right' $python "$program" two
-expect 0 '^0001 +Haply Inverse3 +service' "$thimble" devices
+expect 0 '^0001 +stand-in of Thimble +service' "$thimble" devices
 expect 2 "Port $THIMBLE_HAPLY_PORT of this computer cannot be had: .*choose another port \(--port\)" \
   "$thimble" exec --serve haply --port "$THIMBLE_HAPLY_PORT" true
 $python "$program" hold >hold.txt 2>&1 &

@@ -26,7 +26,7 @@ class BlackBoxesTest : public ::testing::Test {
     fs::remove_all(state);
     setenv("XDG_STATE_HOME", state.c_str(), 1);
     faults_ = state / "thimble" / "faults";
-    auto opened = session::Session::open("two_hands", {});
+    auto opened = session::Session::open("two_hands", {.several_arms = true});
     ASSERT_TRUE(opened) << opened.error().message;
     session_ = std::move(opened).value();
     ASSERT_EQ(session_->arms(), 2U);
