@@ -169,6 +169,10 @@ void SimulatedArm::sample_into(BoardBytes& report) noexcept {
 void SimulatedArm::restart_board() noexcept {
   firmware_.restart(plant().q(), gimbal());
   mechanics().set_currents(firmware_.currents());
+  // What is on its way meets a board that does not run.
+  while (!messages_.empty()) messages_.pop();
+  while (!reports_.empty()) reports_.pop();
+  readable_ = 0;
 }
 
 void SimulatedArm::receive(std::span<const std::byte> bytes) noexcept {

@@ -86,7 +86,7 @@ class SimulatedArm {
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B);
 
   /// Restarts the board, as a reset of its microcontroller does while it is plugged in: motors off
-  /// until the next message, and counters from zero where the arm is now.
+  /// until the next message, counters from zero where the arm is now, and what is on its way lost.
   void restart_board() noexcept;
 
   /// Presses the button on the arm, as a hand would.

@@ -205,6 +205,8 @@ void FaultRig::tick(bool law_broken) {
   clock_.sleep_until_ns((clock_.now_ns() / kPeriod_ns + 1) * kPeriod_ns);
   const std::int64_t now_ns = clock_.now_ns() - stepped_back_ns_;
   const driver::DeviceState& state = device_->read(now_ns, now_ns);
+  // No link reads a lost wire, on which the time of the arm would pass.
+  if (device_->lost()) let_frames_pass();
   driver::ForceCommand command = objects_->touch()(state);
   depth_ = command.touch.in_contact ? command.touch.depth : 0;
   if (law_broken) command.f_T_W.y() = std::numeric_limits<double>::quiet_NaN();
@@ -238,6 +240,10 @@ void FaultRig::end() {
 
 void FaultRig::pass_frame() {
   clock_.sleep_until_ns((clock_.now_ns() / kPeriod_ns + 1) * kPeriod_ns);
+  let_frames_pass();
+}
+
+void FaultRig::let_frames_pass() {
   const std::int64_t begin_ns = falcon_ ? falcon_->begin_ns() : 0;
   cable_->advance_to(begin_ns + clock_.now_ns());
 }

@@ -131,6 +131,7 @@ class FaultRig {
 
  private:
   void build_arm();
+  void let_frames_pass();
   support::BusWire::Way way() const;
 
   TestedArm tested_;
