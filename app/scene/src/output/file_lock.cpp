@@ -31,6 +31,10 @@ Locked lock_to_be_read(int descriptor) noexcept {
   return lock(descriptor, LOCK_SH);
 }
 
+void unlock(int descriptor) noexcept {
+  ::flock(descriptor, LOCK_UN);
+}
+
 // Each line of /proc/locks is `N: FLOCK ADVISORY WRITE PID MAJOR:MINOR:INODE 0 EOF`.
 std::string lock_holder(int descriptor) {
   struct stat about {};

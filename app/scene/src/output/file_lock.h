@@ -17,6 +17,10 @@ Locked lock_to_write(int descriptor) noexcept;
 /// Turns that lock into one that lets others read and keeps writers away. HDF5 locks what it reads.
 Locked lock_to_be_read(int descriptor) noexcept;
 
+/// Releases a lock now. Closing the file is not enough: a child that was forked meanwhile has it
+/// open.
+void unlock(int descriptor) noexcept;
+
 /// Describes the process that has a lock, as far as the kernel shows it: "process 12 (thimble
 /// run)".
 std::string lock_holder(int descriptor);

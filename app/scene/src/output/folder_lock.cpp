@@ -17,8 +17,12 @@ struct FolderLock::Held {
   explicit Held(int opened) : descriptor(opened) {}
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
-  ~Held() { ::close(descriptor); }
+  ~Held() {
+    if (locked) unlock(descriptor);
+    ::close(descriptor);
+  }
   int descriptor;
+  bool locked = false;
 };
 
 driver::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
@@ -37,6 +41,7 @@ driver::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder)
     return driver::Error{place.string() + " is being written by " + lock_holder(descriptor) +
                          ": wait until it has ended, or name another folder."};
   }
+  held->locked = true;
   own = held;
   return FolderLock(std::move(held));
 }

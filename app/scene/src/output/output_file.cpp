@@ -63,6 +63,7 @@ driver::Result<void> check_replaceable(const fs::path& path, const OutputPath& p
     const bool taken = lock_to_write(existing) == Locked::kBusy;
     std::optional<driver::Error> error;
     if (taken) error = busy(path, existing);
+    if (!taken) unlock(existing);
     ::close(existing);
     if (error) return *error;
   }
@@ -199,6 +200,7 @@ OutputFile::~OutputFile() {
 void OutputFile::close_now() noexcept {
   if (descriptor_ < 0) return;
   if (!published_ && !stream()) ::unlink(part_.c_str());  // while the lock is held
+  if (!stream()) unlock(descriptor_);
   ::close(std::exchange(descriptor_, -1));
 }
 
@@ -223,6 +225,7 @@ driver::Result<void> OutputFile::publish() {
 driver::Result<void> OutputFile::commit() {
   if (auto done = publish(); !done) return done;
   if (descriptor_ < 0) return {};
+  if (!stream()) unlock(descriptor_);
   // Some file systems report a full disk only now.
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) return failed(name_, errno);
   return {};
