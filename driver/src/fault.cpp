@@ -1,4 +1,5 @@
 #include "thimble/driver/fault.h"
+#include "thimble/driver/tick_record.h"
 
 namespace thimble::driver {
 
@@ -86,6 +87,18 @@ std::string_view name(Fault fault) noexcept {
       return "other_arm";
     case Fault::kCountsJumped:
       return "counts_jumped";
+  }
+  return "unknown";
+}
+
+std::string_view name(LinkState state) noexcept {
+  switch (state) {
+    case LinkState::kConnected:
+      return "connected";
+    case LinkState::kSilent:
+      return "silent";
+    case LinkState::kLost:
+      return "lost";
   }
   return "unknown";
 }

@@ -38,18 +38,6 @@ TickRecord record_of(const DeviceState& state, const ForceCommand& command) noex
   return record;
 }
 
-std::string_view name(LinkState state) noexcept {
-  switch (state) {
-    case LinkState::kConnected:
-      return "connected";
-    case LinkState::kSilent:
-      return "silent";
-    case LinkState::kLost:
-      return "lost";
-  }
-  return "unknown";
-}
-
 std::string_view name(ServoEnd end) noexcept {
   switch (end) {
     case ServoEnd::kDone:

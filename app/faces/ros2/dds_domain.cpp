@@ -29,15 +29,11 @@ std::map<std::uint32_t, OpenDomain>& domains() {
   return all;
 }
 
-// Participants of this computer find each other by multicast over the loopback interface, or at the
-// ports of the first 32 of a domain, as participants of ROS 2 do with the range LOCALHOST.
+// Participants of this computer find each other by multicast over the loopback interface.
 constexpr const char* kHere =
-    "<CycloneDDS><Domain id=\"any\"><General>"
-    "<Interfaces><NetworkInterface address=\"127.0.0.1\" "
-    "multicast=\"true\"/></Interfaces></General>"
-    "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
-    "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
-    "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
+    "<CycloneDDS><Domain id=\"any\"><General><Interfaces>"
+    "<NetworkInterface name=\"lo\" multicast=\"true\"/>"
+    "</Interfaces></General></Domain></CycloneDDS>";
 // The same without any announcement.
 constexpr const char* kHereUnseen =
     "<CycloneDDS><Domain id=\"any\"><General>"
