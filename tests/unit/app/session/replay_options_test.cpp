@@ -56,13 +56,13 @@ class ReplayOptions : public ::testing::Test {
 };
 
 TEST_F(ReplayOptions, DraftRepeats) {
-  const auto recording = recorded("tin_can", {.duration = 2, .quality = "draft"});
+  const auto recording = recorded("water_balloon", {.duration = 1.5, .quality = "draft"});
   EXPECT_NE(recording.info.options.find("quality: draft\n"), std::string::npos);
   expect_repeats(recording);
 }
 
 TEST_F(ReplayOptions, ReferenceRepeats) {
-  expect_repeats(recorded("tin_can", {.duration = 1, .quality = "reference"}));
+  expect_repeats(recorded("water_balloon", {.duration = 1.5, .quality = "reference"}));
 }
 
 TEST_F(ReplayOptions, BudgetRepeats) {
