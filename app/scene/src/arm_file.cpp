@@ -316,7 +316,7 @@ driver::Result<ArmFile> read_arm(YamlFile& yaml) {
   }
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
   if (arm.is<driver::ToldArm>() && root.has("simulation")) {
-    root.reject("simulation", "an arm behind a vendor's service or library cannot be simulated");
+    root.refuse("simulation", "an arm behind a vendor's service or library cannot be simulated");
   }
   if (arm.is<driver::SerialArm>() || root.has("simulation")) {
     arm.simulated = read_simulation(root.require_map("simulation"), arm);

@@ -197,9 +197,11 @@ TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
   EXPECT_TRUE(any_has(warnings, "texture"));
 }
 
-TEST(Trouble, OfALightBodyInTheGripOfAFrictionIsForetold) {
+// It had a limit cycle before tips and bodies were coupled by the whole implicit step; the warning
+// is on the safe side.
+TEST(Trouble, LightBodyInTheGripOfAFrictionRests) {
   std::vector<std::string> warnings;
-  EXPECT_GT(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
+  EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
   EXPECT_TRUE(any_has(warnings, "so light"));
 }
 
