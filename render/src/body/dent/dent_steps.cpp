@@ -161,10 +161,13 @@ void DentMotion::implicit(double share) noexcept {
 // Solves for w by conjugate gradients from v on, and scales it as SpringMotion does. The rounds
 // find the change of velocity, and end where the remainder is a share of what springs and dampers
 // have to change: measured against the momentum itself, a slow dent, whose springs change little of
-// it in a step, would get no force at all.
+// it in a step, would get no force at all. At steps far beyond a spring's period the springs ask
+// for more than the momentum, and the remainder is a share of that: the trapezoid damps nothing
+// there, so errors of a larger scale would grow.
 void DentMotion::solve(const Weights& system) noexcept {
   const std::size_t n = vertices_.size();
   float rz = 0;
+  float momentum = 0;
   for (std::size_t i = 0; i < n; ++i) {
     extraf_[i] = static_cast<float>(extra_[i]);
     inverse_[i] = static_cast<float>(1 / (system.node + system.link * sum_[i] + extra_[i]));
@@ -173,10 +176,11 @@ void DentMotion::solve(const Weights& system) noexcept {
     wf_[i].setZero();
     pf_[i] = inverse_[i] * rf_[i];
     rz += rf_[i].dot(pf_[i]);
+    momentum += inverse_[i] * b_[i].cast<float>().squaredNorm();
   }
   const double still = kStill * largest_ / h_;
-  const auto end = static_cast<float>(
-      std::max(settings_.remainder * settings_.remainder * double{rz}, still * still));
+  const auto end = static_cast<float>(std::max(
+      settings_.remainder * settings_.remainder * double{std::min(rz, momentum)}, still * still));
   for (int round = 0; round < settings_.rounds && rz > end; ++round) {
     float pq = 0;
     for (std::size_t i = 0; i < n; ++i) {
