@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 
 #include "stability/stability_laws.h"
@@ -12,7 +13,9 @@
 #include "support/dense_algebra.h"
 #include "support/hard_case.h"
 #include "support/random.h"
+#include "support/scratch.h"
 #include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_file.h"
 
 // The rule for three dimensions [PHYSICS 9] against simulation on the real kinematics, at poses
 // all over the workspace.
@@ -150,15 +153,17 @@ TEST(WorstDirection, SingularPoseHasNoLimitsToOffer) {
 }
 
 TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
-  scene::Scene scene;
-  scene.arm = shipped("vintage_phantom");
-  scene::SceneObject wall;
-  wall.name = "wall";
-  wall.stiffness = 800;
-  wall.damping = 1;
-  scene.objects.push_back(wall);
+  const auto file = support::scratch_folder() / "wall.yaml";
+  std::ofstream(file)
+      << "name: wall\narm: " << THIMBLE_SOURCE_DIR
+      << "/app/arms/vintage_phantom.yaml\nduration: 1\nobjects:\n"
+         "  - {name: wall, plane: {normal: [0, 0, 1]}, stiffness: 800, damping: 1}\n"
+         "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n";
+  auto loaded = scene::load_scene(file);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  scene::Scene& scene = *loaded;
   const auto tuned = tune(scene, {.places_per_side = 2});
-  ASSERT_TRUE(tuned.ok());
+  ASSERT_TRUE(tuned) << tuned.error().message;
   const TuneResult& result = *tuned;
   std::printf("%s", result.text.c_str());
   for (const Figure& figure : result.figures) {
