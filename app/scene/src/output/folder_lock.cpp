@@ -6,7 +6,7 @@
 
 #include <map>
 #include <mutex>
-#include <utility>
+#include <tuple>
 
 #include "output/file_lock.h"
 
@@ -27,7 +27,8 @@ struct FolderLock::Held {
 
 driver::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
   static std::mutex mutex;
-  static std::map<std::pair<dev_t, ino_t>, std::weak_ptr<Held>> all;  // of this process
+  // Of this process; a child that was forked has its parent's, which are not its own.
+  static std::map<std::tuple<pid_t, dev_t, ino_t>, std::weak_ptr<Held>> all;
   const std::filesystem::path place = folder.empty() ? "." : folder;
   const int descriptor = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return FolderLock(nullptr);
@@ -35,7 +36,7 @@ driver::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder)
   struct stat about {};
   if (::fstat(descriptor, &about) != 0) return FolderLock(std::move(held));
   const std::lock_guard guard(mutex);
-  std::weak_ptr<Held>& own = all[{about.st_dev, about.st_ino}];
+  std::weak_ptr<Held>& own = all[{::getpid(), about.st_dev, about.st_ino}];
   if (auto before = own.lock()) return FolderLock(std::move(before));
   if (lock_to_write(descriptor) == Locked::kBusy) {
     return driver::Error{place.string() + " is being written by " + lock_holder(descriptor) +

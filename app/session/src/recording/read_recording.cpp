@@ -101,9 +101,9 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   if (!file) return wrong(file.error().message);
   const std::uint64_t stored = file->stored();
   constexpr std::uint64_t kBytesPerSecond = 10'000'000;
-  const driver::ApartLimits limits{
-      .seconds = 10 + static_cast<int>(std::min<std::uint64_t>(stored / kBytesPerSecond, 1'000'000)),
-      .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
+  const driver::ApartLimits limits{.seconds = 10 + static_cast<int>(std::min<std::uint64_t>(
+                                                       stored / kBytesPerSecond, 1'000'000)),
+                                   .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
   const std::lock_guard library(hdf5_mutex());
   const auto read = driver::run_apart(
       [&](driver::ApartWriter& out) { read_h5(file->descriptor(), file->size(), stored, out); },

