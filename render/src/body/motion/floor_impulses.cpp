@@ -30,7 +30,7 @@ constexpr int kSearchMax = 12;
 constexpr double kSlopeLeft = 0.5;
 
 // Of the body's velocity: rounding of the velocity of a point.
-constexpr double kRounding = 1e-15;
+constexpr double kPointRounding = 1e-15;
 
 }  // namespace
 
@@ -229,8 +229,8 @@ bool FloorImpulses::solve(Vector3d& v_B, Vector3d& omega_B) noexcept {
   if (!(approach > 0) || !std::isfinite(start.squaredNorm())) return true;
   softness_ = kSoftness * gain;
   // Rounding of the points' velocities bounds what can be asked for.
-  const double small =
-      std::max(0.1 * kTolerance * speed / std::sqrt(gain), kRounding / kSoftness * start.norm());
+  const double small = std::max(0.1 * kTolerance * speed / std::sqrt(gain),
+                                kPointRounding / kSoftness * start.norm());
   Velocity y = start;
   const bool reached = iterate(start, small, kTolerance * speed, y);
   y = without_gain(start, y);
