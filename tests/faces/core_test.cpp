@@ -11,6 +11,7 @@
 #include "byte_lock.h"
 #include "faces/exec_rig.h"
 #include "faces/server/hand_path.h"
+#include "support/scratch.h"
 
 namespace thimble::faces {
 namespace {
@@ -129,7 +130,7 @@ TEST(FaceCore, PacesALoopByItsTicks) {
 }
 
 TEST(FaceCore, HasTwoArmsAtOnceThatKnowNothingOfEachOther) {
-  ExecOptions options;
+  ExecOptions options = in_step();
   options.arms = {{.arm_file = "vintage_phantom"}, {.arm_file = "polhem"}};
   ExecRig rig(options);
   ASSERT_EQ(arms::count(), 2);
@@ -171,7 +172,7 @@ TEST(FaceCore, OpensAnArmAgainWithoutTheForceOfBefore) {
 }
 
 TEST(FaceCore, ReadsAHandsPathAndSaysWhichLineIsWrong) {
-  const std::string file = ::testing::TempDir() + "hand_path.txt";
+  const std::string file = support::scratch_folder() / "hand_path.txt";
   const auto read = [&](const char* text) {
     std::ofstream(file) << text;
     return read_hand_path(file);

@@ -15,6 +15,7 @@
 #include "faces/core/arm_access.h"
 #include "faces/core/open_channel.h"
 #include "faces/server/arm_server.h"
+#include "support/scratch.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/session/session.h"
@@ -58,7 +59,7 @@ class ExecRig {
  public:
   explicit ExecRig(ExecOptions options = {}) {
     // What is kept of faults goes nowhere else.
-    setenv("XDG_STATE_HOME", ::testing::TempDir().c_str(), 1);
+    setenv("XDG_STATE_HOME", support::scratch_folder().c_str(), 1);
     options.program = "test";
     options.opened = [this](std::size_t arm, session::Session& session) {
       if (arm != 0) return;

@@ -121,8 +121,9 @@ int main(int argc, char** argv) {
     health.each([](DiagnosticArray_& m) {
       const bool one = m.status().size() == 1;
       if (!one || m.status()[0].name() != "thimble: vintage_phantom" ||
-          m.status()[0].level() != 0 || m.status()[0].values().size() != 3 ||
-          m.status()[0].values()[0].value() != "none")
+          m.status()[0].level() != 0 || m.status()[0].values().size() != 4 ||
+          m.status()[0].values()[0].value() != "none" ||
+          m.status()[0].values()[3].key() != "link" || m.status()[0].values()[3].value() != "connected")
         ++bad;
     });
     robot.each([](String_& m) {

@@ -9,6 +9,7 @@
 
 #include "bag/read_bag.h"
 #include "support/bag_maker.h"
+#include "support/scratch.h"
 
 namespace thimble::bag {
 namespace {
@@ -37,7 +38,7 @@ bool read_damaged(const fs::path& file, const std::vector<char>& bytes) {
 }
 
 TEST(BagDamage, NoByteOfABagMakesItDoWorseThanASentence) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "thimble_bag_damage";
+  const fs::path folder = support::scratch_folder() / "thimble_bag_damage";
   fs::create_directories(folder);
   const fs::path file = folder / "small.db3";
   {

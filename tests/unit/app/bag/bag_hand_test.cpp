@@ -6,6 +6,7 @@
 
 #include "bag/write_bag.h"
 #include "hand/bag_hand.h"
+#include "support/scratch.h"
 
 namespace thimble::scene {
 namespace {
@@ -18,7 +19,7 @@ Eigen::Vector3d sway(double time) {
 }
 
 TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
-  const fs::path bag = fs::path(::testing::TempDir()) / "thimble_bag_hand";
+  const fs::path bag = support::scratch_folder() / "thimble_bag_hand";
   fs::remove_all(bag);
   bag::BagTrack poses;
   poses.name = "/pose";
@@ -47,7 +48,7 @@ TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
 }
 
 TEST(BagHand, RefusesPositionsThatAreNoMetres) {
-  const fs::path bag = fs::path(::testing::TempDir()) / "thimble_bag_hand_far";
+  const fs::path bag = support::scratch_folder() / "thimble_bag_hand_far";
   fs::remove_all(bag);
   bag::BagTrack poses;
   poses.name = "/pose";

@@ -19,6 +19,7 @@
 #include "bag/read_bag.h"
 #include "bag/write_bag.h"
 #include "support/bag_maker.h"
+#include "support/scratch.h"
 
 namespace thimble::bag {
 namespace {
@@ -31,7 +32,7 @@ constexpr const char* kWrench = "geometry_msgs/msg/WrenchStamped";
 class Bag : public ::testing::Test {
  protected:
   Bag() {
-    folder_ = fs::path(::testing::TempDir()) /
+    folder_ = support::scratch_folder() /
               (std::string("thimble_bag_") +
                ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);

@@ -22,7 +22,7 @@ class BlackBoxesTest : public ::testing::Test {
  protected:
   void SetUp() override {
     fs::current_path(THIMBLE_SOURCE_DIR);
-    const fs::path state = fs::path(::testing::TempDir()) / "black_boxes";
+    const fs::path state = support::scratch_folder() / "black_boxes";
     fs::remove_all(state);
     setenv("XDG_STATE_HOME", state.c_str(), 1);
     faults_ = state / "thimble" / "faults";
