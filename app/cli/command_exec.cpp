@@ -203,7 +203,7 @@ void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
 int run_program(const Asked& asked, const std::vector<std::string>& command) {
   const bool serves = !asked.serve.empty();
   if (command.empty() && !serves) {
-    return complain({"Which program? thimble exec [OPTIONS] PROGRAM ARGUMENTS..."}, kExitBadInput);
+    return complain({"Which program? thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."}, kExitBadInput);
   }
   output::OutputPlan plan;
   for (const fs::path& file : scene::scene_inputs(asked.options.scene)) plan.read(file);

@@ -23,6 +23,10 @@ expect 2 '^thimble: -duration is no option of `thimble run`\. Did you mean --dur
 expect 2 '^thimble: --duration is an option of .*`thimble run`.*, not of `thimble`; write it behind the command' "$thimble" --duration 3
 expect 2 '^thimble: --verbos is no option of `thimble run`\. Did you mean --verbose\?' "$thimble" run box --verbos
 expect 2 '^thimble: --wxyz is no option of `thimble run`\. See `thimble run --help`\.$' "$thimble" run box --wxyz
+expect 0 '^hello$' "$thimble" exec -- echo hello
+expect 0 '^hello -- you$' "$thimble" exec --arm polhem -- echo hello -- you
+expect 2 '^thimble: --csv: .*standard output' "$thimble" export a.h5 --csv -
+expect 2 'name is empty' "$thimble" run ''
 expect 2 '^thimble: --recrod is no option of `thimble exec`\. Did you mean --record\?' "$thimble" exec --recrod a.h5 true
 # A wrong letter is like every other letter; the beginning of a name is not.
 expect 2 '^thimble: -z is no option of `thimble run`\. See' "$thimble" run box -z

@@ -254,6 +254,24 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return near ? " Did you mean " + *near + "?" : "";
 }
 
+std::vector<std::string> without_separator(const CLI::App& program,
+                                           std::vector<std::string> words) {
+  const auto commands = program.get_subcommands([&words](const CLI::App* command) {
+    return !words.empty() && command->get_name() == words.front() && command->get_prefix_command();
+  });
+  if (commands.empty()) return words;
+  const CLI::App* const command = commands.front();
+  for (std::size_t i = 1; i < words.size() && words[i].starts_with('-'); ++i) {
+    if (words[i] == "--") {
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+    const CLI::Option* const option = command->get_option_no_throw(words[i]);
+    if (option != nullptr && option->get_items_expected_min() > 0) ++i;  // its value
+  }
+  return words;
+}
+
 std::string unknown_word(const CLI::App& command, const std::string& word) {
   const std::string call = call_of(command);
   if (word.starts_with('-') && word.size() > 1) {
