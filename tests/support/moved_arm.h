@@ -25,9 +25,11 @@ class MovedArm final : public driver::ArmLink {
   driver::LinkRead read(driver::ArmSample& sample, std::int64_t) noexcept override {
     sample.pose.p_BT = moved_.p_BT;
     sample.buttons = moved_.buttons;
-    // A count for each micrometre.
+    // A count for each micrometre, and the tremor of a hand.
+    tremor_ = 1 - tremor_;
     for (std::size_t i = 0; i < 3; ++i) {
-      sample.counts[i] = static_cast<std::int32_t>(1e6 * moved_.p_BT[static_cast<Eigen::Index>(i)]);
+      sample.counts[i] =
+          static_cast<std::int32_t>(1e6 * moved_.p_BT[static_cast<Eigen::Index>(i)]) + tremor_;
     }
     sample.pose.J_BT = Eigen::Matrix3d::Identity();
     return {driver::LinkStatus::kOk};
@@ -42,6 +44,7 @@ class MovedArm final : public driver::ArmLink {
  private:
   Moved& moved_;
   driver::ArmTraits traits_{};
+  std::int32_t tremor_ = 0;
 };
 
 /// Returns settings of an arm of 5 N and 3 m/s at the world's origin.

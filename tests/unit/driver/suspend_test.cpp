@@ -84,7 +84,8 @@ class SuspendTest : public ::testing::Test {
 };
 
 TEST_F(SuspendTest, NoForceAfterWaking) {
-  for (const std::int64_t lasts_ns : {2'000'000'000, 3'600'000'000'000}) {
+  for (const std::int64_t lasts_ns :
+       {std::int64_t{2'000'000'000}, std::int64_t{3'600'000'000'000}}) {
     sleep_ = Sleep();
     press(lasts_ns);
     ASSERT_GT(sleep_.ticks[sleep_.after - 1].f_sent_W[0], 3.3);
