@@ -43,7 +43,7 @@ class MovedArm final : public driver::ArmLink {
 
  private:
   Moved& moved_;
-  driver::ArmTraits traits_{};
+  driver::ArmTraits traits_{.has_counts = true};
   std::int32_t tremor_ = 0;
 };
 
