@@ -26,7 +26,7 @@ class MovedArm final : public driver::ArmLink {
     sample.pose.p_BT = moved_.p_BT;
     sample.buttons = moved_.buttons;
     // A count for each micrometre, and the tremor of a hand.
-    tremor_ = 1 - tremor_;
+    tremor_ = (tremor_ + 1) % 7;
     for (std::size_t i = 0; i < 3; ++i) {
       sample.counts[i] =
           static_cast<std::int32_t>(1e6 * moved_.p_BT[static_cast<Eigen::Index>(i)]) + tremor_;

@@ -3,8 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
+#include <string_view>
 
 #include "setup.h"
 #include "thimble/session/session.h"
@@ -78,10 +78,10 @@ void HoldKey::watch() {
       closed_.store(true);
       continue;
     }
-    const char* const end = text + count;
-    if (std::find(text, end, '\n') != end) enter_.store(true);
+    const std::string_view keys(text, static_cast<std::size_t>(count));
+    if (keys.find('\n') != std::string_view::npos) enter_.store(true);
     // Whatever comes at once is one press: pasted text holds nothing.
-    if (std::find(text, end, ' ') == end) continue;
+    if (keys.find(' ') == std::string_view::npos) continue;
     const std::int64_t now_ns = clock.now_ns();
     key.press(now_ns);
     if (key.until_ns() <= now_ns) continue;

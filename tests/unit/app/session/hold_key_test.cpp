@@ -25,7 +25,9 @@ TEST(HeldKey, RepeatedKeyIsHeld) {
     key.press(now);
     now += 500 * kMs;
     for (int i = 0; i < 20; ++i, now += every * kMs) {
-      if (i >= 3) EXPECT_GT(key.until_ns(), now) << every;
+      if (i >= 3) {
+        EXPECT_GT(key.until_ns(), now) << every;
+      }
       key.press(now);
     }
   }
