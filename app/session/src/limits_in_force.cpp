@@ -37,10 +37,7 @@ std::string limits_in_force(const Setup& setup, std::size_t arm) {
       scene::kEnergyStageNames[static_cast<std::size_t>(settings.energy.stage)],
       settings.motion.hold_most, walls.stiffness, 1e3 * walls.min_W.x(), 1e3 * walls.min_W.y(),
       1e3 * walls.min_W.z(), 1e3 * walls.max_W.x(), 1e3 * walls.max_W.y(), 1e3 * walls.max_W.z(),
-      1e3 * walls.beyond, hold_in_words(settings.hold),
-      setup.feel_check(arm) == scene::FeelCheckState::kSimulated ? "not needed, simulated"
-      : setup.feel_check(arm) == scene::FeelCheckState::kPassed  ? "passed"
-                                                                 : "not passed");
+      1e3 * walls.beyond, hold_in_words(settings.hold), name(setup.feel_check(arm)));
 }
 
 }  // namespace thimble::session
