@@ -17,7 +17,10 @@ std::string progress_line(const driver::TickRecord& record, double total) {
   return fmt::format("{:6.1f} {}s   {:<8}  force {:5.2f} N   depth {:5.2f} mm ",
                      static_cast<double>(record.time_ns) * 1e-9,
                      total > 0 ? fmt::format("of {:.1f} ", total) : "",
-                     record.in_contact ? "touching" : "free", force, record.depth * 1e3);
+                     record.stage == driver::DeviceStage::kWaiting ? "not held"
+                     : record.in_contact                           ? "touching"
+                                                                   : "free",
+                     force, record.depth * 1e3);
 }
 
 std::string HeatWarning::look(const driver::TickRecord& record) {
