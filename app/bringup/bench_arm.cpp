@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "log/logger.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 
@@ -12,6 +13,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 constexpr std::int64_t kWait_ns = 5'000'000;  // for a report, before zero is said again
 constexpr std::int64_t kLook_ns = 20'000;
+constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
 
 }  // namespace
 
@@ -22,6 +24,8 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
   std::unique_ptr<BenchArm> bench(new BenchArm);
   std::unique_ptr<driver::ArmLink> link;
   if (real_arm) {
+    bench->awake_ = std::make_unique<scene::SleepLock>();
+    if (!bench->awake_->held()) scene::logger().warn("{}", bench->awake_->note());
     bench->clock_ = std::make_unique<driver::WallClock>();
     auto opened = scene::open_link(*real_arm, file, firmware, *bench->clock_);
     if (!opened) return opened.error();
@@ -53,10 +57,14 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
   const bool active = device_->stage() == driver::DeviceStage::kActive;
   std::int64_t due_ns = clock_->now_ns();
   const std::int64_t end_ns = due_ns + std::llround(duration * 1e9);
+  const std::int64_t asleep_ns = clock_->asleep_ns();
   for (; due_ns < end_ns; due_ns += kPeriod_ns) {
     if (stop.load(std::memory_order_relaxed)) return false;
     clock_->sleep_until_ns(due_ns);
     const std::int64_t now_ns = clock_->now_ns();
+    if (now_ns - due_ns >= kSleptThrough_ns && clock_->asleep_ns() - asleep_ns >= kPeriod_ns) {
+      device_->wake_from_sleep();
+    }
     const Eigen::Vector3d f_T_W = law(device_->read(now_ns, now_ns));
     if (!silent) device_->write({.f_T_W = f_T_W, .touch = {}});
     if (!silent && sink_) tell(due_ns, now_ns, f_T_W);

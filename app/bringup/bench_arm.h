@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "heat_keeper.h"
+#include "sleep_lock.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -68,6 +69,7 @@ class BenchArm {
  private:
   void tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W);
 
+  std::unique_ptr<scene::SleepLock> awake_;  // of a real arm
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<scene::ArmSimulation> simulation_;
   double true_force_max_ = 0;

@@ -38,6 +38,7 @@ enum class EventKind : std::uint8_t {
   kActivityEnded,  ///< `activity` has been quiet; it occurred `count` times in `lasted_ns`.
   kTouchBegan,     ///< The tip touches `object`.
   kTouchEnded,     ///< The tip touches nothing any more.
+  kWaiting,        ///< Zero force until the enabling input is held.
   kLinkChanged,    ///< The link came into the state `link`, which is not what `fault` says.
 };
 
