@@ -20,6 +20,7 @@ class CarriedLinks {
   driver::ForceCommand operator()(const driver::DeviceState& state) const noexcept {
     driver::ForceCommand command = law_(state);
     command.f_T_W += links_.carried(state.q);
+    command.stored += links_.potential(state.q);
     return command;
   }
 

@@ -21,6 +21,7 @@ class CarriedWeight {
   driver::ForceCommand operator()(const driver::DeviceState& state) const noexcept {
     driver::ForceCommand command = law_(state);
     command.f_T_W += f_carried_W_;
+    command.stored -= f_carried_W_.dot(state.p_WT);
     return command;
   }
 

@@ -199,6 +199,8 @@ class Device {
   bool zero_taken() const noexcept { return known_to_stand_ && f_sent_W_.isZero(0); }
   void lose() noexcept;
   void watch() noexcept;
+  void book_power() noexcept;
+  GatedForce pass_program(const ForceCommand& command) noexcept;
   GatedForce pass_guarded(const ForceCommand& command) noexcept;
   void book(const LinkWrite& sent, const GatedForce& force) noexcept;
   const ArmSample& sample() const noexcept { return samples_[newest_]; }
@@ -213,6 +215,13 @@ class Device {
   MotionWatch motion_;
   HeatGuard heat_;
   std::unique_ptr<WorkAccount> work_;  // for the energy stage
+  // Of the tip when the power was booked last, and whether that is known.
+  Eigen::Vector3d p_power_WT_{0, 0, 0};
+  bool placed_ = false;
+  // Since forces are let through: a program asked for one; that, or storages were named.
+  bool programs_ = false;
+  bool explained_ = false;
+
   std::unique_ptr<VelocityEstimator> velocity_;
   WireCounters wire_;
   // One holds what is believed, the other takes the next report.
