@@ -35,6 +35,12 @@ double SafetyGate::program_share(const Eigen::Vector3d& f_program_W, const Eigen
   return share;
 }
 
+void SafetyGate::close() noexcept {
+  since_start_ = 0;
+  opening_ = limits_.soft_start;
+  f_last_W_.setZero();
+}
+
 void SafetyGate::resume_from(const Eigen::Vector3d& f_W) noexcept {
   f_last_W_ = f_W.squaredNorm() < HUGE_VAL ? f_W : Eigen::Vector3d(0, 0, 0);
 }

@@ -21,6 +21,7 @@ EventLog::EventLog(LoggedRun run, const driver::Device& device)
       counters_(device),
       watch_(counters_, run_.period_ns, ring_) {
   log_->info("The arm is open: {}.", run_.what);
+  if (!run_.limits.empty()) log_->info("{}", run_.limits);
   if (!run_.real_time) return;
   writer_ = std::thread([this] {
     while (!stop_.load()) {

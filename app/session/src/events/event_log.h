@@ -24,6 +24,7 @@ namespace thimble::session {
 struct LoggedRun {
   std::string name = {};                  ///< Stands in every line.
   std::string what = {};                  ///< What is run with which arm, for the first line.
+  std::string limits = {};                ///< That are in force, in a sentence; may be empty.
   std::vector<std::string> objects = {};  ///< By the numbers of TickRecord::object.
   std::int64_t period_ns = 1'000'000;
   /// Of the loop's clock at the moment of making it; events in real time stand in the log with the

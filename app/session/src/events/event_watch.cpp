@@ -89,6 +89,9 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
   if (record.stage != stage_ && record.stage == DeviceStage::kActive) {
     push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kActivated});
   }
+  if (record.stage != stage_ && record.stage == DeviceStage::kWaiting) {
+    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kWaiting});
+  }
   if (record.stage != stage_ && record.stage == DeviceStage::kIdle) {
     push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kDeactivated});
   }

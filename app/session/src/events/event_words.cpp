@@ -83,6 +83,8 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
       return "Forces are let through.";
     case EventKind::kDeactivated:
       return "Forces are off.";
+    case EventKind::kWaiting:
+      return "The enabling input is not held: no force.";
     case EventKind::kFault:
       return fmt::format("Force is off ({}). {}", name(event.fault), describe(event.fault));
     case EventKind::kWireTaken:
@@ -124,6 +126,7 @@ level_enum level_of(const TickEvent& event) noexcept {
   switch (event.kind) {
     case EventKind::kActivated:
     case EventKind::kDeactivated:
+    case EventKind::kWaiting:
     case EventKind::kWireTaken:
       return spdlog::level::info;
     case EventKind::kLinkChanged:

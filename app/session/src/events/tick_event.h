@@ -48,6 +48,7 @@ enum class EventKind : std::uint8_t {
   /// The stage `activity` has changed the force by more than a tenth for 0.2 s, now by `count`
   /// percent of what was wanted; once in a run for each stage.
   kForceChanged,
+  kWaiting,      ///< Zero force until the enabling input is held.
   kLinkChanged,  ///< The link came into the state `link`, which is not what `fault` says.
 };
 

@@ -27,7 +27,7 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, fresh)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, has_gripper)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, stage)) <=
-             static_cast<unsigned>(driver::DeviceStage::kFault) &&
+             static_cast<unsigned>(driver::kLastStage) &&
          byte_at(offsetof(driver::TickRecord, fault)) <=
              static_cast<unsigned>(driver::kLastFault) &&
          byte_at(offsetof(driver::TickRecord, link)) <=

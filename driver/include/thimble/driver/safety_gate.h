@@ -41,6 +41,11 @@ struct GateLimits {
   /// Longest gap that is no fault, ns [chosen: twice the longest watchdog of a board, 0.5 s of the
   /// mbed one (woody_report.h)].
   static constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
+  /// Largest force, N [chosen: twenty times what a desk-top arm pushes; a slipped decimal point is
+  /// caught].
+  static constexpr double kForceMost = 100;
+  /// Largest speed, m/s [chosen: twice what a hand reaches in a throw M].
+  static constexpr double kSpeedMost = 20;
 
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force goes off and stays off, m/s.
@@ -108,6 +113,9 @@ class SafetyGate {
   /// allows.
   GatedForce pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt,
                           const EnergyFlow& flow) noexcept;
+
+  /// Begins the soft start again, from no force, and keeps a fault.
+  void close() noexcept;
 
   /// Lets a tick pass, in which the force that was sent did `work` (J) on the hand in `dt` (s): for
   /// the mean power. Before `pass` or `pass_guarded`.
