@@ -136,6 +136,7 @@ void Device::begin_activity() noexcept {
   forget_velocity();
   refused_in_a_row_ = 0;
   work_->restart();
+  placed_ = programs_ = explained_ = false;
   active_ = true;
   insisted_ = false;
   // The next tick begins with dt = 0 as the first one does, but no number comes twice.
@@ -403,17 +404,22 @@ void Device::stop_at_walls(const ForceCommand& command) noexcept {
   if (!(walls_.depth(state_.p_WT).norm() <= walls_.settings().beyond)) {
     gate_.trip(Fault::kOutsideWorkspace);
   }
-  pass_on(walls_.stop(command, state_.p_WT, v_gate_W()), walls_.held(state_.p_WT));
+  ForceCommand stopped = walls_.stop(command, state_.p_WT, v_gate_W());
+  stopped.f_program_W.setZero();  // what is left of it is not known, and is the gate's to fade
+  pass_on(stopped, walls_.held(state_.p_WT));
 }
 
 /// Passes a command through the gate; `held`: energy that the walls hold, J.
 void Device::pass_on(const ForceCommand& command, double held) noexcept {
   const bool guarded = guarded_;
   watch();
-  const GatedForce force =
-      guarded ? pass_guarded(command, held) : gate_.pass(command.f_T_W, v_gate_W(), state_.dt);
+  if (!guarded && settings_.limits.power_max > 0) book_power();
+  programs_ = programs_ || !command.f_program_W.isZero(0);
+  const GatedForce force = programs_ ? pass_program(command, held)
+                           : guarded ? pass_guarded(command, held)
+                                     : gate_.pass(command.f_T_W, v_gate_W(), state_.dt);
   const LinkWrite sent = send(force);
-  if (guarded) book(sent, force);
+  if (guarded || programs_) book(sent, force);
   if (sent.status != LinkStatus::kOk) {
     // The arm may hold it all the same.
     if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
@@ -421,6 +427,24 @@ void Device::pass_on(const ForceCommand& command, double held) noexcept {
   }
   f_sent_W_ = sent.scale * force.f_T_W();
   known_to_stand_ = true;
+}
+
+/// Books the power where no stage keeps an account of work.
+void Device::book_power() noexcept {
+  if (placed_) gate_.book_power(f_sent_W_.dot(state_.p_WT - p_power_WT_), state_.dt);
+  p_power_WT_ = state_.p_WT;
+  placed_ = true;
+}
+
+/// Passes a force of which a program asked for a part, less what an oscillation of it costs.
+GatedForce Device::pass_program(const ForceCommand& command, double held) noexcept {
+  const double share = gate_.program_share(command.f_program_W, state_.p_WT, state_.dt);
+  ForceCommand kept = command;
+  if (share < 1) {
+    kept.f_program_W *= share;
+    kept.f_T_W -= command.f_program_W - kept.f_program_W;
+  }
+  return pass_guarded(kept, held);
 }
 
 void Device::forget_velocity() noexcept {
@@ -457,14 +481,20 @@ GatedForce Device::pass_guarded(const ForceCommand& command, double held) noexce
   const ArmPose& pose = sample().pose;
   // Of a linear spring; what the gate cuts off a force holds no more than this.
   held += 0.5 * command.f_T_W.norm() * command.touch.depth;
-  const EnergyFlow flow =
-      work_->flow(traits_.motors ? pose.q : pose.p_BT, state_.p_WT, f_sent_W_, held);
+  EnergyFlow flow = work_->flow(traits_.motors ? pose.q : pose.p_BT, state_.p_WT, f_sent_W_, held);
+  gate_.book_power(flow.work, state_.dt);
+  explained_ = explained_ || programs_ || command.stored != 0;
+  if (explained_) {
+    work_->explain(flow, command.stored, command.f_program_W, settings_.energy.dissipation,
+                   state_.dt);
+  }
   if (heat_.named()) link_->limit_currents(heat_.drives());
   return gate_.pass_guarded(command.f_T_W, v_gate_W(), state_.dt, flow);
 }
 
 void Device::book(const LinkWrite& sent, const GatedForce& force) noexcept {
   if (sent.status != LinkStatus::kOk) return work_->hold();
+  if (programs_) work_->program_sent(sent.scale * gate_.f_program_W());
   if (!traits_.motors) {
     return work_->sent(settings_.R_WB.transpose() * (sent.scale * force.f_T_W()));
   }

@@ -69,6 +69,10 @@ Result<void> DeviceSettings::check() const {
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
   if (limits.watchdog_ns > GateLimits::kWatchdogMost_ns)
     return loose("watchdog time", "at most 1 s");
+  if (!(limits.power_max >= 0 && limits.power_max < HUGE_VAL)) {
+    return wrong("power_max", "of zero or more");
+  }
+  if (limits.power_max > 0 && !is_limit(limits.power_time)) return wrong("power_time");
   if (silence_limit_ns <= 0) return wrong("silence limit");
   if (!(velocity_corner_frequency >= 0 && velocity_corner_frequency < HUGE_VAL)) {
     return wrong("velocity_corner_frequency", "of zero or more");
@@ -94,6 +98,9 @@ Result<void> DeviceSettings::check() const {
     if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
     if (!is_limit(energy.reservoir)) return wrong("energy reservoir");
     if (!(energy.allowance >= 0)) return wrong("energy allowance", "of zero or more");
+    if (!(energy.dissipation >= 0 && energy.dissipation < HUGE_VAL)) {
+      return wrong("sure damping", "of zero or more");
+    }
     if (!(energy.speed_floor >= 0 && energy.speed_floor < HUGE_VAL)) {
       return wrong("speed floor", "of zero or more");
     }

@@ -32,9 +32,14 @@ class CarriedForce {
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand command = law_(state);
     Eigen::Vector3d f_W = f_weight_W_;
-    if (links_.most > 0) f_W += links_.carried(state.q);
+    double energy = -f_weight_W_.dot(state.p_WT);  // J, of what is carried: its height
+    if (links_.most > 0) {
+      f_W += links_.carried(state.q);
+      energy += links_.potential(state.q);
+    }
     const double share = trust_.share(state, f_W, !command.f_T_W.isZero(0));
     command.f_T_W += share * f_W;
+    command.stored += share * energy;
     return command;
   }
 

@@ -74,6 +74,12 @@ void EventLog::write(const TickEvent& event) {
   const auto level = level_of(event);
   if (!log_->should_log(level)) return;
   const std::string words = words_of(event, run_.objects);
+  if (is_notice(event)) {
+    bool& given = given_[event.kind == EventKind::kForceChanged ? 1 : 0]
+                        [static_cast<std::size_t>(event.activity)];
+    if (!given) scene::logger().warn("{}: {}", run_.name, words);
+    given = true;
+  }
   if (!run_.real_time) return log_->log(level, words);
   using std::chrono::system_clock;
   const auto when = clock_began_ + std::chrono::nanoseconds(event.time_ns);

@@ -2,6 +2,7 @@
 
 #include <spdlog/logger.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -65,6 +66,8 @@ class EventLog final : public TickObserver {
   SpscRing<TickEvent> ring_{kRingEvents};
   EventWatch watch_;
   std::uint64_t lost_told_ = 0;
+  // Notices that the user got on the console: that a stage acts, and that it changes the force.
+  std::array<std::array<bool, kActivities>, 2> given_{};
   std::atomic<bool> stop_{false};
   std::thread writer_;
 };

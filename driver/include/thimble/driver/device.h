@@ -229,6 +229,8 @@ class Device {
   const Eigen::Vector3d& v_gate_W() const noexcept {
     return own_velocity_ != nullptr ? v_own_W_ : state_.v_WT;
   }
+  void book_power() noexcept;
+  GatedForce pass_program(const ForceCommand& command, double held) noexcept;
   GatedForce pass_guarded(const ForceCommand& command, double held) noexcept;
   void book(const LinkWrite& sent, const GatedForce& force) noexcept;
   const ArmSample& sample() const noexcept { return samples_[newest_]; }
@@ -243,6 +245,13 @@ class Device {
   MotionWatch motion_;
   HeatGuard heat_;
   std::unique_ptr<WorkAccount> work_;  // for the energy stage
+  // Of the tip when the power was booked last, and whether that is known.
+  Eigen::Vector3d p_power_WT_{0, 0, 0};
+  bool placed_ = false;
+  // Since forces are let through: a program asked for one; that, or storages were named.
+  bool programs_ = false;
+  bool explained_ = false;
+
   std::unique_ptr<VelocityEstimator> velocity_;
   std::unique_ptr<VelocityEstimator>
       own_velocity_;                  // where the other is slower than the gate may be
