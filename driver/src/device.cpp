@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "gate/enabling_input.h"
+#include "gate/workspace_walls.h"
 #include "thimble/driver/wire_arm.h"
 #include "velocity_estimator.h"
 #include "work_account.h"
@@ -62,8 +64,8 @@ Device::Device(std::unique_ptr<ArmLink> link, const DeviceSettings& settings) no
       work_(std::make_unique<WorkAccount>(settings.energy.delay_ticks)),
       velocity_(std::make_unique<VelocityEstimator>(settings.velocity_corner_frequency)),
       own_velocity_(own_estimate(settings.velocity_corner_frequency)),
-      walls_(settings.walls),
-      enabling_(settings.hold),
+      walls_(std::make_unique<WorkspaceWalls>(settings.walls)),
+      enabling_(settings.hold.named() ? std::make_unique<EnablingInput>(settings.hold) : nullptr),
       guarded_(settings.energy.stage != EnergyStage::kNone || settings.heat.named()),
       extras_(traits_.has_velocity || traits_.has_orientation || traits_.has_gimbal ||
               traits_.has_gripper || !traits_.has_counts) {
@@ -131,8 +133,8 @@ Result<void> Device::activate(HomeCheck home) {
 void Device::begin_activity() noexcept {
   gate_.restart();
   motion_.restart();
-  enabling_.restart();
-  waiting_ = enabling_.named();
+  if (enabling_ != nullptr) enabling_->restart();
+  waiting_ = enabling_ != nullptr;
   forget_velocity();
   refused_in_a_row_ = 0;
   work_->restart();
@@ -250,7 +252,7 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
   if (!state_.fresh) {
     ++wire_.missing;
   }
-  if (first) walls_.begin_at(state_.p_WT);
+  if (first) walls_->begin_at(state_.p_WT);
   if (follow_silence(now_ns)) gate_.trip(Fault::kNoReports);
   return state_;
 }
@@ -381,15 +383,19 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
 void Device::write(const ForceCommand& command) noexcept {
   if (guarded_ && heat_.named()) heat_.advance(state_.dt);
   if (!active_ || lost_) return send_zero();
-  if (enabling_.named() && wait_for_hold()) return;
-  if (walls_.hold(state_.p_WT)) return pass_on(command, 0);
+  if (enabling_ != nullptr && wait_for_hold()) return;
+  if (walls_->hold(state_.p_WT)) return pass_on(command, 0);
   stop_at_walls(command);
+}
+
+void Device::hold_until(std::int64_t time_ns) noexcept {
+  if (enabling_ != nullptr) enabling_->hold_until(time_ns);
 }
 
 /// Returns whether the enabling input is open, and sends zero force then.
 bool Device::wait_for_hold() noexcept {
   const bool waited = waiting_;
-  waiting_ = !enabling_.held(state_);
+  waiting_ = !enabling_->held(state_);
   if (!waiting_) {
     if (waited) work_->restart();
     return false;
@@ -401,12 +407,12 @@ bool Device::wait_for_hold() noexcept {
 
 void Device::stop_at_walls(const ForceCommand& command) noexcept {
   // Written so that NaN is outside.
-  if (!(walls_.depth(state_.p_WT).norm() <= walls_.settings().beyond)) {
+  if (!(walls_->depth(state_.p_WT).norm() <= walls_->settings().beyond)) {
     gate_.trip(Fault::kOutsideWorkspace);
   }
-  ForceCommand stopped = walls_.stop(command, state_.p_WT, v_gate_W());
+  ForceCommand stopped = walls_->stop(command, state_.p_WT, v_gate_W());
   stopped.f_program_W.setZero();  // what is left of it is not known, and is the gate's to fade
-  pass_on(stopped, walls_.held(state_.p_WT));
+  pass_on(stopped, walls_->held(state_.p_WT));
 }
 
 /// Passes a command through the gate; `held`: energy that the walls hold, J.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "faces/ros2/ros_peer.h"
-#include "thimble/driver/hold_to_run.h"
+#include "thimble/driver/device.h"
 
 namespace thimble::session {
 class Session;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <ctime>
 
 namespace thimble::scene {
 namespace {
@@ -107,8 +108,13 @@ void SleepLock::end() noexcept {
   if (input_ >= 0) close(input_);
   input_ = -1;
   if (child_ < 0) return;
+  // It ends with its input. One that does not is ended: nothing of it is worth waiting for.
+  constexpr int kLooks = 100;
+  constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 10'000'000};
   if (!held_) kill(-child_, SIGTERM);
-  while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
+  for (int look = 0; waitpid(child_, nullptr, WNOHANG) == 0; ++look) {
+    if (look == kLooks) kill(-child_, SIGKILL);
+    nanosleep(&kLook, nullptr);
   }
   child_ = -1;
 }

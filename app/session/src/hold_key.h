@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "terminal.h"
-#include "thimble/driver/hold_to_run.h"
+#include "thimble/driver/device.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {

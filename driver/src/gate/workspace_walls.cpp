@@ -1,4 +1,4 @@
-#include "thimble/driver/workspace_walls.h"
+#include "gate/workspace_walls.h"
 
 namespace thimble::driver {
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,17 +12,50 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/heat_guard.h"
-#include "thimble/driver/hold_to_run.h"
 #include "thimble/driver/motion_watch.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/tick_record.h"
-#include "thimble/driver/workspace_walls.h"
 
 namespace thimble::driver {
 
+class EnablingInput;
 class VelocityEstimator;
 class WorkAccount;
+class WorkspaceWalls;
+
+/// Sets the virtual walls around the workspace of an arm: a box along the axes of the world. None
+/// by default.
+struct WallSettings {
+  /// Stiffness, N/m [chosen: a latency of 3 ms gives it the strength of a negative damper of
+  /// 0.6 N s/m (K L, PHYSICS 1.1), less than the 1.5 N s/m that the damping takes on average].
+  static constexpr double kStiffness = 200;
+  /// Damping on the way out, N s/m [chosen: an eighth of m / T (1 + 2 d) for 75 g at 1 kHz and a
+  /// delay of a tick].
+  static constexpr double kDamping = 3;
+  /// Distance between the box of the arm file and the wall, m [chosen: what is touched at the edge
+  /// of the box is felt without the wall; the boxes lie 20 mm and more inside of the reach].
+  static constexpr double kMargin = 0.01;
+  /// Depth behind the wall at which the force goes off, m [chosen: 6 N of the spring, more than
+  /// most arms here push].
+  static constexpr double kBeyond = 0.03;
+
+  Eigen::Vector3d min_W = Eigen::Vector3d::Constant(-HUGE_VAL);  ///< Lowest corner, m.
+  Eigen::Vector3d max_W = Eigen::Vector3d::Constant(HUGE_VAL);   ///< Highest corner, m.
+  double stiffness = kStiffness;                                 ///< N/m
+  double damping = kDamping;                                     ///< On the way out, N s/m.
+  double beyond = kBeyond;  ///< Depth behind a wall at which the force goes off, m.
+};
+
+/// Sets an enabling input: what a person must hold so that an arm gets a force. Of several all must
+/// be held. None by default.
+struct HoldToRun {
+  std::uint16_t buttons = 0;  ///< Of the arm, one bit each, of which one must be held; 0: none.
+  bool by_caller = false;     ///< An input that the caller watches (Device::hold_until).
+
+  /// Returns whether there is an enabling input. Real-time: safe.
+  bool named() const noexcept { return buttons != 0 || by_caller; }
+};
 
 /// Sets how a device is placed and what it tolerates.
 struct DeviceSettings {
@@ -162,7 +196,7 @@ class Device {
   /// Lets the enabling input that the caller watches (HoldToRun::by_caller) count as held up to a
   /// time of the loop's clock, ns: while it is held the caller says so again and again. From any
   /// thread. Real-time: safe.
-  void hold_until(std::int64_t time_ns) noexcept { enabling_.hold_until(time_ns); }
+  void hold_until(std::int64_t time_ns) noexcept;
 
   /// Makes the fault that follows a sleep of the computer (Clock::asleep_ns): no force until the
   /// device is activated again, and the counts are doubted, for a board may have lost its power.
@@ -256,8 +290,8 @@ class Device {
   std::unique_ptr<VelocityEstimator>
       own_velocity_;                  // where the other is slower than the gate may be
   Eigen::Vector3d v_own_W_{0, 0, 0};  // m/s, by it
-  WorkspaceWalls walls_;
-  EnablingInput enabling_;
+  std::unique_ptr<WorkspaceWalls> walls_;
+  std::unique_ptr<EnablingInput> enabling_;  // null: nothing is to be held
   WireCounters wire_;
   // One holds what is believed, the other takes the next report.
   std::array<ArmSample, 2> samples_;

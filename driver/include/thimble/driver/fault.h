@@ -22,7 +22,7 @@ enum class Fault : std::uint8_t {
   kOtherArm,          ///< Another arm of the same run came to a fault.
   kCountsJumped,      ///< The position jumped while no report came (Device::home_needed).
   kSuspended,         ///< The computer slept (Clock::asleep_ns).
-  kOutsideWorkspace,  ///< The tip passed the walls of its workspace (workspace_walls.h).
+  kOutsideWorkspace,  ///< The tip passed the walls of its workspace (WallSettings).
 };
 
 /// The last of the faults: what is beyond it in a file or in shared memory is damaged.

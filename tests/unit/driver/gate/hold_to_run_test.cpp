@@ -1,5 +1,3 @@
-#include "thimble/driver/hold_to_run.h"
-
 #include <gtest/gtest.h>
 
 #include "support/moved_arm.h"

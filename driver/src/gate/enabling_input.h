@@ -4,19 +4,10 @@
 #include <cstdint>
 #include <limits>
 
+#include "thimble/driver/device.h"
 #include "thimble/driver/device_state.h"
 
 namespace thimble::driver {
-
-/// Sets an enabling input: what a person must hold so that an arm gets a force. Of several all must
-/// be held. None by default.
-struct HoldToRun {
-  std::uint16_t buttons = 0;  ///< Of the arm, one bit each, of which one must be held; 0: none.
-  bool by_caller = false;     ///< An input that the caller watches (Device::hold_until).
-
-  /// Returns whether there is an enabling input. Real-time: safe.
-  bool named() const noexcept { return buttons != 0 || by_caller; }
-};
 
 /// Looks whether the enabling input is held. A button that is down from the first tick on does not
 /// count until it was seen released: it may be stuck, or taped. All functions are Real-time: safe.
