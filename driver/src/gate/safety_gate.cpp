@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gate/program_watch.h"
 #include "gate/rise_limit.h"
 
 namespace thimble::driver {
 
-SafetyGate::SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy) noexcept
+SafetyGate::SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy)
     : limits_(limits),
       opening_(limits.soft_start),
       energy_(energy),
       observer_(energy),
       power_limit_(limits.power_max > 0 ? limits.power_max : HUGE_VAL),
-      program_(limits.force_max) {}
+      program_(std::make_unique<ProgramWatch>(limits.force_max)) {}
+
+SafetyGate::SafetyGate(SafetyGate&& other) noexcept = default;
+SafetyGate& SafetyGate::operator=(SafetyGate&& other) noexcept = default;
+SafetyGate::~SafetyGate() = default;
 
 void SafetyGate::restart() noexcept {
   fault_ = Fault::kNone;
@@ -22,15 +27,15 @@ void SafetyGate::restart() noexcept {
   f_last_W_.setZero();
   f_program_W_.setZero();
   observer_.restart();
-  program_.restart();
+  program_->restart();
   power_ = 0;
 }
 
 double SafetyGate::program_share(const Eigen::Vector3d& f_program_W, const Eigen::Vector3d& p_WT,
                                  double dt) noexcept {
-  const double share = program_.share(f_program_W, f_program_W_, p_WT, dt);
-  counters_.oscillations = program_.oscillations();
-  counters_.oscillation_frequency = program_.frequency();
+  const double share = program_->share(f_program_W, f_program_W_, p_WT, dt);
+  counters_.oscillations = program_->oscillations();
+  counters_.oscillation_frequency = program_->frequency();
   if (share < 1 && !f_program_W.isZero(0)) ++counters_.calmed;
   return share;
 }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 #include "thimble/driver/energy_guard.h"
 #include "thimble/driver/fault.h"
-#include "thimble/driver/program_watch.h"
 
 namespace thimble::driver {
 
@@ -82,6 +82,8 @@ struct GateCounters {
   double energy_least = 0;           ///< Lowest energy that the observer saw, J; never above 0.
 };
 
+class ProgramWatch;
+
 /// Stands between every force law and the motors: a program's part without growing oscillations ->
 /// finite -> speed limit -> time -> the arm's limit -> power limit -> soft start -> energy stage,
 /// if one is named -> rise limit.
@@ -97,7 +99,13 @@ struct GateCounters {
 /// All functions are Real-time: safe.
 class SafetyGate {
  public:
-  explicit SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy = {}) noexcept;
+  /// Real-time: never from the servo thread.
+  explicit SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy = {});
+  SafetyGate(SafetyGate&& other) noexcept;
+  SafetyGate& operator=(SafetyGate&& other) noexcept;
+  SafetyGate(const SafetyGate&) = delete;
+  SafetyGate& operator=(const SafetyGate&) = delete;
+  ~SafetyGate();
 
   /// Forgets the fault and the past, and begins the soft start.
   void restart() noexcept;
@@ -127,7 +135,7 @@ class SafetyGate {
   }
 
   /// Follows a program's part of the force through a tick, and returns the share (0 to 1) of it
-  /// that may be asked for: less than 1 after an oscillation that grew (ProgramWatch).
+  /// that may be asked for: less than 1 after an oscillation that grew.
   /// `f_program_W`: asked for now, N; `p_WT`: the tip, m; both in the world. Before `pass` or
   /// `pass_guarded`.
   double program_share(const Eigen::Vector3d& f_program_W, const Eigen::Vector3d& p_WT,
@@ -135,8 +143,6 @@ class SafetyGate {
   /// Returns the program's part of the force that passed last, N in the world: a share of what
   /// EnergyFlow named.
   const Eigen::Vector3d& f_program_W() const noexcept { return f_program_W_; }
-  /// Returns what is known of the program's oscillations.
-  const ProgramWatch& program() const noexcept { return program_; }
   double power() const noexcept { return power_; }  ///< Returns the mean power on the hand, W.
 
   /// Counts the next rise from `f_W` (N, in the world): the arm did not take what passed last, and
@@ -169,10 +175,10 @@ class SafetyGate {
   Eigen::Vector3d f_last_W_{0, 0, 0};  // N
   EnergyGuardSettings energy_;
   PassivityObserver observer_;
-  double power_ = 0;                      // W
-  double power_limit_;                    // W, or infinite
-  Eigen::Vector3d f_program_W_{0, 0, 0};  // N, of f_last_W_
-  ProgramWatch program_;
+  double power_ = 0;                       // W
+  double power_limit_;                     // W, or infinite
+  Eigen::Vector3d f_program_W_{0, 0, 0};   // N, of f_last_W_
+  std::unique_ptr<ProgramWatch> program_;  // never empty, but in a gate that was moved from
 };
 
 }  // namespace thimble::driver

@@ -1,4 +1,4 @@
-#include "thimble/driver/program_watch.h"
+#include "gate/program_watch.h"
 
 #include <gtest/gtest.h>
 
