@@ -380,6 +380,28 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
   return off.squaredNorm() > kUnseenStep * kUnseenStep;
 }
 
+/// Passes a command through the gate; `held`: energy that the walls hold, J. Inlined by force:
+/// `write` calls it in every tick.
+[[gnu::always_inline]] inline void Device::pass_on(const ForceCommand& command,
+                                                   double held) noexcept {
+  const bool guarded = guarded_;
+  watch();
+  if (!guarded && settings_.limits.power_max > 0) book_power();
+  programs_ = programs_ || !command.f_program_W.isZero(0);
+  const GatedForce force = programs_ ? pass_program(command, held)
+                           : guarded ? pass_guarded(command, held)
+                                     : gate_.pass(command.f_T_W, v_gate_W(), state_.dt);
+  const LinkWrite sent = send(force);
+  if (guarded || programs_) book(sent, force);
+  if (sent.status != LinkStatus::kOk) {
+    // The arm may hold it all the same.
+    if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
+    return keep_standing();
+  }
+  f_sent_W_ = sent.scale * force.f_T_W();
+  known_to_stand_ = true;
+}
+
 void Device::write(const ForceCommand& command) noexcept {
   if (guarded_ && heat_.named()) heat_.advance(state_.dt);
   if (!active_ || lost_) return send_zero();
@@ -413,26 +435,6 @@ void Device::stop_at_walls(const ForceCommand& command) noexcept {
   ForceCommand stopped = walls_->stop(command, state_.p_WT, v_gate_W());
   stopped.f_program_W.setZero();  // what is left of it is not known, and is the gate's to fade
   pass_on(stopped, walls_->held(state_.p_WT));
-}
-
-/// Passes a command through the gate; `held`: energy that the walls hold, J.
-void Device::pass_on(const ForceCommand& command, double held) noexcept {
-  const bool guarded = guarded_;
-  watch();
-  if (!guarded && settings_.limits.power_max > 0) book_power();
-  programs_ = programs_ || !command.f_program_W.isZero(0);
-  const GatedForce force = programs_ ? pass_program(command, held)
-                           : guarded ? pass_guarded(command, held)
-                                     : gate_.pass(command.f_T_W, v_gate_W(), state_.dt);
-  const LinkWrite sent = send(force);
-  if (guarded || programs_) book(sent, force);
-  if (sent.status != LinkStatus::kOk) {
-    // The arm may hold it all the same.
-    if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
-    return keep_standing();
-  }
-  f_sent_W_ = sent.scale * force.f_T_W();
-  known_to_stand_ = true;
 }
 
 /// Books the power where no stage keeps an account of work.
