@@ -205,7 +205,8 @@ void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
 int run_program(const Asked& asked, const std::vector<std::string>& command) {
   const bool serves = !asked.serve.empty();
   if (command.empty() && !serves) {
-    return complain({"Which program? thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."}, kExitBadInput);
+    return complain({"Which program? thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."},
+                    kExitBadInput);
   }
   const auto hold = session::hold_named(asked.hold_to_run);
   if (!hold) return complain({"--hold-to-run: " + hold.error().message}, kExitBadInput);
