@@ -389,12 +389,16 @@ TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
 }
 
 TEST(PacedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
-  constexpr double kMs = 1e6;
-  EXPECT_EQ(paced_due(100 * kMs, 100 * kMs, kMs, 1), 101 * kMs);
-  EXPECT_EQ(paced_due(100 * kMs, 100 * kMs, kMs, 4), 100.25 * kMs);
-  EXPECT_EQ(paced_due(100 * kMs, 100 * kMs, kMs, 0.1), 110 * kMs);
-  EXPECT_EQ(paced_due(100 * kMs, 120 * kMs, kMs, 1), 101 * kMs) << "late, and runs after it";
-  EXPECT_EQ(paced_due(100 * kMs, 1000 * kMs, kMs, 1), 950 * kMs) << "too late for that";
+  constexpr double kMillisecond = 1e6;
+  EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 1), 101 * kMillisecond);
+  EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 4),
+            100.25 * kMillisecond);
+  EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 0.1),
+            110 * kMillisecond);
+  EXPECT_EQ(paced_due(100 * kMillisecond, 120 * kMillisecond, kMillisecond, 1), 101 * kMillisecond)
+      << "late, and runs after it";
+  EXPECT_EQ(paced_due(100 * kMillisecond, 1000 * kMillisecond, kMillisecond, 1), 950 * kMillisecond)
+      << "too late for that";
   PacedClock clock;
   clock.sleep_until_ns(1000);
   EXPECT_EQ(clock.now_ns(), 1000) << "never later than asked: no tick is missed";
