@@ -22,6 +22,7 @@ table='
 --unchecked     | arm      |                           | a limit of the gate of a real arm: f_sent
 --homed         | arm      |                           | asks nothing of a real arm
 --no-real-time  | arm      |                           | the priority of the loop
+--hold-to-run   | arm      |                           | whether a real arm has forces at all
 --duration      | recorded | --duration 0.4            | the number of ticks
 --clock         | same     | --clock paced --speed 4   | paced ticks are the virtual ones; wall: clock
 --speed         | same     | --speed 4                 | the pace alone
