@@ -387,7 +387,7 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
   const bool guarded = guarded_;
   watch();
   if (!guarded && settings_.limits.power_max > 0) book_power();
-  programs_ = programs_ || !command.f_program_W.isZero(0);
+  programs_ = programs_ || (command.f_program_W.array() != 0).any();
   const GatedForce force = programs_ ? pass_program(command, held)
                            : guarded ? pass_guarded(command, held)
                                      : gate_.pass(command.f_T_W, v_gate_W(), state_.dt);

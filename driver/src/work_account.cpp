@@ -29,7 +29,7 @@ EnergyFlow WorkAccount::flow(const Eigen::Vector3d& x, const Eigen::Vector3d& p_
 void WorkAccount::explain(EnergyFlow& flow, double stored, const Eigen::Vector3d& f_program_W,
                           double damping, double dt) noexcept {
   flow.f_program_W = f_program_W;
-  program_ = program_ || !f_program_W.isZero(0);
+  program_ = program_ || (f_program_W.array() != 0).any();
   // Where nothing was stored, or nothing is, storages have come or gone: that is no change of them.
   const bool kept = stored != 0 && stored_ != 0;
   if (kept) flow.stored_change = stored - stored_;

@@ -42,7 +42,7 @@ count() {
   bound "decode, kinematics, Jacobian" $((link_read - arm_read)) 548
   bound "what a report must pass, velocity" $((read - link_read)) 292
   bound "force law" "$law" "$3"
-  bound "gate, currents, guards, books" $((write - arm_write)) 1078
+  bound "gate, currents, guards, books" $((write - arm_write)) 1190
   bound "observers of the run" "$observers" 702
   bound "loop" $((whole - read - law - write - observers)) 354
   if awk -v share="$contact" 'BEGIN { exit share > 0.95 }'; then

@@ -148,7 +148,7 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
   if (!admit(requested, v_WT, dt)) return GatedForce();
   Eigen::Vector3d f_W = limit_length(f_T_W, requested);
   // What a program asks for passes the stage as it is: no storage of it is known.
-  const bool program = !flow.f_program_W.isZero(0);
+  const bool program = (flow.f_program_W.array() != 0).any();
   if (program && requested > 0) f_program_W_ = f_W.norm() / requested * flow.f_program_W;
   if (energy_.stage == EnergyStage::kBounding) {
     const double bound = bounded_force(flow, energy_.slope);
@@ -166,7 +166,7 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
     // onset the force fades with the debt, whatever the velocity seems to be, and at twice the
     // onset there is none left that could give energy. What the hand brings in brings it back.
     const double share = observer_.share(dt);
-    if (share < 1 || !damping_W.isZero(0)) {
+    if (share < 1 || (damping_W.array() != 0).any()) {
       f_W = share * (f_W - f_program_W_) + f_program_W_ + damping_W;
       ++counters_.damped;
       f_W = within_open(f_W);

@@ -101,8 +101,9 @@ class SafetyGate {
  public:
   /// Real-time: never from the servo thread.
   explicit SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy = {});
+  /// Takes all of another gate, which only an assignment may use after that.
   SafetyGate(SafetyGate&& other) noexcept;
-  SafetyGate& operator=(SafetyGate&& other) noexcept;
+  SafetyGate& operator=(SafetyGate&& other) noexcept;  ///< As above.
   SafetyGate(const SafetyGate&) = delete;
   SafetyGate& operator=(const SafetyGate&) = delete;
   ~SafetyGate();

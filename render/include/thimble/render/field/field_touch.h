@@ -60,7 +60,7 @@ template <class Function>
 requires std::is_nothrow_invocable_r_v<Eigen::Vector3d, const Function&, const driver::DeviceState&>
 class FunctionField {
  public:
-  static constexpr bool kUnknownStorage = true;
+  static constexpr bool kUnknownStorage = true;  ///< Nobody knows what a function stores.
 
   explicit FunctionField(Function function) : function_(std::move(function)) {}
 
