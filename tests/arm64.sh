@@ -28,7 +28,7 @@ else
   done)
 fi
 
-# Each in a process of its own, as many at once as there are cores. Three tests are left out: where one asks the kernel for
+# Each in a separate process, as many at once as there are cores. Three tests are left out: where one asks the kernel for
 # the name of a program it sees QEMU, in another a message of 1 MB takes QEMU longer than a service may be silent, and a
 # limit of memory that the third sets is not that of what QEMU runs.
 run_emulated() {  # run_emulated PATH

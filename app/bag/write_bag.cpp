@@ -85,6 +85,24 @@ std::string metadata(const std::vector<BagTrack>& tracks, const std::string& fil
       file, duration_ns, first_ns, count, topics);
 }
 
+/// Writes a bag of files `database` and `text` of a folder that is there.
+driver::Result<void> write_files(const fs::path& database, const fs::path& text,
+                                 const std::vector<BagTrack>& tracks) {
+  const auto file = SqliteFile::create(database);
+  if (!file) return file.error();
+  for (const char* orders :
+       {"PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF", kTables, "BEGIN"}) {
+    if (auto done = file->run(orders); !done) return done.error();
+  }
+  if (auto filled = fill(*file, tracks); !filled) return filled.error();
+  if (auto ended = file->run("COMMIT"); !ended) return ended.error();
+  std::ofstream stream(text, std::ios::binary);
+  stream << metadata(tracks, database.filename().string());
+  stream.close();
+  if (!stream) return driver::Error{text.filename().string()};
+  return {};
+}
+
 }  // namespace
 
 driver::Result<void> write_bag(const std::filesystem::path& folder,
@@ -97,23 +115,21 @@ driver::Result<void> write_bag(const std::filesystem::path& folder,
     return driver::Error{folder.string() + ": the bag cannot be written: " + why +
                          ". Is there room on the disk, and may you write there?"};
   };
-  if (fs::create_directories(folder, failed); failed) return cannot(failed.message());
   // "bag/" ends in an empty name.
   fs::path named = fs::absolute(folder).lexically_normal();
   if (!named.has_filename()) named = named.parent_path();
-  const std::string name = named.filename().string() + "_0.db3";
-  const auto file = SqliteFile::create(folder / name);
-  if (!file) return cannot(file.error().message);
-  for (const char* orders :
-       {"PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF", kTables, "BEGIN"}) {
-    if (auto done = file->run(orders); !done) return cannot(done.error().message);
+  const bool created = fs::create_directories(named, failed);
+  if (failed) return cannot(failed.message());
+  const fs::path database = named / (named.filename().string() + "_0.db3");
+  const fs::path text = named / "metadata.yaml";
+  if (auto written = write_files(database, text, tracks); !written) {
+    // A part of a bag is of no use, and the next attempt would find its folder occupied.
+    std::error_code ignored;
+    fs::remove(database, ignored);
+    fs::remove(text, ignored);
+    if (created) fs::remove(named, ignored);
+    return cannot(written.error().message);
   }
-  if (auto filled = fill(*file, tracks); !filled) return cannot(filled.error().message);
-  if (auto ended = file->run("COMMIT"); !ended) return cannot(ended.error().message);
-  std::ofstream text(folder / "metadata.yaml", std::ios::binary);
-  text << metadata(tracks, name);
-  text.close();
-  if (!text) return cannot("metadata.yaml");
   return {};
 }
 

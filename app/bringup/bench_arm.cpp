@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "log/logger.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 
@@ -14,6 +15,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 constexpr std::int64_t kWait_ns = 5'000'000;  // for a report, before zero is said again
 constexpr std::int64_t kLook_ns = 20'000;
+constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
 constexpr double kAlign_s = 0.25;            // s, of reports that are timed before the first tick
 constexpr double kEven = 1e-6;               // s, below which reports come at the same phase
 constexpr double kAlignedMost = 0.8;         // of a period, for reports whose phases differ by more
@@ -36,8 +38,10 @@ driver::Result<std::unique_ptr<BenchArm>> BenchArm::open(
   std::unique_ptr<BenchArm> bench(new BenchArm);
   std::unique_ptr<driver::ArmLink> link;
   if (real_arm) {
+    bench->awake_ = std::make_unique<scene::SleepLock>();
+    if (!bench->awake_->held()) scene::logger().warn("{}", bench->awake_->note());
     bench->clock_ = std::make_unique<driver::WallClock>();
-    bench->awake_ = std::make_unique<driver::CpuLatencyRequest>();
+    bench->latency_ = std::make_unique<driver::CpuLatencyRequest>();
     auto opened = scene::open_link(*real_arm, file, firmware, *bench->clock_);
     if (!opened) return opened.error();
     link = std::move(opened).value();
@@ -93,11 +97,15 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
   const bool active = device_->stage() == driver::DeviceStage::kActive;
   std::int64_t due_ns = first_due_ns();
   std::int64_t end_ns = due_ns + std::llround(duration * 1e9);
+  const std::int64_t asleep_ns = clock_->asleep_ns();
   for (; due_ns < end_ns; due_ns += kPeriod_ns) {
     if (stop.load(std::memory_order_relaxed)) return false;
     clock_->sleep_until_ns(due_ns);
     const std::int64_t now_ns = clock_->now_ns();
     late_.count(1e-9 * static_cast<double>(now_ns - due_ns), 1e-9 * kPeriod_ns);
+    if (now_ns - due_ns >= kSleptThrough_ns && clock_->asleep_ns() - asleep_ns >= kPeriod_ns) {
+      device_->wake_from_sleep();
+    }
     const driver::DeviceState& state = device_->read(now_ns, now_ns);
     // A report that came just after its tick: the clocks of board and host drift apart.
     if (phase_ns_ && !silent && !state.fresh) {

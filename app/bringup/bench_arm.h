@@ -9,6 +9,7 @@
 
 #include "bringup/loop_priority.h"
 #include "heat_keeper.h"
+#include "sleep_lock.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
@@ -99,6 +100,7 @@ class BenchArm {
   std::int64_t first_due_ns() const;
   void tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W);
 
+  std::unique_ptr<scene::SleepLock> awake_;  // of a real arm
   std::unique_ptr<driver::Clock> clock_;
   std::unique_ptr<scene::ArmSimulation> simulation_;
   bool real_ = false;
@@ -106,7 +108,7 @@ class BenchArm {
   LateTicks late_;
   std::optional<std::int64_t> phase_ns_;              // a time at which a tick is due; empty: any
   double read_late_ = 0;                              // s
-  std::unique_ptr<driver::CpuLatencyRequest> awake_;  // of a real arm
+  std::unique_ptr<driver::CpuLatencyRequest> latency_;  // of a real arm
   std::function<void(const driver::TickRecord&)> sink_;
   std::uint64_t tick_ = 0;
   std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation, so it goes first

@@ -26,6 +26,7 @@
 #include "faces/server/arm_server.h"
 #include "faces/server/face_folder.h"
 #include "files/scene_inputs.h"
+#include "hold_key.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "output/output_plan.h"
@@ -46,6 +47,7 @@ struct Asked {
   std::string serve;  // "haply", or nothing
   std::uint16_t port = faces::haply::kPort;
   RosArguments ros;
+  std::string hold_to_run;
 };
 
 /// Reads the options of the topics, if there are to be any.
@@ -203,7 +205,14 @@ void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
 int run_program(const Asked& asked, const std::vector<std::string>& command) {
   const bool serves = !asked.serve.empty();
   if (command.empty() && !serves) {
-    return complain({"Which program? thimble exec [OPTIONS] PROGRAM ARGUMENTS..."}, kExitBadInput);
+    return complain({"Which program? thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."}, kExitBadInput);
+  }
+  const auto hold = session::hold_named(asked.hold_to_run);
+  if (!hold) return complain({"--hold-to-run: " + hold.error().message}, kExitBadInput);
+  if (hold->by_caller) {
+    return complain({"--hold-to-run key: the terminal is the program's; hold a button of the arm: "
+                     "--hold-to-run button."},
+                    kExitBadInput);
   }
   output::OutputPlan plan;
   for (const fs::path& file : scene::scene_inputs(asked.options.scene)) plan.read(file);
@@ -218,6 +227,7 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   options.program = command.empty() ? asked.serve : fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
+  options.hold = *hold;
   if (auto taken = take_topics(asked.ros, options); !taken) {
     return complain(taken.error(), kExitBadInput);
   }
@@ -324,6 +334,9 @@ void add_exec_command(CLI::App& app, int& exit_code) {
   command->add_flag("--unchecked", options.unchecked,
                     "Give a real arm its whole force though `thimble feel-check` was not passed");
   command->add_flag("--homed", options.homed, "A real arm was in its home pose when it got power");
+  command->add_option("--hold-to-run", asked->hold_to_run,
+                      "Give forces only while this button of the arm is held: button (the first), "
+                      "button2 to button16");
   command->add_flag("--no-real-time", options.no_real_time,
                     "Use a real arm though the loop gets no real-time priority");
   command->callback([asked, command, &exit_code] {

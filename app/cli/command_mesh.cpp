@@ -257,6 +257,12 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       ->needs("--repair");
   add_mesh_page_command(*command, exit_code);
   add_mesh_generate_command(*command, exit_code);
+  // A word that a command below does not take would be taken as FILE, in silence.
+  command->parse_complete_callback([command, options] {
+    if (!command->get_subcommands().empty() && !options->file.empty()) {
+      throw CLI::ExtrasError({options->file});
+    }
+  });
   command->callback([command, options, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (options->file.empty()) throw CLI::RequiredError("FILE");

@@ -20,6 +20,7 @@
 #include "cli/usage/usage_error.h"
 #include "faces/ros2/ros_run.h"
 #include "files/scene_inputs.h"
+#include "hold_key.h"
 #include "interrupt.h"
 #include "log/logger.h"
 #include "mesh/file/off_text.h"
@@ -138,8 +139,13 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
     }
   }
   if (!options.report.empty()) sides.page = std::make_unique<RunPage>(session);
+  std::optional<session::HoldKey> key;
+  if (session.setup().hold().by_caller) {
+    scene::terminal().info("Hold the space bar of this terminal to have forces.");
+    key.emplace(session);
+  }
   std::optional<session::ReplugWatches> watch;
-  if (real) watch.emplace(session);
+  if (real) watch.emplace(session, key ? key->terminal() : session::user_terminal());
 
   servo.begin(session, stop);
   const bool shows_progress = isatty(STDERR_FILENO) != 0 && scene::talk() != scene::Talk::kQuiet;

@@ -2,10 +2,12 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
@@ -70,7 +72,9 @@ int run(int argc, char** argv) {
     return thimble::app::kExitDone;
   }
   try {
-    app.parse(argc, argv);
+    auto words = thimble::app::without_separator(app, {argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // as the library takes them
+    app.parse(std::move(words));
   } catch (const CLI::Success& stop) {  // --help, --version, --list
     std::ostringstream out, wrong;
     app.exit(stop, out, wrong);

@@ -242,7 +242,8 @@ void bind_run(py::module_& core) {
                        bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,
                        const std::string& record, bool overwrite, const std::string& firmware,
-                       const py::object& law, bool homed, bool no_real_time, const py::object& ros2,
+                       const py::object& law, bool homed, const std::string& hold_to_run,
+                       bool no_real_time, const py::object& ros2,
                        std::shared_ptr<scene::SharedMeshes> meshes) {
              return std::make_unique<HeldRun>(RunOptions{.scene = scene,
                                                          .arm_file = arm,
@@ -258,6 +259,7 @@ void bind_run(py::module_& core) {
                                                          .firmware = firmware,
                                                          .homed = homed,
                                                          .topics = topics_of(ros2),
+                                                         .hold_to_run = hold_to_run,
                                                          .no_real_time = no_real_time,
                                                          .meshes = std::move(meshes)},
                                               law);
@@ -267,8 +269,8 @@ void bind_run(py::module_& core) {
            py::arg("seconds") = py::none(), py::arg("seed") = py::none(),
            py::arg("quality") = "normal", py::arg("record") = "", py::arg("overwrite") = false,
            py::arg("firmware") = "", py::arg("law") = py::none(), py::arg("homed") = false,
-           py::arg("no_real_time") = false, py::arg("ros2") = py::none(),
-           py::arg("meshes") = py::none())
+           py::arg("hold_to_run") = "", py::arg("no_real_time") = false,
+           py::arg("ros2") = py::none(), py::arg("meshes") = py::none())
       .def("topics_report", [](const HeldRun& held) { return held.run->topics_report(); })
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())

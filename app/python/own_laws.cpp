@@ -29,6 +29,13 @@ Eigen::Vector3d force_of(const py::object& answer) {
   return {force.at(0), force.at(1), force.at(2)};
 }
 
+/// Lets a command ask for the force of a law of Python's, of which no storage is known; but for one
+/// that is the scene's own.
+void answer_with(const Eigen::Vector3d& f_W, driver::ForceCommand& command) noexcept {
+  if (f_W == command.f_T_W) return;
+  command.f_T_W = command.f_program_W = f_W;
+}
+
 /// An exception of Python that may be raised again, any number of times.
 class KeptError {
  public:
@@ -65,7 +72,7 @@ class PythonLaw final : public OwnLaw {
     try {
       if (error_ || !law_) throw py::value_error("The law has failed before.");
       const py::object answer = law_(one(driver::record_of(state, command)));
-      if (!answer.is_none()) command.f_T_W = force_of(answer);
+      if (!answer.is_none()) answer_with(force_of(answer), command);
       return;
     } catch (const py::error_already_set& error) {
       if (!error_) error_.keep(error);
@@ -81,6 +88,7 @@ class PythonLaw final : public OwnLaw {
       }
     }
     command.f_T_W.setZero();
+    command.f_program_W.setZero();
     run_.ask_to_stop();
   }
 
@@ -119,6 +127,7 @@ class CompiledLaw final : public OwnLaw {
     command.f_T_W.setConstant(std::numeric_limits<double>::quiet_NaN());
     function_(1e-9 * static_cast<double>(state.time_ns), state.p_WT.data(), state.v_WT.data(),
               wanted.data(), command.f_T_W.data(), data_);
+    if (command.f_T_W != wanted) command.f_program_W = command.f_T_W;
   }
   // What is kept is part of the function: it is visited, and cleared with the run alone.
   int traverse(visitproc visit, void* arg) override {

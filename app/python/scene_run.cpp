@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "hold_key.h"
 #include "log/logger.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
@@ -85,6 +86,12 @@ session::SessionOptions session_options(const RunOptions& options) {
     if (!allowed) throw ThimbleError(allowed.error().message + " In Python: no_real_time=True.");
   }
   asked.homed = options.homed;
+  const auto hold = session::hold_named(options.hold_to_run);
+  if (!hold) throw ArgumentError("hold_to_run: " + hold.error().message);
+  if (hold->by_caller) {
+    throw ArgumentError("hold_to_run: in Python a button of the arm is held, no key.");
+  }
+  asked.hold = *hold;
   asked.several_arms = true;
   const bool real_time = options.real_time || asked.real_arm;
   asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;

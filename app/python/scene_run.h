@@ -33,7 +33,8 @@ struct RunOptions {
   std::string firmware = {};  ///< For a real arm that needs some.
   bool homed = false;  ///< A real arm was in its home pose when it got power: do not ask for it.
   std::optional<faces::RosWords> topics = {};  ///< Of ROS 2; in real time only.
-  bool no_real_time = false;  ///< Use a real arm though the loop gets no real-time priority.
+  std::string hold_to_run = {};  ///< Button of the arm to be held for a force; empty: none.
+  bool no_real_time = false;     ///< Use a real arm though the loop gets no real-time priority.
   std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< That it shares with others; null: its own.
 };
 

@@ -42,7 +42,9 @@ class SimulatorSession {
 
   // The loop's law and sink. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState&) noexcept {
-    return {.f_T_W = f_T_W_, .touch = {}};
+    driver::ForceCommand command;
+    command.f_T_W = command.f_program_W = f_T_W_;
+    return command;
   }
   void operator()(const driver::TickRecord& record) noexcept { last_ = record; }
 

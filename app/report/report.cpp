@@ -73,7 +73,12 @@ Json to_json(const session::RunFigures& report) {
                   {"stalls", report.gate.stalls},
                   {"damped", report.gate.damped},
                   {"bounded", report.gate.bounded},
-                  {"energy_least_J", report.gate.energy_least}};
+                  {"energy_least_J", report.gate.energy_least},
+                  {"power_limited", report.gate.power_limited},
+                  {"power_max_W", report.gate.power_max},
+                  {"oscillations", report.gate.oscillations},
+                  {"oscillation_Hz", report.gate.oscillation_frequency},
+                  {"calmed", report.gate.calmed}};
   if (report.carried_weight > 0) json["carried_weight_N"] = report.carried_weight;
   if (report.heat_known) {
     json["heat"] = {{"motors", report.heat},

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "energy_choice.h"
 #include "math/elementary.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
@@ -266,32 +265,28 @@ double quantisation_noise_of(double damping, double step, double speed, double c
 
 std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
+  // The account of the passivity stage knows fields, weights and what the motors carry.
   const driver::EnergyStage stage = scene.energy.value_or(scene.arm.energy.stage);
-  if (stage == driver::EnergyStage::kNone) return warnings;
-  // Over the workspace that is more than the stage lets go [kEnergyAllowance].
-  const double path = (scene.arm.workspace.max_W - scene.arm.workspace.min_W).maxCoeff();
-  if (scene.arm.carried_most * path > scene::kEnergyAllowance + scene::kEnergyOnset) {
+  if (stage != driver::EnergyStage::kBounding) return warnings;
+  constexpr double kPushFelt = 0.02;  // N [PHYSICS 6]
+  const auto warn = [&warnings](const std::string& what, double push) {
+    if (!(push > kPushFelt)) return;
     warnings.push_back(fmt::format(
-        "The motors carry {:.2g} N of the arm and give energy by right where it is lifted, but the "
-        "gate's energy stage takes back what is more than {:.0f} mJ: it brakes the hand and lets "
-        "all forces fade. Set gate: {{energy: none}} in the scene.",
-        scene.arm.carried_most, 1e3 * scene::kEnergyAllowance));
-  }
+        "{} (up to {:.2g} N) without the hand pressing, which the gate's energy bound does not let "
+        "through: it lets a force rise only as the hand presses. Set gate: {{energy: passivity}} "
+        "in "
+        "the scene.",
+        what, push));
+  };
+  warn("The motors carry the arm", scene.arm.carried_most);
   for (const scene::SceneObject& object : scene.objects) {
-    const bool field = static_cast<bool>(object.build_field);
-    double push = 0;
-    if (field) {
-      push = try_field(object, scene.arm).push;
-    } else if (object.body.motion && object.body.motion->grip) {  // on the floor it gives nothing
-      push = object.body.motion->mass * object.body.motion->gravity_W.norm();
+    if (object.build_field) {
+      warn(object.name + " pushes a hand", try_field(object, scene.arm).push);
+    } else if (object.body.motion &&
+               object.body.motion->grip) {  // on the floor it pulls at nothing
+      warn(object.name + " pulls by its weight",
+           object.body.motion->mass * object.body.motion->gravity_W.norm());
     }
-    if (!(push * path > scene::kEnergyAllowance + scene::kEnergyOnset)) continue;
-    warnings.push_back(
-        fmt::format("{} {} (up to {:.2g} N) and gives energy by right, but the gate's energy stage "
-                    "takes back what is more than {:.0f} mJ: it brakes the hand and lets all "
-                    "forces fade. Set gate: {{energy: none}} in the scene.",
-                    object.name, field ? "pushes a hand that rests" : "has weight", push,
-                    1e3 * scene::kEnergyAllowance));
   }
   return warnings;
 }

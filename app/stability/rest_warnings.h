@@ -17,8 +17,8 @@ namespace thimble::app {
 // number and the remedy. What counts as a limit cycle: 20 mN above 50 Hz [PHYSICS 6]. Real-time:
 // never from the servo thread.
 
-/// Returns what the gate's energy stage will do to each field and weight that gives energy by
-/// right; nothing where there is no such stage.
+/// Returns which fields and weights push a hand that does not press, where the gate has the energy
+/// bound, which lets no such force through; nothing with any other energy stage.
 std::vector<std::string> energy_warnings(const scene::Scene& scene);
 
 /// Returns what by the laws may be the cause of a limit cycle of a hand that rests on the object of

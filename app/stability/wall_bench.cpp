@@ -182,7 +182,8 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
                                       // A wall at rest is what it looks at.
                                       .motion = {.hold_most = 1e9},
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
-                                      .silence_limit_ns = 1'000'000'000},
+                                      .silence_limit_ns = 1'000'000'000,
+                                      .no_motors = true},
                                      clock.now_ns());
   if (!opened) return opened.error();
   driver::Device& device = **opened;

@@ -27,6 +27,16 @@ constexpr double kPositionStep = 1e-6;
 /// fault yet it takes a change of the velocity of 1 m/s]
 constexpr double kUnseenStep = 0.02;
 
+/// Pole of the slowest velocity that the gate goes by, Hz, whatever filter a law asks for [chosen:
+/// that of the arms that ship, 1.6 ms behind the tip].
+constexpr double kGateCorner = 100;
+
+/// Returns the gate's own estimate; null where the one that laws get is as quick.
+std::unique_ptr<VelocityEstimator> own_estimate(double corner_frequency) {
+  if (!(corner_frequency > 0 && corner_frequency < kGateCorner)) return nullptr;
+  return std::make_unique<VelocityEstimator>(kGateCorner);
+}
+
 /// Returns the joint torques of currents as the message holds them, N m.
 Eigen::Vector3d torque_of(const std::array<std::int16_t, 3>& mA,
                           const std::array<MotorDrive, 3>& motors) noexcept {
@@ -51,6 +61,9 @@ Device::Device(std::unique_ptr<ArmLink> link, const DeviceSettings& settings) no
             1e-9 * static_cast<double>(settings.limits.watchdog_ns)),
       work_(std::make_unique<WorkAccount>(settings.energy.delay_ticks)),
       velocity_(std::make_unique<VelocityEstimator>(settings.velocity_corner_frequency)),
+      own_velocity_(own_estimate(settings.velocity_corner_frequency)),
+      walls_(settings.walls),
+      enabling_(settings.hold),
       guarded_(settings.energy.stage != EnergyStage::kNone || settings.heat.named()),
       extras_(traits_.has_velocity || traits_.has_orientation || traits_.has_gimbal ||
               traits_.has_gripper || !traits_.has_counts) {
@@ -118,9 +131,12 @@ Result<void> Device::activate(HomeCheck home) {
 void Device::begin_activity() noexcept {
   gate_.restart();
   motion_.restart();
-  velocity_->reset();
+  enabling_.restart();
+  waiting_ = enabling_.named();
+  forget_velocity();
   refused_in_a_row_ = 0;
   work_->restart();
+  placed_ = programs_ = explained_ = false;
   active_ = true;
   insisted_ = false;
   // The next tick begins with dt = 0 as the first one does, but no number comes twice.
@@ -163,7 +179,7 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
   lost_ = reported_ = active_ = silent_ = spoken_ = false;
   refused_in_a_row_ = missed_in_a_row_ = 0;
   last_report_ns_ = quiet_since_ns_ = now_ns;
-  velocity_->reset();
+  forget_velocity();
   doubt_counts();
   known_to_stand_ = insisted_ = false;  // of this link nothing is known
   send_zero();
@@ -205,7 +221,8 @@ bool Device::insist_on_zero(Clock& clock) noexcept {
 
 DeviceStage Device::stage() const noexcept {
   if (gate_.fault() != Fault::kNone) return DeviceStage::kFault;
-  return active_ ? DeviceStage::kActive : DeviceStage::kIdle;
+  if (!active_) return DeviceStage::kIdle;
+  return waiting_ ? DeviceStage::kWaiting : DeviceStage::kActive;
 }
 
 LinkState Device::link_state() const noexcept {
@@ -216,7 +233,8 @@ LinkState Device::link_state() const noexcept {
 const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
   if (lost_) take_offer(now_ns);
   take_request();
-  if (started_) {
+  const bool first = !started_;
+  if (!first) {
     // What would follow is a force that grows the wrong way, and a silence that nobody notices.
     if (now_ns < state_.time_ns) gate_.trip(Fault::kTimeNotMonotonic);
     state_.dt = static_cast<double>(now_ns - state_.time_ns) * 1e-9;
@@ -232,6 +250,7 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
   if (!state_.fresh) {
     ++wire_.missing;
   }
+  if (first) walls_.begin_at(state_.p_WT);
   if (follow_silence(now_ns)) gate_.trip(Fault::kNoReports);
   return state_;
 }
@@ -285,7 +304,7 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
   if (moved_unseen(p_WT, now_ns)) {
     doubt_counts();
     if (active_) gate_.trip(Fault::kCountsJumped);
-    velocity_->reset();
+    forget_velocity();
   }
   ++wire_.reports;
   reported_ = true;
@@ -295,6 +314,7 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
   state_.q = fresh.pose.q;
   state_.p_WT = p_WT;
   state_.v_WT = velocity_->update(state_.p_WT, since_last);
+  if (own_velocity_ != nullptr) v_own_W_ = own_velocity_->update(state_.p_WT, since_last);
   if (!(state_.p_WT.squaredNorm() < HUGE_VAL)) gate_.trip(Fault::kStateNotFinite);
   if (extras_) take_extras(fresh);
   last_report_ns_ = now_ns;
@@ -312,7 +332,7 @@ void Device::take_extras(const ArmSample& sample) noexcept {
   }
   if (traits_.has_velocity) {
     // A law gets the arm's own; the limit of speed holds for what the tip really did as well.
-    if (active_ && !(state_.v_WT.norm() <= settings_.limits.speed_max)) {
+    if (active_ && !(v_gate_W().norm() <= settings_.limits.speed_max)) {
       gate_.trip(Fault::kOverSpeed);
     }
     state_.v_WT = settings_.R_WB * sample.v_BT;
@@ -341,7 +361,7 @@ bool Device::jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept {
   constexpr double kLeast = 1e-3, kMost = 5e-3;  // s
   const bool known = active_ && velocity_->primed() && !jumped_ && since_last < kMost;
   const double time = since_last > kLeast ? since_last : kLeast;
-  const Eigen::Vector3d off = p_WT - state_.p_WT - state_.v_WT * since_last;
+  const Eigen::Vector3d off = p_WT - state_.p_WT - v_gate_W() * since_last;
   const double most = kAcceleration * time * time;
   jumped_ = known && off.squaredNorm() > most * most;
   if (jumped_) ++wire_.jumped;
@@ -354,19 +374,52 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
                       gap_ns <= settings_.silence_limit_ns;
   if (!judged) return false;
   const Eigen::Vector3d off =
-      p_WT - state_.p_WT - state_.v_WT * (static_cast<double>(gap_ns) * 1e-9);
+      p_WT - state_.p_WT - v_gate_W() * (static_cast<double>(gap_ns) * 1e-9);
   return off.squaredNorm() > kUnseenStep * kUnseenStep;
 }
 
 void Device::write(const ForceCommand& command) noexcept {
-  const bool guarded = guarded_;
-  if (guarded && heat_.named()) heat_.advance(state_.dt);
+  if (guarded_ && heat_.named()) heat_.advance(state_.dt);
   if (!active_ || lost_) return send_zero();
+  if (enabling_.named() && wait_for_hold()) return;
+  if (walls_.hold(state_.p_WT)) return pass_on(command, 0);
+  stop_at_walls(command);
+}
+
+/// Returns whether the enabling input is open, and sends zero force then.
+bool Device::wait_for_hold() noexcept {
+  const bool waited = waiting_;
+  waiting_ = !enabling_.held(state_);
+  if (!waiting_) {
+    if (waited) work_->restart();
+    return false;
+  }
+  gate_.close();
+  send_zero();
+  return true;
+}
+
+void Device::stop_at_walls(const ForceCommand& command) noexcept {
+  // Written so that NaN is outside.
+  if (!(walls_.depth(state_.p_WT).norm() <= walls_.settings().beyond)) {
+    gate_.trip(Fault::kOutsideWorkspace);
+  }
+  ForceCommand stopped = walls_.stop(command, state_.p_WT, v_gate_W());
+  stopped.f_program_W.setZero();  // what is left of it is not known, and is the gate's to fade
+  pass_on(stopped, walls_.held(state_.p_WT));
+}
+
+/// Passes a command through the gate; `held`: energy that the walls hold, J.
+void Device::pass_on(const ForceCommand& command, double held) noexcept {
+  const bool guarded = guarded_;
   watch();
-  const GatedForce force =
-      guarded ? pass_guarded(command) : gate_.pass(command.f_T_W, state_.v_WT, state_.dt);
+  if (!guarded && settings_.limits.power_max > 0) book_power();
+  programs_ = programs_ || !command.f_program_W.isZero(0);
+  const GatedForce force = programs_ ? pass_program(command, held)
+                           : guarded ? pass_guarded(command, held)
+                                     : gate_.pass(command.f_T_W, v_gate_W(), state_.dt);
   const LinkWrite sent = send(force);
-  if (guarded) book(sent, force);
+  if (guarded || programs_) book(sent, force);
   if (sent.status != LinkStatus::kOk) {
     // The arm may hold it all the same.
     if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
@@ -374,6 +427,29 @@ void Device::write(const ForceCommand& command) noexcept {
   }
   f_sent_W_ = sent.scale * force.f_T_W();
   known_to_stand_ = true;
+}
+
+/// Books the power where no stage keeps an account of work.
+void Device::book_power() noexcept {
+  if (placed_) gate_.book_power(f_sent_W_.dot(state_.p_WT - p_power_WT_), state_.dt);
+  p_power_WT_ = state_.p_WT;
+  placed_ = true;
+}
+
+/// Passes a force of which a program asked for a part, less what an oscillation of it costs.
+GatedForce Device::pass_program(const ForceCommand& command, double held) noexcept {
+  const double share = gate_.program_share(command.f_program_W, state_.p_WT, state_.dt);
+  ForceCommand kept = command;
+  if (share < 1) {
+    kept.f_program_W *= share;
+    kept.f_T_W -= command.f_program_W - kept.f_program_W;
+  }
+  return pass_guarded(kept, held);
+}
+
+void Device::forget_velocity() noexcept {
+  velocity_->reset();
+  if (own_velocity_ != nullptr) own_velocity_->reset();
 }
 
 void Device::watch() noexcept {
@@ -401,18 +477,24 @@ void Device::keep_standing() noexcept {
   gate_.resume_from(f_sent_W_);
 }
 
-GatedForce Device::pass_guarded(const ForceCommand& command) noexcept {
+GatedForce Device::pass_guarded(const ForceCommand& command, double held) noexcept {
   const ArmPose& pose = sample().pose;
   // Of a linear spring; what the gate cuts off a force holds no more than this.
-  const double held = 0.5 * command.f_T_W.norm() * command.touch.depth;
-  const EnergyFlow flow =
-      work_->flow(traits_.motors ? pose.q : pose.p_BT, state_.p_WT, f_sent_W_, held);
+  held += 0.5 * command.f_T_W.norm() * command.touch.depth;
+  EnergyFlow flow = work_->flow(traits_.motors ? pose.q : pose.p_BT, state_.p_WT, f_sent_W_, held);
+  gate_.book_power(flow.work, state_.dt);
+  explained_ = explained_ || programs_ || command.stored != 0;
+  if (explained_) {
+    work_->explain(flow, command.stored, command.f_program_W, settings_.energy.dissipation,
+                   state_.dt);
+  }
   if (heat_.named()) link_->limit_currents(heat_.drives());
-  return gate_.pass_guarded(command.f_T_W, state_.v_WT, state_.dt, flow);
+  return gate_.pass_guarded(command.f_T_W, v_gate_W(), state_.dt, flow);
 }
 
 void Device::book(const LinkWrite& sent, const GatedForce& force) noexcept {
   if (sent.status != LinkStatus::kOk) return work_->hold();
+  if (programs_) work_->program_sent(sent.scale * gate_.f_program_W());
   if (!traits_.motors) {
     return work_->sent(settings_.R_WB.transpose() * (sent.scale * force.f_T_W()));
   }

@@ -4,11 +4,38 @@
 #include <cmath>
 #include <string>
 
+#include <Eigen/LU>
+
 namespace thimble::driver {
 namespace {
 
+/// How far from the world's origin an arm may stand, m [chosen: a room].
+constexpr double kBaseMost = 10;
+
 bool is_limit(double value) noexcept {
   return value > 0 && value < HUGE_VAL;
+}
+
+bool is_rotation(const Eigen::Matrix3d& R) {
+  constexpr double kError = 1e-6;  // [chosen: what is left of digits in a file]
+  const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  // Written so that NaN is none; Eigen's maximum does not tell one.
+  return R.allFinite() && off <= kError && R.determinant() > 0;
+}
+
+Result<void> check_walls(const WallSettings& walls) {
+  // Written so that NaN is refused.
+  if (!(walls.min_W.array() <= walls.max_W.array()).all()) {
+    return Error{
+        "The arm's workspace must have no corner beyond the opposite one; set it in the arm file."};
+  }
+  if (!(walls.stiffness >= 0 && walls.stiffness <= 1e4 && walls.damping >= 0 &&
+        walls.damping <= 100 && walls.beyond >= 0 && walls.beyond < HUGE_VAL)) {
+    return Error{
+        "The walls of the arm's workspace need a stiffness of 0 to 10,000 N/m, a damping of 0 to "
+        "100 N s/m and a finite depth of zero or more."};
+  }
+  return {};
 }
 
 }  // namespace
@@ -25,6 +52,12 @@ Result<void> DeviceSettings::check() const {
   if (!is_limit(limits.force_max)) return wrong("force_max");
   if (!is_limit(limits.speed_max)) return wrong("speed_max");
   if (!is_limit(limits.rise_max)) return wrong("rise_max");
+  if (!no_motors && limits.force_max > GateLimits::kForceMost) {
+    return loose("force_max", "at most 100 N");
+  }
+  if (!no_motors && limits.speed_max > GateLimits::kSpeedMost) {
+    return loose("speed_max", "at most 20 m/s");
+  }
   if (!is_limit(limits.soft_start)) return wrong("soft_start");
   if (!is_limit(limits.reopen)) return wrong("reopen time");
   if (limits.soft_start < GateLimits::kSoftStartLeast)
@@ -36,7 +69,25 @@ Result<void> DeviceSettings::check() const {
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
   if (limits.watchdog_ns > GateLimits::kWatchdogMost_ns)
     return loose("watchdog time", "at most 1 s");
+  if (!(limits.power_max >= 0 && limits.power_max < HUGE_VAL)) {
+    return wrong("power_max", "of zero or more");
+  }
+  if (limits.power_max > 0 && !is_limit(limits.power_time)) return wrong("power_time");
   if (silence_limit_ns <= 0) return wrong("silence limit");
+  if (!(velocity_corner_frequency >= 0 && velocity_corner_frequency < HUGE_VAL)) {
+    return wrong("velocity_corner_frequency", "of zero or more");
+  }
+  if (!is_rotation(R_WB)) {
+    return Error{
+        "The rotation of the arm's base is none: its columns must be of length 1, at right angles, "
+        "and right-handed, within 1e-6. Set R_WB of the device settings."};
+  }
+  if (!p_WB.allFinite() || !(p_WB.cwiseAbs().maxCoeff() <= kBaseMost)) {
+    return Error{
+        "The position of the arm's base must be finite and within 10 m of the world's origin, in "
+        "metres. Set p_WB of the device settings."};
+  }
+  if (auto checked = check_walls(walls); !checked) return checked;
   if (!is_limit(motion.hold_most)) return wrong("hold_unchanged time");
   for (std::size_t i = 0; heat.named() && i < 3; ++i) {
     if (!is_limit(heat.continuous_current[i])) return wrong("continuous_current");
@@ -47,6 +98,9 @@ Result<void> DeviceSettings::check() const {
     if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
     if (!is_limit(energy.reservoir)) return wrong("energy reservoir");
     if (!(energy.allowance >= 0)) return wrong("energy allowance", "of zero or more");
+    if (!(energy.dissipation >= 0 && energy.dissipation < HUGE_VAL)) {
+      return wrong("sure damping", "of zero or more");
+    }
     if (!(energy.speed_floor >= 0 && energy.speed_floor < HUGE_VAL)) {
       return wrong("speed floor", "of zero or more");
     }

@@ -53,6 +53,14 @@ std::string_view describe(Fault fault) noexcept {
       return "The arm's position jumped while no report came, as it does when the arm's board "
              "restarts and its encoders count from zero again. Put the arm into its home pose and "
              "activate it again; if it happens again, check its power and cable.";
+    case Fault::kSuspended:
+      return "The computer was suspended while the arm was in use. Put the arm into its home pose "
+             "and activate it again; see that the computer stays awake during a run.";
+    case Fault::kOutsideWorkspace:
+      return "The tip went beyond the walls of the workspace that the arm file names. Bring it "
+             "back and activate the arm again. If nobody moved it there, check "
+             "gravity_compensation "
+             "and the scene's forces.";
   }
   return "Unknown fault.";
 }
@@ -87,6 +95,10 @@ std::string_view name(Fault fault) noexcept {
       return "other_arm";
     case Fault::kCountsJumped:
       return "counts_jumped";
+    case Fault::kSuspended:
+      return "suspended";
+    case Fault::kOutsideWorkspace:
+      return "outside_workspace";
   }
   return "unknown";
 }

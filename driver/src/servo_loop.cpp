@@ -3,6 +3,12 @@
 namespace thimble::driver {
 namespace {
 
+/// A sleep of the computer that is none, ns: what two clocks that are not read at once disagree by.
+constexpr std::int64_t kAwake_ns = 1'000'000;
+/// How late a tick is that may have been slept through, ns [chosen: less than any board waits for a
+/// message; a computer takes longer to fall asleep].
+constexpr std::int64_t kLate_ns = 10'000'000;
+
 std::array<double, 3> plain(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
@@ -58,7 +64,8 @@ ServoLoop::ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
       sink_(sink),
       settings_(settings),
       due_ns_(clock.now_ns()),
-      end_ns_(due_ns_ + static_cast<std::int64_t>(settings.ticks) * settings.period_ns) {}
+      end_ns_(due_ns_ + static_cast<std::int64_t>(settings.ticks) * settings.period_ns),
+      asleep_ns_(clock.asleep_ns()) {}
 
 std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept {
   if (end_) return end_;
@@ -67,6 +74,7 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   clock_.sleep_until_ns(due_ns_);
   if (stop.load(std::memory_order_relaxed)) return end_with(ServoEnd::kStopped);
   const std::int64_t now_ns = clock_.now_ns();
+  if (now_ns - due_ns_ >= kLate_ns) look_for_sleep();
   const DeviceState& state = device_.read(now_ns, now_ns);
   const ForceCommand command = law_(state);
   device_.write(command);
@@ -88,6 +96,12 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   const std::int64_t late_ns = now_ns - due_ns_;
   if (late_ns >= 0) due_ns_ += (late_ns / settings_.period_ns + 1) * settings_.period_ns;
   return std::nullopt;
+}
+
+void ServoLoop::look_for_sleep() noexcept {
+  const std::int64_t asleep_ns = clock_.asleep_ns();
+  if (asleep_ns - asleep_ns_ >= kAwake_ns) device_.wake_from_sleep();
+  asleep_ns_ = asleep_ns;
 }
 
 // The tip is expected to go on as it goes.

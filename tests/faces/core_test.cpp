@@ -237,7 +237,7 @@ TEST(FaceCore, LetsNobodyWaitForAnArmWhoseRunHasEnded) {
   EXPECT_EQ(arms::count(), 0);
 }
 
-/// Another program of the same `thimble exec`, in a process of its own.
+/// Another program of the same `thimble exec`, in a separate process.
 class OtherProgram {
  public:
   /// Starts it; `work` begins when `go` is called, and its exit code is what it returns.

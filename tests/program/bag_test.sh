@@ -36,6 +36,24 @@ expect 0 'message_count: 6000' cat out/metadata.yaml
 expect 0 '^/pose geometry_msgs/msg/PoseStamped 2000 ' python3 "$maker" show out
 expect 0 '^/wrench geometry_msgs/msg/WrenchStamped 2000 ' python3 "$maker" show out
 expect 2 'the folder is not empty' "$thimble" export hand.h5 --bag out
+# A bag that cannot be completed leaves nothing: another attempt finds no folder in its way.
+cat >on_full_disk.sh <<'END'
+mkdir -p disk
+mount -t tmpfs -o size=100k tmpfs disk || exit 77
+mkdir disk/empty
+for folder in new empty; do "$1" export hand.h5 --bag disk/$folder; echo "code $?"; done
+test -e disk/new && echo "a part of a bag is left"
+mount -o remount,size=100m disk
+for folder in new empty; do "$1" export hand.h5 --bag disk/$folder; done
+END
+unshare -rm bash on_full_disk.sh "$thimble" >full_disk 2>&1
+if [ $? = 77 ] || grep -q unshare: full_disk; then
+  echo "No file system in memory may be mounted: a full disk is not tested."
+else
+  expect 0 '^2$' grep -c '^code 1$' full_disk
+  expect 1 '' grep 'a part of a bag' full_disk
+  expect 0 '^2$' grep -c ': 2000 ticks' full_disk
+fi
 expect 2 'csv|bag' "$thimble" export hand.h5
 
 # Round trip: the law feels the same along the exported positions.

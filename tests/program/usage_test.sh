@@ -23,7 +23,23 @@ expect 2 '^thimble: -duration is no option of `thimble run`\. Did you mean --dur
 expect 2 '^thimble: --duration is an option of .*`thimble run`.*, not of `thimble`; write it behind the command' "$thimble" --duration 3
 expect 2 '^thimble: --verbos is no option of `thimble run`\. Did you mean --verbose\?' "$thimble" run box --verbos
 expect 2 '^thimble: --wxyz is no option of `thimble run`\. See `thimble run --help`\.$' "$thimble" run box --wxyz
+expect 0 '^hello$' "$thimble" exec -- echo hello
+expect 0 '^hello -- you$' "$thimble" exec --arm polhem -- echo hello -- you
+expect 2 '^thimble: --csv: .*standard output' "$thimble" export a.h5 --csv -
+expect 2 'name is empty' "$thimble" run ''
 expect 2 '^thimble: --recrod is no option of `thimble exec`\. Did you mean --record\?' "$thimble" exec --recrod a.h5 true
+# A wrong letter is like every other letter; the beginning of a name is not.
+expect 2 '^thimble: -z is no option of `thimble run`\. See' "$thimble" run box -z
+expect 2 '^thimble: -x5 is no option of `thimble run`\. See' "$thimble" run box -x5
+expect 2 '^thimble: -o is no option of `thimble shot`\. Did you mean --out\?' "$thimble" shot box -o a.png
+expect 2 '^thimble: RUN is no command of `thimble`\. Did you mean run\?' "$thimble" RUN box
+expect 2 '^thimble: --duration: given 2 times; give it once\. See' "$thimble" run box --duration 1 --duration 2
+# A word too many for a command below `mesh` is not the file of `mesh`.
+expect 2 '^thimble: "in\.off" is one argument too many for `thimble mesh generate`' "$thimble" mesh generate 1000 in.off
+expect 1 '' test -e 1000
+expect 2 '^thimble: "more" is one argument too many for `thimble mesh page`' "$thimble" mesh page in.off out.pages more
+expect 2 '^thimble: "in\.off" is one argument too many for `thimble mesh page`' "$thimble" mesh in.off page in.off out.pages
+expect 1 '' test -e out.pages
 expect 2 '^thimble: "sphere" is one argument too many for `thimble run`' "$thimble" run box sphere
 
 # Values.

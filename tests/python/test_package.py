@@ -265,6 +265,20 @@ def test_real_time_takes_no_law_and_no_steps():
         core.Run("box", real_time=True).step()
 
 
+def test_hold_to_run_gives_no_force_without_the_button():
+    with thimble.open("box", "sim", seconds=1.5, hold_to_run="button") as live:
+        begin = time.monotonic()
+        while live.running and time.monotonic() < begin + 60:
+            time.sleep(0.02)
+    assert not any(any(tick.force) for tick in live.ticks())
+
+
+@pytest.mark.parametrize("held", ["foot", "key", "button17", "button0"])
+def test_hold_to_run_refuses_what_cannot_be_held(held):
+    with pytest.raises(ValueError, match="hold_to_run"):
+        thimble.open("box", "sim", hold_to_run=held)
+
+
 def test_arguments_that_name_nothing_are_value_errors_too(tmp_path):
     with pytest.raises(ValueError, match="there are cost"):
         thimble.study("no_such_study", out=tmp_path)

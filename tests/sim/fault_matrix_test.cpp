@@ -79,6 +79,7 @@ Seen watch(FaultRig& rig, const TestedFault& fault, int promised_ticks = 0) {
   }
   if (fault.name == "host stands still for 50 ms") rig.stall(50'000'000);
   if (fault.name == "host stands still for 150 ms") rig.stall(150'000'000);
+  if (fault.name == "computer sleeps for 2 s") rig.sleep(2'000'000'000);
   if (fault.place == Place::kBoard) rig.restart_board(60);
   if (fault.name == "clock steps back 10 ms") rig.step_back(10'000'000);
   if (ends) {

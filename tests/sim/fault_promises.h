@@ -30,7 +30,7 @@ struct TestedFault {
   Place place = Place::kCable;
   std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
 };
-inline constexpr std::array<TestedFault, 34> kTestedFaults{{
+inline constexpr std::array<TestedFault, 35> kTestedFaults{{
     {"stall in", Place::kCable, "stall in"},
     {"stall out", Place::kCable, "stall out"},
     {"short in", Place::kCable, "short in"},
@@ -65,6 +65,7 @@ inline constexpr std::array<TestedFault, 34> kTestedFaults{{
     {"stall out of 30 ms at the end", Place::kHost, "stall out for=30"},
     {"stall out at the end", Place::kHost, "stall out"},
     {"board restarts within 60 ms", Place::kBoard, {}},
+    {"computer sleeps for 2 s", Place::kHost, {}},
 }};
 
 /// What is promised, and in how many ms, which are ticks, the motors have no current.
@@ -95,6 +96,7 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
     if (fault == "stall out at the end") return {Promise::kNotKnown, 0, Fault::kRefused};
     if (fault == "unplug") return {Promise::kNotKnown, 0, Fault::kTransportLost};
     if (fault == "host dies") return {Promise::kNotKnown, 0, Fault::kNone};
+    if (fault == "computer sleeps for 2 s") return {Promise::kOff, 2000 + 3, Fault::kSuspended};
     // The loop's own zero, two frames after it goes on.
     if (fault == "host stands still for 150 ms") {
       return {Promise::kOff, 150 + 3, Fault::kLoopStalled};
@@ -144,6 +146,7 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
     return {Promise::kOff, std::min(watchdog, 150 + 3), Fault::kLoopStalled};
   }
   if (fault == "host dies") return unknown;
+  if (fault == "computer sleeps for 2 s") return {Promise::kOff, watchdog, Fault::kSuspended};
   if (fault == "clock steps back 10 ms") return {Promise::kOff, 3, Fault::kTimeNotMonotonic};
   // The zero is sent again each millisecond, and taken in the first in which it can be.
   if (fault == "stall out of 30 ms at the end") return {Promise::kOff, 30 + 3, Fault::kNone};

@@ -108,6 +108,12 @@ class FaultRig {
   /// Lets the host stand still.
   void stall(std::int64_t time_ns) { clock_.sleep_until_ns(clock_.now_ns() + time_ns); }
 
+  /// Lets the computer sleep; the loop notices when it wakes (driver/servo_loop.h).
+  void sleep(std::int64_t time_ns) {
+    stall(time_ns);
+    device_->wake_from_sleep();
+  }
+
   /// Restarts the arm's board on a live wire; it says and hears nothing for so many frames.
   void restart_board(int frames);
 

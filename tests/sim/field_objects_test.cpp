@@ -49,6 +49,7 @@ struct FreeArm {
             model, settings, device_sim::HandPath::make({{.time = 0, .p_BH = home}}).value())
             .value());
     driver::DeviceSettings wide = support::vintage_settings();
+    wide.no_motors = true;
     wide.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
     wide.limits.rise_max = 1e5;
     wide.limits.soft_start = 0.05;

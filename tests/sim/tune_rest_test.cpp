@@ -71,8 +71,8 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
   ASSERT_TRUE(write_small_meshes(folder / "meshes"));
   const RandomSceneLimits limits{
       .arm = *scene::load_arm(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
-  // Scenes of the long search in which a texture and a light body oscillate, and then any.
-  std::vector<std::uint64_t> seeds{0x9e0ae1da2e824ea6, 0x84aec02417858bab};
+  // Scenes of the long search in which the tip oscillates, and then any.
+  std::vector<std::uint64_t> seeds{0x9e0ae1da2e824ea6, 0x12d51};
   const int count = support::long_form() ? 300 : 40;
   for (int i = 0; i < count; ++i) seeds.push_back(77'000 + static_cast<std::uint64_t>(i));
   int ran = 0, oscillate = 0, alarms = 0, wrong = 0, missed = 0, by_rules = 0, rules_wrong = 0;
@@ -100,7 +100,7 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     missed += oscillates && !alarm;
     by_rules += rule;
     rules_wrong += rule && !oscillates;
-    if (alarm != oscillates) {
+    if (alarm || oscillates) {
       std::printf("  seed %llx: %.4f N RMS, %s\n", static_cast<unsigned long long>(seed),
                   found.limit_cycle, alarm ? "warned of" : "missed");
     }
@@ -111,8 +111,7 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
       "alone: %d, %d wrongly)\n",
       ran, oscillate, alarms, wrong, missed, by_rules, rules_wrong);
   EXPECT_GT(ran, count * 3 / 4);
-  // The light body rests since bodies and tips are coupled by the whole implicit step.
-  EXPECT_GE(oscillate, 1);
+  EXPECT_GT(oscillate, 1);
   EXPECT_EQ(missed, 0);
   EXPECT_LT(wrong, 0.05 * alarms + 1e-9);
 }

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/file_options.h"
 #include "faces/ros2/ros_module.h"
+#include "hold_key.h"
 #include "log/logger.h"
 #include "share/shared_layout.h"
 #include "share/viewer_process.h"
@@ -19,6 +20,15 @@ driver::Result<void> check_run_options(RunOptions& options) {
     return driver::Error{"--budget says what --quality auto may spend: name both, or neither."};
   }
   if (auto fits = check_ros_arguments(options.ros); !fits) return fits;
+  const auto hold = session::hold_named(options.hold_to_run);
+  if (!hold) return driver::Error{"--hold-to-run: " + hold.error().message};
+  if (hold->by_caller) {
+    if (auto there = session::HoldKey::check(); !there) return there;
+    if (options.clock == "virtual") {
+      return driver::Error{
+          "--hold-to-run key needs real time: leave --clock virtual away, or hold a button."};
+    }
+  }
   if (!options.save_mesh.empty() &&
       std::filesystem::path(options.save_mesh).extension() != ".off") {
     return driver::Error{"--save-mesh: " + options.save_mesh +
@@ -97,8 +107,9 @@ session::SessionOptions session_options(const RunOptions& options, const session
   // A person who watches or leads does so in real time, unless he says otherwise.
   const bool for_a_person = options.for_a_person();
   const bool wall = options.clock.empty() ? options.ros.asked : options.clock == "wall";
+  const bool by_key = options.hold_to_run == "key";
   const bool paced =
-      options.clock.empty() ? for_a_person || options.speed : options.clock == "paced";
+      options.clock.empty() ? for_a_person || by_key || options.speed : options.clock == "paced";
   session::SessionOptions asked;
   asked.clock = wall || arms.real() ? session::ClockKind::kWall
                 : paced             ? session::ClockKind::kPaced
@@ -122,6 +133,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.hand_by_mouse = options.by_viewer();
   asked.hand_by_program = options.by_topic();
   asked.homed = options.homed;
+  asked.hold = *session::hold_named(options.hold_to_run);  // which has been checked
   asked.several_arms = true;
   asked.quality = options.quality;
   asked.budget = options.budget;
@@ -148,6 +160,12 @@ std::vector<std::string> viewer_arguments(const RunOptions& options) {
   return arguments;
 }
 
+void add_hold_option(CLI::App& command, std::string& hold) {
+  command.add_option("--hold-to-run", hold,
+                     "Give forces only while this is held: button (the arm's first), button2 to "
+                     "button16, or key (the space bar in this terminal)");
+}
+
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_scene_option(command, options.scene)->required();
   command
@@ -171,6 +189,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                    "in the workspace");
   command.add_flag("--no-real-time", options.no_real_time,
                    "Use a real arm though the loop gets no real-time priority");
+  add_hold_option(command, options.hold_to_run);
   command.add_option("--duration", options.duration, "Seconds to run; the scene's own if absent")
       ->check(CLI::Validator(
           [](const std::string& text) {

@@ -41,6 +41,7 @@ struct RunOptions {
   bool unchecked = false;
   bool homed = false;
   bool no_real_time = false;
+  std::string hold_to_run;  // empty: nothing is held
   RosArguments ros;
 
   /// Returns whether a person leads the simulated hand in the viewer.
@@ -56,6 +57,9 @@ struct RunOptions {
   /// Returns whether the run begins anew when its scene's file changes.
   bool reloads() const { return reload.value_or(for_a_person()); }
 };
+
+/// Adds the option that names an enabling input.
+void add_hold_option(CLI::App& command, std::string& hold);
 
 /// Adds the arguments of `thimble run`. The options must outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);

@@ -62,6 +62,21 @@ std::vector<std::string> options_of(const CLI::App& command) {
   return names;
 }
 
+std::string without_dashes(const std::string& option) {
+  return option.substr(std::min(option.find_first_not_of('-'), option.size()));
+}
+
+/// Returns " Did you mean --duration?", or nothing. Dashes do not make options alike: -z is as far
+/// from -h as any letter, and -duration is --duration.
+std::string option_suggestion(const std::string& option, const std::vector<std::string>& known) {
+  std::vector<std::string> names;
+  for (const std::string& one : known) names.push_back(without_dashes(one));
+  const auto near = scene::nearest_word(without_dashes(option), names);
+  if (!near) return "";
+  const auto place = std::find(names.begin(), names.end(), *near) - names.begin();
+  return " Did you mean " + known[static_cast<std::size_t>(place)] + "?";
+}
+
 /// Adds the calls of all commands that have an option.
 void add_calls_with(const CLI::App& command, const std::string& option,
                     std::vector<std::string>& calls) {
@@ -239,6 +254,24 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return near ? " Did you mean " + *near + "?" : "";
 }
 
+std::vector<std::string> without_separator(const CLI::App& program,
+                                           std::vector<std::string> words) {
+  const auto commands = program.get_subcommands([&words](const CLI::App* command) {
+    return !words.empty() && command->get_name() == words.front() && command->get_prefix_command();
+  });
+  if (commands.empty()) return words;
+  const CLI::App* const command = commands.front();
+  for (std::size_t i = 1; i < words.size() && words[i].starts_with('-'); ++i) {
+    if (words[i] == "--") {
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+    const CLI::Option* const option = command->get_option_no_throw(words[i]);
+    if (option != nullptr && option->get_items_expected_min() > 0) ++i;  // its value
+  }
+  return words;
+}
+
 std::string unknown_word(const CLI::App& command, const std::string& word) {
   const std::string call = call_of(command);
   if (word.starts_with('-') && word.size() > 1) {
@@ -249,9 +282,8 @@ std::string unknown_word(const CLI::App& command, const std::string& word) {
       return fmt::format("{} is an option of {}, not of `{}`; write it behind the command.{}", name,
                          joined(calls, " and "), call, see_help(command));
     }
-    std::string near = suggestion(name, options_of(command));
-    if (near.empty()) near = suggestion("-" + name, options_of(command));  // -duration
-    return fmt::format("{} is no option of `{}`.{}{}", name, call, near, see_help(command));
+    return fmt::format("{} is no option of `{}`.{}{}", name, call,
+                       option_suggestion(name, options_of(command)), see_help(command));
   }
   const auto known = commands_below(command);
   const auto options = command.get_options();
@@ -273,6 +305,10 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
     for (const std::string& word : program.remaining(true)) {
       if (word != "--") return unknown_word(command, word);
     }
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const std::size_t word = message.rfind(": ");
+    if (word != std::string::npos) return unknown_word(command, message.substr(word + 2));
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     if (message == "A subcommand is required") return incomplete(command);
@@ -315,6 +351,10 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
     if (const CLI::Option* option = find_option(command, name)) {
       const Expectation expected = expectation_of(*option);
       const int count = option->get_items_expected_min();
+      if (count == 1 && option->results().size() > 1) {
+        return fmt::format("{}: given {} times; give it once.{}", name, option->results().size(),
+                           see_help(command));
+      }
       return fmt::format(
           "{}: {}.{}", name,
           count > 1 || !option->results().empty()

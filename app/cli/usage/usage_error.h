@@ -18,6 +18,11 @@ std::string unknown_word(const CLI::App& command, const std::string& word);
 /// Returns " Did you mean NAME?" for the known word that is nearest to `word`, or "".
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 
+/// Returns the words of a command line without the `--` that stands between the options of a
+/// command and the program which that command starts: the argument library takes what follows for
+/// words of ours. `words`: without the name of this program.
+std::vector<std::string> without_separator(const CLI::App& program, std::vector<std::string> words);
+
 /// Lets every option that takes numbers refuse what is no decimal number: hexadecimal and octal
 /// forms, which the argument library takes, infinities and NaN. For after all commands were added.
 void check_numbers(CLI::App& program);

@@ -16,6 +16,9 @@ ArmHealth health_of(const driver::TickRecord& tick) {
     }
     return {ArmHealth::kError, std::move(message)};
   }
+  if (tick.stage == driver::DeviceStage::kWaiting) {
+    return {ArmHealth::kWarn, "No forces: the enabling input is not held."};
+  }
   if (tick.stage != driver::DeviceStage::kActive) {
     return {ArmHealth::kWarn, "No forces: the arm is not activated."};
   }

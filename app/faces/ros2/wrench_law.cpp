@@ -32,7 +32,11 @@ driver::ForceCommand WrenchLaw::operator()(const driver::DeviceState& state) noe
   }
   // Without the scene's force its springs are not pressed either, for the gate's account of energy.
   if (replace_) command = {};
-  if (!stale_) command.f_T_W += opened_ * f_asked_W_;
+  if (!stale_) {
+    const Eigen::Vector3d f_W = opened_ * f_asked_W_;
+    command.f_T_W += f_W;
+    command.f_program_W += f_W;
+  }
   return command;
 }
 

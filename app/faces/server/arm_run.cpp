@@ -74,6 +74,7 @@ driver::Result<void> ArmRun::prepare(int number) {
   }
   asked.log = true;
   asked.homed = options_.homed;
+  asked.hold = options_.hold;
   asked.hand_by_mouse = options_.hand == "mouse" && !arm->real;
   asked.share_out = true;
   asked.share_if_possible = !options_.view && !asked.hand_by_mouse;

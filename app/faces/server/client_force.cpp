@@ -36,10 +36,12 @@ driver::ForceCommand ClientForce::operator()(const driver::DeviceState& state) n
   opened_ = enabled ? opened_further(opened_, state.dt, limits_.soft_start) : 0;
   if (!enabled) {
     command.f_T_W.setZero();
+    command.f_program_W.setZero();
     return command;
   }
   command.f_T_W += f_client_W_;
-  if (opened_ < 1) command.f_T_W *= opened_;
+  command.f_program_W += f_client_W_;
+  if (opened_ < 1) driver::scale(command, opened_);
   const double speed_limit = channel_.speed_limit.load(std::memory_order_relaxed);
   if (speed_limit > 0 && !(state.v_WT.norm() <= speed_limit)) {
     device_.trip(driver::Fault::kOverSpeed);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "faces/ros2/ros_peer.h"
+#include "thimble/driver/hold_to_run.h"
 
 namespace thimble::session {
 class Session;
@@ -39,6 +40,7 @@ struct ExecOptions {
   bool unchecked = false;                 ///< Its whole force without a passed feel check.
   bool homed = false;                     ///< It was in its home pose when it got power.
   bool no_real_time = false;              ///< Without real-time priority.
+  driver::HoldToRun hold = {};            ///< Buttons of the arm to be held for a force.
   /// Called with an arm's number and session before its loop begins, for tests.
   std::function<void(std::size_t, session::Session&)> opened = {};
 };

@@ -56,6 +56,7 @@ class Run:
         firmware: str = "",
         law: Union[None, Callable[[Any], Any], tuple[int, int, object]] = None,
         homed: bool = False,
+        hold_to_run: str = "",
         no_real_time: bool = False,
         ros2: Union[None, bool, dict[str, Any]] = None,
         meshes: Optional[Meshes] = None,

@@ -80,6 +80,7 @@ def open(
     overwrite: bool = False,
     firmware: Optional[PathOrName] = None,
     homed: bool = False,
+    hold_to_run: Optional[str] = None,
     no_real_time: bool = False,
     ros2: Union[None, bool, Mapping[str, Any]] = None,
 ) -> Live:
@@ -92,7 +93,8 @@ def open(
     its whole force all the same. A real arm brings its own arm file; what the scene or ``arm`` say of
     limits may only tighten them, and stderr says what became of it. firmware: image for an arm that
     needs one. homed: a real arm was in its home pose when it got power, so
-    that only its workspace is checked before it gets a force. no_real_time: use a real arm though
+    that only its workspace is checked before it gets a force. hold_to_run: "button" (or "button2" to
+    "button16"): forces come only while that button of the arm is held. no_real_time: use a real arm though
     the loop gets no real-time priority. ros2: publish the run as topics of ROS 2 (package
     thimble-ros2): True, or what ``thimble run --ros2`` takes as a dict, ``{"namespace": "/phantom",
     "names": "omni", "domain": 5, "force": "add", "limit": 1, "stale_ms": 50, "frames":
@@ -120,6 +122,7 @@ def open(
         real_time=True,
         firmware=firmware,
         homed=homed,
+        hold_to_run=hold_to_run,
         no_real_time=no_real_time,
         ros2=dict(ros2) if isinstance(ros2, Mapping) else ros2,
     )

@@ -1,4 +1,4 @@
-"""What runs in a process of its own: the program, and its studies."""
+"""What runs in a separate process: the program, and its studies."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def study(
 ) -> list[Figure]:
     """Run a study (``thimble study --help`` lists them), and give its figures.
 
-    It runs in a process of its own, as several count their own instructions or use all cores. Options
+    It runs in a separate process, as several count their own instructions or use all cores. Options
     are those of the command line: ``study("stability", arm="vintage_phantom", coarse=True)``,
     ``study("accuracy", axis=["velocity", "encoder"])``. out: folder for pictures, tables and
     figures.json; "study-NAME" if absent. Raises ArgumentError if there is no such study, or it cannot

@@ -31,6 +31,8 @@ PageMark::Kind kind_of(const TickEvent& event) noexcept {
     case Activity::kRiseCut:
     case Activity::kDamped:
     case Activity::kBounded:
+    case Activity::kPower:
+    case Activity::kCalmed:
       return PageMark::Kind::kGate;
     case Activity::kMissedTicks:
     case Activity::kHeat:

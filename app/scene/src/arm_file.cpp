@@ -116,6 +116,11 @@ std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::s
   return map.require_number(key, unit, least, most);
 }
 
+/// Mean power on the hand where a file names none, W, and the time of that mean, s [chosen: 1 W
+/// moves a pinched grip of 3 N s/m (PHYSICS 0) at 0.6 m/s for ever; within 2 s it is the work of 5
+/// N over 0.4 m, so that no constant force within an arm's workspace is lowered].
+constexpr double kPowerMost = 1, kPowerTime = 2;
+
 driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
@@ -127,6 +132,8 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   limits.watchdog_ns = to_ns(
       map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMost_ns));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
+  limits.power_max = map.optional_number("power_max", kPowerMost, "W", 0.01, 20);
+  limits.power_time = map.optional_number("power_time", kPowerTime, "s", 0.1, 10);
   if (limits.force_max > arm.declared.force) {
     map.reject("force_max",
                fmt::format("expected at most what the arm declares, {:g} N, found {:g}",
@@ -148,7 +155,8 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
   for (const char* key :
        {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
-        "tip_mass", "energy_allowance", "energy_reservoir", "energy_slope", "hold_unchanged"}) {
+        "power_max", "power_time", "tip_mass", "energy_allowance", "energy_reservoir",
+        "energy_slope", "hold_unchanged"}) {
     arm.gate_lines[key] = map.key_line(key);
   }
   map.finish();

@@ -28,6 +28,7 @@ driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
   settings.reservoir = choice.reservoir.value_or(arm.declared.force * arm.declared.force /
                                                  (2 * arm.declared.stiffness));
   settings.onset = kEnergyOnset;
+  settings.dissipation = arm.simulated.plant.viscous + kSureHandDamping;
   // One count moves the estimate by its gain times step over period.
   const double corner = 2 * std::numbers::pi * arm.velocity_corner_frequency;
   const double gain = corner > 0 ? -math::expm1(-corner / rate) : 1;

@@ -20,6 +20,10 @@ inline constexpr double kEnergyAllowance = 0.002;
 /// sets in softly, and what runs away is stopped for sure].
 inline constexpr double kEnergyOnset = 0.002;
 
+/// Damping that a hand which holds the arm has for sure, N s/m [chosen: a third of what a pinch
+/// grip has, PHYSICS 0 and 1]. What a sampled field gives beyond its potential is paid for by it.
+inline constexpr double kSureHandDamping = 1;
+
 /// Returns the energy stage's settings for a loop of `rate` (Hz): what the arm file, and a scene in
 /// place of it, say, joined with what follows from the arm: the mass at the tip, the delay, for the
 /// reservoir what a spring of the declared stiffness holds at the declared force, for the slope the

@@ -32,6 +32,13 @@ struct LinkGravity {
     if (!(length < HUGE_VAL)) return {0, 0, 0};
     return f_W * (most / length);
   }
+
+  /// Returns the energy of that force at joint angles q, J: the height of the moments, downwards.
+  /// Real-time: safe.
+  double potential(const Eigen::Vector3d& q) const noexcept {
+    const Eigen::Vector3d up_B = R_WB.transpose() * Eigen::Vector3d(0, 0, kGravity);
+    return -up_B.dot(moments.forward(q));
+  }
 };
 
 /// Returns that of an arm's file. Precondition: it is a serial arm. Real-time: never from the servo

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "arm_table.h"
@@ -39,13 +41,16 @@ void read_with_every_key(const std::string& text, KeyLog& keys,
     if (yaml) read(*yaml);
   };
   once();
+  std::set<std::string> maps;  // of which all keys were pretended
   // The list grows while what is pretended leads to further keys.
   for (std::size_t i = 0; i < keys.all_looked().size(); ++i) {
     const std::string name = keys.all_looked()[i];
     keys.pretend(name);
     once();
     // Some stand only together.
-    keys.pretend(name.substr(0, name.rfind('/')) + "/*");
+    const std::string map = name.substr(0, name.rfind('/')) + "/*";
+    if (!maps.insert(map).second) continue;
+    keys.pretend(map);
     once();
   }
   keys.pretend({});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "math/elementary.h"
 
@@ -39,19 +40,27 @@ render::TriangleMesh box_mesh(const render::Box& box) {
   return mesh;
 }
 
-render::TriangleMesh sphere_mesh(const render::Sphere& ball) {
-  render::TriangleMesh mesh;
-  constexpr int kRows = kAround / 2;
-  mesh.vertices.emplace_back(ball.p_WO + ball.radius * Vector3d::UnitZ());
+constexpr int kRows = kAround / 2;
+
+/// Returns the directions to a ball's vertices between its poles, row by row.
+std::vector<Vector3d> ball_directions() {
+  std::vector<Vector3d> directions;
   for (int row = 1; row < kRows; ++row) {
     const double down = std::numbers::pi * row / kRows;
     for (int k = 0; k < kAround; ++k) {
       const double round = 2 * std::numbers::pi * k / kAround;
-      mesh.vertices.emplace_back(
-          ball.p_WO + ball.radius * Vector3d(math::sin(down) * math::cos(round),
-                                             math::sin(down) * math::sin(round), math::cos(down)));
+      directions.emplace_back(math::sin(down) * math::cos(round),
+                              math::sin(down) * math::sin(round), math::cos(down));
     }
   }
+  return directions;
+}
+
+render::TriangleMesh sphere_mesh(const render::Sphere& ball) {
+  static const std::vector<Vector3d> directions = ball_directions();
+  render::TriangleMesh mesh;
+  mesh.vertices.emplace_back(ball.p_WO + ball.radius * Vector3d::UnitZ());
+  for (const Vector3d& n : directions) mesh.vertices.emplace_back(ball.p_WO + ball.radius * n);
   mesh.vertices.emplace_back(ball.p_WO - ball.radius * Vector3d::UnitZ());
   const auto last = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
   const auto at = [](int row, int k) {

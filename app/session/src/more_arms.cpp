@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "limits_in_force.h"
+
 namespace thimble::session {
 
 LoggedRun logged_run(const Setup& setup, std::size_t arm) {
@@ -12,6 +14,7 @@ LoggedRun logged_run(const Setup& setup, std::size_t arm) {
   run.what = fmt::format("{} ({}) feels {} at {:g} Hz in {} time", setup.arm_file(arm).name,
                          setup.device_name(arm), scene.name, scene.rate,
                          setup.real_time() ? "real" : "virtual");
+  run.limits = limits_in_force(setup, arm);
   run.period_ns = setup.period_ns();
   run.now_ns = setup.clock().now_ns();
   run.real_time = setup.real_time();

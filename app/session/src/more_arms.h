@@ -34,7 +34,7 @@ struct ArmLaw {
     if (control == nullptr) return touch(state);
     if (first) return (*control)(state);
     driver::ForceCommand command = touch(state);
-    if (const double gain = control->gain(); gain < 1) command.f_T_W *= gain;
+    if (const double gain = control->gain(); gain < 1) scale(command, gain);
     return command;
   }
 

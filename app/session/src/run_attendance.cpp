@@ -17,7 +17,10 @@ std::string progress_line(const driver::TickRecord& record, double total) {
   return fmt::format("{:6.1f} {}s   {:<8}  force {:5.2f} N   depth {:5.2f} mm ",
                      static_cast<double>(record.time_ns) * 1e-9,
                      total > 0 ? fmt::format("of {:.1f} ", total) : "",
-                     record.in_contact ? "touching" : "free", force, record.depth * 1e3);
+                     record.stage == driver::DeviceStage::kWaiting ? "not held"
+                     : record.in_contact                           ? "touching"
+                                                                   : "free",
+                     force, record.depth * 1e3);
 }
 
 std::string HeatWarning::look(const driver::TickRecord& record) {
@@ -48,12 +51,26 @@ RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerReque
       desk_(desk),
       on_terminal_(on_terminal),
       total_(static_cast<double>(session.setup().ticks()) *
-             static_cast<double>(session.setup().period_ns()) * 1e-9) {}
+             static_cast<double>(session.setup().period_ns()) * 1e-9),
+      withdrawn_(session.arms()) {}
+
+void RunAttendance::warn_of_carried() {
+  for (std::size_t arm = 0; arm < withdrawn_.size(); ++arm) {
+    const std::uint64_t now = session_.carry_withdrawn(arm);
+    if (now == withdrawn_[arm]) continue;
+    withdrawn_[arm] = now;
+    scene::logger().warn(
+        "The force that carries the arm's weight is taken away, for the tip moves with it; it "
+        "comes back once the tip rests. If nobody moved it, gravity_compensation of the arm file "
+        "is wrong: see `thimble identify`.");
+  }
+}
 
 void RunAttendance::step() {
   if (watch_ != nullptr) watch_->step();
   if (desk_ != nullptr) desk_->step();
   keep_black_boxes(session_, false);
+  warn_of_carried();
   driver::TickRecord record;
   if (!session_.newest().load(record)) return;
   if (const std::string hot = heat_.look(record); !hot.empty()) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "replug_watch.h"
 #include "share/viewer_request_handler.h"
@@ -43,11 +45,14 @@ class RunAttendance {
   void clear() const;
 
  private:
+  void warn_of_carried();
+
   Session& session_;
   ReplugWatches* watch_;
   ViewerRequestHandler* desk_;
   bool on_terminal_;
-  double total_;  // s; 0: nobody knows
+  double total_;                          // s; 0: nobody knows
+  std::vector<std::uint64_t> withdrawn_;  // of each arm's carried force, as was said
   HeatWarning heat_;
 };
 

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "carried_links.h"
-#include "carried_weight.h"
-#include "link_gravity.h"
+#include "carry/carried_force.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/force_law.h"
@@ -26,17 +25,19 @@ class RunLoop {
   /// Lets the loop carry what an arm's file says of its weight beside what its law asks for; of
   /// none it does nothing. Precondition: the loop has not begun. Real-time: never from the servo
   /// thread.
-  void carry(const scene::ArmFile& file) noexcept {
-    weight_ = file.carried_weight;
-    if (!file.carried_moments.isZero(0)) links_ = scene::link_gravity(file);
-  }
+  void carry(const scene::ArmFile& file) noexcept { carried_.take(file); }
+  /// Returns how often the force that carries the arm was taken away because the tip moved with it
+  /// (CarriedTrust). Any thread.
+  std::uint64_t carry_withdrawn() const noexcept { return carried_.withdrawn(); }
 
   /// Begins the loop; its first tick is due now. All parts must outlive it, and it may not be moved
   /// from then on. Real-time: safe.
   void begin(driver::Device& device, driver::Clock& clock, driver::ForceLaw law,
              const driver::ServoSettings& settings) noexcept {
-    if (links_.most > 0) law = driver::ForceLaw(carried_links_.emplace(law, links_));
-    if (weight_ > 0) law = driver::ForceLaw(carried_.emplace(law, Eigen::Vector3d(0, 0, weight_)));
+    if (carried_.any()) {
+      carried_.put_before(law);
+      law = driver::ForceLaw(carried_);
+    }
     loop_.emplace(device, clock, law, driver::TickSink(*this), settings);
   }
   /// Returns whether the loop has begun.
@@ -57,10 +58,7 @@ class RunLoop {
   }
 
  private:
-  double weight_ = 0;                     // N, that is carried
-  std::optional<CarriedWeight> carried_;  // if it is above 0
-  scene::LinkGravity links_;              // that are carried, if any force may be
-  std::optional<CarriedLinks> carried_links_;
+  CarriedForce carried_;
   std::vector<TickObserver*> observers_;
   std::optional<driver::ServoLoop> loop_;
   std::optional<driver::ServoEnd> end_;

@@ -325,6 +325,9 @@ std::span<const driver::TickRecord> Session::ticks(std::size_t arm) const noexce
 std::uint64_t Session::stride() const noexcept {
   return parts_->records.kept ? parts_->records.kept->trace.stride() : 1;
 }
+std::uint64_t Session::carry_withdrawn(std::size_t arm) const noexcept {
+  return (arm == 0 ? parts_->loop : parts_->more_arms.run(arm).loop).carry_withdrawn();
+}
 const RunStatistics& Session::statistics() const noexcept {
   static const RunStatistics kNone;
   return parts_->records.kept ? parts_->records.kept->statistics : kNone;

@@ -43,6 +43,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->hand_by_mouse_ = options.hand_by_mouse;
   setup->hand_by_program_ = options.hand_by_program;
   setup->homed_ = options.homed;
+  setup->hold_ = options.hold;
   setup->endless_ = options.endless;
   setup->keep_ = options.keep;
   setup->meshes_ = options.meshes ? options.meshes : std::make_shared<scene::SharedMeshes>();
@@ -84,6 +85,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, s
   setup->endless_ = other.endless_;
   setup->hand_by_mouse_ = other.hand_by_mouse_;
   setup->hand_by_program_ = other.hand_by_program_;
+  setup->hold_ = other.hold_;
   setup->seed_ = seed;
   setup->ticks_ = other.ticks_;
   setup->period_ns_ = other.period_ns_;
@@ -300,6 +302,10 @@ bool Setup::any_real() const noexcept {
 driver::Result<void> Setup::open(std::size_t i) {
   ArmOfRun& arm = arms_[i];
   std::unique_ptr<driver::ArmLink> link;
+  if (arm.real && !arm.open_link) {
+    arm.awake = std::make_unique<scene::SleepLock>();
+    if (!arm.awake->held()) scene::logger().warn("{}", arm.awake->note());
+  }
   if (arm.real) {
     auto opened = arm.open_link ? arm.open_link(arm_file(i), *clock_)
                                 : scene::open_link(*arm.real, arm_file(i), firmware_, *clock_);
@@ -312,6 +318,7 @@ driver::Result<void> Setup::open(std::size_t i) {
   // A simulated hand that is led has no tremor, and its arm sends no old positions.
   constexpr double kAnyTime = 1e9;  // s
   if (hand_led()) settings.motion.hold_most = kAnyTime;
+  settings.hold = hold_;
   driver::HeatSettings& heat = settings.heat;
   if (arm.real && heat.named()) {
     const scene::KnownHeat known = scene::load_heat(arm.real->name(), heat, scene::world_time());

@@ -11,6 +11,7 @@
 #include "heat_keeper.h"
 #include "paced_clock.h"
 #include "recording/run_choices.h"
+#include "sleep_lock.h"
 #include "start_pose.h"
 #include "terminal.h"
 #include "thimble/driver/clock.h"
@@ -38,6 +39,7 @@ struct ArmOfRun {
   std::unique_ptr<driver::Device> device;  ///< Holds the wire to the simulation, so it goes first.
   std::vector<std::string> inside_at_start;        ///< Names of the objects that its tip starts in.
   std::unique_ptr<scene::HeatKeeper> heat_keeper;  ///< Of a real arm whose file names its heat.
+  std::unique_ptr<scene::SleepLock> awake;         ///< Of a real arm: the computer does not sleep.
 };
 
 /// What a session runs: a scene with its objects, and the arms that touch them, on one clock.
@@ -105,6 +107,8 @@ class Setup {
   /// Returns whether a real arm's counters are known to be right: it was in its home pose when it
   /// got power.
   bool homed() const noexcept { return homed_; }
+  /// Returns what must be held for a force.
+  const driver::HoldToRun& hold() const noexcept { return hold_; }
   /// Returns whether it runs until it is stopped, faults or not.
   bool endless() const noexcept { return endless_; }
   /// Returns whether a viewer leads the simulated hand.
@@ -164,6 +168,7 @@ class Setup {
   bool hand_by_mouse_ = false;
   bool hand_by_program_ = false;
   bool homed_ = false;
+  driver::HoldToRun hold_{};
   std::uint64_t seed_ = 0;
   std::uint64_t ticks_ = 0;
   std::int64_t period_ns_ = 0;

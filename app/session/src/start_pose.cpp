@@ -9,8 +9,9 @@
 namespace thimble::session {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;  // as often as an arm expects a message
-constexpr int kTicksBetweenLooks = 20;          // at the terminal; chosen
+constexpr std::int64_t kPeriod_ns = 1'000'000;              // as often as an arm expects a message
+constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
+constexpr int kTicksBetweenLooks = 20;                      // at the terminal; chosen
 
 }  // namespace
 
@@ -63,12 +64,16 @@ driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& 
   if (!terminal.there) return driver::Error{trouble + " Then start again."};
   const auto ask = [&] { terminal.tell(trouble + " Hold it there and press Enter."); };
   ask();
+  const std::int64_t asleep_ns = clock.asleep_ns();
   std::int64_t due_ns = clock.now_ns();
   for (int tick = 1; !stop.load(std::memory_order_relaxed); ++tick) {
     due_ns += kPeriod_ns;
     clock.sleep_until_ns(due_ns);
     const std::int64_t now_ns = clock.now_ns();
     device.idle(now_ns, now_ns);
+    if (now_ns - due_ns >= kSleptThrough_ns && clock.asleep_ns() - asleep_ns >= kPeriod_ns) {
+      device.wake_from_sleep();
+    }
     if (device.fault() != driver::Fault::kNone) {
       return driver::Error{std::string(driver::describe(device.fault()))};
     }

@@ -14,6 +14,7 @@ constexpr std::array kAxes{
     AxisMaker{"deformable", deformable_axis},
     AxisMaker{"modes", modes_axis},
     AxisMaker{"rings", rings_axis},
+    AxisMaker{"dent_speed", dent_speed_axis},
     AxisMaker{"simulator", simulator_axis},
     AxisMaker{"simulator_speed", simulator_speed_axis},
     AxisMaker{"simulator_smooth", simulator_smooth_axis},

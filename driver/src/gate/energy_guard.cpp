@@ -17,6 +17,13 @@ void PassivityObserver::book(double work, double held) noexcept {
   energy_ = std::min(energy_ - work, settings_.reservoir + more);
 }
 
+void PassivityObserver::book(const EnergyFlow& flow) noexcept {
+  const double given = flow.dissipated - flow.work;
+  const double paid = flow.stored_change > 0 ? std::min(flow.stored_change, std::max(given, 0.0))
+                                             : flow.stored_change;
+  book(paid - given, flow.held);
+}
+
 double PassivityObserver::share(double dt) noexcept {
   if (!(settings_.onset > 0)) return 1;
   const double beyond = -energy_ - settings_.allowance - settings_.onset;

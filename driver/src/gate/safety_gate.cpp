@@ -20,14 +20,37 @@ GateLimits with_gap(GateLimits limits) noexcept {
 }  // namespace
 
 SafetyGate::SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy) noexcept
-    : limits_(with_gap(limits)), opening_(limits.soft_start), energy_(energy), observer_(energy) {}
+    : limits_(with_gap(limits)),
+      opening_(limits.soft_start),
+      energy_(energy),
+      observer_(energy),
+      power_limit_(limits.power_max > 0 ? limits.power_max : HUGE_VAL),
+      program_(limits.force_max) {}
 
 void SafetyGate::restart() noexcept {
   fault_ = Fault::kNone;
   since_start_ = 0;
   opening_ = limits_.soft_start;
   f_last_W_.setZero();
+  f_program_W_.setZero();
   observer_.restart();
+  program_.restart();
+  power_ = 0;
+}
+
+double SafetyGate::program_share(const Eigen::Vector3d& f_program_W, const Eigen::Vector3d& p_WT,
+                                 double dt) noexcept {
+  const double share = program_.share(f_program_W, f_program_W_, p_WT, dt);
+  counters_.oscillations = program_.oscillations();
+  counters_.oscillation_frequency = program_.frequency();
+  if (share < 1 && !f_program_W.isZero(0)) ++counters_.calmed;
+  return share;
+}
+
+void SafetyGate::close() noexcept {
+  since_start_ = 0;
+  opening_ = limits_.soft_start;
+  f_last_W_.setZero();
 }
 
 void SafetyGate::resume_from(const Eigen::Vector3d& f_W) noexcept {
@@ -71,6 +94,13 @@ inline double SafetyGate::force_open() const noexcept {
   return limits_.force_max * since_start_ / opening_;
 }
 
+/// Returns a force, cut to what may go out now.
+inline Eigen::Vector3d SafetyGate::within_open(const Eigen::Vector3d& f_W) const noexcept {
+  const double open = std::min(limits_.force_max, force_open());
+  const double magnitude = f_W.norm();
+  return magnitude > open ? Eigen::Vector3d(f_W * (open / magnitude)) : f_W;
+}
+
 /// Returns the requested force, cut to the arm's limit as far as the soft start has opened it.
 inline Eigen::Vector3d SafetyGate::limit_length(const Eigen::Vector3d& f_T_W,
                                                 double magnitude) noexcept {
@@ -78,6 +108,12 @@ inline Eigen::Vector3d SafetyGate::limit_length(const Eigen::Vector3d& f_T_W,
   if (allowed > limits_.force_max) {
     allowed = limits_.force_max;
     ++counters_.limited;
+  }
+  // The mean of the power changes slowly, so the force does.
+  if (power_ > power_limit_ && allowed > 0) {
+    const double beyond = (power_ / power_limit_ - 1) / (GateLimits::kPowerFade - 1);
+    allowed *= std::max(0.0, 1 - beyond);
+    ++counters_.power_limited;
   }
   if (since_start_ < opening_) {
     const double open = force_open();
@@ -112,18 +148,24 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
 GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
                                     double dt, const EnergyFlow& flow) noexcept {
   // What was given is given, whatever becomes of this tick.
-  observer_.book(flow.work, flow.held);
+  observer_.book(flow);
   if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
   const double requested = f_T_W.norm();
+  f_program_W_.setZero();
   if (!admit(requested, v_WT, dt)) return GatedForce();
   Eigen::Vector3d f_W = limit_length(f_T_W, requested);
+  // What a program asks for passes the stage as it is: no storage of it is known.
+  const bool program = !flow.f_program_W.isZero(0);
+  if (program && requested > 0) f_program_W_ = f_W.norm() / requested * flow.f_program_W;
   if (energy_.stage == EnergyStage::kBounding) {
     const double bound = bounded_force(flow, energy_.slope);
+    if (program) f_W -= f_program_W_;
     const double magnitude = f_W.norm();
     if (!(magnitude <= bound)) {
       f_W *= bound / magnitude;
       ++counters_.bounded;
     }
+    if (program) f_W = within_open(f_W + f_program_W_);
   } else if (energy_.stage == EnergyStage::kPassivity) {
     counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
     const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
@@ -132,14 +174,17 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
     // onset there is none left that could give energy. What the hand brings in brings it back.
     const double share = observer_.share(dt);
     if (share < 1 || !damping_W.isZero(0)) {
-      f_W = share * f_W + damping_W;
+      f_W = share * (f_W - f_program_W_) + f_program_W_ + damping_W;
       ++counters_.damped;
-      const double open = std::min(limits_.force_max, force_open());
-      const double magnitude = f_W.norm();
-      if (magnitude > open) f_W *= open / magnitude;
+      f_W = within_open(f_W);
     }
   }
-  return limit_change(f_W, v_WT);
+  const GatedForce passed = limit_change(f_W, v_WT);
+  if (program) {
+    const double length = f_W.norm();
+    if (length > 0) f_program_W_ *= std::min(1.0, f_last_W_.norm() / length);
+  }
+  return passed;
 }
 
 }  // namespace thimble::driver

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <span>
 #include <string>
@@ -10,19 +12,25 @@
 
 namespace thimble::driver {
 
-/// What work in a process of its own may use.
+/// What work in a separate process may use.
 struct ApartLimits {
   int seconds = 10;  ///< Of processor time.
   /// Of memory, above what this process has now; and of what it returns.
   std::size_t bytes = std::size_t{1} << 30;
 };
 
-/// Takes what work in a process of its own returns.
+/// Takes what work in a separate process returns.
 class ApartWriter {
  public:
   explicit ApartWriter(int file) noexcept : file_(file) {}
   /// Adds bytes. Returns false if there is no room for them; then nothing is returned.
   bool write(const void* bytes, std::size_t size) noexcept;
+  /// Adds the number of items, then the items: what ApartReader takes as an array.
+  template <class Item>
+  bool write_array(const Item* items, std::size_t count) noexcept {
+    const std::uint64_t number = count;
+    return write(&number, sizeof number) && write(items, count * sizeof(Item));
+  }
   /// Drops what was written. Returns false if that fails.
   bool restart() noexcept;
   /// Returns whether all bytes found room.
@@ -36,7 +44,7 @@ class ApartWriter {
   bool good_ = true;
 };
 
-/// What work in a process of its own returned: memory that nothing changes any longer.
+/// What work in a separate process returned: memory that nothing changes any longer.
 class ApartMemory {
  public:
   ApartMemory(const std::byte* at, std::size_t mapped, std::span<const std::byte> bytes) noexcept
@@ -55,6 +63,38 @@ class ApartMemory {
   const std::byte* at_;
   std::size_t mapped_;
   std::span<const std::byte> bytes_;
+};
+
+/// Reads what work in a separate process returned, in the order in which it was written.
+///
+/// What that process read may have broken it, so it may have written anything: nothing is read
+/// beyond its bytes, and nothing is allocated that they do not hold.
+class ApartReader {
+ public:
+  explicit ApartReader(std::span<const std::byte> bytes) noexcept : left_(bytes) {}
+
+  /// Copies bytes. Returns false, with nothing taken, if fewer are left.
+  bool take(void* into, std::size_t size) noexcept {
+    if (left_.size() < size) return false;
+    if (size > 0) std::memcpy(into, left_.data(), size);
+    left_ = left_.subspan(size);
+    return true;
+  }
+  /// Copies an array of ApartWriter::write_array into a std::string or std::vector of plain items.
+  /// Returns false if it claims more items than are left.
+  template <class Array>
+  bool take_array(Array& items) {
+    std::uint64_t number = 0;
+    constexpr std::size_t kItem = sizeof(typename Array::value_type);
+    if (!take(&number, sizeof number) || number > left_.size() / kItem) return false;
+    items.resize(number);
+    return take(static_cast<void*>(items.data()), number * kItem);
+  }
+  /// Returns the bytes that are left.
+  std::span<const std::byte> left() const noexcept { return left_; }
+
+ private:
+  std::span<const std::byte> left_;
 };
 
 /// Returns what `work` writes, done by a child of this process: whatever it does, this process

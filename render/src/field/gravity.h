@@ -30,6 +30,10 @@ class Gravity {
 
   /// Returns the force on the hand, N in W. Real-time: safe.
   Eigen::Vector3d force(const driver::DeviceState&) const noexcept { return weight_W_; }
+  /// Returns its energy at the tip, J: zero at the world's origin. Real-time: safe.
+  double potential(const driver::DeviceState& state) const noexcept {
+    return -weight_W_.dot(state.p_WT);
+  }
 
  private:
   Eigen::Vector3d weight_W_;

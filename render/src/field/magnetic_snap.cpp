@@ -52,15 +52,31 @@ MagneticSnap::MagneticSnap(const Settings& settings, const EffectContext& contex
   }
 }
 
+double MagneticSnap::left_of(const Target& target, const Eigen::Vector3d& p_WT,
+                             Eigen::Vector3d& away_W) noexcept {
+  const Eigen::Vector3d s_W = p_WT - target.from_W;
+  const double share = std::clamp(s_W.dot(target.way_W) * target.per_square, 0.0, 1.0);
+  away_W = s_W - share * target.way_W;
+  return 1 - away_W.squaredNorm() / target.square;
+}
+
 Eigen::Vector3d MagneticSnap::force(const driver::DeviceState& state) const noexcept {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d away_W;
   for (const Target& target : targets_) {
-    const Eigen::Vector3d s_W = state.p_WT - target.from_W;
-    const double share = std::clamp(s_W.dot(target.way_W) * target.per_square, 0.0, 1.0);
-    const Eigen::Vector3d away_W = s_W - share * target.way_W;
-    const double left = 1 - away_W.squaredNorm() / target.square;
+    const double left = left_of(target, state.p_WT, away_W);
     // Written so that NaN is beyond the radius.
     if (left > 0) sum -= target.stiffness * left * away_W;
+  }
+  return sum;
+}
+
+double MagneticSnap::potential(const driver::DeviceState& state) const noexcept {
+  double sum = 0;
+  Eigen::Vector3d away_W;
+  for (const Target& target : targets_) {
+    const double left = left_of(target, state.p_WT, away_W);
+    if (left > 0) sum -= target.stiffness * target.square / 4 * left * left;
   }
   return sum;
 }

@@ -42,6 +42,9 @@ class MagneticSnap {
   /// Finds the force on the hand, N in W; zero where the tip is NaN or infinite. Real-time: safe; a
   /// few ns per target.
   Eigen::Vector3d force(const driver::DeviceState& state) const noexcept;
+  /// Returns its energy at the tip, J: zero beyond all radii; below that of each target that is
+  /// near. Real-time: safe.
+  double potential(const driver::DeviceState& state) const noexcept;
 
  private:
   struct Target {
@@ -51,6 +54,11 @@ class MagneticSnap {
     double stiffness;       // at the target, N/m
     double square;          // R^2, m^2
   };
+  /// Finds the way from the nearest point of a target to the tip, m; returns 1 less its square over
+  /// that of the radius.
+  static double left_of(const Target& target, const Eigen::Vector3d& p_WT,
+                        Eigen::Vector3d& away_W) noexcept;
+
   std::vector<Target> targets_;
 };
 

@@ -49,6 +49,16 @@ class PointCharges {
     }
     return sum.allFinite() ? sum : Eigen::Vector3d::Zero();
   }
+  /// Returns its energy at the tip, J: zero far away; and where the tip is NaN or infinite.
+  /// Real-time: safe.
+  double potential(const driver::DeviceState& state) const noexcept {
+    double sum = 0;
+    for (const Charge& charge : charges_) {
+      const Eigen::Vector3d s_W = state.p_WT - charge.p_W;
+      sum += charge.strength / std::sqrt(s_W.squaredNorm() + charge.radius * charge.radius);
+    }
+    return std::isfinite(sum) ? sum : 0;
+  }
 
  private:
   struct Charge {

@@ -15,6 +15,8 @@ TEST(ArmHealth, NamesAFaultBeforeAllElse) {
   tick.stage = driver::DeviceStage::kIdle;
   EXPECT_EQ(health_of(tick).level, ArmHealth::kWarn);
   EXPECT_NE(health_of(tick).message.find("not activated"), std::string::npos);
+  tick.stage = driver::DeviceStage::kWaiting;
+  EXPECT_NE(health_of(tick).message.find("not held"), std::string::npos);
   tick.stage = driver::DeviceStage::kFault;
   tick.fault = driver::Fault::kOverSpeed;
   EXPECT_EQ(health_of(tick).level, ArmHealth::kError);

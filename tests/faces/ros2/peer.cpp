@@ -123,7 +123,8 @@ int main(int argc, char** argv) {
       if (!one || m.status()[0].name() != "thimble: vintage_phantom" ||
           m.status()[0].level() != 0 || m.status()[0].values().size() != 4 ||
           m.status()[0].values()[0].value() != "none" ||
-          m.status()[0].values()[3].key() != "link" || m.status()[0].values()[3].value() != "connected")
+          m.status()[0].values()[3].key() != "link" ||
+          m.status()[0].values()[3].value() != "connected")
         ++bad;
     });
     robot.each([](String_& m) {

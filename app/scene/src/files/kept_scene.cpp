@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cerrno>
 #include <charconv>
 #include <fstream>
 #include <optional>
@@ -112,6 +113,10 @@ driver::Result<fs::path> write_scene(const std::string& text, const std::string&
     std::ofstream stream(beside, std::ios::binary);
     stream << text;
     stream.close();
+    if (!stream && errno == ENAMETOOLONG) {
+      return driver::Error{
+          "The name of the scene is too long for a file; shorten it to 200 bytes."};
+    }
     if (!stream) {
       return driver::Error{into.string() +
                            ": the scene cannot be written there; make the folder "

@@ -51,6 +51,10 @@ std::vector<ShippedFile> list(std::string_view kind) {
 }
 
 driver::Result<fs::path> find(const std::string& meant, const char* kind, const char* noun) {
+  if (meant.empty()) {
+    return driver::Error{
+        "The name is empty; give a file, or a name that `thimble run --list` lists."};
+  }
   std::error_code status;
   const bool there = fs::exists(meant, status) && !fs::is_directory(meant, status);
   // A word is a name first; a file of the working folder has an extension or a slash.

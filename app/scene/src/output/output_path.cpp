@@ -32,6 +32,9 @@ driver::Error cannot_write(const fs::path& path, const std::string& why) {
 
 driver::Result<OutputPath> resolve_output(const fs::path& path) {
   if (path.empty()) return cannot_write(path, "the name is empty. Give a file name.");
+  if (path == "-") {
+    return cannot_write(path, "- does not mean standard output here. Name a file.");
+  }
   OutputPath found;
   struct stat about {};
   const bool there = ::stat(path.c_str(), &about) == 0;

@@ -31,7 +31,7 @@ double hold_of(const ArmFile& arm) {
   return arm.hold_unchanged.value_or(driver::MotionWatchSettings{}.hold_most);
 }
 
-constexpr std::array<LimitRule, 9> kRules{{
+constexpr std::array<LimitRule, 11> kRules{{
     {"force_max", "N", true, [](const ArmFile& arm) { return arm.limits.force_max; },
      [](ArmFile& to, const ArmFile& from) { to.limits.force_max = from.limits.force_max; }},
     {"speed_max", "m/s", true, [](const ArmFile& arm) { return arm.limits.speed_max; },
@@ -48,6 +48,10 @@ constexpr std::array<LimitRule, 9> kRules{{
     {"watchdog", "s", true,
      [](const ArmFile& arm) { return 1e-9 * static_cast<double>(arm.limits.watchdog_ns); },
      [](ArmFile& to, const ArmFile& from) { to.limits.watchdog_ns = from.limits.watchdog_ns; }},
+    {"power_max", "W", true, [](const ArmFile& arm) { return arm.limits.power_max; },
+     [](ArmFile& to, const ArmFile& from) { to.limits.power_max = from.limits.power_max; }},
+    {"power_time", "s", true, [](const ArmFile& arm) { return arm.limits.power_time; },
+     [](ArmFile& to, const ArmFile& from) { to.limits.power_time = from.limits.power_time; }},
     {"energy_allowance", "J", true, allowance_of,
      [](ArmFile& to, const ArmFile& from) { to.energy.allowance = from.energy.allowance; }},
     {"hold_unchanged", "s", true, hold_of,

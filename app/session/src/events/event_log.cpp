@@ -21,6 +21,7 @@ EventLog::EventLog(LoggedRun run, const driver::Device& device)
       counters_(device),
       watch_(counters_, run_.period_ns, ring_) {
   log_->info("The arm is open: {}.", run_.what);
+  if (!run_.limits.empty()) log_->info("{}", run_.limits);
   if (!run_.real_time) return;
   writer_ = std::thread([this] {
     while (!stop_.load()) {
@@ -73,6 +74,12 @@ void EventLog::write(const TickEvent& event) {
   const auto level = level_of(event);
   if (!log_->should_log(level)) return;
   const std::string words = words_of(event, run_.objects);
+  if (is_notice(event)) {
+    bool& given = given_[event.kind == EventKind::kForceChanged ? 1 : 0]
+                        [static_cast<std::size_t>(event.activity)];
+    if (!given) scene::logger().warn("{}: {}", run_.name, words);
+    given = true;
+  }
   if (!run_.real_time) return log_->log(level, words);
   using std::chrono::system_clock;
   const auto when = clock_began_ + std::chrono::nanoseconds(event.time_ns);

@@ -2,6 +2,7 @@
 
 #include <spdlog/logger.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -23,6 +24,7 @@ namespace thimble::session {
 struct LoggedRun {
   std::string name = {};                  ///< Stands in every line.
   std::string what = {};                  ///< What is run with which arm, for the first line.
+  std::string limits = {};                ///< That are in force, in a sentence; may be empty.
   std::vector<std::string> objects = {};  ///< By the numbers of TickRecord::object.
   std::int64_t period_ns = 1'000'000;
   /// Of the loop's clock at the moment of making it; events in real time stand in the log with the
@@ -64,6 +66,8 @@ class EventLog final : public TickObserver {
   SpscRing<TickEvent> ring_{kRingEvents};
   EventWatch watch_;
   std::uint64_t lost_told_ = 0;
+  // Notices that the user got on the console: that a stage acts, and that it changes the force.
+  std::array<std::array<bool, kActivities>, 2> given_{};
   std::atomic<bool> stop_{false};
   std::thread writer_;
 };

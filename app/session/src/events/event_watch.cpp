@@ -1,6 +1,7 @@
 #include "events/event_watch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace thimble::session {
@@ -28,6 +29,8 @@ ActivityCounts DeviceCounters::activities() const noexcept {
   at(Activity::kRejected) = wire.rejected;
   at(Activity::kJumped) = wire.jumped;
   at(Activity::kRefused) = wire.refused;
+  at(Activity::kPower) = gate.power_limited;
+  at(Activity::kCalmed) = gate.calmed;
   return counts;
 }
 
@@ -86,6 +89,9 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
   if (record.stage != stage_ && record.stage == DeviceStage::kActive) {
     push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kActivated});
   }
+  if (record.stage != stage_ && record.stage == DeviceStage::kWaiting) {
+    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kWaiting});
+  }
   if (record.stage != stage_ && record.stage == DeviceStage::kIdle) {
     push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kDeactivated});
   }
@@ -122,6 +128,8 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
   earliest_end_ns_ = kNever_ns;
   for (std::size_t i = 0; i < kActivities; ++i) {
     Episode& episode = episodes_[i];
+    const auto activity = static_cast<Activity>(i);
+    if (changes_force(activity)) watch_change(record, activity, counts[i] != counts_[i]);
     if (counts[i] == counts_[i]) {
       if (episode.count > 0 && record.time_ns - episode.newest_ns > kQuiet_ns) {
         tick_ = record.tick;
@@ -143,6 +151,37 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
     wait_for(episode);
   }
   counts_ = counts;
+}
+
+void EventWatch::watch_change(const driver::TickRecord& record, Activity activity,
+                              bool acted) noexcept {
+  Change& change = changes_of_force_[static_cast<std::size_t>(activity)];
+  if (change.told) return;
+  double off = 0, wanted = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double difference = record.f_sent_W[k] - record.f_wanted_W[k];
+    off += difference * difference;
+    wanted += record.f_wanted_W[k] * record.f_wanted_W[k];
+  }
+  // Written so that NaN changes nothing: it is a fault.
+  if (!(acted && off > kChange * kChange * wanted && off > 0)) {
+    change.goes_on = false;
+    return;
+  }
+  // Ticks in which no stage acted are not looked at.
+  if (!change.goes_on || record.time_ns - change.newest_ns >= 2 * period_ns_) {
+    change.began_ns = record.time_ns;
+  }
+  change.goes_on = true;
+  change.newest_ns = record.time_ns;
+  if (record.time_ns - change.began_ns < kChangeTime_ns) return;
+  change.told = true;
+  const double share = wanted > 0 ? std::min(1.0, std::sqrt(off / wanted)) : 1.0;
+  push({.tick = record.tick,
+        .time_ns = record.time_ns,
+        .count = static_cast<std::uint64_t>(std::lround(100 * share)),
+        .kind = EventKind::kForceChanged,
+        .activity = activity});
 }
 
 void EventWatch::wait_for(const Episode& episode) noexcept {

@@ -44,6 +44,11 @@ class EventWatch final : public TickObserver {
   /// the rise limit on a rough surface, is one thing for a person]
   static constexpr std::int64_t kQuiet_ns = 100'000'000;
 
+  /// Change of a force by a stage that a person is told of, over what was wanted, and how long it
+  /// must last, ns. [chosen: more than is felt (PHYSICS 6: 7 %), and longer than a stroke's impact]
+  static constexpr double kChange = 0.1;
+  static constexpr std::int64_t kChangeTime_ns = 200'000'000;
+
   /// Watches ticks due every `period_ns`, with the counters beside them; counts from now on. Both
   /// must outlive it.
   EventWatch(const EventCounters& counters, std::int64_t period_ns,
@@ -67,12 +72,21 @@ class EventWatch final : public TickObserver {
     std::uint64_t count = 0;  // 0: it does not go on
   };
 
+  /// Ticks in a row in which a stage changed the force by more than `kChange`.
+  struct Change {
+    std::int64_t began_ns = 0;
+    std::int64_t newest_ns = 0;
+    bool goes_on = false;
+    bool told = false;
+  };
+
   bool quiet(const driver::TickRecord& record) const noexcept;
   void push(const TickEvent& event) noexcept;
   void look(const driver::TickRecord& record) noexcept;
   void wait_for(const Episode& episode) noexcept;
   void watch_stage(const driver::TickRecord& record) noexcept;
   void watch_activities(const driver::TickRecord& record) noexcept;
+  void watch_change(const driver::TickRecord& record, Activity activity, bool acted) noexcept;
   void end(Activity activity, Episode& episode) noexcept;
 
   const EventCounters& counters_;
@@ -82,6 +96,7 @@ class EventWatch final : public TickObserver {
   ActivityCounts counts_;
   std::uint64_t wires_taken_;
   std::array<Episode, kActivities> episodes_{};
+  std::array<Change, kActivities> changes_of_force_{};
   std::int64_t earliest_end_ns_ = kNever_ns;  // until then no activity that goes on can have ended
   std::uint64_t tick_ = 0;
   std::int64_t time_ns_ = 0, due_ns_ = 0;

@@ -39,7 +39,39 @@ constexpr std::array<ActivityWords, kActivities> kWords{{
      "Reports were dropped for a jump"},
     {spdlog::level::warn, "The arm takes no message: check its cable and power.",
      "Messages were not taken"},
+    {spdlog::level::warn, "The force is lowered: its mean power is at the limit of the gate.",
+     "The force was lowered for its mean power"},
+    {spdlog::level::warn,
+     "The program's force oscillates and grows, so it is lowered: its spring or damper is too "
+     "stiff "
+     "for this arm and loop.",
+     "The program's force was lowered after an oscillation"},
 }};
+
+/// Returns what a stage is called, and where it is set or what helps.
+const char* stage_words(Activity activity) noexcept {
+  switch (activity) {
+    case Activity::kSoftStart:
+      return "The soft start (soft_start, or reopen after a gap, of the arm file)";
+    case Activity::kForceCut:
+      return "The arm's limit of force (force_max of the arm file)";
+    case Activity::kRiseCut:
+      return "The limit of the force's rise (rise_max of the arm file)";
+    case Activity::kDamped:
+      return "The energy stage (energy: passivity; more energy went out than any storage explains)";
+    case Activity::kBounded:
+      return "The energy bound (energy: bounding of the arm file or scene)";
+    case Activity::kHeat:
+      return "The heat guard (a motor is hot: press less hard or rest)";
+    case Activity::kPower:
+      return "The limit of power (power_max of the arm file)";
+    case Activity::kCalmed:
+      return "The guard against oscillations (the program's spring or damper is too stiff)";
+    default:
+      break;
+  }
+  return "A stage of the gate";
+}
 
 const ActivityWords& words_for(Activity activity) noexcept {
   return kWords[static_cast<std::size_t>(activity)];
@@ -51,6 +83,8 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
       return "Forces are let through.";
     case EventKind::kDeactivated:
       return "Forces are off.";
+    case EventKind::kWaiting:
+      return "The enabling input is not held: no force.";
     case EventKind::kFault:
       return fmt::format("Force is off ({}). {}", name(event.fault), describe(event.fault));
     case EventKind::kWireTaken:
@@ -69,6 +103,9 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
     }
     case EventKind::kTouchEnded:
       return "The tip is free.";
+    case EventKind::kForceChanged:
+      return fmt::format("{} has changed the force for 0.2 s, now by {} %.",
+                         stage_words(event.activity), event.count);
     case EventKind::kLinkChanged:
       switch (event.link) {
         case driver::LinkState::kConnected:
@@ -89,11 +126,14 @@ level_enum level_of(const TickEvent& event) noexcept {
   switch (event.kind) {
     case EventKind::kActivated:
     case EventKind::kDeactivated:
+    case EventKind::kWaiting:
     case EventKind::kWireTaken:
       return spdlog::level::info;
     case EventKind::kLinkChanged:
       return event.link == driver::LinkState::kConnected ? spdlog::level::info
                                                          : spdlog::level::warn;
+    case EventKind::kForceChanged:
+      return spdlog::level::warn;
     case EventKind::kFault:
       return spdlog::level::err;
     case EventKind::kActivityBegan:
@@ -106,6 +146,12 @@ level_enum level_of(const TickEvent& event) noexcept {
       return spdlog::level::trace;
   }
   return spdlog::level::err;
+}
+
+bool is_notice(const TickEvent& event) noexcept {
+  return event.kind == EventKind::kForceChanged ||
+         (event.kind == EventKind::kActivityBegan &&
+          (event.activity == Activity::kPower || event.activity == Activity::kCalmed));
 }
 
 std::string at_tick(std::uint64_t tick, std::int64_t time_ns) {

@@ -14,6 +14,9 @@ namespace thimble::session {
 /// at, error for a fault; debug and trace for what any touch does.
 spdlog::level::level_enum level_of(const TickEvent& event) noexcept;
 
+/// Returns whether the user hears of an event at once, on the console.
+bool is_notice(const TickEvent& event) noexcept;
+
 /// Returns when something happened, as each line of a run begins.
 std::string at_tick(std::uint64_t tick, std::int64_t time_ns);
 

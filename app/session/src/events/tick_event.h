@@ -22,8 +22,15 @@ enum class Activity : std::uint8_t {
   kRejected,     ///< Reports came that the protocol does not know (WireCounters::rejected).
   kJumped,       ///< Reports were dropped for a jump that no hand makes (jumped).
   kRefused,      ///< The arm took no messages (refused).
+  kPower,        ///< The gate lowers the force for its mean power (power_limited).
+  kCalmed,       ///< The gate lowers a program's force that oscillated (calmed).
 };
-inline constexpr std::size_t kActivities = 11;
+inline constexpr std::size_t kActivities = 13;
+
+/// Returns whether an activity is a stage that changes forces.
+constexpr bool changes_force(Activity activity) noexcept {
+  return activity <= Activity::kHeat || activity >= Activity::kPower;
+}
 
 /// How often each activity occurred since the device was opened.
 using ActivityCounts = std::array<std::uint64_t, kActivities>;
@@ -38,7 +45,11 @@ enum class EventKind : std::uint8_t {
   kActivityEnded,  ///< `activity` has been quiet; it occurred `count` times in `lasted_ns`.
   kTouchBegan,     ///< The tip touches `object`.
   kTouchEnded,     ///< The tip touches nothing any more.
-  kLinkChanged,    ///< The link came into the state `link`, which is not what `fault` says.
+  /// The stage `activity` has changed the force by more than a tenth for 0.2 s, now by `count`
+  /// percent of what was wanted; once in a run for each stage.
+  kForceChanged,
+  kWaiting,      ///< Zero force until the enabling input is held.
+  kLinkChanged,  ///< The link came into the state `link`, which is not what `fault` says.
 };
 
 /// Something that happened in a run, as plain numbers for the way out of the servo.

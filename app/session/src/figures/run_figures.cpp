@@ -121,6 +121,20 @@ std::string summary(const RunFigures& report) {
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
     s += fmt::format("Gate      energy bounded: force cut in {} ticks.\n", report.gate.bounded);
   }
+  if (report.gate.power_limited > 0) {
+    s += fmt::format(
+        "Power     {:.2f} W given to the hand on average at most; force lowered in {} ticks "
+        "(power_max of the arm file).\n",
+        report.gate.power_max, report.gate.power_limited);
+  }
+  if (report.gate.oscillations > 0) {
+    s += fmt::format(
+        "Program   its force oscillated and grew {} time{}, at {:.0f} Hz at last: it was lowered "
+        "in "
+        "{} ticks. Its spring or damper is too stiff for this arm and loop.\n",
+        report.gate.oscillations, report.gate.oscillations == 1 ? "" : "s",
+        report.gate.oscillation_frequency, report.gate.calmed);
+  }
   if (report.heat_known && report.heat_most >= driver::HeatGuard::kWarning) {
     s +=
         fmt::format("Heat      a motor reached {:.0f} % of its limit; force lowered in {} ticks.\n",

@@ -234,9 +234,7 @@ void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::A
   }
   out.write(&head, sizeof head);
   for (const std::string& text : texts) {
-    const std::uint64_t length = text.size();
-    out.write(&length, sizeof length);
-    out.write(text.data(), text.size());
+    out.write_array(text.data(), text.size());
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if ((head.columns >> i & 1) == 0) continue;

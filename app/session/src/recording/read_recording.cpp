@@ -27,7 +27,7 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, fresh)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, has_gripper)) <= 1 &&
          byte_at(offsetof(driver::TickRecord, stage)) <=
-             static_cast<unsigned>(driver::DeviceStage::kFault) &&
+             static_cast<unsigned>(driver::kLastStage) &&
          byte_at(offsetof(driver::TickRecord, fault)) <=
              static_cast<unsigned>(driver::kLastFault) &&
          byte_at(offsetof(driver::TickRecord, link)) <=
@@ -35,34 +35,10 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, home_needed)) <= 1;
 }
 
-/// Takes bytes off the front of what the reading process returned, which is not trusted.
-class Parcel {
- public:
-  explicit Parcel(std::span<const std::byte> bytes) : left_(bytes) {}
-
-  /// Returns false if there are fewer bytes.
-  bool take(void* into, std::size_t size) {
-    if (left_.size() < size) return false;
-    std::memcpy(into, left_.data(), size);
-    left_ = left_.subspan(size);
-    return true;
-  }
-  bool take(std::string& text) {
-    std::uint64_t length = 0;
-    if (!take(&length, sizeof length) || length > left_.size()) return false;
-    text.assign(reinterpret_cast<const char*>(left_.data()), length);
-    left_ = left_.subspan(length);
-    return true;
-  }
-  std::span<const std::byte> left() const { return left_; }
-
- private:
-  std::span<const std::byte> left_;
-};
-
-bool take_info(Parcel& parcel, RecordingInfo& info) {
+/// Takes the texts of a recording; false if they are not all there.
+bool take_info(driver::ApartReader& in, RecordingInfo& info) {
   for (const RecordingText& text : kRecordingTexts) {
-    if (!parcel.take(info.*text.text)) return false;
+    if (!in.take_array(info.*text.text)) return false;
     if (text.is_name) info.*text.text = driver::printable_name(info.*text.text);
   }
   return true;
@@ -113,11 +89,11 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
                  "); use a copy made before the damage, or record again.");
   };
   if (!read) return damaged(read.error().message);
-  Parcel parcel(read->bytes());
+  driver::ApartReader in(read->bytes());
   H5Head head;
-  if (!parcel.take(&head, sizeof head)) return damaged("breaks its reader");
+  if (!in.take(&head, sizeof head)) return damaged("breaks its reader");
   if (head.good != 1) {
-    const auto left = parcel.left();
+    const auto left = in.left();
     return wrong(std::string(reinterpret_cast<const char*>(left.data()), left.size()));
   }
   Recording recording;
@@ -128,7 +104,7 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   if (!(info.rate > 0) || !std::isfinite(info.rate)) {
     return wrong("what the recording is of cannot be read; the file is damaged.");
   }
-  if (!take_info(parcel, info) || !take_ticks(head, parcel.left(), recording)) {
+  if (!take_info(in, info) || !take_ticks(head, in.left(), recording)) {
     return damaged("breaks its reader");
   }
   const auto bad = std::find_if_not(recording.ticks.begin(), recording.ticks.end(), sound);

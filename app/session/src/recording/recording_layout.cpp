@@ -115,7 +115,7 @@ bool holds_recording(const std::filesystem::path& path) {
 }
 
 /// Returns whether an existing file is a recording; an HDF5 file of another program is not. HDF5
-/// may crash on a damaged file, so it looks at the file in a process of its own.
+/// may crash on a damaged file, so it looks at the file in a separate process.
 bool is_recording(const std::filesystem::path& path) {
   if (!driver::is_regular(path)) return false;
   const std::lock_guard library(hdf5_mutex());

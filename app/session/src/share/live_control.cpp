@@ -36,7 +36,7 @@ driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) n
   if (real_time_) {
     const double way = state.dt / kFade;
     gain_ = std::clamp(gain_ + (paused_ ? -way : way), 0.0, 1.0);
-    if (gain_ < 1) command.f_T_W *= gain_;
+    if (gain_ < 1) scale(command, gain_);
     change_.gain = gain_;
   }
   return command;

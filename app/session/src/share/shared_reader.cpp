@@ -292,9 +292,9 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   for (float& x : record.gimbal) x = std::isfinite(x) ? x : 0;
   if (!std::isfinite(record.gripper)) record.gripper = 0;
   if (!std::isfinite(record.depth)) record.depth = 0;
-  const bool known = record.stage <= driver::DeviceStage::kFault &&
-                     record.fault <= driver::kLastFault && record.link <= driver::kLastLinkState &&
-                     record.object >= -1 && record.object < static_cast<int>(scene_.objects.size());
+  const bool known = record.stage <= driver::kLastStage && record.fault <= driver::kLastFault &&
+                     record.link <= driver::kLastLinkState && record.object >= -1 &&
+                     record.object < static_cast<int>(scene_.objects.size());
   if (!known) ++rejected_;
   return known;
 }

@@ -20,6 +20,7 @@ AccuracyAxis profile_rate_axis();
 AccuracyAxis deformable_axis();
 AccuracyAxis modes_axis();
 AccuracyAxis rings_axis();
+AccuracyAxis dent_speed_axis();
 AccuracyAxis simulator_axis();
 AccuracyAxis simulator_speed_axis();
 AccuracyAxis simulator_smooth_axis();

@@ -19,6 +19,10 @@ class Clock {
   /// Returns at `time_ns` or later; at once if that time has passed.
   /// Real-time: safe; waits no longer than asked, plus the kernel's wake-up delay.
   virtual void sleep_until_ns(std::int64_t time_ns) noexcept = 0;
+
+  /// Returns how long the computer has been suspended since the clock was made, ns; 0 for a clock
+  /// that cannot tell. The times of `now_ns` include it. Real-time: safe.
+  virtual std::int64_t asleep_ns() const noexcept { return 0; }
 };
 
 /// Time that passes only when somebody waits for it: every run is repeatable to the bit, and
@@ -34,8 +38,9 @@ class VirtualClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-/// CLOCK_MONOTONIC, counted from the clock's construction: sleeps to shortly before the wanted
-/// time, then spins.
+/// CLOCK_BOOTTIME, counted from the clock's construction: sleeps to shortly before the wanted
+/// time, then spins. It goes on while the computer is suspended, as CLOCK_MONOTONIC does not, so
+/// that a loop sees the time that it missed. Where the kernel cannot sleep by it, CLOCK_MONOTONIC.
 ///
 /// The spin buys a median wake-up error below 1 us instead of tens of us [PHYSICS 5] and must
 /// stay short: the kernel throttles a SCHED_FIFO thread that keeps a core busy (950 ms of every
@@ -49,10 +54,13 @@ class WallClock final : public Clock {
 
   std::int64_t now_ns() const noexcept override;
   void sleep_until_ns(std::int64_t time_ns) noexcept override;
+  std::int64_t asleep_ns() const noexcept override;
 
  private:
+  int id_;  // of the kernel's clock
   std::int64_t spin_ns_;
-  std::int64_t start_ns_;  // CLOCK_MONOTONIC at construction
+  std::int64_t start_ns_;  // of that clock at construction
+  std::int64_t ahead_ns_;  // CLOCK_BOOTTIME before CLOCK_MONOTONIC at construction
 };
 
 }  // namespace thimble::driver

@@ -11,10 +11,12 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/heat_guard.h"
+#include "thimble/driver/hold_to_run.h"
 #include "thimble/driver/motion_watch.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/tick_record.h"
+#include "thimble/driver/workspace_walls.h"
 
 namespace thimble::driver {
 
@@ -32,9 +34,14 @@ struct DeviceSettings {
   double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
   std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
                                                ///< reports of a full-speed USB arm; chosen).
+  WallSettings walls{};                        ///< Around the workspace; none: no end.
+  HoldToRun hold{};                            ///< What must be held for a force; none: nothing.
+  /// No motor turns behind the link: a study or a test that simulates the arm. Then `limits` may be
+  /// so wide that nothing is felt of them.
+  bool no_motors = false;
 
-  /// Fails if a limit is not a positive finite number or protects nobody (GateLimits). Real-time:
-  /// never from the servo thread.
+  /// Fails if a limit is not a positive finite number or protects nobody (GateLimits), and if the
+  /// base is not placed by a rotation and a position. Real-time: never from the servo thread.
   Result<void> check() const;
 };
 
@@ -152,6 +159,19 @@ class Device {
                             std::memory_order_release);
   }
 
+  /// Lets the enabling input that the caller watches (HoldToRun::by_caller) count as held up to a
+  /// time of the loop's clock, ns: while it is held the caller says so again and again. From any
+  /// thread. Real-time: safe.
+  void hold_until(std::int64_t time_ns) noexcept { enabling_.hold_until(time_ns); }
+
+  /// Makes the fault that follows a sleep of the computer (Clock::asleep_ns): no force until the
+  /// device is activated again, and the counts are doubted, for a board may have lost its power.
+  /// Real-time: safe.
+  void wake_from_sleep() noexcept {
+    gate_.trip(Fault::kSuspended);
+    doubt_counts();
+  }
+
   /// Ends `home_needed`: the caller has seen the arm in its home pose. Real-time: safe.
   void confirm_home() noexcept { home_needed_ = false; }
 
@@ -175,6 +195,8 @@ class Device {
   /// Counts what the gate did. Real-time: safe.
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
   const SafetyGate& gate() const noexcept { return gate_; }  ///< Shows the gate. Real-time: safe.
+  /// Returns the settings that it was opened with. Real-time: safe.
+  const DeviceSettings& settings() const noexcept { return settings_; }
   /// Returns the thermal model of its motors. Real-time: safe.
   const HeatGuard& heat() const noexcept { return heat_; }
   /// Returns what the arm tells and how it is driven. Real-time: safe.
@@ -199,7 +221,17 @@ class Device {
   bool zero_taken() const noexcept { return known_to_stand_ && f_sent_W_.isZero(0); }
   void lose() noexcept;
   void watch() noexcept;
-  GatedForce pass_guarded(const ForceCommand& command) noexcept;
+  bool wait_for_hold() noexcept;
+  void stop_at_walls(const ForceCommand& command) noexcept;
+  void pass_on(const ForceCommand& command, double held) noexcept;
+  void forget_velocity() noexcept;
+  /// Returns the velocity that the gate goes by, m/s: whoever reads the arm may smooth his own.
+  const Eigen::Vector3d& v_gate_W() const noexcept {
+    return own_velocity_ != nullptr ? v_own_W_ : state_.v_WT;
+  }
+  void book_power() noexcept;
+  GatedForce pass_program(const ForceCommand& command, double held) noexcept;
+  GatedForce pass_guarded(const ForceCommand& command, double held) noexcept;
   void book(const LinkWrite& sent, const GatedForce& force) noexcept;
   const ArmSample& sample() const noexcept { return samples_[newest_]; }
 
@@ -213,7 +245,19 @@ class Device {
   MotionWatch motion_;
   HeatGuard heat_;
   std::unique_ptr<WorkAccount> work_;  // for the energy stage
+  // Of the tip when the power was booked last, and whether that is known.
+  Eigen::Vector3d p_power_WT_{0, 0, 0};
+  bool placed_ = false;
+  // Since forces are let through: a program asked for one; that, or storages were named.
+  bool programs_ = false;
+  bool explained_ = false;
+
   std::unique_ptr<VelocityEstimator> velocity_;
+  std::unique_ptr<VelocityEstimator>
+      own_velocity_;                  // where the other is slower than the gate may be
+  Eigen::Vector3d v_own_W_{0, 0, 0};  // m/s, by it
+  WorkspaceWalls walls_;
+  EnablingInput enabling_;
   WireCounters wire_;
   // One holds what is believed, the other takes the next report.
   std::array<ArmSample, 2> samples_;
@@ -226,6 +270,7 @@ class Device {
   bool guarded_;                     // an energy stage or a heat guard is named
   bool extras_;                      // the arm tells more, or less, than joints and counts
   bool active_ = false;
+  bool waiting_ = false;  // for the enabling input
   bool started_ = false;  // a tick has been read
   bool lost_ = false;
   bool jumped_ = false;          // the newest report was dropped for a jump

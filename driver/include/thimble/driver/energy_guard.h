@@ -27,6 +27,10 @@ struct EnergyGuardSettings {
   /// is not damped, and what is above it only by the rest. 0: everything is damped, and each count
   /// is a jolt of damping times step over period (0.6 N were seen).
   double speed_floor = 0;
+  /// Damping that arm and hand have for sure, N s/m. It pays for what a force that is held for a
+  /// tick, and late, gives beyond the potential that it is the gradient of. Counts only in ticks in
+  /// which a storage is named or a program asks for a force.
+  double dissipation = 0;
   double slope = 0;     ///< c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
   int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold, 0 to kDelayMost.
   static constexpr int kDelayMost = 15;  ///< Most ticks of delay that it can count.
@@ -40,6 +44,13 @@ struct EnergyFlow {
   /// What the springs that are pressed hold now, J: the hand's, and to be given back. It only moves
   /// the end of the credit; a wrong one gives nobody energy that he did not bring.
   double held = 0;
+  /// Change of the energy in the law's storages (ForceCommand::stored) since the tick before, J.
+  double stored_change = 0;
+  /// What arm and hand have taken from the motion by their own damping, J: settings' dissipation.
+  double dissipated = 0;
+  /// Part of the force that is asked for now that a program asked for (ForceCommand), N; its work
+  /// is not part of `work`.
+  Eigen::Vector3d f_program_W{0, 0, 0};
 };
 
 /// Books the energy that the arm took from the hand and finds the damping that gets back what went
@@ -60,6 +71,19 @@ class PassivityObserver {
 
   /// Books `work` done on the hand, J. Credit ends at the reservoir and what springs `held` beyond.
   void book(double work, double held = 0) noexcept;
+  /// Books a tick of a law that has storages. A fall of the stored energy pays for work on the
+  /// hand; a rise is paid from what the hand gave in this tick, and from nothing else: what a
+  /// storage gets otherwise (another hand, a force that the soft start holds back) is its own.
+  ///
+  /// So for any two ticks a < b, with S the stored energy, D what was dissipated, and P the rises
+  /// that no hand paid:
+  ///
+  ///     work(a, b) <= S_a - S_b + P(a, b) + D(a, b) + (E_a - E_b),
+  ///
+  /// where E_a is at most the reservoir (and what springs hold), and E_b at least minus
+  /// (allowance + 2 onset), where no force of the law is left that could give more, but for the
+  /// tick and the delay until then.
+  void book(const EnergyFlow& flow) noexcept;
 
   /// Finds the damping for the tip's velocity (m/s): -alpha v, N, with alpha the least that pays
   /// the debt within a tick of `dt` (s), and never above m / (T (1 + 2 delay)): a damper on a mass

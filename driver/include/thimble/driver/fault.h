@@ -21,10 +21,12 @@ enum class Fault : std::uint8_t {
   kCountsUnchanged,   ///< No encoder counted while a force was held (motion_watch.h).
   kOtherArm,          ///< Another arm of the same run came to a fault.
   kCountsJumped,      ///< The position jumped while no report came (Device::home_needed).
+  kSuspended,         ///< The computer slept (Clock::asleep_ns).
+  kOutsideWorkspace,  ///< The tip passed the walls of its workspace (workspace_walls.h).
 };
 
 /// The last of the faults: what is beyond it in a file or in shared memory is damaged.
-inline constexpr Fault kLastFault = Fault::kCountsJumped;
+inline constexpr Fault kLastFault = Fault::kOutsideWorkspace;
 
 /// Returns what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.

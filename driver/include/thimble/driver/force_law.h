@@ -24,7 +24,23 @@ struct TouchInfo {
 struct ForceCommand {
   Eigen::Vector3d f_T_W{0, 0, 0};  ///< Force that the arm shall exert on the hand, in the world, N.
   TouchInfo touch;                 ///< What the force was made of.
+  /// Energy that the law's storages hold now and may give to the hand, J: the potential of fields,
+  /// the motion and height of bodies. Only its changes count. The springs of touched surfaces are
+  /// not part of it: the gate finds their energy from force and depth. A law without storages
+  /// leaves it 0.
+  double stored = 0;
+  /// Part of `f_T_W` whose storage is not known, because a program outside of the scene asked for
+  /// it, N. The gate's energy stage leaves it alone; growing oscillations of it are stopped.
+  Eigen::Vector3d f_program_W{0, 0, 0};
 };
+
+/// Lets a command ask for a share (0 to 1) of its force. Its storages hold as much less for the
+/// hand. Real-time: safe.
+inline void scale(ForceCommand& command, double share) noexcept {
+  command.f_T_W *= share;
+  command.f_program_W *= share;
+  command.stored *= share;
+}
 
 /// Refers to a force law: any object callable as `ForceCommand law(const DeviceState&) noexcept`.
 ///

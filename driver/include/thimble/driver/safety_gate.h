@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "thimble/driver/energy_guard.h"
 #include "thimble/driver/fault.h"
+#include "thimble/driver/program_watch.h"
 
 namespace thimble::driver {
 
@@ -38,6 +41,11 @@ struct GateLimits {
   /// Longest gap that is no fault, ns [chosen: twice the longest watchdog of a board, 0.5 s of the
   /// mbed one (woody_report.h)].
   static constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
+  /// Largest force, N [chosen: twenty times what a desk-top arm pushes; a slipped decimal point is
+  /// caught].
+  static constexpr double kForceMost = 100;
+  /// Largest speed, m/s [chosen: twice what a hand reaches in a throw M].
+  static constexpr double kSpeedMost = 20;
 
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force goes off and stays off, m/s.
@@ -50,21 +58,33 @@ struct GateLimits {
   double reopen = 0.04;
   std::int64_t stall_ns = 0;     ///< Gap between ticks after which the limit opens anew, ns.
   std::int64_t watchdog_ns = 0;  ///< Gap after which the arm's own watchdog has fired: a fault, ns.
+  /// Mean power on the hand above which the force is lowered, W; it is gone at `kPowerFade` times
+  /// that. 0: not limited.
+  double power_max = 0;
+  double power_time = 2;  ///< Time constant of that mean, s.
+  /// Mean power at which no force is left, over `power_max` [chosen: soft, and near].
+  static constexpr double kPowerFade = 1.2;
 };
 
 /// Counts the ticks in which each stage of the gate changed the force.
 struct GateCounters {
-  std::uint64_t limited = 0;       ///< Cut to `force_max`.
-  std::uint64_t rise_limited = 0;  ///< Held back by `rise_max`, in length or direction.
-  std::uint64_t soft_started = 0;  ///< Cut by the soft start.
-  std::uint64_t stalls = 0;        ///< Gaps after which the limit opened anew.
-  std::uint64_t damped = 0;        ///< Damped by the passivity controller.
-  std::uint64_t bounded = 0;       ///< Cut by the energy bound.
-  double energy_least = 0;         ///< Lowest energy that the observer saw, J; never above 0.
+  std::uint64_t limited = 0;         ///< Cut to `force_max`.
+  std::uint64_t rise_limited = 0;    ///< Held back by `rise_max`, in length or direction.
+  std::uint64_t soft_started = 0;    ///< Cut by the soft start.
+  std::uint64_t stalls = 0;          ///< Gaps after which the limit opened anew.
+  std::uint64_t damped = 0;          ///< Damped by the passivity controller.
+  std::uint64_t bounded = 0;         ///< Cut by the energy bound.
+  std::uint64_t power_limited = 0;   ///< Lowered because the mean power was at its limit.
+  std::uint64_t calmed = 0;          ///< A program's part lowered after an oscillation.
+  std::uint64_t oscillations = 0;    ///< Growing oscillations of a program's force; not ticks.
+  double oscillation_frequency = 0;  ///< Of the last of them, Hz.
+  double power_max = 0;              ///< Largest mean power on the hand, W.
+  double energy_least = 0;           ///< Lowest energy that the observer saw, J; never above 0.
 };
 
-/// Stands between every force law and the motors: finite -> speed limit -> time -> the arm's limit
-/// -> soft start -> energy stage, if one is named -> rise limit.
+/// Stands between every force law and the motors: a program's part without growing oscillations ->
+/// finite -> speed limit -> time -> the arm's limit -> power limit -> soft start -> energy stage,
+/// if one is named -> rise limit.
 ///
 /// The rise limit comes last, so that it holds for whatever the energy stage adds. It is one-sided:
 /// a limit on the fall as well would turn a passive wall into an active one (restitution up to 2.7)
@@ -94,6 +114,31 @@ class SafetyGate {
   GatedForce pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt,
                           const EnergyFlow& flow) noexcept;
 
+  /// Begins the soft start again, from no force, and keeps a fault.
+  void close() noexcept;
+
+  /// Lets a tick pass, in which the force that was sent did `work` (J) on the hand in `dt` (s): for
+  /// the mean power. Before `pass` or `pass_guarded`.
+  void book_power(double work, double dt) noexcept {
+    // Written so that NaN is no power.
+    if (!(dt > 0 && std::abs(work) < HUGE_VAL)) return;
+    power_ += (work - power_ * std::min(dt, limits_.power_time)) / limits_.power_time;
+    if (power_ > counters_.power_max) counters_.power_max = power_;
+  }
+
+  /// Follows a program's part of the force through a tick, and returns the share (0 to 1) of it
+  /// that may be asked for: less than 1 after an oscillation that grew (ProgramWatch).
+  /// `f_program_W`: asked for now, N; `p_WT`: the tip, m; both in the world. Before `pass` or
+  /// `pass_guarded`.
+  double program_share(const Eigen::Vector3d& f_program_W, const Eigen::Vector3d& p_WT,
+                       double dt) noexcept;
+  /// Returns the program's part of the force that passed last, N in the world: a share of what
+  /// EnergyFlow named.
+  const Eigen::Vector3d& f_program_W() const noexcept { return f_program_W_; }
+  /// Returns what is known of the program's oscillations.
+  const ProgramWatch& program() const noexcept { return program_; }
+  double power() const noexcept { return power_; }  ///< Returns the mean power on the hand, W.
+
   /// Counts the next rise from `f_W` (N, in the world): the arm did not take what passed last, and
   /// this is the force that stands. A force that is not finite counts as none.
   void resume_from(const Eigen::Vector3d& f_W) noexcept;
@@ -113,6 +158,7 @@ class SafetyGate {
   Eigen::Vector3d limit_length(const Eigen::Vector3d& f_T_W, double magnitude) noexcept;
   GatedForce limit_change(const Eigen::Vector3d& f_W, const Eigen::Vector3d& v_WT) noexcept;
   double force_open() const noexcept;
+  Eigen::Vector3d within_open(const Eigen::Vector3d& f_W) const noexcept;
 
   GateLimits limits_;
   GateCounters counters_;
@@ -123,6 +169,10 @@ class SafetyGate {
   Eigen::Vector3d f_last_W_{0, 0, 0};  // N
   EnergyGuardSettings energy_;
   PassivityObserver observer_;
+  double power_ = 0;                      // W
+  double power_limit_;                    // W, or infinite
+  Eigen::Vector3d f_program_W_{0, 0, 0};  // N, of f_last_W_
+  ProgramWatch program_;
 };
 
 }  // namespace thimble::driver

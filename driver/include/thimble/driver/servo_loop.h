@@ -76,15 +76,17 @@ class ServoLoop {
   ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
             const ServoSettings& settings) noexcept;
 
-  /// Runs the next tick. Returns why there is none any more, once the periods are used up, `stop`
-  /// is set, or this tick ended in a fault; then the device has been left idle (or in fault) with
-  /// zero force sent, insistently if the arm did not take it (`Device::insist_on_zero`), and later
-  /// calls do nothing but tell the same. Real-time: safe; waits until the tick is due.
+  /// Runs the next tick; one that the computer slept through is the fault kSuspended. Returns why
+  /// there is none any more, once the periods are used up, `stop` is set, or this tick ended in a
+  /// fault; then the device has been left idle (or in fault) with zero force sent, insistently if
+  /// the arm did not take it (`Device::insist_on_zero`), and later calls do nothing but tell the
+  /// same. Real-time: safe; waits until the tick is due.
   std::optional<ServoEnd> tick(const std::atomic<bool>& stop) noexcept;
 
  private:
   std::optional<ServoEnd> end_with(ServoEnd end) noexcept;
   void prepare() noexcept;
+  void look_for_sleep() noexcept;
 
   Device& device_;
   Clock& clock_;
@@ -93,6 +95,7 @@ class ServoLoop {
   ServoSettings settings_;
   std::int64_t due_ns_;
   std::int64_t end_ns_;
+  std::int64_t asleep_ns_;  // of the clock, known so far
   std::optional<ServoEnd> end_;
 };
 

@@ -14,10 +14,14 @@ struct ForceCommand;
 
 /// Where a device is in its life.
 enum class DeviceStage : std::uint8_t {
-  kIdle,    ///< Reports are read, zero force is sent.
-  kActive,  ///< Forces are sent through the gate.
-  kFault,   ///< Zero force, latched; see the fault.
+  kIdle,     ///< Reports are read, zero force is sent.
+  kActive,   ///< Forces are sent through the gate.
+  kFault,    ///< Zero force, latched; see the fault.
+  kWaiting,  ///< Zero force until the enabling input is held (HoldToRun).
 };
+
+/// The last of the stages; a larger value in a file or in shared memory is damaged.
+inline constexpr DeviceStage kLastStage = DeviceStage::kWaiting;
 
 /// State of the link to an arm. It is independent of the fault: an arm whose force is off for
 /// another reason can be pulled, and a lost arm can come back while its fault is still latched.

@@ -26,6 +26,8 @@ class SceneTouch {
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       const driver::ForceCommand one = objects_[i]->update(state);
       sum.f_T_W += one.f_T_W;
+      sum.stored += one.stored;
+      sum.f_program_W += one.f_program_W;
       // A contact of depth 0, over the groove of a texture, is one as well.
       if (one.touch.in_contact && !(sum.touch.in_contact && one.touch.depth <= sum.touch.depth)) {
         sum.touch = one.touch;

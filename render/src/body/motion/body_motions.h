@@ -52,6 +52,10 @@ class TranslatingMotion {
     const double far = body_.p_W().norm();
     if (far > settings_.reach) body_.keep_above(-body_.p_W() / far, -settings_.reach);
   }
+  /// Returns the energy of motion and height, J (see BodyMotion). Real-time: safe.
+  double energy() const noexcept {
+    return body_.kinetic_energy() - settings_.mass * settings_.gravity_W.dot(body_.p_W());
+  }
   const TranslatingBody& body() const noexcept { return body_; }
 
  private:
@@ -99,6 +103,8 @@ class RigidMotion {
     R_WB_ = (body_.q_WB() * first.q_WB.conjugate()).normalized().toRotationMatrix();
     p_WB_ = body_.p_WC() - R_WB_ * first.p_WC;
   }
+  /// Returns the energy of motion and height, J (see BodyMotion). Real-time: safe.
+  double energy() const noexcept { return body_.kinetic_energy() + body_.potential_energy(); }
   const RigidBody& body() const noexcept { return body_; }
   /// Returns the body, to set it in motion before the first tick.
   RigidBody& body() noexcept { return body_; }

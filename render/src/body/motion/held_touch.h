@@ -41,6 +41,7 @@ class HeldTouch final : public ObjectTouch {
       held_ = true;
     }
     if (known) command = pull(motion, state);
+    command.stored = motion.energy();
     motion.step(step_);
     return command;
   }

@@ -25,7 +25,8 @@ namespace thimble::render {
 /// `frame_after` is the frame to which the present velocity leads within a time (s), `velocity_at`
 /// is the velocity of a point of the body (m/s, our time), `gain_at` the velocity that it gains per
 /// impulse given there (our time, m/s per N s), `push` takes a force for the next step, `step`
-/// moves on by s of our time.
+/// moves on by s of our time, `energy` is that of its motion and height (J), which changes by the
+/// work of what pushes, and falls where something is lost.
 template <class Motion>
 concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vector3d& v) {
   { now.R_WB() }
@@ -42,6 +43,8 @@ concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vec
   noexcept;
   { motion.step(1e-3) }
   noexcept;
+  { now.energy() }
+  noexcept->std::same_as<double>;
 };
 
 /// The force law of an object that moves: the tip is taken into the frame B of the object's
@@ -71,6 +74,7 @@ class MovingTouch final : public ObjectTouch {
     driver::ForceCommand command = surface_->update(in_B);
     count_lost(command.touch.in_contact, in_B.p_WT);
     command.f_T_W = share(R_WB * command.f_T_W, state.p_WT);
+    command.stored += motion_.energy();
     if (command.touch.in_contact) {
       command.touch.p_WP = p_WB + R_WB * command.touch.p_WP;
       command.touch.n_W = R_WB * command.touch.n_W;

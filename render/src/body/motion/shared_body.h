@@ -76,6 +76,7 @@ class SharedMotion {
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept {
     body_->motion().push(f_W, p_W);
   }
+  double energy() const noexcept { return body_->motion().energy(); }
   void step(double) noexcept {}
 
  private:

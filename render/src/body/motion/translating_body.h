@@ -79,6 +79,8 @@ class TranslatingBody {
   const Eigen::Vector3d& p_W() const noexcept { return p_W_; }
   const Eigen::Vector3d& v_W() const noexcept { return v_W_; }
   Eigen::Vector3d momentum_W() const noexcept { return mass_ * v_W_; }
+  /// Returns the energy of motion, J: what work at our velocity put in. Real-time: safe.
+  double kinetic_energy() const noexcept { return mass_ / 2 * v_W_.squaredNorm(); }
 
  private:
   // Returns the change of velocity (m/s) by which a floor stops `v_W` to an approach of `allowed`

@@ -28,6 +28,7 @@ class ShapedTouch final : public ObjectTouch {
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
     driver::ForceCommand command = stages_(state);
+    if (const SnapShape* snap = shape_.snap()) command.stored = snap->energy();
     if (was_touching_ && !command.touch.in_contact && inside(state.p_WT)) ++lost_;
     was_touching_ = command.touch.in_contact;
     const auto moves = shape_.follow(stages_.contact().mesh(), command.touch);

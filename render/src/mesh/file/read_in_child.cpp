@@ -1,13 +1,11 @@
 #include "mesh/file/read_in_child.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdint>
-#include <cstring>
+#include <functional>
 #include <sstream>
-#include <utility>
-#include <vector>
+#include <string>
 
 namespace thimble::render {
 namespace {
@@ -17,56 +15,30 @@ constexpr std::size_t kBytesPerSecond = 500'000;
 constexpr std::size_t kMemoryMin = std::size_t{1} << 30;
 constexpr std::size_t kMemoryPerByte = 200;
 
-// What the reading process hands over: a sentence that says why not, or what the file says and a
+// Writes a sentence that says why there is no mesh, or an empty one, what the file says, and the
 // mesh.
-class Parcel {
- public:
-  explicit Parcel(std::string bytes = {}) : bytes_(std::move(bytes)) {}
-
-  template <class Item>
-  void put(const Item* items, std::size_t count) {
-    const std::uint64_t size = count;
-    bytes_.append(reinterpret_cast<const char*>(&size), sizeof size);
-    bytes_.append(reinterpret_cast<const char*>(items), count * sizeof(Item));
-  }
-  void put(const std::string& text) { put(text.data(), text.size()); }
-
-  template <class Item>
-  std::vector<Item> take() {
-    std::uint64_t size = 0;
-    std::memcpy(&size, bytes_.data() + at_, sizeof size);
-    at_ += sizeof size;
-    std::vector<Item> items(size);
-    if (size > 0)
-      std::memcpy(static_cast<void*>(items.data()), bytes_.data() + at_, size * sizeof(Item));
-    at_ += size * sizeof(Item);
-    return items;
-  }
-  std::string take_text() {
-    const std::vector<char> text = take<char>();
-    return {text.begin(), text.end()};
-  }
-
-  std::string& bytes() { return bytes_; }
-
- private:
-  std::string bytes_;
-  std::size_t at_ = 0;
-};
-
-std::string parcel_of(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& info) {
-  Parcel parcel;
-  parcel.put(mesh ? std::string() : mesh.error().message);
-  if (!mesh) return parcel.bytes();
+void write_mesh(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& info,
+                driver::ApartWriter& out) {
+  const std::string error = mesh ? std::string() : mesh.error().message;
+  out.write_array(error.data(), error.size());
+  if (!mesh) return;
   std::string lines;
   for (const std::string& note : info.notes) lines += note + '\n';
-  parcel.put(lines);
+  out.write_array(lines.data(), lines.size());
   const double unit = info.unit.value_or(0);
-  parcel.put(&unit, 1);
-  parcel.put(&info.up, 1);
-  parcel.put(mesh->vertices.data(), mesh->vertices.size());
-  parcel.put(mesh->triangles.data(), mesh->triangles.size());
-  return std::move(parcel.bytes());
+  out.write(&unit, sizeof unit);
+  out.write(&info.up, sizeof info.up);
+  out.write_array(mesh->vertices.data(), mesh->vertices.size());
+  out.write_array(mesh->triangles.data(), mesh->triangles.size());
+}
+
+// Returns whether each triangle names vertices that exist.
+bool has_its_vertices(const TriangleMesh& mesh) {
+  const auto count = static_cast<std::int32_t>(mesh.vertices.size());
+  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [count](const auto& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(),
+                       [count](std::int32_t vertex) { return vertex >= 0 && vertex < count; });
+  });
 }
 
 }  // namespace
@@ -85,23 +57,27 @@ driver::Error unreadable(const std::string& kind, const std::string& reason) {
 
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
                                            const driver::ApartLimits& limits, MeshFileInfo& info) {
-  auto done = driver::run_apart(
-      [&read] {
-        MeshFileInfo found;
-        const auto mesh = read(found);
-        return parcel_of(mesh, found);
-      },
-      limits);
+  const std::function<void(driver::ApartWriter&)> work = [&read](driver::ApartWriter& out) {
+    MeshFileInfo found;
+    const auto mesh = read(found);
+    write_mesh(mesh, found, out);
+  };
+  const auto done = driver::run_apart(work, limits);
   if (!done) return unreadable(kind, "it " + done.error().message);
-  Parcel parcel(std::move(done).value());
-  if (const std::string error = parcel.take_text(); !error.empty()) return driver::Error{error};
-  std::istringstream lines(parcel.take_text());
-  for (std::string line; std::getline(lines, line);) info.notes.push_back(line);
-  if (const double unit = parcel.take<double>().at(0); unit > 0) info.unit = unit;
-  info.up = parcel.take<char>().at(0);
+  driver::ApartReader in(done->bytes());
+  const driver::Error broken = unreadable(kind, "it breaks its reader");
+  std::string error, notes;
+  double unit = 0;
   TriangleMesh mesh;
-  mesh.vertices = parcel.take<Eigen::Vector3d>();
-  mesh.triangles = parcel.take<std::array<std::int32_t, 3>>();
+  if (!in.take_array(error)) return broken;
+  if (!error.empty()) return driver::Error{error};
+  if (!in.take_array(notes) || !in.take(&unit, sizeof unit) || !in.take(&info.up, sizeof info.up) ||
+      !in.take_array(mesh.vertices) || !in.take_array(mesh.triangles) || !has_its_vertices(mesh)) {
+    return broken;
+  }
+  std::istringstream lines(notes);
+  for (std::string line; std::getline(lines, line);) info.notes.push_back(line);
+  if (unit > 0) info.unit = unit;
   return mesh;
 }
 

@@ -22,7 +22,7 @@ driver::ApartLimits limits_of(std::size_t bytes);
 /// ...)".
 driver::Error unreadable(const std::string& kind, const std::string& reason);
 
-/// Runs a reader in a process of its own with limits of time and memory. The error is the reader's,
+/// Runs a reader in a separate process with limits of time and memory. The error is the reader's,
 /// or `unreadable` where the process came to its limits or crashed. Real-time: never from the servo
 /// thread.
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,

@@ -18,7 +18,6 @@
 #include "mesh/file/package/xml_tags.h"
 #include "mesh/file/package/zip_archive.h"
 #include "mesh/file/read_in_child.h"
-#include "system/run_apart.h"
 
 namespace thimble::render {
 namespace {

@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Reads the bytes of a mesh file by the Assimp library, in a process of its own. `ending` is its
+/// Reads the bytes of a mesh file by the Assimp library, in a separate process. `ending` is its
 /// kind: dae, amf (packed or not) or 3ds. Each part is where the file puts it. What the file says
 /// of itself is added to `info`, also where single precision is coarse. Not welded. The error is a
 /// sentence without the file's name. Real-time: never from the servo thread.

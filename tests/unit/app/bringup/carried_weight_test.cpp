@@ -72,6 +72,8 @@ class Seen final : public session::TickObserver {
  public:
   void take(const driver::TickRecord& record) noexcept override {
     lowest = std::min(lowest, record.p_WT[2]);
+    const auto& v = record.v_WT;
+    fastest = std::max(fastest, std::hypot(v[0], v[1], v[2]));
     highest = std::max(highest, record.p_WT[2]);
     const auto& f = record.f_sent_W;
     most = std::max(most, std::hypot(f[0], f[1], f[2]));
@@ -86,6 +88,7 @@ class Seen final : public session::TickObserver {
   }
 
   double lowest = 1, highest = -1;  // m
+  double fastest = 0;               // m/s
   double most = 0, wanted = 0;      // N
   std::optional<driver::TickRecord> first;
   driver::TickRecord last;
@@ -176,6 +179,13 @@ TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {
   EXPECT_DOUBLE_EQ(pushed.seen.wanted, 5 + kWeight);
   EXPECT_LE(pushed.seen.most, pushed.figures.force_limit + 0.01);  // currents are rounded
   EXPECT_GT(pushed.figures.gate.limited, 0U);
+}
+
+TEST(CarriedWeight, WrongOneDoesNotMakeAFreeTipRunAway) {
+  // Twenty times what the arm weighs; without the trial 3 m/s over 0.3 m.
+  const WholeRun wrong = run(20 * kWeight);
+  EXPECT_LT(wrong.seen.highest, 0.11);
+  EXPECT_LT(wrong.seen.fastest, 1.0);
 }
 
 TEST(CarriedWeight, IsGoneWithEveryOtherForceAfterAFault) {

@@ -112,6 +112,10 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
        [](const scene::ArmFile& arm) { return in_seconds(arm.limits.watchdog_ns); }},
       {"energy", "energy: passivity", "energy: bounding", "energy: none",
        [](const scene::ArmFile& arm) { return static_cast<double>(arm.energy.stage); }},
+      {"power_max", "power_max: 1 ", "power_max: 0.5 ", "power_max: 5 ",
+       [](const scene::ArmFile& arm) { return arm.limits.power_max; }},
+      {"power_time", "power_time: 2 ", "power_time: 1 ", "power_time: 10 ",
+       [](const scene::ArmFile& arm) { return arm.limits.power_time; }},
       {"energy_allowance", "energy: passivity", "energy: passivity\n  energy_allowance: 0.001",
        "energy: passivity\n  energy_allowance: 1",
        [](const scene::ArmFile& arm) {

@@ -19,6 +19,11 @@ TEST(NearestWord, IsFoundForEachKindOfSlip) {
   EXPECT_EQ(nearest_word("urn", kKnown), "run");            // two swapped
 }
 
+TEST(NearestWord, CapitalLettersAreNoMistake) {
+  EXPECT_EQ(nearest_word("RUN", kKnown), "run");
+  EXPECT_EQ(nearest_word("Stiffness", {"damping", "stiffness"}), "stiffness");
+}
+
 TEST(NearestWord, IsNoneForWordsThatAreUnlike) {
   EXPECT_FALSE(nearest_word("elephant", kKnown));
   EXPECT_FALSE(nearest_word("", kKnown));

@@ -71,6 +71,10 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   const auto lines = log();
   const std::vector<std::string> begin = {
       "info The arm is open: .* \\(sim\\) feels two_boxes at 1000 Hz in virtual time\\.",
+      "info Limits in force: 5 N, 3 m/s, rise 2000 N/s, soft start 0\\.3 s .*, energy stage .*, "
+      "walls "
+      "of 200 N/m from \\(-110, -110, -110\\) to \\(110, 110, 110\\) mm .*, enabling input: none, "
+      "feel check: simulated\\.",
       "info tick 0, 0\\.000 s: Forces are let through\\.",
       "debug tick 0, 0\\.000 s: The limit of the force opens\\.",
   };

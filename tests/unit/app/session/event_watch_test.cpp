@@ -313,5 +313,61 @@ TEST(EventWords, WarnOfWhatTheUserShouldLookAtWhileItLasts) {
   }
 }
 
+/// The event that a stage changed the force by so many percent.
+TickEvent changed(std::uint64_t tick, Activity activity, std::uint64_t percent) {
+  return {.tick = tick,
+          .time_ns = static_cast<std::int64_t>(tick) * kPeriod_ns,
+          .count = percent,
+          .kind = EventKind::kForceChanged,
+          .activity = activity};
+}
+
+TEST_F(EventWatchTest, SaysOnceWhichStageChangedAForce) {
+  record_.f_wanted_W = {0, 0, 2};
+  record_.f_sent_W = {0, 0, 1.5};
+  for (int i = 0; i < 200; ++i) {
+    ++counters_.of(Activity::kDamped);
+    tick();
+  }
+  EXPECT_EQ(events(), Events({began(0, Activity::kDamped)}));
+  for (int i = 0; i < 1000; ++i) {
+    ++counters_.of(Activity::kDamped);
+    tick();
+  }
+  EXPECT_EQ(events(), Events({changed(200, Activity::kDamped, 25)}));
+}
+
+TEST_F(EventWatchTest, SaysNothingOfAForceThatIsHardlyChanged) {
+  record_.f_wanted_W = {0, 0, 2};
+  record_.f_sent_W = {0, 0, 1.81};
+  for (int i = 0; i < 1000; ++i) {
+    ++counters_.of(Activity::kForceCut);
+    tick();
+  }
+  EXPECT_EQ(events(), Events({began(0, Activity::kForceCut)}));
+}
+
+TEST_F(EventWatchTest, CountsTheTimeOfAChangeFromItsLastGap) {
+  record_.f_wanted_W = {0, 0, 2};
+  record_.f_sent_W = {0, 0, 1};
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 150 != 0) ++counters_.of(Activity::kRiseCut);
+    tick();
+  }
+  for (const TickEvent& event : events()) EXPECT_NE(event.kind, EventKind::kForceChanged);
+}
+
+TEST(EventWords, NameTheStageThatChangedAForce) {
+  for (std::size_t i = 0; i < kActivities; ++i) {
+    const auto activity = static_cast<Activity>(i);
+    if (!changes_force(activity)) continue;
+    const TickEvent event = changed(7, activity, 30);
+    EXPECT_TRUE(is_notice(event));
+    const std::string words = words_of(event, {});
+    EXPECT_NE(words.find("30 %"), std::string::npos) << words;
+    EXPECT_EQ(words.find("A stage of the gate"), std::string::npos) << words;
+  }
+}
+
 }  // namespace
 }  // namespace thimble::session

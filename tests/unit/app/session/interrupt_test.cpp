@@ -34,7 +34,7 @@ TEST(Interrupt, ObeysAFurtherSignalOnceNothingIsAtStakeOrTheProgramHangs) {
   EXPECT_TRUE(scene::ends_at_once(2000 * kMs, true));
 }
 
-/// Runs `body` in a process of its own and returns how that ended: 0 to 99 its exit code, 100 + n
+/// Runs `body` in a separate process and returns how that ended: 0 to 99 its exit code, 100 + n
 /// by signal n.
 int outcome_of(const std::function<void()>& body) {
   const pid_t child = fork();

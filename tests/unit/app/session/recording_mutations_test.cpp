@@ -125,7 +125,7 @@ TEST(RecordingMutations, AreReadOrRefused) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet here, and damaged files ask for more memory than it can give";
 #endif
-  // Each file is read in a process of its own, which is the time that this test takes.
+  // Each file is read in a separate process, which is the time that this test takes.
   const int rounds = support::long_form() ? 2000 : 150;
   Mutator mutator(7364);
   ASSERT_GT(mutator.table_bytes(), 2000U);

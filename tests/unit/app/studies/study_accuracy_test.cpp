@@ -203,11 +203,25 @@ TEST(AccuracyAxes, ShadeDiagramsOfOneMeasureAtOneLimit) {
   EXPECT_GE(shared, 5);
 }
 
-TEST(AccuracyAxes, CountNothingAsAChoiceThatTheArmBrings) {
+TEST(AccuracyAxes, DentsAreRightDownToAThousandthOfARadian) {
+  const AccuracyAxis axis = axis_named("dent_speed");
+  for (const char* name : {"implicit", "implicit_20k"}) {
+    const AccuracyPoint& slowest = line_named(axis, name).points.back();
+    ASSERT_EQ(slowest.knob, 0.001);
+    // Implicit Euler loses w h / 2 of the swing for each radian; half a period has pi of them.
+    EXPECT_NEAR(slowest.error(), 100 * M_PI * slowest.knob / 2, 0.01) << name;
+  }
+  for (const char* name : {"trapezoid", "trapezoid_20k"}) {
+    EXPECT_LT(line_named(axis, name).points.back().error(), 1e-3) << name;
+  }
+}
+
+TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
-    const bool arms = axis.name.starts_with("encoder") || axis.name.starts_with("latency");
-    EXPECT_EQ(axis.given, arms) << axis.name;
+    const bool given = axis.name.starts_with("encoder") || axis.name.starts_with("latency") ||
+                       axis.name == "dent_speed";
+    EXPECT_EQ(axis.given, given) << axis.name;
   }
   AccuracyAxis axis = axis_named("encoder");
   axis.lines.resize(1);

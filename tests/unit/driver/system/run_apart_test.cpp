@@ -5,10 +5,12 @@
 #include <unistd.h>
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace thimble::driver {
 namespace {
@@ -19,6 +21,28 @@ TEST(RunApart, GivesWhatTheWorkGives) {
   ASSERT_TRUE(done.ok()) << done.error().message;
   EXPECT_TRUE(*done == much);
   EXPECT_EQ(*run_apart([] { return std::string(); }, {}), "");
+}
+
+TEST(ApartReader, TakesNoMoreThanIsThere) {
+  const auto written = run_apart(
+      [](ApartWriter& out) {
+        const double numbers[] = {1, 2, 3};
+        out.write_array(numbers, 3);
+        const std::uint64_t many = 1'000'000'000'000;  // claimed by work that went wrong
+        out.write(&many, sizeof many);
+        out.write("ab", 2);
+      },
+      {});
+  ASSERT_TRUE(written) << written.error().message;
+  ApartReader in(written->bytes());
+  std::vector<double> numbers;
+  ASSERT_TRUE(in.take_array(numbers));
+  EXPECT_EQ(numbers, (std::vector<double>{1, 2, 3}));
+  std::string text;
+  EXPECT_FALSE(in.take_array(text));
+  std::uint64_t number = 0;
+  EXPECT_FALSE(in.take(&number, sizeof number));
+  EXPECT_EQ(in.left().size(), 2U);
 }
 
 TEST(RunApart, SurvivesWorkThatCrashesHangsOrAsksForTooMuch) {

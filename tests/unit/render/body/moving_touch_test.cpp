@@ -69,6 +69,7 @@ struct Spy {
     return gain * impulse;
   }
   void push(const Vector3d& f, const Vector3d& p) noexcept { pushes->emplace_back(f, p); }
+  double energy() const noexcept { return 0; }
   void step(double) noexcept {}
 };
 

@@ -242,5 +242,54 @@ TEST(FieldTable, RefusesBadSettingsWithTheReason) {
   EXPECT_NE(mistakes("gravity", {{"mass", kNan}}, {}).find("mass"), std::string::npos);
 }
 
+/// Returns the largest difference of a field's force and its potential's slope at random places, N.
+template <class F>
+double worst_slope(const F& field) {
+  support::Random random(11);
+  double worst = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d p = random.in_box(0.03);
+    Vector3d slope;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      constexpr double kStep = 1e-6;
+      const Vector3d step = kStep * Vector3d::Unit(k);
+      slope[k] = (field.potential(at(p + step)) - field.potential(at(p - step))) / (2 * kStep);
+    }
+    worst = std::max(worst, (slope + field.force(at(p))).norm());
+  }
+  return worst;
+}
+
+TEST(Field, PotentialsHaveTheForceAsTheirSlope) {
+  Gravity::Settings weight;
+  weight.mass = 0.2;
+  EXPECT_LT(worst_slope(Gravity(weight, turned())), 1e-7);
+  PointCharges::Settings charges;
+  charges.charges = {{.p_O = {0.01, 0, 0}, .force = 2, .radius = 0.008},
+                     {.p_O = {-0.01, 0.01, 0}, .force = -1.5, .radius = 0.01}};
+  EXPECT_LT(worst_slope(PointCharges(charges, turned())), 1e-5);
+  MagneticSnap::Settings snap;
+  snap.targets = {
+      {.from_O = {0, 0, 0}, .to_O = {0.02, 0, 0}, .force = 2, .radius = 0.02},
+      {.from_O = {-0.01, 0.01, 0.01}, .to_O = {-0.01, 0.01, 0.01}, .force = 1, .radius = 0.03}};
+  EXPECT_LT(worst_slope(MagneticSnap(snap, turned())), 1e-5);
+}
+
+TEST(Field, NamesItsEnergyWithItsForce) {
+  Gravity::Settings weight;
+  weight.mass = 0.2;
+  const Gravity field(weight, EffectContext{});
+  FieldTouch<Gravity> touch(field);
+  const driver::ForceCommand command = touch.update(at({0, 0, 0.01}));
+  EXPECT_EQ(command.stored, field.potential(at({0, 0, 0.01})));
+  EXPECT_TRUE(command.f_program_W.isZero(0));
+}
+
+TEST(Field, OfAFunctionIsAProgramsForce) {
+  const auto touch =
+      field_of([](const driver::DeviceState&) noexcept { return Vector3d(0, 0, 1); });
+  EXPECT_EQ(touch->update(at({0, 0, 0})).f_program_W, Vector3d(0, 0, 1));
+}
+
 }  // namespace
 }  // namespace thimble::render

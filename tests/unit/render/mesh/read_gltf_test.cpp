@@ -174,7 +174,7 @@ TEST(Read3mf, PutsObjectsOfASecondModelInPlace) {
 std::string archive_of(const std::string& model) {
   const auto number = [](std::size_t value, int bytes) {
     std::string text;
-    for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
+    for (int i = 0; i < bytes; ++i, value >>= 8) text += static_cast<char>(value & 0xff);
     return text;
   };
   const std::string name = "3D/3dmodel.model";

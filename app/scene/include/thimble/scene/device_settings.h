@@ -9,7 +9,8 @@
 namespace thimble::scene {
 
 /// Returns what `driver::Device::open` needs to know of the arm of a file in a loop of `rate` (Hz):
-/// its place, the limits and the energy stage of its gate, what its motion is watched by, its heat.
+/// its place, the limits and the energy stage of its gate, what its motion is watched by, its heat,
+/// the walls around its workspace.
 /// A scene may name another energy stage. Real-time: never from the servo thread.
 driver::DeviceSettings device_settings(const ArmFile& arm, double rate,
                                        std::optional<driver::EnergyStage> stage = {});

@@ -118,7 +118,8 @@ struct SessionOptions {
   /// Who holds the session turns the knobs of a scene with one arm (Session::turn_knob). Not with
   /// viewers, who turn them themselves.
   bool knobs = false;
-  OpenLink open_link = {};  ///< of `real_arm`
+  OpenLink open_link = {};      ///< of `real_arm`
+  driver::HoldToRun hold = {};  ///< what must be held at each arm so that it gets a force
 };
 
 /// A setting of a scene's objects that can be turned while it is felt.
@@ -234,6 +235,9 @@ class Session {
   std::span<const driver::TickRecord> ticks(std::size_t arm = 0) const noexcept;
   /// Returns n where every n-th tick is kept: 1 up to a million ticks.
   std::uint64_t stride() const noexcept;
+  /// Returns how often the force that carries an arm's weight was taken away because the tip moved
+  /// with it (gravity compensation that is wrong, or a hand). Any thread.
+  std::uint64_t carry_withdrawn(std::size_t arm = 0) const noexcept;
   /// Returns what the ticks sum up to; of no tick if they are not kept. Not beside a running servo.
   const RunStatistics& statistics() const noexcept;
   /// Returns the figures of a run that is over, or of one that is stopped here. Looks through the

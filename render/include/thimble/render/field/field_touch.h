@@ -20,6 +20,18 @@ concept Field = requires(const F& field, const driver::DeviceState& state) {
   noexcept->std::convertible_to<Eigen::Vector3d>;
 };
 
+/// A field that is the gradient of a potential: `potential` gives its energy at the tip (J), with
+/// `force` = -grad of it. So the safety gate knows where its work comes from (EnergyFlow).
+template <class F>
+concept ConservativeField = Field<F> && requires(const F& field, const driver::DeviceState& state) {
+  { field.potential(state) }
+  noexcept->std::same_as<double>;
+};
+
+/// A field whose energy nobody knows, such as a function of a program.
+template <class F>
+concept UnknownField = Field<F> && F::kUnknownStorage;
+
 /// A field as an object of a scene. It has no inside and is never in contact.
 template <Field F>
 class FieldTouch final : public ObjectTouch {
@@ -27,7 +39,11 @@ class FieldTouch final : public ObjectTouch {
   explicit FieldTouch(F field) : field_(std::move(field)) {}
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
-    return {.f_T_W = field_.force(state), .touch = {}};
+    driver::ForceCommand command;
+    command.f_T_W = field_.force(state);
+    if constexpr (ConservativeField<F>) command.stored = field_.potential(state);
+    if constexpr (UnknownField<F>) command.f_program_W = command.f_T_W;
+    return command;
   }
   bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
 
@@ -44,6 +60,8 @@ template <class Function>
 requires std::is_nothrow_invocable_r_v<Eigen::Vector3d, const Function&, const driver::DeviceState&>
 class FunctionField {
  public:
+  static constexpr bool kUnknownStorage = true;
+
   explicit FunctionField(Function function) : function_(std::move(function)) {}
 
   Eigen::Vector3d force(const driver::DeviceState& state) const noexcept {

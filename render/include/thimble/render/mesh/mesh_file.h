@@ -39,7 +39,7 @@ struct MeshFileInfo {
 /// format, truncated, no triangles, a coordinate that is not a finite number or beyond 1e15 ("1mm",
 /// "1,250.5"), an index out of range, a part of the format that is not read (named), such as a
 /// required glTF extension. Memory grows with the file's size, not with the counts it promises.
-/// glTF, 3MF and what the Assimp library reads (DAE, AMF, 3DS) are read in a process of its own
+/// glTF, 3MF and what the Assimp library reads (DAE, AMF, 3DS) are read in a separate process
 /// with limits of time and memory, so that no file can crash or hang this one. Real-time: never
 /// from the servo thread.
 driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,

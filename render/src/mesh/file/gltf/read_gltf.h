@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// Reads the bytes of a glTF or GLB file of version 2 in a process of its own [Khronos, glTF 2.0].
+/// Reads the bytes of a glTF or GLB file of version 2 in a separate process [Khronos, glTF 2.0].
 /// `kind` is gltf or glb; `folder` is where the file is, which may name plain files in it and
 /// below. Nodes, instances (EXT_mesh_gpu_instancing), quantized and sparse positions and the
 /// weights of morph targets are read; bones, animations, lines and points are left out and

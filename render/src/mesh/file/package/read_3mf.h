@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// Reads the bytes of a 3MF file in double precision, in a process of its own [3MF core
+/// Reads the bytes of a 3MF file in double precision, in a separate process [3MF core
 /// specification 1.3, production extension 1.1]: objects and components of all its models, each
 /// where the build puts it. The unit is that of the first model. A required extension with a shape
 /// that is not read (beam lattices, slices, displacement ...) is refused by name; colours and

@@ -1,0 +1,94 @@
+#include "hold_key.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string_view>
+
+#include "setup.h"
+#include "thimble/session/session.h"
+
+namespace thimble::session {
+
+driver::Result<driver::HoldToRun> hold_named(const std::string& name) {
+  driver::HoldToRun hold;
+  if (name.empty()) return hold;
+  if (name == "key") {
+    hold.by_caller = true;
+    return hold;
+  }
+  constexpr int kButtons = 16;
+  for (int button = 1; button <= kButtons; ++button) {
+    if (name != "button" + std::to_string(button) && !(button == 1 && name == "button")) continue;
+    hold.buttons = static_cast<std::uint16_t>(1U << (button - 1));
+    return hold;
+  }
+  return driver::Error{"What is held to run is button, button2 to button16, or key; found \"" +
+                       name + "\"."};
+}
+
+driver::Result<void> HoldKey::check() {
+  termios now{};
+  if (isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &now) == 0) return {};
+  return driver::Error{
+      "--hold-to-run key needs a terminal, for the space bar is held there; hold a button of the "
+      "arm instead: --hold-to-run button."};
+}
+
+HoldKey::HoldKey(Session& session) : session_(session) {
+  tcgetattr(STDIN_FILENO, &before_);
+  termios keys = before_;
+  // Ctrl-C and Ctrl-Z stay what they are.
+  keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  keys.c_cc[VMIN] = 1;
+  keys.c_cc[VTIME] = 0;
+  tcsetattr(STDIN_FILENO, TCSANOW, &keys);
+  thread_ = std::thread([this] { watch(); });
+}
+
+HoldKey::~HoldKey() {
+  stop_.store(true);
+  thread_.join();
+  tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+}
+
+Terminal HoldKey::terminal() {
+  Terminal terminal = user_terminal();
+  terminal.key = [this] {
+    if (enter_.exchange(false)) return EnterKey::kPressed;
+    return closed_.load() ? EnterKey::kClosed : EnterKey::kNothing;
+  };
+  return terminal;
+}
+
+void HoldKey::watch() {
+  constexpr int kLook_ms = 5;
+  const driver::Clock& clock = session_.setup().clock();
+  HeldKey key;
+  while (!stop_.load()) {
+    pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (closed_.load() || poll(&terminal, 1, kLook_ms) <= 0) {
+      if (closed_.load()) std::this_thread::sleep_for(std::chrono::milliseconds(kLook_ms));
+      continue;
+    }
+    char text[64];
+    const ssize_t count = read(STDIN_FILENO, text, sizeof text);
+    if (count <= 0) {
+      closed_.store(true);
+      continue;
+    }
+    const std::string_view keys(text, static_cast<std::size_t>(count));
+    if (keys.find('\n') != std::string_view::npos) enter_.store(true);
+    // Whatever comes at once is one press: pasted text holds nothing.
+    if (keys.find(' ') == std::string_view::npos) continue;
+    const std::int64_t now_ns = clock.now_ns();
+    key.press(now_ns);
+    if (key.until_ns() <= now_ns) continue;
+    for (std::size_t arm = 0; arm < session_.arms(); ++arm) {
+      session_.device(arm).hold_until(key.until_ns());
+    }
+  }
+}
+
+}  // namespace thimble::session

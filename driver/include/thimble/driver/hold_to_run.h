@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+
+#include "thimble/driver/device_state.h"
+
+namespace thimble::driver {
+
+/// Sets an enabling input: what a person must hold so that an arm gets a force. Of several all must
+/// be held. None by default.
+struct HoldToRun {
+  std::uint16_t buttons = 0;  ///< Of the arm, one bit each, of which one must be held; 0: none.
+  bool by_caller = false;     ///< An input that the caller watches (Device::hold_until).
+
+  /// Returns whether there is an enabling input. Real-time: safe.
+  bool named() const noexcept { return buttons != 0 || by_caller; }
+};
+
+/// Looks whether the enabling input is held. A button that is down from the first tick on does not
+/// count until it was seen released: it may be stuck, or taped. All functions are Real-time: safe.
+class EnablingInput {
+ public:
+  /// Takes what must be held.
+  explicit EnablingInput(const HoldToRun& settings) noexcept : settings_(settings) {}
+
+  /// Begins again: a button must be seen released first, and what a caller held counts for nothing.
+  void restart() noexcept {
+    released_ = false;
+    until_ns_.store(kNever_ns, std::memory_order_relaxed);
+  }
+
+  /// Lets the caller's input count as held up to a time of the loop's clock, ns. Any thread.
+  void hold_until(std::int64_t time_ns) noexcept {
+    until_ns_.store(time_ns, std::memory_order_relaxed);
+  }
+
+  /// Returns whether there is an input to hold.
+  bool named() const noexcept { return settings_.named(); }
+
+  /// Returns whether all inputs are held in this tick.
+  bool held(const DeviceState& state) noexcept {
+    const bool down = (state.buttons & settings_.buttons) != 0;
+    if (!down) released_ = true;
+    const bool button = settings_.buttons == 0 || (down && released_);
+    const bool caller =
+        !settings_.by_caller || state.time_ns < until_ns_.load(std::memory_order_relaxed);
+    return button && caller;
+  }
+
+ private:
+  static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::min();
+
+  HoldToRun settings_;
+  bool released_ = false;  // the button, since it began
+  std::atomic<std::int64_t> until_ns_{kNever_ns};
+};
+
+}  // namespace thimble::driver

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "thimble/driver/force_law.h"
+
+namespace thimble::driver {
+
+/// Sets the virtual walls around the workspace of an arm: a box along the axes of the world. None
+/// by default.
+struct WallSettings {
+  /// Stiffness, N/m [chosen: a third of the softest scene that ships, so that it is felt as an edge
+  /// and is stable on any arm here: b/T is 5 N/mm for the lightest].
+  static constexpr double kStiffness = 200;
+  /// Damping on the way out, N s/m [chosen: half of the most that a tip of 75 g takes at 1 kHz with
+  /// a delay of five ticks].
+  static constexpr double kDamping = 3;
+  /// Distance between the box of the arm file and the wall, m [chosen: what is touched at the edge
+  /// of the box is felt without the wall; the boxes lie 20 mm and more inside of the reach].
+  static constexpr double kMargin = 0.01;
+  /// Depth behind the wall at which the force goes off, m [chosen: 6 N of the spring, more than
+  /// most arms here push].
+  static constexpr double kBeyond = 0.03;
+
+  Eigen::Vector3d min_W = Eigen::Vector3d::Constant(-HUGE_VAL);  ///< Lowest corner, m.
+  Eigen::Vector3d max_W = Eigen::Vector3d::Constant(HUGE_VAL);   ///< Highest corner, m.
+  double stiffness = kStiffness;                                 ///< N/m
+  double damping = kDamping;                                     ///< On the way out, N s/m.
+  double beyond = kBeyond;  ///< Depth behind a wall at which the force goes off, m.
+};
+
+/// The walls around a workspace. Inside of them no force is changed, to the bit. Outside, the part
+/// of a force that pushes further out is taken away, and a spring, damped on the way out, pushes
+/// back; how far a tip may be is up to the caller (`depth`). An arm that begins outside (some are
+/// parked there) has the box that its pose widens, until forces begin again. All functions are
+/// Real-time: safe.
+class WorkspaceWalls {
+ public:
+  /// Takes the walls.
+  explicit WorkspaceWalls(const WallSettings& settings) noexcept;
+
+  /// Begins with the tip at `p_WT`, m: the walls lie around the box and this point.
+  void begin_at(const Eigen::Vector3d& p_WT) noexcept;
+
+  /// Returns whether the tip is inside of all walls; a position that is no number is.
+  bool hold(const Eigen::Vector3d& p_WT) const noexcept {
+    return !((p_WT.array() < min_W_.array()).any() || (p_WT.array() > max_W_.array()).any());
+  }
+
+  /// Returns how deep the tip is behind the walls, m, along the axes of the world; 0 inside.
+  Eigen::Vector3d depth(const Eigen::Vector3d& p_WT) const noexcept;
+
+  /// Returns the command with the walls' force, for a tip that `hold` refuses at velocity `v_WT`,
+  /// m/s.
+  ForceCommand stop(const ForceCommand& command, const Eigen::Vector3d& p_WT,
+                    const Eigen::Vector3d& v_WT) const noexcept;
+
+  /// Returns the energy that their spring holds, J.
+  double held(const Eigen::Vector3d& p_WT) const noexcept {
+    return 0.5 * settings_.stiffness * depth(p_WT).squaredNorm();
+  }
+
+  const WallSettings& settings() const noexcept { return settings_; }  ///< As they were taken.
+
+ private:
+  WallSettings settings_;
+  Eigen::Vector3d min_W_, max_W_;  // with the pose that it began with
+};
+
+}  // namespace thimble::driver

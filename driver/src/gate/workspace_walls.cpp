@@ -1,0 +1,36 @@
+#include "thimble/driver/workspace_walls.h"
+
+namespace thimble::driver {
+
+WorkspaceWalls::WorkspaceWalls(const WallSettings& settings) noexcept
+    : settings_(settings), min_W_(settings.min_W), max_W_(settings.max_W) {}
+
+void WorkspaceWalls::begin_at(const Eigen::Vector3d& p_WT) noexcept {
+  min_W_ = settings_.min_W;
+  max_W_ = settings_.max_W;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    // Written so that NaN widens nothing.
+    if (p_WT[i] < min_W_[i]) min_W_[i] = p_WT[i];
+    if (p_WT[i] > max_W_[i]) max_W_[i] = p_WT[i];
+  }
+}
+
+Eigen::Vector3d WorkspaceWalls::depth(const Eigen::Vector3d& p_WT) const noexcept {
+  return p_WT - p_WT.cwiseMax(min_W_).cwiseMin(max_W_);
+}
+
+ForceCommand WorkspaceWalls::stop(const ForceCommand& command, const Eigen::Vector3d& p_WT,
+                                  const Eigen::Vector3d& v_WT) const noexcept {
+  ForceCommand stopped = command;
+  const Eigen::Vector3d out = depth(p_WT);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (out[i] == 0) continue;
+    double& f = stopped.f_T_W[i];
+    if (f * out[i] > 0) f = 0;
+    f -= settings_.stiffness * out[i];
+    if (v_WT[i] * out[i] > 0) f -= settings_.damping * v_WT[i];
+  }
+  return stopped;
+}
+
+}  // namespace thimble::driver

@@ -1,0 +1,67 @@
+#include "hold_key.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "support/refuses.h"
+
+namespace thimble::session {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(HeldKey, OnePressHoldsNothing) {
+  HeldKey key;
+  key.press(1000 * kMs);
+  EXPECT_LE(key.until_ns(), 1000 * kMs);
+}
+
+TEST(HeldKey, RepeatedKeyIsHeld) {
+  // Delay, then repeats: of a desktop, a Linux console, a slow one.
+  for (const std::int64_t every : {33, 40, 92, 110}) {
+    HeldKey key;
+    std::int64_t now = 1000 * kMs;
+    key.press(now);
+    now += 500 * kMs;
+    for (int i = 0; i < 20; ++i, now += every * kMs) {
+      if (i >= 3) {
+        EXPECT_GT(key.until_ns(), now) << every;
+      }
+      key.press(now);
+    }
+  }
+}
+
+TEST(HeldKey, LapsesSoonAfterTheLastPress) {
+  HeldKey key;
+  for (int i = 0; i < 10; ++i) key.press((1000 + 33 * i) * kMs);
+  EXPECT_EQ(key.until_ns(), (1000 + 33 * 9) * kMs + HeldKey::kLasts_ns);
+}
+
+TEST(HeldKey, SlowTypingHoldsNothing) {
+  HeldKey key;
+  for (int i = 0; i < 20; ++i) {
+    key.press((1000 + 200 * i) * kMs);
+    EXPECT_LE(key.until_ns(), (1000 + 200 * i) * kMs);
+  }
+}
+
+TEST(HoldNamed, NamesButtonsAndTheKey) {
+  EXPECT_FALSE(hold_named("")->named());
+  EXPECT_EQ(hold_named("button")->buttons, 1);
+  EXPECT_EQ(hold_named("button1")->buttons, 1);
+  EXPECT_EQ(hold_named("button3")->buttons, 4);
+  EXPECT_EQ(hold_named("button16")->buttons, 0x8000);
+  EXPECT_FALSE(hold_named("button")->by_caller);
+  EXPECT_TRUE(hold_named("key")->by_caller);
+}
+
+TEST(HoldNamed, RefusesWhatCannotBeHeld) {
+  for (const std::string name : {"foot", "button0", "button17", "Key", "buttons", "button 1"}) {
+    EXPECT_TRUE(support::refuses(hold_named(name), "button2 to button16, or key")) << name;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::session
