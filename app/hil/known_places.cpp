@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <variant>
 
 namespace thimble::app {
 namespace {
@@ -22,7 +23,11 @@ constexpr double kBeside = 0.02;                // m, from where a simulated han
 
 /// Where the arm of a file stands when its counters are zero, m in the world.
 Vector3d home_of(const scene::ArmFile& file) {
-  return file.p_WB + file.R_WB * driver::make_arm(file.protocol, file.model)->pose({}).p_BT;
+  const Vector3d q = file.model.joint_angles({});
+  Vector3d p_BT;
+  Eigen::Matrix3d J;
+  std::visit([&](const auto& build) { build.forward(q, p_BT, J); }, file.model.geometry);
+  return file.p_WB + file.R_WB * p_BT;
 }
 
 /// Reads the tip with zero force after a while in which it is held; nothing if that was left.

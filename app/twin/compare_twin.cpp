@@ -208,7 +208,8 @@ driver::Result<std::vector<TwinRemedy>> mend_together(Relive& relive, double ste
     if (!now) return now.error();
     const double before = now->rms();
     if (before < kNear * step_error) break;
-    TwinRemedy best{.error_rms = before};
+    TwinRemedy best;
+    best.error_rms = before;
     for (const TwinConstant& constant : constants) {
       auto remedy = Remedy(relive, file, constant, *now).find();
       if (!remedy) return remedy.error();

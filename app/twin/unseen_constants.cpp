@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -45,7 +46,10 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
     differ(key("encoder_sign"), was.sign, is.sign, kPush);
     differ(key("motor_sign"), recorded.model.drives[i].sign, file.model.drives[i].sign, kPush);
   }
-  const double turned = Eigen::AngleAxisd(recorded.R_WB.transpose() * file.R_WB).angle();
+  const Eigen::Matrix3d turn = recorded.R_WB.transpose() * file.R_WB;
+  const Eigen::Vector3d twice_sine(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0),
+                                   turn(1, 0) - turn(0, 1));
+  const double turned = std::atan2(twice_sine.norm(), turn.trace() - 1);
   if (turned > 1e-6) {
     all.push_back(fmt::format(
         "The base of this file is turned by {:.3g} degrees from that of the recording's. The "

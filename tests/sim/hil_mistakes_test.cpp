@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "arm_table.h"
 #include "board/sim_transport.h"
 #include "hil/hil_suite.h"
 #include "hil/known_places.h"
