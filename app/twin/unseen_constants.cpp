@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/elementary.h"
+
 namespace thimble::app {
 namespace {
 
@@ -49,7 +51,7 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
   const Eigen::Matrix3d turn = recorded.R_WB.transpose() * file.R_WB;
   const Eigen::Vector3d twice_sine(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0),
                                    turn(1, 0) - turn(0, 1));
-  const double turned = std::atan2(twice_sine.norm(), turn.trace() - 1);
+  const double turned = math::atan2(twice_sine.norm(), turn.trace() - 1);
   if (turned > 1e-6) {
     all.push_back(fmt::format(
         "The base of this file is turned by {:.3g} degrees from that of the recording's. The "
