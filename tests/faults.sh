@@ -61,7 +61,7 @@ processes).
 
 A number is the time in ms until no current flowed in the motors of the simulated arm, for good; behind it the cause that
 the driver named. `-` is a touch that went on, every force sent within the arm's limit. In the column `limit`: no later than so
-many ms. "the arm switches off": the board's own watchdog of 100 ms, for the driver cannot know. Whether a Falcon has a
+many ms. "the arm switches off": the board's own watchdog (100 ms, mbed boards 500 ms), for the driver cannot know. Whether a Falcon has a
 watchdog is not known: the simulated one of these rows has none, and where only the arm could switch its motors off nothing
 is promised ("goes on" as `-`: the motors still pulled when the watching ended). Free motion has no current
 to begin with. "within the limit" is what can be promised of bytes that look like a touch: no wire of these arms has a

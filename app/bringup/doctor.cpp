@@ -1,12 +1,15 @@
 #include "bringup/doctor.h"
 
 #include <grp.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <system_error>
+#include <thread>
 
 #include "bringup/board_advice.h"
 #include "bringup/doctor_links.h"
@@ -48,7 +51,7 @@ class Examination {
   std::vector<Finding> run() {
     look_for_rule();
     look_at_arms();
-    for (Finding& found : examine_timing(system_)) findings_.push_back(std::move(found));
+    for (Finding& found : examine_timing(system_, arm_)) findings_.push_back(std::move(found));
     return std::move(findings_);
   }
 
@@ -83,6 +86,9 @@ class Examination {
       note(Health::kAdvice, "No arm that Thimble knows is plugged in on USB.",
            "Plug it in and switch it on; `lsusb` shows whether the computer sees it at all.");
     }
+    arm_ = std::any_of(arms->begin(), arms->end(), [](const FoundArm& arm) {
+      return arm.certainty != driver::Certainty::kUnsupported;
+    });
     for (const FoundArm& arm : *arms) look_at(arm);
     for (Finding& found : examine_services(*arms)) findings_.push_back(std::move(found));
     for (Finding& found : examine_touch(*arms, system_.root)) {
@@ -252,7 +258,20 @@ class Examination {
   const SystemInfo& system_;
   std::vector<Finding> findings_;
   bool rule_ = false;
+  bool arm_ = false;  // one that can be driven is plugged in
 };
+
+/// Returns whether the kernel grants a thread of this process the priority of the servo loop.
+bool may_run_first() {
+  constexpr int kPriority = 80;
+  bool granted = false;
+  std::thread([&granted] {
+    sched_param wished{};
+    wished.sched_priority = kPriority;
+    granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wished) == 0;
+  }).join();
+  return granted;
+}
 
 }  // namespace
 
@@ -263,7 +282,8 @@ SystemInfo this_machine() {
     system.real_time_priority_max =
         limit.rlim_cur == RLIM_INFINITY ? 99 : static_cast<long>(limit.rlim_cur);
   }
-  if (geteuid() == 0) system.real_time_priority_max = 99;
+  // An administrator may be without that capability, as in a container.
+  if (geteuid() == 0 && may_run_first()) system.real_time_priority_max = 99;
   if (const group* plugdev = getgrnam("plugdev")) {
     std::vector<gid_t> groups(static_cast<std::size_t>(std::max(getgroups(0, nullptr), 0)));
     const int count = getgroups(static_cast<int>(groups.size()), groups.data());

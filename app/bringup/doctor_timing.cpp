@@ -39,14 +39,15 @@ std::vector<fs::path> processors(const SystemInfo& system) {
   return found;
 }
 
-void look_at_priority(const SystemInfo& system, std::vector<Finding>& findings) {
+void look_at_priority(const SystemInfo& system, bool arm, std::vector<Finding>& findings) {
   if (system.real_time_priority_max >= 80) {
     findings.push_back({Health::kGood, "You may run at real-time priority.", {}});
   } else {
     findings.push_back(
-        {Health::kAdvice,
-         "You may not run at real-time priority 80, so the loop waits behind other programs, and "
-         "`thimble run` refuses a real arm unless you say --no-real-time.",
+        {arm ? Health::kProblem : Health::kAdvice,
+         "You may not run at real-time priority 80, so the loop waits behind other programs while "
+         "a "
+         "motor pulls. Commands that push a real arm refuse it unless you say --no-real-time.",
          "echo '@plugdev - rtprio 80' | sudo tee /etc/security/limits.d/thimble.conf, then log in "
          "again"});
   }
@@ -138,9 +139,9 @@ void look_at_sleep(const SystemInfo& system, std::vector<Finding>& findings) {
 
 }  // namespace
 
-std::vector<Finding> examine_timing(const SystemInfo& system) {
+std::vector<Finding> examine_timing(const SystemInfo& system, bool arm) {
   std::vector<Finding> findings;
-  look_at_priority(system, findings);
+  look_at_priority(system, arm, findings);
   look_at_preemption(system, findings);
   look_at_governor(system, findings);
   look_at_sleep(system, findings);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "bringup/wiring_guess.h"
 #include "hand/place_text.h"
@@ -16,7 +17,10 @@ namespace thimble::app {
 namespace {
 
 constexpr double kEncoders_s = 4, kDirection_s = 2, kSettle_s = 0.5, kPush_s = 1;
-constexpr double kForce = 0.4;  // N, below kFeelCheckForceMax
+constexpr double kForce = 0.4;       // N, below kFeelCheckForceMax
+constexpr double kStrongest = 0.49;  // N, for a tip that dry friction holds; below the same
+// A push that moves the tip less is raised, m [chosen: four steps of the coarsest encoder].
+constexpr double kYields = 0.0003;
 constexpr double kMove = 0.03;  // m, what the hand is asked for
 constexpr std::array<const char*, 3> kAxes = {"x (towards you)", "y (to your right)", "z (up)"};
 
@@ -25,15 +29,15 @@ const BenchArm::Law kRest = [](const driver::DeviceState&) { return Eigen::Vecto
 class Check {
  public:
   Check(BenchArm& bench, const scene::ArmFile& file, const Prompt& prompt,
-        const std::atomic<bool>& stop)
-      : bench_(bench), file_(file), prompt_(prompt), stop_(stop) {}
+        const std::atomic<bool>& stop, const Question& question)
+      : bench_(bench), file_(file), prompt_(prompt), stop_(stop), question_(question) {}
 
   std::vector<CheckResult> run() {
     // Each part needs the ones before it; the first that fails or is left ends the check.
     const bool all = encoders() && directions() && pushes() && watchdog();
     bench_.device().deactivate();
     const driver::Fault fault = bench_.device().fault();
-    if (!all && fault != driver::Fault::kNone) {
+    if (!all && fault != driver::Fault::kNone && !answers_only_) {
       results_.push_back({"fault", false, std::string(driver::describe(fault))});
     }
     return std::move(results_);
@@ -108,6 +112,13 @@ class Check {
       if (!push(axis, right)) return false;
     }
     if (right) return true;
+    if (pushed_.cwiseAbs().maxCoeff() < kYields) {
+      return note("motor wires", false,
+                  fmt::format("The tip did not move under {:.2f} N along any axis, and the feel "
+                              "check may not push harder: its dry friction is higher than that, or "
+                              "you held it fast, or the motors have no power.",
+                              kStrongest));
+    }
     const auto expected = [this](const WiringGuess& guess) { return tip_forces(guess); };
     const std::string text = describe_wiring(guess_wiring(pushed_, expected), "Motor",
                                              "pulls backwards", "does not pull");
@@ -193,68 +204,132 @@ class Check {
     return true;
   }
 
-  /// Answers false if the check was left; notes whether the tip yielded the right way. It pulls
-  /// first and pushes then, so that the dry friction in which the tip rested is in neither end. A
-  /// tip that goes far is not pushed on.
-  bool push(int axis, bool& all_right) {
-    constexpr double kFar = 0.02;  // m
-    const auto name = kAxes[static_cast<std::size_t>(axis)];
-    if (!prompt_(fmt::format(
-            "Hold the grip loosely and still: it pulls and pushes with {:.2f} N along {}.", push_,
-            name)))
-      return false;
-    if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
-    const Eigen::Vector3d rest = bench_.device().state().p_WT;
-    Eigen::Vector3d f_T_W = -push_ * Eigen::Vector3d::Unit(axis);
+  /// Pushes along a unit vector of the world for kPush_s, and then harder by small steps for as
+  /// long as the tip has moved less than kYields, up to kStrongest. Sets `force` (N) to the last
+  /// push. Answers false if the check was left or a fault ended it. A tip that goes far is let go.
+  bool push_until_it_yields(const Eigen::Vector3d& along, double& force) {
+    constexpr double kFar = 0.02, kStep = 0.02, kStep_s = 0.1;  // m, N, s
+    const Eigen::Vector3d from = bench_.device().state().p_WT;
     bool far = false;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
-      far = far || !((state.p_WT - rest).norm() < kFar);
-      return far ? Eigen::Vector3d(0, 0, 0) : f_T_W;
+      far = far || !((state.p_WT - from).norm() < kFar);
+      return far ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(force * along);
     };
     if (!bench_.run(kPush_s, law, stop_)) return false;
+    while (!((bench_.device().state().p_WT - from).norm() >= kYields) && force < kStrongest) {
+      force = std::min(kStrongest, force + kStep);
+      if (!bench_.run(kStep_s, law, stop_)) return false;
+    }
+    return true;
+  }
+
+  /// Answers false if the check was left; notes whether the tip yielded the right way. It pulls
+  /// first and pushes then, so that the dry friction in which the tip rested is in neither end.
+  bool push(int axis, bool& all_right) {
+    const auto name = kAxes[static_cast<std::size_t>(axis)];
+    if (!prompt_(fmt::format(
+            "Hold the grip loosely and still: it pulls and pushes with {:.2f} N along {}, and with "
+            "up to {:.2f} N if that does not move it.",
+            push_, name, kStrongest)))
+      return false;
+    if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
+    const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
+    double force = push_;
+    if (!push_until_it_yields(-along, force)) return false;
     const Eigen::Vector3d pulled = bench_.device().state().p_WT;
-    f_T_W = -f_T_W;
-    if (!bench_.run(kPush_s, law, stop_)) return false;
+    if (!push_until_it_yields(along, force)) return false;
     const Eigen::Vector3d moved = bench_.device().state().p_WT - pulled;
-    pushed_.col(axis) = moved;
+    pushed_.col(axis) = moved * (push_ / force);
     if (!bench_.run(kSettle_s, kRest, stop_)) return false;
     bench_.device().deactivate();
     const bool right = moved[axis] > 0.0002 && moved[axis] > 0.5 * moved.norm();
     all_right = all_right && right;
+    friction_ = std::max(friction_, force > push_ && right ? force : 0);
+    const bool stuck = moved.norm() < kYields;
     note(fmt::format("force {}", "xyz"[axis]), right,
-         fmt::format("{:.2f} N along {} moved the tip by {} mm{}", push_, name,
-                     scene::place_text(1e3 * moved, 2),
-                     right ? "." : ": a motor is wrong, or you held it fast."));
+         fmt::format(
+             "{:.2f} N along {} moved the tip by {} mm{}{}", force, name,
+             scene::place_text(1e3 * moved, 2),
+             right   ? "."
+             : stuck ? ": dry friction holds it, a motor is wrong, or you held it fast."
+                     : ": a motor is wrong, or you held it fast.",
+             right && force > push_ ? " Less did not move it: that is its dry friction." : ""));
     return true;
   }
 
+  /// Pushes along x twice. The first push is ended by zero force, which shows how far the hand
+  /// brings the tip back; the second by silence. Dry friction of more than half of the push holds
+  /// the tip where it is, so that the user is asked whether the arm let go. An arm that speaks only
+  /// when spoken to is read once after the silence.
   bool watchdog() {
-    if (!prompt_("Hold the grip loosely and still: it pushes, then Thimble falls silent."))
+    constexpr double kBack_s = 0.6;
+    constexpr int kAsked = 5;  // ticks
+    if (!prompt_("Hold the grip loosely and still: it pushes twice. After the second push Thimble "
+                 "falls silent, and the arm must let go by itself."))
       return false;
     if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
-    const double from = bench_.device().state().p_WT.x();
-    const auto law = [](const driver::DeviceState&) { return Eigen::Vector3d(kForce, 0, 0); };
-    if (!bench_.run(kPush_s, law, stop_)) return false;
-    const double pushed = bench_.device().state().p_WT.x() - from;
-    const double silent_since = bench_.now();
+    const Eigen::Vector3d along = Eigen::Vector3d::UnitX();
+    const auto x = [this] { return bench_.device().state().p_WT.x(); };
+    const double start = x();
+    double force = std::max(kForce, std::min(kStrongest, friction_));
+    if (!push_until_it_yields(along, force)) return false;
+    const double pushed = x();
+    if (pushed - start < kYields) {
+      bench_.device().deactivate();
+      return note(
+          "watchdog", false,
+          fmt::format("{:.2f} N did not move the tip, so nothing shows whether the motors go "
+                      "off by themselves: its dry friction is higher, or you held it fast.",
+                      force));
+    }
+    if (!bench_.run(kBack_s, kRest, stop_)) return false;
+    const double back = pushed - x();
+    const bool comes_back = back > kYields / 2 && back > 0.3 * (pushed - start);
+    if (!push_until_it_yields(along, force)) return false;
+    const double let_go = x() - back / 2, silent_since = bench_.now();
     double off_after = -1;
-    constexpr int kAnswersMax = 3;  // what was under way to an arm that speaks when spoken to
     int reports = 0;
     const auto watch = [&](const driver::DeviceState& state) {
       reports += state.fresh ? 1 : 0;
-      if (off_after < 0 && state.p_WT.x() - from < pushed / 2) {
-        off_after = bench_.now() - silent_since;
-      }
+      if (off_after < 0 && state.p_WT.x() < let_go) off_after = bench_.now() - silent_since;
       return Eigen::Vector3d(0, 0, 0);
     };
-    bench_.run(std::max(1.0, 5 * seconds(file_.limits.watchdog_ns)), watch, stop_, true);
-    bench_.device().deactivate();
-    if (reports <= kAnswersMax) {
-      return note("watchdog", true,
-                  "The arm speaks only when spoken to, so its watchdog's time cannot be seen; it "
-                  "pushed no more afterwards if you felt it let go.");
+    const double named = seconds(file_.limits.watchdog_ns), allowed = 2 * named;
+    bench_.run(allowed + kBack_s, watch, stop_, true);
+    constexpr int kAnswersMax = 3;  // what was under way to an arm that speaks when spoken to
+    // Its reports have ended with the messages, which the driver takes for a fault.
+    const bool answers_only = reports <= kAnswersMax;
+    const double left = allowed + kBack_s - (bench_.now() - silent_since);
+    answers_only_ = answers_only;
+    if (answers_only) {
+      bench_.stay_silent(std::max(0.0, left), stop_);
+    } else {
+      bench_.run(std::max(0.4, 3 * named), watch, stop_, true);
     }
-    const double allowed = 2 * seconds(file_.limits.watchdog_ns);
+    if (!comes_back) {
+      // Asked before zero is sent: then it is the watchdog alone that let go.
+      const auto felt = question_ && !stop_.load() ? question_("Has the arm stopped pushing?")
+                                                   : std::optional<bool>();
+      bench_.device().deactivate();
+      return !stop_.load() && by_feel(felt, force);
+    }
+    const double read_after = bench_.now() - silent_since;
+    bench_.device().deactivate();
+    if (stop_.load()) return false;
+    if (answers_only) {
+      // The first answer may have been sampled before the silence. Until the others are here the
+      // tip has hardly moved by the zero that asks for them.
+      bench_.ask(kAsked);
+      const bool off = x() < let_go;
+      return note("watchdog", off,
+                  off ? fmt::format("The arm speaks only when spoken to. Asked {:.0f} ms after the "
+                                    "last message, it had let go.",
+                                    read_after * 1e3)
+                      : fmt::format("The arm speaks only when spoken to. Asked {:.0f} ms after the "
+                                    "last message, its motors did not go off: it still pushed. "
+                                    "Switch it off at its switch.",
+                                    read_after * 1e3));
+    }
     const bool right = off_after > 0 && off_after < allowed;
     return note("watchdog", right,
                 off_after > 0
@@ -263,14 +338,31 @@ class Check {
                     : std::string("The motors did not go off. Switch the arm off at its switch."));
   }
 
+  /// Notes what the user felt, where dry friction hides what the motors do.
+  bool by_feel(const std::optional<bool>& felt, double force) {
+    const std::string why = fmt::format(
+        "Dry friction of more than {:.2f} N holds the tip where it was pushed, so that its "
+        "position "
+        "does not show when the motors go off. ",
+        force / 2);
+    if (!felt) return note("watchdog", false, why + "Nobody said whether it let go.");
+    return note("watchdog", *felt,
+                why + (*felt ? "You felt that it let go."
+                             : "The motors did not go off, as you said. Switch the arm off at its "
+                               "switch."));
+  }
+
   static double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
   BenchArm& bench_;
   const scene::ArmFile& file_;
   const Prompt& prompt_;
   const std::atomic<bool>& stop_;
+  const Question& question_;
   std::vector<CheckResult> results_;
   double push_ = kForce;                              // N
+  bool answers_only_ = false;                         // so that the silence was no fault
+  double friction_ = 0;                               // N, what moved a tip that less did not
   Eigen::Matrix3d moves_ = Eigen::Matrix3d::Zero();   // joint angles, a column for each movement
   Eigen::Matrix3d pushed_ = Eigen::Matrix3d::Zero();  // of the tip, m, a column for each push
 };
@@ -278,8 +370,9 @@ class Check {
 }  // namespace
 
 std::vector<CheckResult> feel_check(BenchArm& bench, const scene::ArmFile& file,
-                                    const Prompt& prompt, const std::atomic<bool>& stop) {
-  return Check(bench, file, prompt, stop).run();
+                                    const Prompt& prompt, const std::atomic<bool>& stop,
+                                    const Question& question) {
+  return Check(bench, file, prompt, stop, question).run();
 }
 
 std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT) {

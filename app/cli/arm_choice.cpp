@@ -9,20 +9,34 @@
 #include "log/printed_text.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/real_arm_file.h"
+#include "thimble/session/servo_thread.h"
 
 namespace thimble::app {
 
 void ArmChoice::add_options(CLI::App& command) {
   command
       .add_option("--device", device,
-                  "Arm: auto, the plugged one, or the simulated one if there is none; a name that "
-                  "`thimble devices` lists; sim")
+                  simulates_unasked
+                      ? "Arm: auto, the plugged one, or the simulated one if there is none; a name "
+                        "that `thimble devices` lists; sim"
+                      : "Arm: auto, the plugged one; a name that `thimble devices` lists; sim, the "
+                        "simulated one")
       ->capture_default_str();
   add_arm_option(command, arm_file,
                  "Its arm file; needed for a simulated arm, and for one that does not tell its "
                  "model");
   command.add_option("--firmware", firmware, "Firmware image for an arm that needs one")
       ->check(CLI::ExistingFile);
+}
+
+void ArmChoice::add_real_time_option(CLI::App& command) {
+  command.add_flag("--no-real-time", no_real_time,
+                   "Push a real arm although the loop gets no real-time priority");
+}
+
+driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& chosen) {
+  if (!chosen.real_arm) return {};
+  return session::check_real_time(session::ServoThread(true).grant(), choice.no_real_time);
 }
 
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration) {
@@ -37,6 +51,12 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
     if (plugged_in && !chosen.real_arm) left = scene::boards_left_out(*plugged_in);
   }
   if (!chosen.real_arm) {
+    if (choice.device != "sim" && !choice.simulates_unasked) {
+      return driver::Error{
+          "No arm is plugged in that is known for sure (thimble devices). Plug it in, or name the "
+          "simulated one: --device sim --arm NAME (thimble run --list)." +
+          (left.empty() ? "" : " " + left)};
+    }
     if (choice.arm_file.empty() && choice.device == "sim") {
       return driver::Error{
           "--device sim needs to know which arm to simulate: add --arm NAME, such as --arm "

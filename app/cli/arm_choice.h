@@ -17,9 +17,14 @@ struct ArmChoice {
   std::string device = "auto";
   std::string arm_file;
   std::string firmware;
+  /// Whether the simulated arm is taken where no arm is plugged in; if not, only by --device sim.
+  bool simulates_unasked = true;
+  bool no_real_time = false;  ///< Push a real arm although the loop gets no real-time priority.
 
   /// Adds --device, --arm and --firmware to a command.
   void add_options(CLI::App& command);
+  /// Adds --no-real-time to a command that pushes.
+  void add_real_time_option(CLI::App& command);
 };
 
 /// The arm that a choice means.
@@ -35,6 +40,10 @@ struct ChosenArm {
 /// calibration unless it is chosen `for_calibration`; else the simulated one of --arm. The error
 /// says what to do. Real-time: never from the servo thread.
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration);
+
+/// Fails, before an arm is opened, if it is real and the loop gets no real-time priority, as `run`
+/// does; --no-real-time allows it. Real-time: never from the servo thread.
+driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& chosen);
 
 /// Returns the exit code of a command whose arm could not be resolved: wrong arguments or a wrong
 /// file if the arm is simulated, else no device.

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bringup/feel_check.h"
@@ -8,6 +9,7 @@
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/terminal/yes_question.h"
 #include "enter_key.h"
 #include "interrupt.h"
 #include "log/logger.h"
@@ -48,6 +50,10 @@ int check_arm(const ArmChoice& choice, double listen) {
   }
   const SimulatedNote simulated(*chosen, "record of this check");
   for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  // Listening sends zero force only.
+  if (auto allowed = check_priority(choice, *chosen); listen == 0 && !allowed) {
+    return complain(allowed.error(), kExitBadInput);
+  }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
@@ -73,8 +79,16 @@ int check_arm(const ArmChoice& choice, double listen) {
     };
     return (*bench)->hold(done, stop) && key == session::EnterKey::kPressed;
   };
+  // A simulated hand feels what is true.
+  const Question question = [&](const std::string& what) -> std::optional<bool> {
+    if (person) return says_yes(what, stop);
+    constexpr double kFelt = 0.1;  // N
+    const bool stopped = (*bench)->true_force() < kFelt;
+    scene::print_format("%s The simulated hand says %s.\n", what.c_str(), stopped ? "yes" : "no");
+    return stopped;
+  };
   bool all = true;
-  const auto results = feel_check(**bench, chosen->file, prompt, stop);
+  const auto results = feel_check(**bench, chosen->file, prompt, stop, question);
   for (const CheckResult& result : results) {
     scene::print_format("%-7s %-12s %s\n", result.passed ? "ok" : "FAILED", result.name.c_str(),
                         result.text.c_str());
@@ -103,6 +117,7 @@ void add_feel_check_command(CLI::App& app, int& exit_code) {
   auto choice = std::make_shared<ArmChoice>();
   auto listen = std::make_shared<double>(0);
   choice->add_options(*command);
+  choice->add_real_time_option(*command);
   command->add_option("--listen", *listen, "Only read for so many seconds, with zero force")
       ->check(CLI::Range(0.1, 3600.0));
   command->callback([choice, listen, &exit_code] { exit_code = check_arm(*choice, *listen); });

@@ -1,14 +1,22 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/terminal/yes_question.h"
 #include "enter_key.h"
 #include "hil/hil_files.h"
 #include "hil/hil_suite.h"
@@ -27,6 +35,8 @@ struct HilCommand {
   std::string suite = "quick";
   std::string json;
   std::string junit;
+  bool require_device = false;
+  double timeout = 0;  // s; 0: none
 };
 
 std::string now_utc() {
@@ -38,11 +48,23 @@ std::string now_utc() {
   return text;
 }
 
+const char* word_of(HilOutcome outcome) {
+  switch (outcome) {
+    case HilOutcome::kPassed:
+      return "ok";
+    case HilOutcome::kFailed:
+      return "FAILED";
+    case HilOutcome::kSkipped:
+      return "skipped";
+    case HilOutcome::kNotRun:
+      return "NOT RUN";
+  }
+  return "";
+}
+
 void print(const HilResult& result) {
-  const char* const word = result.outcome == HilOutcome::kPassed   ? "ok"
-                           : result.outcome == HilOutcome::kFailed ? "FAILED"
-                                                                   : "skipped";
-  scene::print_format("%-7s %-16s %s\n", word, result.name.c_str(), result.text.c_str());
+  scene::print_format("%-7s %-16s %s\n", word_of(result.outcome), result.name.c_str(),
+                      result.text.c_str());
   for (const Figure& figure : result.figures) {
     if (figure.met()) continue;
     scene::print_format("        %-16s %s = %.4g %s, not %s%s\n", "", figure.name.c_str(),
@@ -66,18 +88,123 @@ Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
   };
 }
 
-int end_of(const std::vector<HilResult>& results) {
-  int failed = 0, skipped = 0;
-  bool fault = false;
-  for (const HilResult& result : results) {
-    failed += result.outcome == HilOutcome::kFailed ? 1 : 0;
-    skipped += result.outcome == HilOutcome::kSkipped ? 1 : 0;
-    fault = fault || result.unsafe;
+/// The stop flag of a suite: set by a signal, or when its time is over. Also prints how long a
+/// check has been running. Real-time: never from the servo thread.
+class SuiteClock {
+ public:
+  /// `timeout` (s): 0 is none.
+  SuiteClock(const std::atomic<bool>& interrupted, double timeout)
+      : interrupted_(interrupted), timeout_(timeout), thread_([this] { run(); }) {}
+  ~SuiteClock() {
+    leave_.store(true);
+    thread_.join();
   }
-  scene::print_format("%zu checks: %zu passed, %d failed, %d skipped.\n", results.size(),
-                      results.size() - static_cast<std::size_t>(failed + skipped), failed, skipped);
-  if (fault) return kExitFault;
-  return failed > 0 ? kExitUnmet : kExitDone;
+  SuiteClock(const SuiteClock&) = delete;
+  SuiteClock& operator=(const SuiteClock&) = delete;
+
+  const std::atomic<bool>& stop() const { return stop_; }
+  /// Returns whether the time was over before the suite was.
+  bool timed_out() const { return timed_out_.load(); }
+  /// Notes that a check begins.
+  void begin(std::string name) {
+    const std::lock_guard lock(mutex_);
+    name_ = std::move(name);
+    since_ = Clock::now();
+    said_ = 0;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void run() {
+    const Clock::time_point begin = Clock::now();
+    while (!leave_.load()) {
+      if (interrupted_.load()) stop_.store(true);
+      const double passed = std::chrono::duration<double>(Clock::now() - begin).count();
+      if (timeout_ > 0 && passed >= timeout_ && !stop_.load()) {
+        timed_out_.store(true);
+        stop_.store(true);
+      }
+      say_progress();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+  void say_progress() {
+    constexpr int kEvery_s = 30;
+    const std::lock_guard lock(mutex_);
+    const auto passed = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - since_);
+    const auto due = static_cast<int>(passed.count()) / kEvery_s;
+    if (name_.empty() || due <= said_) return;
+    said_ = due;
+    scene::print_format("        %-16s has been running for %d s\n", name_.c_str(), kEvery_s * due);
+    std::fflush(stdout);
+  }
+
+  const std::atomic<bool>& interrupted_;
+  double timeout_;
+  std::atomic<bool> stop_{false}, timed_out_{false}, leave_{false};
+  std::mutex mutex_;
+  std::string name_;
+  Clock::time_point since_ = Clock::now();
+  int said_ = 0;
+  std::thread thread_;
+};
+
+/// The files of a suite. They are written as soon as it begins and after each check, so that
+/// however the program ends no older result is left in their place.
+class HilFiles {
+ public:
+  HilFiles(const HilCommand& command, HilRecord record)
+      : command_(command), record_(std::move(record)) {}
+
+  HilRecord& record() { return record_; }
+
+  /// Writes the results until now; each check beyond them did not run, and `why`.
+  driver::Result<void> write(const std::vector<HilResult>& results, const std::string& why) const {
+    const auto all = with_not_run(results, command_.options, why);
+    if (!command_.json.empty()) {
+      if (auto done = write_hil_json(record_, all, command_.json); !done) return done;
+    }
+    return command_.junit.empty() ? driver::Result<void>()
+                                  : write_hil_junit(record_, all, command_.junit);
+  }
+
+  /// Writes the files of a suite that ended before any check, and returns its exit code.
+  int end_early(const driver::Error& error, ExitCode code) {
+    record_.end = code == kExitNoDevice ? "no_arm" : "refused";
+    record_.exit_code = code;
+    if (auto written = write({}, error.message); !written) {
+      complain(written.error(), kExitTrouble);
+    }
+    return complain(error, code);
+  }
+
+ private:
+  const HilCommand& command_;
+  HilRecord record_;
+};
+
+ExitCode code_of(const std::vector<HilResult>& results) {
+  const auto any = [&](auto&& is) { return std::any_of(results.begin(), results.end(), is); };
+  if (any([](const HilResult& one) { return one.fault; })) return kExitFault;
+  return any([](const HilResult& one) {
+    return one.outcome == HilOutcome::kFailed || one.outcome == HilOutcome::kNotRun;
+  })
+             ? kExitUnmet
+             : kExitDone;
+}
+
+void print_summary(const std::vector<HilResult>& results) {
+  const auto count = [&](HilOutcome outcome) {
+    return std::count_if(results.begin(), results.end(),
+                         [&](const HilResult& one) { return one.outcome == outcome; });
+  };
+  const auto not_run = count(HilOutcome::kNotRun);
+  const std::string rest = not_run > 0 ? fmt::format(", {} did not run", not_run) : "";
+  scene::print_format("%zu check%s: %td passed, %td failed, %td skipped%s.\n", results.size(),
+                      results.size() == 1 ? "" : "s", count(HilOutcome::kPassed),
+                      count(HilOutcome::kFailed), count(HilOutcome::kSkipped), rest.c_str());
 }
 
 int run_hil(HilCommand command) {
@@ -87,15 +214,36 @@ int run_hil(HilCommand command) {
   plan.write("--json", command.json, output::kJson);
   plan.write("--junit", command.junit, output::kXml);
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto chosen = resolve(command.choice, false);
-  if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
-  const SimulatedNote simulated(*chosen, "result of a real arm");
-  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
-  const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (chosen->real_arm) scene::leave_rather_than_stop();
-  const scene::LeavingGuard guard;
   HilOptions& options = command.options;
   options.full = command.suite == "full";
+  HilFiles files(command, {.arm = command.choice.device,
+                           .arm_file = command.choice.arm_file,
+                           .simulated = command.choice.device == "sim",
+                           .suite = command.suite,
+                           .time = now_utc()});
+  if (auto written = files.write({}, "The suite ended before this check did."); !written) {
+    return complain(written.error(), kExitTrouble);
+  }
+  if (command.require_device && command.choice.device == "sim") {
+    return files.end_early(driver::Error{"--require-device needs an arm on the desk, and --device "
+                                         "sim names the simulated one. Remove one of them."},
+                           kExitNoDevice);
+  }
+  const auto chosen = resolve(command.choice, false);
+  if (!chosen) return files.end_early(chosen.error(), exit_code_of(command.choice));
+  if (auto allowed = check_priority(command.choice, *chosen); !allowed) {
+    return files.end_early(allowed.error(), kExitBadInput);
+  }
+  files.record().arm = chosen->name;
+  files.record().arm_file = chosen->file.name;
+  files.record().simulated = !chosen->real_arm;
+  const SimulatedNote simulated(*chosen, "result of a real arm");
+  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  const std::atomic<bool>& interrupted = scene::catch_interrupts();
+  if (chosen->real_arm) scene::leave_rather_than_stop();
+  const scene::LeavingGuard guard;
+  SuiteClock clock(interrupted, command.timeout);
+  const std::atomic<bool>& stop = clock.stop();
   if (chosen->real_arm) {
     const scene::RealArmFile file{
         .path = chosen->path, .file = chosen->file, .why = {}, .told = {}};
@@ -106,39 +254,59 @@ int run_hil(HilCommand command) {
         "workspace, with nothing within 5 cm of it. Keep its switch at hand; Ctrl-C ends it.\n",
         kHilForceMax);
   }
-  const HilRig rig{.file = chosen->file,
-                   .open =
-                       [&](TipHold hold) {
-                         return chosen->real_arm
-                                    ? BenchArm::open(chosen->file, chosen->real_arm,
+  const HilRig rig{
+      .file = chosen->file,
+      .open =
+          [&](TipHold hold) {
+            return chosen->real_arm ? BenchArm::open(chosen->file, chosen->real_arm,
                                                      command.choice.firmware, {}, kHilForceMax)
-                                    : open_simulated(chosen->file, options.spring, hold);
-                       },
-                   .stop = stop,
-                   .prompt = prompt_of(chosen->real_arm.has_value(), stop),
-                   .told = options.attended || !chosen->real_arm};
-  if (auto bench = rig.open(TipHold::kFree); !bench) return complain(bench.error(), kExitNoDevice);
+                                    : open_simulated(chosen->file, options, hold);
+          },
+      .stop = stop,
+      .prompt = prompt_of(chosen->real_arm.has_value(), stop),
+      .question = chosen->real_arm
+                      ? Question([&stop](const std::string& what) { return says_yes(what, stop); })
+                      : Question(),
+      .attended = options.attended || !chosen->real_arm};
+  if (auto bench = rig.open(TipHold::kFree); !bench) {
+    return files.end_early(bench.error(), kExitNoDevice);
+  }
   // Nobody pulls the cable of a simulated arm.
   if (!chosen->real_arm) options.replug = false;
-  const HilRecord record{.arm = chosen->name,
-                         .arm_file = chosen->file.name,
-                         .simulated = !chosen->real_arm,
-                         .suite = command.suite,
-                         .time = now_utc()};
-  const auto results = run_hil_suite(rig, options, print);
-  if (!command.json.empty()) {
-    if (auto done = write_hil_json(record, results, command.json); !done) {
-      return complain(done.error(), kExitTrouble);
+  driver::Result<void> written;
+  HilListener listener;
+  listener.begun = [&](const std::string& name, std::size_t number, std::size_t count) {
+    scene::print_format("[%zu/%zu] %s\n", number, count, name.c_str());
+    std::fflush(stdout);
+    clock.begin(name);
+  };
+  listener.ended = [&](const std::vector<HilResult>& results) {
+    print(results.back());
+    if (auto done = files.write(results, "The suite ended before this check did."); !done) {
+      written = done;
     }
+  };
+  const auto results = run_hil_suite(rig, options, listener);
+  for (const HilResult& result : results) {
+    if (stop.load() && result.outcome == HilOutcome::kNotRun) print(result);
   }
-  if (!command.junit.empty()) {
-    if (auto done = write_hil_junit(record, results, command.junit); !done) {
-      return complain(done.error(), kExitTrouble);
-    }
+  ExitCode code = interrupted.load() ? kExitInterrupted : code_of(results);
+  files.record().end = interrupted.load()  ? "interrupted"
+                       : clock.timed_out() ? "timeout"
+                                           : "completed";
+  files.record().exit_code = code;
+  files.record().not_tested = not_tested(chosen->file, options, results);
+  if (auto done = files.write(results, ""); !done) written = done;
+  for (const std::string& sentence : files.record().not_tested) {
+    scene::print_format("Not tested: %s\n", sentence.c_str());
   }
-  if (stop.load()) return kExitInterrupted;
-  const int code = end_of(results);
-  scene::logger().info("The suite {} of {} ended with {}.", command.suite, chosen->name, code);
+  print_summary(results);
+  if (clock.timed_out()) {
+    scene::print_format("Its time was over after %g s (--timeout).\n", command.timeout);
+  }
+  if (!written) return complain(written.error(), kExitTrouble);
+  scene::logger().info("The suite {} of {} ended with {}.", command.suite, chosen->name,
+                       static_cast<int>(code));
   return code;
 }
 
@@ -149,8 +317,10 @@ void add_hil_command(CLI::App& app, int& exit_code) {
       "hil",
       "Check an arm and end with an exit code: reports, delay, watchdog, friction, walls, soak");
   auto command = std::make_shared<HilCommand>();
+  command->choice.simulates_unasked = false;
   command->choice.add_options(*sub);
-  sub->add_option("--suite", command->suite, "quick: a minute or two; full: over an hour")
+  command->choice.add_real_time_option(*sub);
+  sub->add_option("--suite", command->suite, "quick: two to three minutes; full: over an hour")
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
   sub->add_flag("--attended", command->options.attended,
@@ -160,9 +330,28 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   sub->add_option("--spring", command->options.spring,
                   "Stiffness of a spring that you tie to the tip when asked, N/m")
       ->check(CLI::Range(50.0, 2000.0));
+  sub->add_option("--known-mass", command->options.known_mass,
+                  "Mass that you fix to the tip when asked, kg (with --attended): shows forces in "
+                  "newtons, and a base that stands aslant")
+      ->check(CLI::Range(0.005, 0.06));
+  sub->add_option(
+         "--known-length", command->options.known_length,
+         "Length that you move the tip by along each axis when asked, from mark to mark, m "
+         "(with --attended): shows wrong counts, ratios and links")
+      ->check(CLI::Range(0.02, 0.2));
   sub->add_option("--soak", command->options.soak_minutes,
                   "Length of the soak, minutes; left out: half a minute, or 60 in the full suite")
       ->check(CLI::Range(0.1, 1440.0));
+  sub->add_option("--check", command->options.only,
+                  "Only run this check; may be given several times. One that pushes brings the "
+                  "feel check with it")
+      ->check(CLI::IsMember(hil_checks()));
+  sub->add_flag("--require-device", command->require_device,
+                "Exit with 3 unless a real arm is there, whatever --device says");
+  sub->add_option("--timeout", command->timeout,
+                  "End with zero force after N seconds; the checks left over did not run (exit "
+                  "code 5)")
+      ->check(CLI::Range(1.0, 1e6));
   sub->add_option("--json", command->json, "Write the results to this file as JSON");
   sub->add_option("--junit", command->junit, "Write the results to this file as JUnit XML");
   sub->callback([command, &exit_code] { exit_code = run_hil(*command); });

@@ -161,6 +161,9 @@ int identify_arm(IdentifyCommand command) {
   if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
   for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  if (auto allowed = check_priority(command.choice, *chosen); !allowed) {
+    return complain(allowed.error(), kExitBadInput);
+  }
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
     return complain({"Identifying pushes the arm by itself, and this arm, with this arm file, has "
                      "not passed its feel check. Run `thimble feel-check` first."},
@@ -255,6 +258,7 @@ void add_identify_command(CLI::App& app, int& exit_code) {
   auto command = std::make_shared<IdentifyCommand>();
   command->options.places = 7;
   command->choice.add_options(*sub);
+  command->choice.add_real_time_option(*sub);
   sub->add_option(
          "--known-mass", command->options.known_mass,
          "Mass that you fix to the tip for a second motion, kg: without it only the ratios "

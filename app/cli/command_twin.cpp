@@ -15,6 +15,7 @@
 #include "twin/twin_files.h"
 #include "twin/twin_forces.h"
 #include "twin/twin_prediction.h"
+#include "twin/unseen_constants.h"
 
 namespace thimble::app {
 namespace {
@@ -45,6 +46,9 @@ int compare(const TwinCommand& command) {
   for (const std::string& sentence : result->comparison.told)
     scene::print_format("%s\n", sentence.c_str());
   scene::print_format("%s", twin_table(result->comparison).c_str());
+  for (const std::string& sentence : never_seen()) {
+    scene::print_format("Not tested by motion: %s.\n", sentence.c_str());
+  }
   auto figures = twin_figures(result->comparison, command.fit_least);
   scene::print_format("\nForces, RMS over pieces of 60 ms:\n%s",
                       force_table(result->forces).c_str());

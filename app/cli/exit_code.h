@@ -12,7 +12,7 @@ enum ExitCode : int {
   kExitBadInput = 2,      ///< Wrong arguments, scene, arm file or mesh.
   kExitNoDevice = 3,      ///< The arm could not be opened.
   kExitFault = 4,         ///< The force went off with a fault while running.
-  kExitUnmet = 5,         ///< It is done, and a figure, a fit or a check misses its goal.
+  kExitUnmet = 5,         ///< A figure, a fit or a check misses its goal, or a check did not run.
   kExitInterrupted = 130  ///< Ended early by Ctrl-C or SIGTERM, with zero force.
 };
 

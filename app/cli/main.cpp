@@ -25,8 +25,9 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done, 1 unexpected trouble, 2 wrong arguments or input, 3 no arm,\n"
-    "4 the force went off with a fault, 5 a figure, a fit or a check misses its goal,\n"
-    "130 ended early by Ctrl-C.\n"
+    "4 the force went off with a fault, 5 a figure, a fit or a check misses its goal or did not "
+    "run,\n"
+    "130 ended early by Ctrl-C or SIGTERM.\n"
     "A physical arm moves by itself: keep clear of it, and keep its power switch at hand.";
 
 int run(int argc, char** argv) {

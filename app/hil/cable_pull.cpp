@@ -20,7 +20,7 @@ constexpr double kFar = 0.03;      // m; a tip that is let go goes no further
 
 HilResult check_cable_pull(const HilRig& rig, bool wanted) {
   if (!wanted) return skipped(kName, "It was not asked for (--replug).");
-  if (!rig.told) return skipped(kName, "It needs a person who pulls the cable (--attended).");
+  if (!rig.attended) return skipped(kName, "It needs a person who pulls the cable (--attended).");
   if (!rig.prompt(
           fmt::format("Hold the grip loosely: it pushes with {:g} N to your right. Pull the "
                       "arm's cable within {:.0f} s.",

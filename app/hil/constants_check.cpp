@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "bringup/identify/identify.h"
@@ -16,12 +19,35 @@ constexpr const char* kName = "constants";
 // What an arm may differ by from its file before it is another arm [chosen: a rope that slackened
 // or a motor that lost a tenth of its magnet is felt; friction hangs on the weather].
 constexpr double kTenth = 0.1, kThird = 1.0 / 3, kDelay = 0.2e-3;
+constexpr double kViscous = 0.01;  // N s/m, which dry friction hides at hand speeds [chosen]
+constexpr double kWeight = 0.005;  // N [chosen: half a gram]
+constexpr double kTilt = 3;        // degrees [chosen: a table that stands level by eye]
 
 /// How far a constant is from the file, in units of what is allowed; its interval is forgiven.
 Figure difference(const char* name, const Estimate& found, double named, double allowed) {
   const double beyond = std::max(0.0, std::abs(found.value - named) - found.plus_minus);
   return {std::string(name) + "_difference", beyond / allowed, "of what is allowed", "<= 1",
           fmt::format("found {:.5g} +- {:.2g}, file {:.5g}", found.value, found.plus_minus, named)};
+}
+
+/// Puts in by how much gravity pulls aslant on the tip, where something hangs on it: the known
+/// mass, or a weight of its own of at least kWeightSeen. Returns a sentence, or nothing.
+std::string add_tilt(const Identified& found, double known_mass, const Eigen::Vector3d& down_B,
+                     std::vector<Figure>& figures) {
+  constexpr double kWeightSeen = 0.02;  // N
+  const double mass = found.constants.mass.value;
+  const auto pull = [&](const PerMass& fit, double moved) -> Eigen::Vector3d {
+    return moved * fit.theta.segment<3>(PerMass::kWeight);
+  };
+  Eigen::Vector3d weight_B = pull(found.bare, mass);
+  if (found.loaded) weight_B = pull(*found.loaded, mass + known_mass) - weight_B;
+  if (!found.loaded && !(weight_B.norm() > kWeightSeen)) return "";
+  const double tilt =
+      std::atan2(weight_B.cross(down_B).norm(), weight_B.dot(down_B)) * 180 / std::numbers::pi;
+  figures.push_back({"base_tilt", tilt, "degrees", fmt::format("<= {:g}", kTilt), ""});
+  return fmt::format(
+      " Gravity pulls {:.1f} degrees aslant{}.", tilt,
+      tilt > kTilt ? ": the base stands otherwise than the arm file says (base)" : "");
 }
 
 /// Puts in how far the mass along each axis of the base is from the file's, in the middle of the
@@ -44,21 +70,42 @@ std::string add_masses(const LinkFit& found, const scene::ArmFile& file,
 
 }  // namespace
 
-HilResult check_constants(const HilRig& rig, double seconds) {
+HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::ToldArm>()) {
     return skipped(kName, "An arm of this build cannot be identified yet.");
   }
-  const OpenBench open = [&](bool) { return rig.open(TipHold::kFree); };
+  if (suite.known_mass > 0 && !rig.attended) {
+    return skipped(kName, "A known mass needs a person who fixes it to the tip (--attended).");
+  }
+  const OpenBench open = [&](bool loaded) -> driver::Result<std::unique_ptr<BenchArm>> {
+    if (loaded &&
+        !rig.prompt(fmt::format("Fix {:g} kg to the tip so that it cannot swing, and hold "
+                                "it from below; let go once you feel that it is carried.",
+                                suite.known_mass))) {
+      return driver::Error{"It was left before the known mass was on the tip."};
+    }
+    return rig.open(loaded ? TipHold::kMass : TipHold::kFree);
+  };
   IdentifyOptions options;
-  options.seconds = seconds;
+  options.seconds = suite.full ? 60 : 15;
+  options.known_mass = suite.known_mass;
+  // A person needs time to let go of the mass.
+  if (suite.known_mass > 0 && suite.attended) options.lead = 4;
   // Links that the file names show over the workspace alone.
   if (rig.file.simulated.links.named()) options.places = 5, options.place_seconds = 2;
+  driver::Fault fault = driver::Fault::kNone;
+  options.watch = [&fault](const driver::TickRecord& tick) { fault = tick.fault; };
   const auto found = identify(open, rig.file, options, rig.stop);
   // What moves otherwise than it is asked to is not pushed further.
-  if (!found) return broken_off(kName, found.error().message, nullptr);
+  if (!found) {
+    HilResult result = broken_off(kName, found.error().message, nullptr);
+    result.fault = fault != driver::Fault::kNone;
+    return result;
+  }
   const ArmConstants& is = found->constants;
   const auto& plant = rig.file.simulated.plant;
   const auto& wire = rig.file.simulated.wire;
+  const Eigen::Vector3d down_B = rig.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
   const double delay = static_cast<double>(wire.delay_in_ns + wire.delay_out_ns) * 1e-9;
   std::vector<Figure> figures;
   std::string masses =
@@ -69,16 +116,22 @@ HilResult check_constants(const HilRig& rig, double seconds) {
     figures.push_back(difference("mass", is.mass, plant.mass, kTenth * plant.mass));
   }
   figures.push_back(difference("dry_friction", is.coulomb, plant.coulomb, kThird * plant.coulomb));
+  figures.push_back(
+      difference("viscous_friction", is.viscous, plant.viscous, std::max(plant.viscous, kViscous)));
+  const double weight = rig.file.simulated.weight_B.dot(down_B);
+  figures.push_back(
+      difference("weight", is.weight, weight, std::max(kTenth * std::abs(weight), kWeight)));
+  const std::string tilt = add_tilt(*found, suite.known_mass, down_B, figures);
   figures.push_back(difference("delay", is.delay, delay, kDelay));
   for (std::size_t i = 0; i < 3; ++i) {
     figures.push_back(difference(fmt::format("gain_{}", i + 1).c_str(), is.gain[i], 1, kTenth));
   }
   std::string text = fmt::format(
-      "{}, dry friction {:.1f} mN ({:.1f}), delay {:.2f} ms ({:.2f}), "
-      "gains "
-      "{:.3f}, {:.3f}, {:.3f} of the file's.",
-      masses, 1e3 * is.coulomb.value, 1e3 * plant.coulomb, 1e3 * is.delay.value, 1e3 * delay,
-      is.gain[0].value, is.gain[1].value, is.gain[2].value);
+      "{}, dry friction {:.1f} mN ({:.1f}), viscous {:.3f} N s/m ({:.3f}), weight {:.1f} mN "
+      "({:.1f}), delay {:.2f} ms ({:.2f}), gains {:.3f}, {:.3f}, {:.3f} of the file's.{}",
+      masses, 1e3 * is.coulomb.value, 1e3 * plant.coulomb, is.viscous.value, plant.viscous,
+      1e3 * is.weight.value, 1e3 * weight, 1e3 * is.delay.value, 1e3 * delay, is.gain[0].value,
+      is.gain[1].value, is.gain[2].value, tilt);
   for (const std::string& sentence : found->against) text += " " + sentence;
   figures.push_back({"model_misfits", static_cast<double>(found->against.size()), "", "== 0", ""});
   HilResult result = judged(kName, text, std::move(figures));

@@ -4,41 +4,48 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "output/output_file.h"
 #include "report/figure_json.h"
+#include "text/utf8.h"
 
 namespace thimble::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns a text as XML carries it; control characters, which it cannot carry, are question marks.
-std::string in_xml(const std::string& text) {
+/// Returns whether XML 1.0 can carry a character of UTF-8 that is not ASCII: all but U+FFFE and
+/// U+FFFF.
+bool fits_xml(std::string_view character) {
+  return character != "\xEF\xBF\xBE" && character != "\xEF\xBF\xBF";
+}
+
+/// Returns a text as XML carries it. What it cannot carry (control characters, U+FFFE and U+FFFF)
+/// is a question mark, and a byte that is not UTF-8 is U+FFFD.
+std::string in_xml(std::string_view text) {
+  const std::string whole = scene::as_utf8(text);
   std::string safe;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\n':
-        safe += "&#10;";
-        break;
-      case '\t':
-        safe += "&#9;";
-        break;
-      default:
-        safe += byte < 0x20 ? '?' : c;
+  for (std::size_t i = 0; i < whole.size();) {
+    const std::size_t length = scene::utf8_length(std::string_view(whole).substr(i));
+    const std::string_view one =
+        std::string_view(whole).substr(i, std::max<std::size_t>(length, 1));
+    i += one.size();
+    const auto byte = static_cast<unsigned char>(one[0]);
+    if (one.size() > 1) {
+      safe += fits_xml(one) ? one : "?";
+    } else if (one == "&") {
+      safe += "&amp;";
+    } else if (one == "<") {
+      safe += "&lt;";
+    } else if (one == ">") {
+      safe += "&gt;";
+    } else if (one == "\"") {
+      safe += "&quot;";
+    } else if (one == "\n" || one == "\t" || one == "\r") {
+      safe += fmt::format("&#{};", byte);
+    } else {
+      safe += byte < 0x20 ? "?" : one;
     }
   }
   return safe;
@@ -54,8 +61,10 @@ std::string outcome_name(HilOutcome outcome) {
       return "failed";
     case HilOutcome::kSkipped:
       return "skipped";
+    case HilOutcome::kNotRun:
+      return "not_run";
   }
-  return "skipped";
+  return "not_run";
 }
 
 driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<HilResult>& results,
@@ -68,9 +77,15 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
                           {"seconds", result.seconds},
                           {"figures", figures_json(result.figures)}});
   }
-  const Json whole{
-      {"arm", record.arm},     {"arm_file", record.arm_file}, {"simulated", record.simulated},
-      {"suite", record.suite}, {"time", record.time},         {"checks", std::move(checks)}};
+  const Json whole{{"arm", record.arm},
+                   {"arm_file", record.arm_file},
+                   {"simulated", record.simulated},
+                   {"suite", record.suite},
+                   {"time", record.time},
+                   {"end", record.end},
+                   {"exit_code", record.exit_code},
+                   {"not_tested", record.not_tested},
+                   {"checks", std::move(checks)}};
   return output::write_file(file, output::kJson,
                             whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -85,10 +100,11 @@ driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<
   for (const HilResult& result : results) seconds += result.seconds;
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   text += fmt::format(
-      "<testsuite name=\"thimble.hil.{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" "
+      "<testsuite name=\"thimble.hil.{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+      "skipped=\"{}\" "
       "time=\"{:.3f}\" timestamp=\"{}\">\n",
-      record.suite, results.size(), count(HilOutcome::kFailed), count(HilOutcome::kSkipped),
-      seconds, record.time);
+      in_xml(record.suite), results.size(), count(HilOutcome::kFailed), count(HilOutcome::kNotRun),
+      count(HilOutcome::kSkipped), seconds, in_xml(record.time));
   for (const HilResult& result : results) {
     text += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">\n",
                         in_xml(record.arm + " " + record.arm_file), in_xml(result.name),
@@ -99,7 +115,9 @@ driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<
                           in_xml(figure.name), figure.value, in_xml(figure.unit));
     }
     if (!result.figures.empty()) text += "    </properties>\n";
-    if (result.outcome == HilOutcome::kFailed) {
+    if (result.outcome == HilOutcome::kNotRun) {
+      text += fmt::format("    <error message=\"{}\"/>\n", in_xml(result.text));
+    } else if (result.outcome == HilOutcome::kFailed) {
       text += fmt::format("    <failure message=\"{}\"/>\n", in_xml(result.text));
     } else if (result.outcome == HilOutcome::kSkipped) {
       text += fmt::format("    <skipped message=\"{}\"/>\n", in_xml(result.text));

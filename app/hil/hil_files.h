@@ -16,9 +16,13 @@ struct HilRecord {
   bool simulated = false;
   std::string suite;  ///< quick or full.
   std::string time;   ///< When it began: ISO 8601, UTC.
+  /// How it ended: running, completed, timeout, interrupted, no_arm or refused.
+  std::string end = "running";
+  std::vector<std::string> not_tested{};  ///< See `not_tested`.
+  int exit_code = -1;                     ///< Of the program; -1 while it runs.
 };
 
-/// Returns passed, failed or skipped.
+/// Returns passed, failed, skipped or not_run.
 std::string outcome_name(HilOutcome outcome);
 
 /// Writes the results as JSON: the record's members, and "checks", a list of {"name", "outcome",
@@ -28,7 +32,8 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
                                     const std::filesystem::path& file);
 
 /// Writes the results as JUnit XML, as test servers read it: a test case per check; each figure is
-/// a property of its case. Fails as `write_hil_json`.
+/// a property of its case, and a check that did not run is an error. Any name gives valid XML.
+/// Fails as `write_hil_json`.
 driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<HilResult>& results,
                                      const std::filesystem::path& file);
 

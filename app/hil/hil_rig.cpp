@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "bringup/identify/simulated_bench.h"
+#include "hil/known_places.h"
 
 namespace thimble::app {
 
-driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file, double spring,
-                                                         TipHold hold) {
+driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file,
+                                                         const HilOptions& options, TipHold hold) {
   if (file.is<driver::DeltaArm>()) {
     return driver::Error{
         "The simulated " + file.name +
@@ -20,9 +21,18 @@ driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& f
     return BenchArm::open(file, {}, {}, feel_check_hand({0, 0, 0}), kHilForceMax);
   }
   if (hold == TipHold::kFree) return simulated_bench(file, 0);
+  if (hold == TipHold::kMass) return simulated_bench(file, options.known_mass);
+  if (hold == TipHold::kHome || hold == TipHold::kLength) {
+    scene::ArmFile firm = file;
+    firm.simulated.hand = firm_hand();
+    return BenchArm::open(firm, {}, {},
+                          hold == TipHold::kHome ? home_pose_hand(file)
+                                                 : known_length_hand(file, options.known_length),
+                          kHilForceMax);
+  }
   scene::ArmFile tied = file;
   tied.simulated.hand = {};
-  tied.simulated.hand.stiffness = spring;
+  tied.simulated.hand.stiffness = options.spring;
   return simulated_bench(tied, 0, true);
 }
 
@@ -39,9 +49,43 @@ driver::Result<std::unique_ptr<BenchArm>> open_active(const HilRig& rig, TipHold
   return opened;
 }
 
+std::vector<std::string> not_tested(const scene::ArmFile& file, const HilOptions& options,
+                                    const std::vector<HilResult>& results) {
+  const auto ran = [&](const char* name) {
+    return std::any_of(results.begin(), results.end(), [&](const HilResult& one) {
+      return one.name == name &&
+             (one.outcome == HilOutcome::kPassed || one.outcome == HilOutcome::kFailed);
+    });
+  };
+  std::vector<std::string> all;
+  const bool serial = !file.is<driver::DeltaArm>() && !file.is<driver::ToldArm>();
+  if (!ran("known_length")) {
+    all.emplace_back(
+        "The scale of positions: counts per turn, ratio and length of links look like other masses "
+        "and torque constants in motion. A known length moved shows them (--attended "
+        "--known-length 0.1).");
+  }
+  if (serial && !ran("home_pose")) {
+    all.emplace_back(
+        "Home position and the encoders' signs: motion about one place does not show them. The "
+        "home "
+        "pose taken from two sides does (--attended --check home_pose), and the feel check.");
+  }
+  if (!ran("constants")) {
+    all.emplace_back("Mass, friction, weight, gains and delay: the check constants did not run.");
+  }
+  if (options.known_mass == 0 || !ran("constants")) {
+    all.emplace_back(
+        "Forces in newtons, and whether the base stands aslant: motion alone shows ratios of mass "
+        "and torque. A known mass hung on the tip shows both (--attended --known-mass 0.03).");
+  }
+  return all;
+}
+
 HilResult broken_off(std::string name, const std::string& why, const BenchArm* bench) {
-  HilResult result{std::move(name), HilOutcome::kFailed, why, {}, 0, true};
+  HilResult result{std::move(name), HilOutcome::kFailed, why, {}, 0, true, false};
   if (bench != nullptr && bench->fault() != driver::Fault::kNone) {
+    result.fault = true;
     result.text += (why.empty() ? "" : " ") + std::string(driver::describe(bench->fault()));
   }
   return result;
@@ -55,6 +99,7 @@ HilResult judged(std::string name, std::string text, std::vector<Figure> figures
           std::move(text),
           std::move(figures),
           0,
+          false,
           false};
 }
 

@@ -22,6 +22,9 @@ enum class TipHold {
   kFree,    ///< Nothing: the arm stands by itself, and no hand is on the grip.
   kSpring,  ///< The spring of known stiffness that the user tied to it.
   kHand,    ///< A hand that does what the prompts of the feel check ask.
+  kHome,    ///< A hand that brings it into its home pose from two sides.
+  kLength,  ///< A hand that moves it by a known length along each axis.
+  kMass,    ///< Nothing, with the known mass fixed to it.
 };
 
 /// How an arm is checked.
@@ -34,7 +37,11 @@ struct HilOptions {
   bool replug = false;      ///< A person pulls the cable and plugs it in again.
   double spring = 0;        ///< Stiffness of the spring tied to the tip, N/m; 0: none.
   double soak_minutes = 0;  ///< Of the soak; 0: half a minute, or an hour of the full suite.
-  double known_mass = 0;    ///< See IdentifyOptions.
+  double known_mass = 0;    ///< See IdentifyOptions; a person fixes it to the tip.
+  double known_length = 0;  ///< From mark to mark, m; a person moves the tip by it; 0: none.
+  /// Names of the checks that run (`hil_checks`); empty: all. A check that pushes brings the feel
+  /// check with it.
+  std::vector<std::string> only{};
 };
 
 /// What a check works with: the arm, opened anew for each of them.
@@ -44,20 +51,26 @@ struct HilRig {
   const scene::ArmFile& file;
   Open open;
   const std::atomic<bool>& stop;
-  Prompt prompt;      ///< Tells a person what to do; answers false to leave the check.
-  bool told = false;  ///< A person is there to do it, or a simulated hand.
+  Prompt prompt;          ///< Tells a person what to do; answers false to leave the check.
+  Question question{};    ///< Asks a person yes or no; empty: the simulated hand is asked.
+  bool attended = false;  ///< A person is there to do it, or a simulated hand.
 };
 
 /// Opens the simulated arm of a file as a check needs it: free, tied to a spring (N/m), or held by
-/// a hand that does what the feel check asks. Real-time: never from the servo thread.
-driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file, double spring,
-                                                         TipHold hold);
+/// a hand that does what a check asks. Real-time: never from the servo thread.
+driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file,
+                                                         const HilOptions& options, TipHold hold);
 
 /// Opens the arm for a check, activates it, and waits with zero force until the soft start is over.
 driver::Result<std::unique_ptr<BenchArm>> open_active(const HilRig& rig, TipHold hold);
 
 /// How a check ended.
-enum class HilOutcome { kPassed, kFailed, kSkipped };
+enum class HilOutcome {
+  kPassed,
+  kFailed,
+  kSkipped,  ///< It does not apply to this arm, or was not asked for.
+  kNotRun,   ///< It should have run and did not: stopped, out of time, or not safe.
+};
 
 /// What one check found.
 struct HilResult {
@@ -69,11 +82,22 @@ struct HilResult {
   /// It was broken off: by a fault of the device, or by a motor that pulls the wrong way. Nothing
   /// may push after it.
   bool unsafe = false;
+  bool fault = false;  ///< A fault of the device ended it.
 };
+
+/// Returns what of an arm a suite with these results did not test, a sentence each: what motion
+/// alone cannot tell, and what can.
+std::vector<std::string> not_tested(const scene::ArmFile& file, const HilOptions& options,
+                                    const std::vector<HilResult>& results);
 
 /// Returns a check that was not done, and why.
 inline HilResult skipped(std::string name, std::string why) {
-  return {std::move(name), HilOutcome::kSkipped, std::move(why), {}, 0, false};
+  return {std::move(name), HilOutcome::kSkipped, std::move(why), {}, 0, false, false};
+}
+
+/// Returns a check that should have run and did not, and why.
+inline HilResult not_run(std::string name, std::string why) {
+  return {std::move(name), HilOutcome::kNotRun, std::move(why), {}, 0, false, false};
 }
 
 /// Returns a check that ended before it found anything: its error, and the device's fault if that

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <string>
 #include <utility>
 
 #include "bringup/listen.h"
 #include "hil/cable_pull.h"
 #include "hil/constants_check.h"
 #include "hil/friction_at_rest.h"
+#include "hil/known_places.h"
 #include "hil/soak.h"
 #include "hil/tied_spring.h"
 #include "hil/wall_check.h"
@@ -39,7 +42,7 @@ HilResult check_reports(const HilRig& rig, double seconds) {
 
 HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   constexpr const char* kName = "feel_check";
-  if (!rig.told) {
+  if (!rig.attended) {
     return judged(kName,
                   options.checked
                       ? "This arm, as it is, has passed its feel check before."
@@ -49,7 +52,10 @@ HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   }
   auto bench = rig.open(TipHold::kHand);
   if (!bench) return broken_off(kName, bench.error().message, nullptr);
-  const auto results = feel_check(**bench, rig.file, rig.prompt, rig.stop);
+  constexpr double kFelt = 0.1;  // N
+  const Question hand = [&](const std::string&) { return (*bench)->true_force() < kFelt; };
+  const auto results = feel_check(**bench, rig.file, rig.prompt, rig.stop,
+                                  rig.question || !(*bench)->simulated() ? rig.question : hand);
   std::string text;
   std::size_t passed = 0;
   for (const CheckResult& one : results) {
@@ -63,44 +69,107 @@ HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   return result;
 }
 
+constexpr const char* kFeelCheck = "feel_check";
+
+/// A check of the suite.
+struct Check {
+  const char* name;
+  bool pushes;  ///< Only an arm that has passed its feel check is pushed.
+  std::function<HilResult(const HilRig&, const HilOptions&)> run;
+};
+
+double minutes_of_soak(const HilOptions& options) {
+  if (options.soak_minutes > 0) return options.soak_minutes;
+  return options.full ? kHourOfFull : kMinutesOfQuick;
+}
+
+const std::vector<Check>& all_checks() {
+  using Rig = const HilRig&;
+  using Options = const HilOptions&;
+  static const std::vector<Check> kChecks{
+      {"reports", false, [](Rig rig, Options o) { return check_reports(rig, o.full ? 10 : 2); }},
+      {kFeelCheck, false, [](Rig rig, Options o) { return check_feel(rig, o); }},
+      {"home_pose", false, [](Rig rig, Options) { return check_home_pose(rig); }},
+      {"known_length", false,
+       [](Rig rig, Options o) { return check_known_length(rig, o.known_length); }},
+      {"constants", true, [](Rig rig, Options o) { return check_constants(rig, o); }},
+      {"watchdog", true, [](Rig rig, Options) { return check_watchdog_time(rig); }},
+      {"friction_at_rest", true, [](Rig rig, Options) { return check_friction_at_rest(rig); }},
+      {"stiffest_wall", true, [](Rig rig, Options o) { return check_stiffest_wall(rig, o.full); }},
+      {"force_accuracy", true, [](Rig rig, Options o) { return check_tied_spring(rig, o.spring); }},
+      {"soak", true, [](Rig rig, Options o) { return check_soak(rig, minutes_of_soak(o)); }},
+      {"cable_pull", true, [](Rig rig, Options o) { return check_cable_pull(rig, o.replug); }}};
+  return kChecks;
+}
+
+std::vector<Check> chosen(const HilOptions& options) {
+  if (options.only.empty()) return all_checks();
+  const auto named = [&](const Check& check) {
+    return std::find(options.only.begin(), options.only.end(), check.name) != options.only.end();
+  };
+  const bool pushes = std::any_of(all_checks().begin(), all_checks().end(),
+                                  [&](const Check& check) { return check.pushes && named(check); });
+  std::vector<Check> found;
+  for (const Check& check : all_checks()) {
+    if (named(check) || (pushes && check.name == std::string(kFeelCheck))) found.push_back(check);
+  }
+  return found;
+}
+
+std::vector<std::string> names_of(const std::vector<Check>& checks) {
+  std::vector<std::string> names;
+  for (const Check& check : checks) names.emplace_back(check.name);
+  return names;
+}
+
 }  // namespace
+
+std::vector<std::string> hil_checks() {
+  return names_of(all_checks());
+}
+
+std::vector<std::string> chosen_checks(const HilOptions& options) {
+  return names_of(chosen(options));
+}
+
+std::vector<HilResult> with_not_run(std::vector<HilResult> results, const HilOptions& options,
+                                    const std::string& why) {
+  const std::vector<std::string> names = chosen_checks(options);
+  for (std::size_t i = results.size(); i < names.size(); ++i) {
+    results.push_back(not_run(names[i], why));
+  }
+  return results;
+}
 
 std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& options,
                                      const HilListener& listener) {
   std::vector<HilResult> results;
-  bool may_push = true;
-  std::string why_not;
-  const auto take = [&](const std::function<HilResult()>& check, const char* pushes) {
-    if (rig.stop.load()) return;
+  std::string no_push;  // why nothing may push
+  const std::vector<Check> checks = chosen(options);
+  for (const Check& check : checks) {
+    if (rig.stop.load()) break;
+    if (listener.begun) listener.begun(check.name, results.size() + 1, checks.size());
     const auto begin = std::chrono::steady_clock::now();
-    HilResult result = pushes != nullptr && !may_push ? skipped(pushes, why_not) : check();
-    if (rig.stop.load()) return;  // what was interrupted says nothing
+    HilResult result =
+        check.pushes && !no_push.empty() ? not_run(check.name, no_push) : check.run(rig, options);
+    if (rig.stop.load()) break;  // what was interrupted says nothing
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (may_push && result.unsafe) {
-      may_push = false;
-      why_not = "The check " + result.name + " was broken off, so nothing pushes any more.";
+    const bool by_name =
+        std::find(options.only.begin(), options.only.end(), check.name) != options.only.end();
+    if (by_name && result.outcome == HilOutcome::kSkipped) {
+      result = not_run(result.name, result.text + " It was asked for by name.");
+    }
+    if (no_push.empty() && result.unsafe) {
+      no_push = "The check " + result.name + " was broken off, so nothing pushes any more.";
+    } else if (no_push.empty() && check.name == std::string(kFeelCheck) &&
+               result.outcome != HilOutcome::kPassed) {
+      no_push = "The arm has not passed its feel check.";
     }
     results.push_back(std::move(result));
-    listener(results.back());
-  };
-  take([&] { return check_reports(rig, options.full ? 10 : 2); }, nullptr);
-  take([&] { return check_feel(rig, options); }, nullptr);
-  if (!results.empty() && results.back().outcome != HilOutcome::kPassed && may_push) {
-    may_push = false;
-    why_not = "The arm has not passed its feel check.";
+    if (listener.ended) listener.ended(results);
   }
-  take([&] { return check_constants(rig, options.full ? 60 : 15); }, "constants");
-  take([&] { return check_watchdog_time(rig); }, "watchdog");
-  take([&] { return check_friction_at_rest(rig); }, "friction_at_rest");
-  take([&] { return check_stiffest_wall(rig, options.full); }, "stiffest_wall");
-  take([&] { return check_tied_spring(rig, options.spring); }, "force_accuracy");
-  const double minutes = options.soak_minutes > 0 ? options.soak_minutes
-                         : options.full           ? kHourOfFull
-                                                  : kMinutesOfQuick;
-  take([&] { return check_soak(rig, minutes); }, "soak");
-  take([&] { return check_cable_pull(rig, options.replug); }, "cable_pull");
-  return results;
+  return with_not_run(std::move(results), options, "It was stopped before this check ended.");
 }
 
 }  // namespace thimble::app

@@ -43,7 +43,7 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
   if (stiffness == 0) {
     return skipped(kName, "No spring of known stiffness was named (--spring).");
   }
-  if (!rig.told) return skipped(kName, "It needs a person who ties the spring (--attended).");
+  if (!rig.attended) return skipped(kName, "It needs a person who ties the spring (--attended).");
   if (!rig.prompt("Tie the spring to the tip and to something firm, along y (to your right), "
                   "just not slack, and let go.")) {
     return skipped(kName, "It was left.");

@@ -181,6 +181,56 @@ double TwinComparison::missed() const {
   return square > 0 ? error / std::sqrt(square) : 0;
 }
 
+namespace {
+
+// A twin this near is as near as the encoders' steps let it be [twin_test].
+constexpr double kNearSteps = 1.15;
+// Each further constant must take away this share of the error.
+constexpr double kFurther = 0.1;
+constexpr int kTogetherMost = 4;
+
+/// Lets constants take other values one after the other, always the one that mends most, starting
+/// with the best single one, until the twin is near. Sets `file` to the arm with all of them.
+/// Returns each constant with its last value.
+driver::Result<std::vector<TwinRemedy>> mend_together(Relive& relive, double step_error,
+                                                      const TwinRemedy& first,
+                                                      scene::ArmFile& file) {
+  const std::vector<TwinConstant> constants = twin_constants(file);
+  std::vector<TwinRemedy> together{first};
+  const auto set = [&](const TwinRemedy& remedy) {
+    for (const TwinConstant& constant : constants) {
+      if (constant.key == remedy.key) constant.set(file, remedy.best);
+    }
+  };
+  set(first);
+  for (int round = 1; round < kTogetherMost; ++round) {
+    auto now = relive(file);
+    if (!now) return now.error();
+    const double before = now->rms();
+    if (before < kNearSteps * step_error) break;
+    TwinRemedy best;
+    best.error_rms = before;
+    for (const TwinConstant& constant : constants) {
+      auto remedy = Remedy(relive, file, constant, *now).find();
+      if (!remedy) return remedy.error();
+      if (remedy->error_rms < best.error_rms) best = std::move(remedy).value();
+    }
+    if (best.key.empty() || !(best.error_rms < (1 - kFurther) * before)) break;
+    set(best);
+    const auto same = std::find_if(together.begin(), together.end(),
+                                   [&](const TwinRemedy& one) { return one.key == best.key; });
+    if (same == together.end()) {
+      together.push_back(best);
+    } else {
+      same->best = best.best;
+    }
+    for (TwinRemedy& one : together) one.error_rms = best.error_rms;
+  }
+  return together;
+}
+
+}  // namespace
+
 driver::Result<TwinResult> compare_twin(const session::Recording& recording,
                                         const scene::ArmFile& file, const TwinOptions& options) {
   const auto motion = twin_motion(recording, file, options.span);
@@ -214,9 +264,16 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
   std::stable_sort(
       found.remedies.begin(), found.remedies.end(),
       [](const TwinRemedy& a, const TwinRemedy& b) { return a.error_rms < b.error_rms; });
-  return TwinResult{.comparison = std::move(found),
-                    .forces = twin_forces(*motion, file),
-                    .trace = std::move(trace)};
+  TwinForces forces = twin_forces(*motion, file);
+  if (found.has_remedy()) {
+    scene::ArmFile mended = file;
+    auto together = mend_together(*relive, found.step_error, found.remedies.front(), mended);
+    if (!together) return together.error();
+    if (together->size() > 1) found.together = std::move(together).value();
+    forces.constants_explain = forces.other_acted() && !twin_forces(*motion, mended).other_acted();
+  }
+  return TwinResult{
+      .comparison = std::move(found), .forces = std::move(forces), .trace = std::move(trace)};
 }
 
 }  // namespace thimble::app

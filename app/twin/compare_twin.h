@@ -52,6 +52,10 @@ struct TwinComparison {
   double step_error = 0;             ///< What the encoders' steps leave of it, m.
   double seconds = 0;                ///< That were compared.
   std::vector<TwinRemedy> remedies;  ///< The best first.
+  /// Constants that together bring the twin nearer than any of them alone, each with its last
+  /// value; empty where one is enough, or where others add nothing. Their `error_rms` is that of
+  /// all.
+  std::vector<TwinRemedy> together;
   std::vector<TwinSpectrum> spectrum;
   std::vector<std::string> told;  ///< Of the recording, a sentence each.
 

@@ -180,6 +180,14 @@ std::string twin_table(const TwinComparison& found) {
   } else {
     text += "\nNo other value of a single constant would reduce the error by 1 %.\n";
   }
+  if (!found.together.empty()) {
+    text +=
+        fmt::format("Together these make {:.3g} um:\n", kMicro * found.together.front().error_rms);
+    for (const TwinRemedy& one : found.together) {
+      text += fmt::format("  {}: {:.5g} {} instead of {:.5g}\n", one.key, one.best, one.unit,
+                          one.value);
+    }
+  }
   if (found.missed() > TwinComparison::kMissed) {
     text += fmt::format(
         "Even then the twin misses {:.0f} % of the motion: several constants are wrong, something "

@@ -240,7 +240,8 @@ bool TwinForces::other_acted() const {
 }
 
 bool TwinForces::hand_held() const {
-  return other_acted() && hand.explained > kHandExplains && hand.stiffness > 0;
+  return other_acted() && !constants_explain && hand.explained > kHandExplains &&
+         hand.stiffness > 0;
 }
 
 TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
@@ -335,6 +336,11 @@ std::string force_table(const TwinForces& forces) {
         "what the motors did not give. Do not believe what is said of the constants above; record "
         "without a hand.\n",
         hand.stiffness, hand.damping, std::max(0.0, hand.mass), 100 * hand.explained);
+  } else if (forces.constants_explain) {
+    text +=
+        "The constants of the file are wrong: with the values above nothing but the motors acted "
+        "on "
+        "the tip.\n";
   } else if (forces.other_acted()) {
     text +=
         "More acted on the tip than the motors gave, and not like a hand that keeps still: "

@@ -41,6 +41,8 @@ struct TwinForces {
   std::array<TwinForceAxis, 3> axes{};
   double noise = 0;  ///< What the encoders' steps make of the other force, RMS of an axis, N.
   TwinHand hand;
+  /// With other constants of the file nothing but the motors acted: then it was no hand.
+  bool constants_explain = false;
   std::vector<TwinForceSample> samples;
 
   /// Returns whether more acted than motors and encoders' steps say: at least kSeen times the

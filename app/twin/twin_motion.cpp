@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "read_scene.h"
+#include "twin/unseen_constants.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::app {
@@ -168,6 +169,9 @@ class Reader {
           "identify --record FILE` makes one that does."};
     }
     motion_.step_error = std::sqrt(step_square_ / static_cast<double>(taken_));
+    for (std::string& sentence : unseen_differences(recorded_, file_)) {
+      motion_.told.push_back(std::move(sentence));
+    }
     if (!recording_.complete) {
       motion_.told.push_back("The recording was cut off; what is there is compared.");
     }

@@ -25,6 +25,19 @@ expect 0 '^049D +Haply Inverse3 +service +port [0-9]+ +ws://localhost:[0-9]+ +re
 "$thimble" doctor >doctor.txt 2>&1
 expect 0 'Haply Inverse3 049D: its service on port [0-9]+ has it .*Untried on hardware' cat doctor.txt
 expect 2 "calibrated by its vendor's own software" "$thimble" calibrate --device 049D
+# Without real-time priority no command pushes a real arm unless the user says so, and doctor names that as a problem.
+weak() { # COMMAND...
+  if [ "$(id -u)" = 0 ]; then
+    prlimit --rtprio=0 setpriv --bounding-set=-sys_nice "$@"
+  else
+    prlimit --rtprio=0 "$@"
+  fi
+}
+for command in feel-check identify hil; do
+  expect 2 'A real arm needs real-time priority.*--no-real-time' weak "$thimble" $command --device 049D
+done
+expect 2 'has not passed its feel check' weak "$thimble" identify --device 049D --no-real-time
+expect 3 '^PROBLEM You may not run at real-time priority 80' weak "$thimble" doctor
 # In real time, where a busy machine may give the service no turn for longer than the gate waits for a report.
 touch_it() {
   for _ in 1 2 3 4 5; do

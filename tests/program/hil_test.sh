@@ -2,9 +2,9 @@
 # The checks of an arm as a test server runs them: what is printed, both files, exit codes.
 source "$(dirname "$0")/expect.sh" "$@"
 
-expect 0 '^9 checks: 8 passed, 0 failed, 1 skipped\.$' \
-  "$thimble" hil --device sim --arm vintage_phantom --spring 200 --json good.json --junit good.xml
-expect 0 '^vintage_phantom quick True reports feel_check constants watchdog friction_at_rest stiffest_wall force_accuracy soak cable_pull$' \
+expect 0 '^11 checks: 10 passed, 0 failed, 1 skipped\.$' \
+  "$thimble" hil --device sim --arm vintage_phantom --spring 200 --known-length 0.1 --json good.json --junit good.xml
+expect 0 '^vintage_phantom quick True reports feel_check home_pose known_length constants watchdog friction_at_rest stiffest_wall force_accuracy soak cable_pull$' \
   /usr/bin/python3 -c '
 import json
 whole = json.load(open("good.json"))
@@ -20,7 +20,7 @@ assert "would come to" in soak["text"], soak
 heat = {one["name"]: one["value"] for one in soak["figures"]}
 assert 0 < heat["motor_heat"] < heat["heat_in_the_end"] < 0.2 and heat["heat_from_model"] < 1e-4, heat'
 expect 0 'property name="heat_in_the_end" value="0\.[0-9]+ of the limit"' cat good.xml
-expect 0 '^9 0 1 9 1$' /usr/bin/python3 -c '
+expect 0 '^11 0 1 11 1$' /usr/bin/python3 -c '
 from xml.etree import ElementTree
 suite = ElementTree.parse("good.xml").getroot()
 cases = suite.findall("testcase")
@@ -35,7 +35,59 @@ from xml.etree import ElementTree
 suite = ElementTree.parse("bad.xml").getroot()
 failure = suite.find("testcase[@name=\"feel_check\"]/failure")
 print(suite.get("failures"), "Motor 2" in failure.get("message"))'
-expect 5 '^skipped +soak +The arm has not passed its feel check' "$thimble" hil --device sim --arm reversed.yaml
+expect 5 '^NOT RUN +soak +The arm has not passed its feel check' "$thimble" hil --device sim --arm reversed.yaml
+
+# summary FILE: tests, failures, errors, skipped of a JUnit file, after its cases were counted.
+cat >summary.py <<'end'
+import sys
+from xml.etree import ElementTree
+suite = ElementTree.parse(sys.argv[1]).getroot()
+kinds = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+cases = suite.findall("testcase")
+for attribute, tag in kinds.items():
+    assert int(suite.get(attribute)) == len([case for case in cases if case.find(tag) is not None]), attribute
+assert int(suite.get("tests")) == len(cases)
+print(suite.get("tests"), *[suite.get(attribute) for attribute in kinds])
+end
+# What did not run is an error, so that a server cannot take the file for a green one.
+expect 0 '^11 1 7 1$' /usr/bin/python3 summary.py bad.xml
+
+# Without an arm there is no result: the simulated arm is checked only where it is asked for, and an old file does not stay.
+cp good.xml old.xml
+cp good.json old.json
+expect 3 'No arm is plugged in.*--device sim' "$thimble" hil --arm vintage_phantom --junit old.xml --json old.json
+expect 0 '^11 0 11 0$' /usr/bin/python3 summary.py old.xml
+expect 0 '^no_arm 3 not_run$' /usr/bin/python3 -c '
+import json
+whole = json.load(open("old.json"))
+print(whole["end"], whole["exit_code"], *{one["outcome"] for one in whole["checks"]})'
+expect 3 '--require-device' "$thimble" hil --device sim --arm vintage_phantom --require-device
+expect 2 '--check.*reports' "$thimble" hil --device sim --arm vintage_phantom --check weight
+
+# One check, and what it needs before it pushes.
+expect 0 '^1 check: 1 passed, 0 failed, 0 skipped\.$' "$thimble" hil --device sim --arm vintage_phantom --check reports
+expect 0 '^2 checks: 2 passed, 0 failed, 0 skipped\.$' \
+  "$thimble" hil --device sim --arm vintage_phantom --check friction_at_rest --junit one.xml
+expect 0 '^\[2/2\] friction_at_rest$' "$thimble" hil --device sim --arm vintage_phantom --check friction_at_rest
+expect 5 'cable_pull.*asked for by name' "$thimble" hil --device sim --arm vintage_phantom --check cable_pull
+
+# Out of time, and ended by a signal: zero force, and both files say what did not run.
+expect 5 'did not run' "$thimble" hil --device sim --arm vintage_phantom --check soak --soak 60 --timeout 3 --junit late.xml
+expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py late.xml
+cp good.xml ended.xml
+expect 130 'NOT RUN' timeout -s TERM --preserve-status 3 \
+  "$thimble" hil --device sim --arm vintage_phantom --soak 60 --check reports --check soak --junit ended.xml
+expect 0 '^3 0 1 0$' /usr/bin/python3 summary.py ended.xml
+# Even SIGKILL leaves no old result behind.
+cp good.xml killed.xml
+expect 137 '' timeout -s KILL 3 "$thimble" hil --device sim --arm vintage_phantom --soak 60 --check soak --junit killed.xml
+expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py killed.xml
+
+# Any name is XML.
+printf 'name: "a <b> & \\\"c\\\" \\x01 \\uFFFE"\n' >named.yaml
+sed '/^name:/d' "$source_dir/app/arms/vintage_phantom.yaml" >>named.yaml
+expect 0 . "$thimble" hil --device sim --arm named.yaml --check reports --junit named.xml
+expect 0 '^1 0 0 0$' /usr/bin/python3 summary.py named.xml
 
 expect 3 'cannot be simulated' "$thimble" hil --device sim --arm touch
 expect 3 'homed by' "$thimble" hil --device sim --arm falcon

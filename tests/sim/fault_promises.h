@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -74,13 +75,15 @@ struct Promised {
   driver::Fault cause = driver::Fault::kNone;  ///< kNone: any, or none
 };
 
-/// Finds what is promised of a fault that comes while an arm is touched.
-inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phase) {
+/// Finds what is promised of a fault that comes while an arm is touched. `watchdog_ms`: that of its
+/// board.
+inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phase,
+                         int watchdog_ms) {
   using driver::Fault;
   // 20 ms of silence, the tick that notices it, two frames until the zero has come.
   constexpr int kNoticed = 24;
-  // The arm's watchdog of 100 ms after the last good message, whose way may take three frames.
-  constexpr int kWatchdog = 104;
+  // The arm's watchdog after the last good message, whose way may take three frames.
+  const int watchdog = watchdog_ms + 4;
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
   // An arm that answers only says nothing to a message that it did not hear.
   const bool answers = arm != driver::ArmKind::kWoody;
@@ -105,8 +108,8 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
     return {Promise::kOff, kNoticed, Fault::kNoReports};
   }
   const Promised unheard{Promise::kOff, kNoticed, Fault::kNoReports};
-  const Promised unknown{Promise::kArmOff, kWatchdog, Fault::kNone};
-  const Promised deaf{Promise::kOff, kWatchdog, Fault::kNoReports};
+  const Promised unknown{Promise::kArmOff, watchdog, Fault::kNone};
+  const Promised deaf{Promise::kOff, watchdog, Fault::kNoReports};
   if (support::is_deaf(hid, answers, fault)) return deaf;
   if (fault == "stall in" || fault == "short in" || fault == "silence in" || fault == "lost in") {
     return unheard;
@@ -115,13 +118,13 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
   // Its reports are numbered, so that an old one is known.
   if (fault == "stale in" && arm == driver::ArmKind::kWoody) return unheard;
   // Its silence is noticed a tick before the messages count as refused.
-  const Promised unanswered{Promise::kOff, kWatchdog, Fault::kNoReports};
+  const Promised unanswered{Promise::kOff, watchdog, Fault::kNoReports};
   if (answers && (fault == "stall out" || fault == "lost out")) return unanswered;
   // To what they do not understand, text boards and the Falcon say nothing either; a HID board
   // answers a message of any length.
   if (!hid && (fault == "short out" || fault == "silence out")) return unanswered;
   if (fault == "lost out") return unknown;
-  if (fault == "stall out") return {Promise::kOff, kWatchdog, Fault::kRefused};
+  if (fault == "stall out") return {Promise::kOff, watchdog, Fault::kRefused};
   if (fault == "short out") return unknown;
   if (fault == "long out" && hid) return unknown;
   if (fault == "silence out") {
@@ -136,17 +139,18 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
   if (fault == "all motors turned round" && phase != Phase::kFree && phase != Phase::kDeforming) {
     return {Promise::kOff, 1, Fault::kMotorsReversed};
   }
-  if (fault == "unplug") return {Promise::kOff, kWatchdog, Fault::kTransportLost};
+  if (fault == "unplug") return {Promise::kOff, watchdog, Fault::kTransportLost};
   if (fault == "force law without a number") return {Promise::kOff, 3, Fault::kForceNotFinite};
   if (fault == "host stands still for 150 ms") {
-    return {Promise::kOff, kWatchdog, Fault::kLoopStalled};
+    // By a board that waits for longer the loop's own zero is the first.
+    return {Promise::kOff, std::min(watchdog, 150 + 3), Fault::kLoopStalled};
   }
   if (fault == "host dies") return unknown;
-  if (fault == "computer sleeps for 2 s") return {Promise::kOff, kWatchdog, Fault::kSuspended};
+  if (fault == "computer sleeps for 2 s") return {Promise::kOff, watchdog, Fault::kSuspended};
   if (fault == "clock steps back 10 ms") return {Promise::kOff, 3, Fault::kTimeNotMonotonic};
   // The zero is sent again each millisecond, and taken in the first in which it can be.
   if (fault == "stall out of 30 ms at the end") return {Promise::kOff, 30 + 3, Fault::kNone};
-  if (fault == "stall out at the end") return {Promise::kArmOff, kWatchdog, Fault::kRefused};
+  if (fault == "stall out at the end") return {Promise::kArmOff, watchdog, Fault::kRefused};
   return {};
 }
 

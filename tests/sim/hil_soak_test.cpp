@@ -35,7 +35,7 @@ scene::ArmFile warm_arm(double current, double time_constant) {
 HilResult soak_of(const scene::ArmFile& file, const scene::ArmFile& arm, double minutes) {
   const std::atomic<bool> never{false};
   return check_soak({.file = file,
-                     .open = [&](TipHold hold) { return open_simulated(arm, 0, hold); },
+                     .open = [&](TipHold hold) { return open_simulated(arm, {}, hold); },
                      .stop = never,
                      .prompt = {}},
                     minutes);

@@ -29,7 +29,7 @@ lead() { # ARM X Y Z
 
 feel_check() { # ARM OPTIONS
   arm=$1
-  as tester "exec thimble feel-check $2" <$keys >/tmp/feel.log 2>&1 &
+  as tester "exec thimble feel-check --no-real-time $2" <$keys >/tmp/feel.log 2>&1 &
   asking=$!
   press /tmp/feel.log 1 || return 1
   for place in "0.025 0.025 0" "-0.025 0 0.025" "0 -0.025 -0.025" "0 0 0"; do
@@ -91,7 +91,7 @@ identify() { # ARM SEED
   if feel_check $arm "$options"; then
     echo "PASS $named of hidden constants passes its feel check"
     echo "hand off" >$control
-    as tester "exec thimble identify $options --known-mass $known --seconds $seconds \
+    as tester "exec thimble identify --no-real-time $options --known-mass $known --seconds $seconds \
       --places 0 --record /tmp/motion.h5 --output /tmp/identified.yaml" <$keys >/tmp/identify.log 2>&1 &
     asking=$!
     press /tmp/identify.log 1 && prompted /tmp/identify.log 2 && hold_mass $arm

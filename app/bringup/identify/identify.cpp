@@ -259,10 +259,23 @@ std::string like_play_text(const PlayFit& play) {
       play.with.misfit, play.without.misfit);
 }
 
-}  // namespace
+/// Adds how late the ticks of a bench were to a sum when it is destroyed, whatever ended it.
+class LateCounter {
+ public:
+  LateCounter(const BenchArm& bench, LateTicks& sum) : bench_(bench), sum_(sum) {}
+  ~LateCounter() { sum_.add(bench_.late()); }
+  LateCounter(const LateCounter&) = delete;
+  LateCounter& operator=(const LateCounter&) = delete;
 
-driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
-                                    const IdentifyOptions& options, const std::atomic<bool>& stop) {
+ private:
+  const BenchArm& bench_;
+  LateTicks& sum_;
+};
+
+/// Identifies an arm as `identify` does, and counts the late ticks of all motions.
+driver::Result<Identified> identify_motion(const OpenBench& open, const scene::ArmFile& file,
+                                           const IdentifyOptions& options,
+                                           const std::atomic<bool>& stop, LateTicks& late) {
   if (file.is<driver::ToldArm>()) {
     return driver::Error{
         "Identifying needs an arm whose motors turn its joints by currents (PHANTOM, "
@@ -276,11 +289,13 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   Identified found;
   Eigen::Vector3d down_B(0, 0, -1), share(1, 1, 1);
   bool held_tip = false;
-  PerMass rigid;  // fit of the motion with the bare tip
+  PerMass rigid;         // fit of the motion with the bare tip
+  double read_late = 0;  // s
   for (const bool loaded : {false, true}) {
     if (loaded && options.known_mass == 0) break;
     auto bench = open(loaded);
     if (!bench) return bench.error();
+    const LateCounter counter(**bench, late);
     if (!loaded) (*bench)->watch(options.watch);
     auto motion = record_motion(**bench, file,
                                 {.seconds = options.seconds,
@@ -390,6 +405,7 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
     if (!loaded && options.link) {
       look_at_link(**bench, file, *alone, options.force_most, stop, found);
     }
+    if (!loaded) read_late = (*bench)->read_late();
   }
   auto constants = arm_constants(found.bare, down_B, found.loaded, options.known_mass);
   if (!constants) return constants.error();
@@ -408,12 +424,29 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   }
   found.constants.links_sought = found.over.fit.has_value();
   if (found.over.links()) put_links(found, down_B);
+  // Reports waited for their tick; the delay of the arm is the mean of a distribution without that.
+  found.constants.delay.value -= read_late;
   widen(found.constants);
   put_rubbing(found);
   if (found.lines.stretches) put_cables(found);
   look_at_intervals(found);
   look_closer(found, held_tip);
   found.over.motions.clear();
+  return found;
+}
+
+}  // namespace
+
+driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
+                                    const IdentifyOptions& options, const std::atomic<bool>& stop) {
+  LateTicks late;
+  auto found = identify_motion(open, file, options, stop, late);
+  if (!found) {
+    if (!late.many() || stop.load()) return found;
+    return driver::Error{late_ticks_text(late) + " (" + found.error().message + ")"};
+  }
+  found->late = late;
+  if (late.many() && !found->against.empty()) found->against = {late_ticks_text(late)};
   return found;
 }
 

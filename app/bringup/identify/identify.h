@@ -16,6 +16,7 @@
 #include "bringup/identify/rubbing_joints.h"
 #include "bringup/identify/saturation.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
+#include "bringup/loop_priority.h"
 #include "bringup/report_timing.h"
 #include "bringup/watchdog_time.h"
 #include "thimble/driver/result.h"
@@ -73,6 +74,7 @@ struct Identified {
   Encoders encoders;  ///< At rest only if the reports' timing was asked for.
   /// Joint by joint; nothing is searched for behind cables that stretch.
   std::array<Saturation, 3> saturation;
+  LateTicks late;                        ///< Of the loop in all motions.
   std::optional<ReportTiming> reports;   ///< If they were asked for.
   std::optional<WatchdogTime> watchdog;  ///< If it was asked for, and the fit is good.
   /// Why the model of a rigid arm does not fit, a sentence each; empty: it does. Nothing may be
@@ -108,6 +110,10 @@ bool is_held(const PerMass& held, double mass);
 /// same motion with a spring to be found in it; `stretches`: it is that of links behind cables.
 std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass,
                                         bool stretches = false);
+
+/// Returns the sentence about a motion in which many ticks came late. It stands instead of other
+/// reasons: a force that stood for longer looks like cables, play or a hand.
+std::string late_ticks_text(const LateTicks& late);
 
 /// Opens the bench for one motion: with the known mass on the tip, or without it.
 using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool loaded)>;

@@ -61,6 +61,15 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
   return against;
 }
 
+std::string late_ticks_text(const LateTicks& late) {
+  return fmt::format(
+      "The computer was late in {} of {} ticks, by up to {:.1f} ms, so that forces stood for "
+      "longer "
+      "than was reckoned. Such a motion says nothing about the arm. Give the loop real-time "
+      "priority (`thimble doctor`), close other programs, and repeat it.",
+      late.late, late.ticks, 1e3 * late.worst);
+}
+
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options) {
   if (!(options.force_most >= kForceLeast)) {
     return driver::Error{fmt::format(

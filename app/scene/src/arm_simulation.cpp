@@ -104,6 +104,7 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::build(
                                                file.simulated, path, std::move(image), seed);
     if (!falcon) return wrong(falcon.error());
     simulation->falcon_ = std::move(falcon).value();
+    simulation->falcon_->set_watchdog(file.simulated.firmware.watchdog_ns);
     return simulation;
   }
   const device_sim::SimulatedArmSettings settings = settings_of(file);

@@ -8,8 +8,20 @@
 
 namespace thimble::driver {
 
+namespace {
+
+/// Returns the limits of a gate for which a gap of five times the stall is a fault, even where the
+/// board's own watchdog waits for longer (0.5 s of the mbed boards). [chosen: 0.1 s of all arm
+/// files, the watchdog of the boards with text lines]
+GateLimits with_gap(GateLimits limits) noexcept {
+  limits.watchdog_ns = std::min(limits.watchdog_ns, 5 * std::max<std::int64_t>(limits.stall_ns, 1));
+  return limits;
+}
+
+}  // namespace
+
 SafetyGate::SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy)
-    : limits_(limits),
+    : limits_(with_gap(limits)),
       opening_(limits.soft_start),
       energy_(energy),
       observer_(energy),

@@ -106,6 +106,16 @@ TEST(IdentifiedFile, LeavesOutAWeightThatIsNotToldFromNone) {
   EXPECT_EQ(text->find("weight:"), std::string::npos);
 }
 
+TEST(IdentifiedFile, WritesNoWeightWhereNoneWasSeen) {
+  std::string text = text_of("vintage_phantom");
+  text.insert(text.find("  motors:\n"), "    weight: 0.02\n");
+  ArmConstants found = some_constants();
+  found.weight = {0.000005, 0.00005};
+  const auto written = identified_text(text, found, {});
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  EXPECT_NE(written->find("weight: 0  #"), std::string::npos) << *written;
+}
+
 TEST(IdentifiedFile, RefusesAFormThatItCannotChange) {
   EXPECT_TRUE(support::refuses(identified_text("a: [", some_constants(), {}), "no YAML"));
   std::string text = text_of("vintage_phantom");

@@ -203,7 +203,6 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   // An arm has no friction below zero, whatever the fit says.
   const double viscous = std::max(0.0, found.viscous.value);
   const double coulomb = std::max(0.0, found.coulomb.value);
-  const double weight = std::max(0.0, found.weight.value);
   if (!put(tip["viscous"], viscous, "N s/m", found.viscous.plus_minus) ||
       !put(tip["coulomb"], coulomb, "N per axis", found.coulomb.plus_minus)) {
     return bad_form("simulation.tip friction");
@@ -211,6 +210,7 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   // A weight that cannot be told from none is none.
   const bool has_weight = static_cast<bool>(tip["weight"]);
   const bool weighs = found.weight.value > found.weight.plus_minus;
+  const double weight = weighs ? found.weight.value : 0;
   const std::string weighed = marked(weight, "N", found.weight.plus_minus, mark);
   if (has_weight ? !lines.exchange(tip["weight"], weighed)
                  : weighs && !lines.add_behind(tip["coulomb"], "weight: " + weighed)) {

@@ -91,7 +91,17 @@ class Further {
   /// The delay was seen with the jitter in it, so a wire without the key gets a line to be put in.
   bool put_jitter(const YAML::Node& wire, double jitter_error) {
     const std::string spread = marked(jitter_, "s, evenly spread", jitter_error, mark_);
-    if (wire["jitter"]) return lines_.exchange(wire["jitter"], spread);
+    if (wire["jitter"]) {
+      // Half of it is in the mean of each way.
+      const Estimate& delay = found_.constants.delay;
+      const double in = 1e-9 * static_cast<double>(file_.simulated.wire.delay_in_ns);
+      const double out = std::max(0.0, delay.value - std::min(delay.value, in) - jitter_);
+      return lines_.exchange(wire["jitter"], spread) &&
+             lines_.exchange(wire["delay_out"],
+                             marked(1e-9 * static_cast<double>(ns(out)),
+                                    "s; the sum of both, with the jitter, is measured",
+                                    delay.plus_minus, mark_));
+    }
     const double seen = jitter_;
     jitter_ = 0;
     return seen == 0 ||

@@ -136,6 +136,13 @@ TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
   EXPECT_EQ(troubles(), 1u);
 }
 
+TEST_F(DoctorTest, MissingPriorityIsAProblemForARealArm) {
+  system_.real_time_priority_max = 0;
+  EXPECT_EQ(finding("real-time priority").health, Health::kAdvice);
+  plug_woody();
+  EXPECT_EQ(finding("real-time priority").health, Health::kProblem);
+}
+
 TEST_F(DoctorTest, SaysOfABoardOfUnknownKindHowToUseItAndHowToGiveAccessToItAlone) {
   usb_.plug("1-3", "16c0", "0486", "7654321", 1, 4);
   usb_.call("1-3", "Teensyduino RawHID");
