@@ -8,6 +8,7 @@
 
 #include "sim/fault_promises.h"
 #include "sim/fault_rig.h"
+#include "support/covered.h"
 #include "support/fault_cell.h"
 #include "support/scratch.h"
 
@@ -189,6 +190,7 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
 class FaultMatrix : public testing::TestWithParam<TestedArm> {};
 
 TEST_P(FaultMatrix, KeepsWhatIsPromisedInEveryPhase) {
+  support::Covered("arms").add(GetParam().file);
   for (const TestedFault& fault : kTestedFaults) {
     for (std::size_t phase = 0; phase < kPhaseNames.size(); ++phase) {
       SCOPED_TRACE(std::string(fault.name) + ", " + std::string(kPhaseNames[phase]));

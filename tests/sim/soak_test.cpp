@@ -15,9 +15,11 @@
 #include <vector>
 
 #include "setup.h"
+#include "support/covered.h"
 #include "support/long_form.h"
 #include "support/random.h"
 #include "support/run_hash.h"
+#include "support/shipped_scenes.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"
@@ -29,15 +31,8 @@ namespace {
 using Eigen::Vector3d;
 
 std::vector<std::string> shipped_scenes() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(THIMBLE_SOURCE_DIR "/app/scenes")) {
-    const std::string name = entry.path().stem().string();
-    const bool scanned = name == "elephant";  // needs a mesh that is fetched
-    const bool there = std::filesystem::exists(THIMBLE_MESHES "/elephant.off");
-    if (name == "two_hands") continue;  // of several arms; test_sim runs it
-    if (entry.path().extension() == ".yaml" && (!scanned || there)) names.push_back(name);
-  }
-  std::sort(names.begin(), names.end());
+  std::vector<std::string> names = support::scenes_of_one_arm();
+  if (!std::filesystem::exists(THIMBLE_MESHES "/elephant.off")) std::erase(names, "elephant");
   return names;
 }
 
@@ -184,6 +179,7 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
   const std::size_t heap_before = heap_in_use();
   const auto results = soak_all(scenes, ticks, threads);
   std::uint64_t in_contact = 0, done = 0;
+  support::Covered covered("scenes");
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     SCOPED_TRACE(scenes[i]);
     const Soaked& one = results[i];
@@ -194,6 +190,7 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
     if (!watched() && threads == 1) {  // a thread beside it opens another scene meanwhile
       EXPECT_LE(one.heap_late, one.heap_early + kGrowthMax) << "the heap grows with the ticks";
     }
+    covered.add(scenes[i]);
     in_contact += one.in_contact;
     done += one.ticks;
   }

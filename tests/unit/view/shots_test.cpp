@@ -11,6 +11,7 @@
 
 #include "gl_or_skip.h"
 #include "picture_difference.h"
+#include "support/covered.h"
 #include "view/gl/picture_file.h"
 #include "view/shot.h"
 
@@ -83,12 +84,14 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
   if (!context) GTEST_SKIP() << "no OpenGL";
   const fs::path stored_folder = fs::path(THIMBLE_TEST_DATA) / "shots";
   const bool write = std::getenv("THIMBLE_WRITE_SHOTS") != nullptr;
+  support::Covered covered("scenes");
   for (const fs::path& scene : shipped_scenes()) {
     const std::string name = scene.stem();
     if (name == "elephant" && !fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
       std::fprintf(stderr, "NOT TESTED: elephant, for want of its mesh.\n");
       continue;
     }
+    covered.add(name);
     const fs::path stored_file = stored_folder / (name + ".png");
     play(scene, second_of(name),
          [&](const DrawnScene& drawn, DrawnMoment& moment, const Plots& plots) {

@@ -43,7 +43,7 @@ Adjust without(const std::vector<GateDecision>& decisions) {
 double compare(std::span<const driver::TickRecord> full, std::span<const driver::TickRecord> some) {
   double squares = 0, size = 0;
   for (std::size_t i = 0; i < std::min(full.size(), some.size()); ++i) {
-    if (!full[i].in_contact && !some[i].in_contact) continue;
+    if (!is_felt(full[i]) && !is_felt(some[i])) continue;
     std::array<double, 3> off{};
     for (std::size_t k = 0; k < 3; ++k) off[k] = some[i].f_sent_W[k] - full[i].f_sent_W[k];
     squares += length_of(off) * length_of(off);

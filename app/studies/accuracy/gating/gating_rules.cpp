@@ -18,12 +18,16 @@ constexpr double kLatencyShare = 0.05;
 
 }  // namespace
 
+bool is_felt(const driver::TickRecord& row) {
+  return row.in_contact || length_of(row.f_sent_W) > 0;
+}
+
 SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick) {
   SeenInRun seen;
   std::vector<double> accelerations;
   double squares = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (!rows[i].in_contact) continue;
+    if (!is_felt(rows[i])) continue;
     const double f = length_of(rows[i].f_sent_W);
     squares += f * f;
     seen.force_max = std::max(seen.force_max, f);

@@ -21,15 +21,18 @@ struct GateDecision {
   bool left_out = false;  ///< May be left out.
   bool changes = true;    ///< Whether leaving it out changes the simulation at all.
   std::optional<double> change =
-      {};  ///< RMS change of force in contact without it, of the force's RMS.
+      {};  ///< RMS change of force without it where something is felt, of the force's RMS.
 };
 
 /// What the rules look at, found in a run of the full model.
 struct SeenInRun {
-  double force_rms = 0, force_max = 0;  ///< N, in contact
-  double acceleration = 0;              ///< m/s^2, 99th percentile in contact
+  double force_rms = 0, force_max = 0;  ///< N, while something is felt
+  double acceleration = 0;              ///< m/s^2, 99th percentile while something is felt
   double depth_max = 0;                 ///< m
 };
+
+/// Returns whether something is felt in a tick: a surface, or a field, which acts without contact.
+bool is_felt(const driver::TickRecord& row);
 
 /// Looks at a run with ticks of `tick` s. Real-time: never from the servo thread.
 SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick);

@@ -12,6 +12,7 @@
 #include "quality/quality_table.h"
 #include "studies/accuracy/quality_points.h"
 #include "studies/cost/cost_subjects.h"
+#include "support/covered.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/mesh_file.h"
 
@@ -84,6 +85,7 @@ Scene at_quality(const std::filesystem::path& file, Quality quality) {
 
 TEST(Quality, DraftAndReferenceChangeSomethingInEveryShippedScene) {
   int scenes = 0;
+  support::Covered covered("scenes");
   const bool has_meshes =
       std::filesystem::exists(std::filesystem::path(THIMBLE_MESHES) / "elephant.off");
   for (const auto& entry : std::filesystem::directory_iterator(
@@ -110,6 +112,7 @@ TEST(Quality, DraftAndReferenceChangeSomethingInEveryShippedScene) {
     EXPECT_LE(1e-9 * static_cast<double>(reference.arm.simulated.firmware.report_period_ns),
               1 / reference.rate + 1e-9);
     ++scenes;
+    covered.add(entry.path().stem().string());
   }
   EXPECT_GE(scenes, 13);
 }

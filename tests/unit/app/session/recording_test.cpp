@@ -167,7 +167,7 @@ TEST(Recording, IsAsShortAsTheRunWas) {
 
 // A recording of 10 hours, killed by SIGKILL at any moment, opens and lacks less than 100 ms.
 TEST(Recording, KilledInTheMiddleOpensAndLacksLessThanATenthOfASecond) {
-  for (int round = 0; round < 3; ++round) {
+  for (const int ticks : {400, 437, 5'500}) {
     const auto path = scratch("killed.h5");
     int pipe_ends[2];
     ASSERT_EQ(pipe(pipe_ends), 0);
@@ -188,7 +188,7 @@ TEST(Recording, KilledInTheMiddleOpensAndLacksLessThanATenthOfASecond) {
     close(pipe_ends[1]);
     std::int64_t last = 0;
     // The child tells each tick it recorded; it is killed somewhere in the middle of its work.
-    for (int i = 0; i < 400 + 37 * round; ++i) {
+    for (int i = 0; i < ticks; ++i) {
       ASSERT_EQ(read(pipe_ends[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
     }
     kill(child, SIGKILL);
@@ -206,9 +206,12 @@ TEST(Recording, KilledInTheMiddleOpensAndLacksLessThanATenthOfASecond) {
       ASSERT_EQ(read->ticks[i].p_WT, tick_number(i).p_WT) << i;
     }
     RecordProperty("ms_lost", static_cast<int>((last - read->ticks.back().time_ns) / 1'000'000));
-    // The promise is 100 ms on a machine that lets the writer run; sanitizers and loaded machines
-    // may hold it up, which is no fault of the file.
-    EXPECT_LT(last - read->ticks.back().time_ns, 2'000'000'000);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    constexpr std::int64_t kLost_ns = 300'000'000;  // less than the shortest run
+#else
+    constexpr std::int64_t kLost_ns = 100'000'000;
+#endif
+    EXPECT_LT(last - read->ticks.back().time_ns, kLost_ns) << ticks;
   }
 }
 

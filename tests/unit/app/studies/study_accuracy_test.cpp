@@ -24,7 +24,9 @@
 #include "studies/accuracy/straight_walk.h"
 #include "studies/accuracy/velocity_estimates.h"
 #include "studies/rate_bench.h"
+#include "support/covered.h"
 #include "support/meshes/shapes.h"
+#include "support/shipped_scenes.h"
 #include "thimble/session/histogram.h"
 
 namespace thimble::app {
@@ -453,23 +455,37 @@ TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
   EXPECT_NE(verdict_of(slow).sentence.find("the work alone"), std::string::npos);
 }
 
-TEST(Gating, KeepsWhatASceneCallsForAndChecksItAgainstTheFullModel) {
-  const auto report =
-      decide_gating(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/box.yaml", false);
+class GatingOfScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GatingOfScene, KeepsWhatItCallsForAndChecksItAgainstTheFullModel) {
+  if (GetParam() == "elephant" && !std::filesystem::exists(THIMBLE_MESHES "/elephant.off")) {
+    GTEST_SKIP() << "needs its scanned mesh";
+  }
+  const auto report = decide_gating(support::scene_file(GetParam()), false);
   ASSERT_TRUE(report.ok()) << report.error().message;
   bool any_left_out = false;
   for (const GateDecision& one : report->decisions) {
     EXPECT_FALSE(one.rule.empty());
     EXPECT_EQ(one.change.has_value(), one.changes) << one.effect;
     any_left_out = any_left_out || (one.left_out && one.changes);
+    if (one.left_out && one.change) {
+      std::printf("  %s without %s: %.3g of the force\n", GetParam().c_str(), one.name.c_str(),
+                  *one.change);
+      EXPECT_LT(*one.change, 0.01) << one.effect;
+    }
   }
   EXPECT_GT(report->force, 0);
+  EXPECT_LT(report->change, 0.01);
   // Nothing left out is the same run to the bit.
   if (!any_left_out) {
     EXPECT_EQ(report->change, 0);
   }
   EXPECT_NE(gating_text(*report).find("Without all"), std::string::npos);
+  support::Covered("scenes").add(GetParam());
 }
+
+INSTANTIATE_TEST_SUITE_P(ByName, GatingOfScene, ::testing::ValuesIn(support::scenes_of_one_arm()),
+                         [](const auto& scene) { return scene.param; });
 
 }  // namespace
 }  // namespace thimble::app

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "support/covered.h"
 #include "support/random.h"
 #include "thimble/render/build_object_touch.h"
 
@@ -65,6 +66,23 @@ struct FanTip {
   }
 };
 
+// The name of a tracker in a scene.
+const char* scene_name(TrackerChoice tracker) {
+  switch (tracker) {
+    case TrackerChoice::kEdgePlanes:
+      return "edge_planes";
+    case TrackerChoice::kNormalProjection:
+      return "normal_projection";
+    case TrackerChoice::kOffset:
+      return "offset";
+    case TrackerChoice::kGodObject:
+      return "god_object";
+    case TrackerChoice::kPacked:
+      break;
+  }
+  return "compact";
+}
+
 class LargeFans : public testing::TestWithParam<TrackerChoice> {};
 
 TEST_P(LargeFans, StrokeOverTheApexEndsWithTheForceOfAFreshTouch) {
@@ -85,6 +103,7 @@ TEST_P(LargeFans, StrokeOverTheApexEndsWithTheForceOfAFreshTouch) {
       }
     }
   }
+  support::Covered("trackers").add(scene_name(GetParam()));
 }
 
 TEST_P(LargeFans, NothingIsFeltAboveTheSurfaceAfterAStroke) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/contact_walk.h"
+#include "support/covered.h"
 #include "support/heap_guard.h"
 #include "support/long_form.h"
 #include "support/meshes/shapes.h"
@@ -195,6 +196,7 @@ TEST(PathBounded, ChangesTheForceByNoMoreThanThePathOnEveryScannedMeshAtAnyDepth
   EXPECT_GE(meshes.size(), all ? 91u : 15u);
   std::array<Jumps, 4> sum;
   std::array<std::size_t, 4> over{}, strong{};
+  support::Covered trackers("trackers");
   for (const auto& [name, shape] : meshes) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     with_each_contact(shape, [&, &name = name](std::size_t i, auto contact) {
@@ -215,6 +217,7 @@ TEST(PathBounded, ChangesTheForceByNoMoreThanThePathOnEveryScannedMeshAtAnyDepth
     EXPECT_GT(sum[i].depth, 0.02) << kContacts[i];
     EXPECT_GT(over[i], 3 * meshes.size() / 4) << kContacts[i];
     EXPECT_GT(strong[i], meshes.size() / 2) << kContacts[i];
+    trackers.add(kContacts[i]);
   }
 }
 

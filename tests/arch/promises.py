@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Writes the guide's page of guarantees from one table, and checks the breadth of each sentence.
+
+    promises.py SOURCE BUILD           fails if a test covers less than its row promises, or the page is not current
+    promises.py SOURCE BUILD --write   writes app/guide/pages/guarantees.md
+
+The table is app/guide/guarantees.list. Of each row that has `covers`, what its tests noted by `support::Covered` is compared with all there is: scenes and arms in app/, trackers in `thimble help scene tracker`. A
+sentence that says "every", "each", "all" or "any" of these must have `covers`.
+"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+PAGE = "app/guide/pages/guarantees.md"
+TABLE = "app/guide/guarantees.list"
+KINDS = {"scene": "scenes", "tracker": "trackers", "arm": "arms"}
+WIRE = ("hfab_14_byte", "woody_8_byte", "text_lines", "falcon_packet")
+
+
+def fail(text):
+    print(f"FAILED: {text}")
+    fail.count += 1
+
+
+fail.count = 0
+
+
+def read_table(path):
+    """Returns (heading lines, [(section title, [row])]); a row has says, tests, covers, line."""
+    head, sections, row = [], [], None
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        if line.startswith("## "):
+            sections.append((line[3:], []))
+            row = None
+        elif not sections:
+            head.append(line)
+        elif line.startswith("- "):
+            row = {"says": line[2:], "tests": "", "covers": [], "line": number}
+            sections[-1][1].append(row)
+        elif line.startswith("  tests: ") and row:
+            row["tests"] = line[9:]
+        elif line.startswith("  covers: ") and row:
+            row["covers"] = [one.strip() for one in line[10:].split(",")]
+        elif line.strip():
+            sys.exit(f"{path}:{number}: neither a section, a row (- ), tests: nor covers:")
+    for _, rows in sections:
+        for one in rows:
+            if not one["tests"]:
+                sys.exit(f"{path}:{one['line']}: the row names no tests")
+    return head, sections
+
+
+def all_there_is(source, build):
+    """Returns kind -> set of names."""
+    arms = {file.stem: re.search(r"^protocol: *(\w+)", file.read_text(), re.M)[1]
+            for file in (source / "app/arms").glob("*.yaml")}
+    said = subprocess.run([build / "app/thimble", "help", "scene", "tracker"], capture_output=True, text=True,
+                          check=True).stdout
+    trackers = re.search(r"^ *tracker +(.*?);", said, re.M)[1]
+    return {
+        "scenes": {file.stem for file in (source / "app/scenes").glob("*.yaml")},
+        "arms": set(arms),
+        "arms on USB": {name for name, protocol in arms.items() if protocol in WIRE},
+        "trackers": set(re.split(r", | or ", trackers)),
+    }
+
+
+def commands(build):
+    """Returns the name of each test of GoogleTest in CTest, and its program."""
+    said = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True)
+    prefix = "--gtest_filter="
+    return [(argument[len(prefix):], test["command"][0]) for test in json.loads(said.stdout)["tests"]
+            for argument in test.get("command", []) if argument.startswith(prefix)]
+
+
+def covered(row, build, tests):
+    """Returns kind -> set of names that the tests of a row noted; runs those that ran before their program was built."""
+    found, again = {}, {}
+    for name in re.findall(r"`(\w+\.[\w*]+)`", row["tests"]):
+        pattern = re.compile(r"(?:\w+/)?" + re.escape(name).replace(r"\*", r"\w+") + r"(?:/\w+)?")
+        mine = [(test, program) for test, program in tests if pattern.fullmatch(test)]
+        if not mine:
+            fail(f"{TABLE}:{row['line']}: CTest has no test {name}")
+        built = max((pathlib.Path(program).stat().st_mtime for _, program in mine), default=0)
+        notes = notes_of(build, mine)
+        if not notes or min(note.stat().st_mtime for note in notes) < built:
+            for test, program in mine:
+                again.setdefault(program, []).append(test)
+    for program, names in again.items():
+        chosen = ":".join(names)
+        ended = subprocess.run([program, f"--gtest_filter={chosen}"], capture_output=True, text=True)
+        if ended.returncode:
+            fail(f"{TABLE}:{row['line']}: {chosen} failed\n{ended.stdout[-2000:]}")
+    for name in re.findall(r"`(\w+\.[\w*]+)`", row["tests"]):
+        pattern = re.compile(r"(?:\w+/)?" + re.escape(name).replace(r"\*", r"\w+") + r"(?:/\w+)?")
+        for note in notes_of(build, [one for one in tests if pattern.fullmatch(one[0])]):
+            found.setdefault(note.suffix[1:].replace("_", " "), set()).update(note.read_text().split())
+    return found
+
+
+def notes_of(build, tests):
+    """Returns the files in which tests noted what they covered."""
+    names = {name.replace("/", "-") for name, _ in tests}
+    return [file for file in (build / "covered").glob("*") if file.stem in names]
+
+
+def check(row, build, there, tests):
+    """Checks a row; returns the text of its third column."""
+    for word, kind in KINDS.items():
+        broad = re.search(rf"\b([Ee]very|[Ee]ach|[Aa]ll|[Aa]ny)\b[\w ]{{0,12}}\b{word}s?\b", row["says"])
+        if broad and not any(kind in tag for tag in row["covers"]):
+            fail(f'{TABLE}:{row["line"]}: "{broad[0]}" needs `covers: all {kind}`, or other words')
+    if not row["covers"]:
+        return ""
+    found, texts = covered(row, build, tests), []
+    for tag in row["covers"]:
+        parts = re.fullmatch(r"all ([\w ]+?)(?: but ([\w ]+))?", tag)
+        if not parts or parts[1] not in there:
+            fail(f"{TABLE}:{row['line']}: {tag} is no breadth: all {', all '.join(there)}")
+            continue
+        kind, left_out = parts[1], set((parts[2] or "").split())
+        wanted = there[kind] - left_out
+        # An arm on USB is an arm.
+        have = found.get(kind, set()) | found.get(kind.split(" on ")[0], set())
+        if left_out - there[kind]:
+            fail(f"{TABLE}:{row['line']}: {tag}: there is no {' '.join(left_out - there[kind])}")
+        if wanted - have:
+            fail(f"{TABLE}:{row['line']}: {tag}: the tests did not cover {' '.join(sorted(wanted - have))}")
+        texts.append(f"{len(wanted)} {kind}" + (f" (all but {', '.join(sorted(left_out))})" if left_out else " (all)"))
+    return ", ".join(texts)
+
+
+def main():
+    source, build = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    head, sections = read_table(source / TABLE)
+    there, tests = all_there_is(source, build), commands(build)
+    lines = head
+    for title, rows in sections:
+        lines += [f"## {title}", "", "| guarantee | test | covers |", "|---|---|---|"]
+        lines += [f"| {row['says']} | {row['tests']} | {check(row, build, there, tests)} |" for row in rows]
+        lines.append("")
+    text = "\n".join(lines)
+    page = source / PAGE
+    if "--write" in sys.argv:
+        page.write_text(text)
+    elif page.read_text() != text:
+        fail(f"{PAGE} is not what {TABLE} says: tests/promises.sh")
+    rows = [row for _, rows in sections for row in rows]
+    print(f"{len(rows)} guarantees, {sum(bool(row['covers']) for row in rows)} with a breadth that was checked.")
+    sys.exit(1 if fail.count else 0)
+
+
+main()

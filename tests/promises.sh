@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Writes app/guide/pages/guarantees.md from app/guide/guarantees.list, with the breadth that the tests of each row
+# reported. Needs a complete release build.
+#   promises.sh [BUILD]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+exec python3 tests/arch/promises.py . "${1:-build/release}" --write

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace thimble::support {
+
+/// Returns the file of a scene that comes with the program.
+inline std::filesystem::path scene_file(const std::string& name) {
+  return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml");
+}
+
+/// Returns the names of all scenes that come with the program, sorted, but for `two_hands`, which
+/// needs several arms and a run of its own. `elephant` needs its scanned mesh.
+inline std::vector<std::string> scenes_of_one_arm() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes")) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() == ".yaml" && name != "two_hands") names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace thimble::support
