@@ -257,22 +257,29 @@ class Check {
     return true;
   }
 
-  /// Pushes along x twice. The first push is ended by zero force, which shows how far the hand
-  /// brings the tip back; the second by silence. Dry friction of more than half of the push holds
-  /// the tip where it is, so that the user is asked whether the arm let go. An arm that speaks only
-  /// when spoken to is read once after the silence.
+  /// Pulls and pushes along x twice. The first push is ended by zero force, which shows how far the
+  /// hand brings the tip back; the second by silence. Dry friction of more than half of the push
+  /// holds the tip where it is, so that the user is asked whether the arm let go. An arm that
+  /// speaks only when spoken to is read once after the silence.
   bool watchdog() {
     constexpr double kBack_s = 0.6;
     constexpr int kAsked = 5;  // ticks
-    if (!prompt_("Hold the grip loosely and still: it pushes twice. After the second push Thimble "
-                 "falls silent, and the arm must let go by itself."))
+    if (!prompt_(
+            "Hold the grip loosely and still: it pulls and pushes twice. After the second push "
+            "Thimble falls silent, and the arm must let go by itself."))
       return false;
     if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
     const Eigen::Vector3d along = Eigen::Vector3d::UnitX();
     const auto x = [this] { return bench_.device().state().p_WT.x(); };
-    const double start = x();
-    double force = std::max(kForce, std::min(kStrongest, friction_));
-    if (!push_until_it_yields(along, force)) return false;
+    double force = std::max(kForce, std::min(kStrongest, friction_)), start = 0;
+    // Dry friction leaves the tip anywhere between the ends of a pull and of a push: each push
+    // begins at the other end, so that both go the same way.
+    const auto press = [&] {
+      if (!push_until_it_yields(-along, force)) return false;
+      start = x();
+      return push_until_it_yields(along, force);
+    };
+    if (!press()) return false;
     const double pushed = x();
     if (pushed - start < kYields) {
       bench_.device().deactivate();
@@ -285,7 +292,7 @@ class Check {
     if (!bench_.run(kBack_s, kRest, stop_)) return false;
     const double back = pushed - x();
     const bool comes_back = back > kYields / 2 && back > 0.3 * (pushed - start);
-    if (!push_until_it_yields(along, force)) return false;
+    if (!press()) return false;
     const double let_go = x() - back / 2, silent_since = bench_.now();
     double off_after = -1;
     int reports = 0;

@@ -108,11 +108,22 @@ scene::ArmFile rubbing(const char* name, double coulomb) {
 
 TEST(FeelCheck, PassesArmsOfHighDryFriction) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
-    for (const double coulomb : {0.2, 0.26, 0.35}) {
+    for (const double coulomb : {0.2, 0.26, 0.3}) {
       const Checked found = check(rubbing(name, coulomb));
       EXPECT_TRUE(found.passed()) << name << " " << coulomb << "\n" << found.text();
       EXPECT_LE(found.force_max, scene::kFeelCheckForceMax) << name << " " << coulomb;
     }
+  }
+}
+
+// 0.49 N less 0.35 N of friction move a tip in a hand by a few steps of the encoders.
+TEST(FeelCheck, NamesFrictionThatLeavesLittleOfItsStrongestPush) {
+  for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
+    const Checked found = check(rubbing(name, 0.35));
+    EXPECT_TRUE(found.passed() || found.text().find("dry friction") != std::string::npos)
+        << name << "\n"
+        << found.text();
+    EXPECT_LE(found.force_max, scene::kFeelCheckForceMax) << name;
   }
 }
 

@@ -108,7 +108,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
        [](const scene::ArmFile& arm) { return arm.limits.reopen; }},
       {"stall", "stall: 0.02 ", "stall: 0.01 ", "stall: 0.05 ",
        [](const scene::ArmFile& arm) { return in_seconds(arm.limits.stall_ns); }},
-      {"watchdog", "watchdog: 0.1 ", "watchdog: 0.05 ", "watchdog: 1 ",
+      {"watchdog", "watchdog: 0.5 ", "watchdog: 0.05 ", "watchdog: 1 ",
        [](const scene::ArmFile& arm) { return in_seconds(arm.limits.watchdog_ns); }},
       {"energy", "energy: passivity", "energy: bounding", "energy: none",
        [](const scene::ArmFile& arm) { return static_cast<double>(arm.energy.stage); }},
@@ -283,7 +283,7 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   EXPECT_EQ(scene->arm.name, "woodenhaptics");
   EXPECT_EQ(scene->arm.limits.force_max, 5);
   EXPECT_EQ(scene->arm.limits.soft_start, 0.3);
-  EXPECT_EQ(scene->arm.limits.watchdog_ns, 100'000'000);
+  EXPECT_EQ(scene->arm.limits.watchdog_ns, 500'000'000);
   EXPECT_EQ(scene->arm.limits.speed_max, 0.5);
   EXPECT_EQ(scene->arm.energy.stage, EnergyStage::kPassivity);
   EXPECT_TRUE(holds(text, "own.yaml:46: force_max 100 N is ignored")) << text;

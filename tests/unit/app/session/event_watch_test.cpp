@@ -172,7 +172,8 @@ TEST_F(EventWatchTest, KeepsActivitiesApart) {
   Events all;
   for (std::size_t i = 0; i < kActivities; ++i) {
     const auto activity = static_cast<Activity>(i);
-    if (activity != Activity::kMissedTicks) all.push_back(ended(kActivities - 1, activity, 1 + i, 0));
+    if (activity != Activity::kMissedTicks)
+      all.push_back(ended(kActivities - 1, activity, 1 + i, 0));
   }
   EXPECT_EQ(events(), all);
   watch_.finish();
