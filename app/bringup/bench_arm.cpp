@@ -97,6 +97,7 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
   const bool active = device_->stage() == driver::DeviceStage::kActive;
   std::int64_t due_ns = first_due_ns();
   std::int64_t end_ns = due_ns + std::llround(duration * 1e9);
+  const std::int64_t first_ns = due_ns;
   const std::int64_t asleep_ns = clock_->asleep_ns();
   for (; due_ns < end_ns; due_ns += kPeriod_ns) {
     if (stop.load(std::memory_order_relaxed)) return false;
@@ -107,8 +108,9 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
       device_->wake_from_sleep();
     }
     const driver::DeviceState& state = device_->read(now_ns, now_ns);
-    // A report that came just after its tick: the clocks of board and host drift apart.
-    if (phase_ns_ && !silent && !state.fresh) {
+    // A report that came just after its tick: the clocks of board and host drift apart. The first
+    // tick may be at the time of the last one of an earlier run, which has taken the report.
+    if (phase_ns_ && !silent && !state.fresh && due_ns != first_ns) {
       due_ns += kFollow_ns;
       end_ns += kFollow_ns;
       *phase_ns_ += kFollow_ns;

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -106,7 +107,10 @@ int check_arm(const ArmChoice& choice, double listen) {
       return complain(kept.error(), kExitTrouble);
     }
   }
-  return passed ? kExitDone : kExitFault;
+  if (passed) return kExitDone;
+  const bool fault = std::any_of(results.begin(), results.end(),
+                                 [](const CheckResult& result) { return result.name == "fault"; });
+  return fault ? kExitFault : kExitUnmet;
 }
 
 }  // namespace

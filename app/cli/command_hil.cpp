@@ -6,9 +6,11 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -152,7 +154,8 @@ class SuiteClock {
 };
 
 /// The files of a suite. They are written as soon as it begins and after each check, so that
-/// however the program ends no older result is left in their place.
+/// however the program ends no older result is left in their place. A pipe or a device keeps what
+/// was written to it: it gets the last text alone.
 class HilFiles {
  public:
   HilFiles(const HilCommand& command, HilRecord record)
@@ -160,27 +163,36 @@ class HilFiles {
 
   HilRecord& record() { return record_; }
 
-  /// Writes the results until now; each check beyond them did not run, and `why`.
-  driver::Result<void> write(const std::vector<HilResult>& results, const std::string& why) const {
+  /// Writes the results until now; each check beyond them did not run, and `why`. `last`: no other
+  /// text follows.
+  driver::Result<void> write(const std::vector<HilResult>& results, const std::string& why,
+                             bool last) const {
     const auto all = with_not_run(results, command_.options, why);
-    if (!command_.json.empty()) {
+    if (is_due(command_.json, last)) {
       if (auto done = write_hil_json(record_, all, command_.json); !done) return done;
     }
-    return command_.junit.empty() ? driver::Result<void>()
-                                  : write_hil_junit(record_, all, command_.junit);
+    return is_due(command_.junit, last) ? write_hil_junit(record_, all, command_.junit)
+                                        : driver::Result<void>();
   }
 
   /// Writes the files of a suite that ended before any check, and returns its exit code.
   int end_early(const driver::Error& error, ExitCode code) {
     record_.end = code == kExitNoDevice ? "no_arm" : "refused";
     record_.exit_code = code;
-    if (auto written = write({}, error.message); !written) {
+    if (auto written = write({}, error.message, true); !written) {
       complain(written.error(), kExitTrouble);
     }
     return complain(error, code);
   }
 
  private:
+  static bool is_due(const std::string& file, bool last) {
+    if (file.empty() || last) return !file.empty();
+    std::error_code none;
+    const auto there = std::filesystem::status(file, none);
+    return !std::filesystem::exists(there) || std::filesystem::is_regular_file(there);
+  }
+
   const HilCommand& command_;
   HilRecord record_;
 };
@@ -221,7 +233,7 @@ int run_hil(HilCommand command) {
                            .simulated = command.choice.device == "sim",
                            .suite = command.suite,
                            .time = now_utc()});
-  if (auto written = files.write({}, "The suite ended before this check did."); !written) {
+  if (auto written = files.write({}, "The suite ended before this check did.", false); !written) {
     return complain(written.error(), kExitTrouble);
   }
   if (command.require_device && command.choice.device == "sim") {
@@ -282,7 +294,7 @@ int run_hil(HilCommand command) {
   };
   listener.ended = [&](const std::vector<HilResult>& results) {
     print(results.back());
-    if (auto done = files.write(results, "The suite ended before this check did."); !done) {
+    if (auto done = files.write(results, "The suite ended before this check did.", false); !done) {
       written = done;
     }
   };
@@ -296,7 +308,7 @@ int run_hil(HilCommand command) {
                                            : "completed";
   files.record().exit_code = code;
   files.record().not_tested = not_tested(chosen->file, options, results);
-  if (auto done = files.write(results, ""); !done) written = done;
+  if (auto done = files.write(results, "", true); !done) written = done;
   for (const std::string& sentence : files.record().not_tested) {
     scene::print_format("Not tested: %s\n", sentence.c_str());
   }

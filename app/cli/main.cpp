@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
     command->set_version_flag("--version", app.version());
   }
   thimble::app::check_numbers(app);
+  thimble::app::check_texts(app);
   if (argc <= 1) {
     thimble::scene::print_format("%s", app.help().c_str());
     return thimble::app::kExitDone;

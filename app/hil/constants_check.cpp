@@ -106,7 +106,9 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   const auto& plant = rig.file.simulated.plant;
   const auto& wire = rig.file.simulated.wire;
   const Eigen::Vector3d down_B = rig.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
-  const double delay = static_cast<double>(wire.delay_in_ns + wire.delay_out_ns) * 1e-9;
+  // In the mean: a report and a message wait for half of the jitter each.
+  const double delay =
+      static_cast<double>(wire.delay_in_ns + wire.delay_out_ns + wire.jitter_ns) * 1e-9;
   std::vector<Figure> figures;
   std::string masses =
       fmt::format("Mass {:.1f} g (file {:.1f})", 1e3 * is.mass.value, 1e3 * plant.mass);

@@ -111,8 +111,9 @@ driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<
                         result.seconds);
     if (!result.figures.empty()) text += "    <properties>\n";
     for (const Figure& figure : result.figures) {
-      text += fmt::format("      <property name=\"{}\" value=\"{:.6g} {}\"/>\n",
-                          in_xml(figure.name), figure.value, in_xml(figure.unit));
+      text +=
+          fmt::format("      <property name=\"{}\" value=\"{:.6g}{}{}\"/>\n", in_xml(figure.name),
+                      figure.value, figure.unit.empty() ? "" : " ", in_xml(figure.unit));
     }
     if (!result.figures.empty()) text += "    </properties>\n";
     if (result.outcome == HilOutcome::kNotRun) {

@@ -83,6 +83,9 @@ cp good.xml killed.xml
 expect 137 '' timeout -s KILL 3 "$thimble" hil --device sim --arm vintage_phantom --soak 60 --check soak --junit killed.xml
 expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py killed.xml
 
+# A pipe gets one text, with the results of all checks.
+expect 0 '^1 0 0 0$' bash -c '"$0" hil --device sim --arm vintage_phantom --check reports --junit /dev/stderr 2>&1 >/dev/null |
+  cat >piped.xml && /usr/bin/python3 summary.py piped.xml' "$thimble"
 # Any name is XML.
 printf 'name: "a <b> & \\\"c\\\" \\x01 \\uFFFE"\n' >named.yaml
 sed '/^name:/d' "$source_dir/app/arms/vintage_phantom.yaml" >>named.yaml

@@ -27,6 +27,13 @@ expect 0 '^hello$' "$thimble" exec -- echo hello
 expect 0 '^hello -- you$' "$thimble" exec --arm polhem -- echo hello -- you
 expect 2 '^thimble: --csv: .*standard output' "$thimble" export a.h5 --csv -
 expect 2 'name is empty' "$thimble" run ''
+# A variable of a script that is not set: no option does as if it were not there.
+expect 2 '^thimble: --hold-to-run: its value is empty' "$thimble" run box --no-view --duration 0.1 --hold-to-run ''
+expect 2 '^thimble: --hold-to-run: its value is empty' "$thimble" exec --hold-to-run '' -- true
+expect 2 '^thimble: --record: its value is empty' "$thimble" run box --no-view --duration 0.1 --record ''
+expect 2 '^thimble: --junit: its value is empty' "$thimble" hil --device sim --arm vintage_phantom --check reports --junit ''
+expect 2 '^thimble: --csv: its value is empty' "$thimble" export a.h5 --csv ''
+expect 0 '^hello  you$' "$thimble" exec -- echo hello '' you
 expect 2 '^thimble: --recrod is no option of `thimble exec`\. Did you mean --record\?' "$thimble" exec --recrod a.h5 true
 # A wrong letter is like every other letter; the beginning of a name is not.
 expect 2 '^thimble: -z is no option of `thimble run`\. See' "$thimble" run box -z

@@ -273,7 +273,7 @@ def test_hold_to_run_gives_no_force_without_the_button():
     assert not any(any(tick.force) for tick in live.ticks())
 
 
-@pytest.mark.parametrize("held", ["foot", "key", "button17", "button0"])
+@pytest.mark.parametrize("held", ["foot", "key", "button17", "button0", ""])
 def test_hold_to_run_refuses_what_cannot_be_held(held):
     with pytest.raises(ValueError, match="hold_to_run"):
         thimble.open("box", "sim", hold_to_run=held)

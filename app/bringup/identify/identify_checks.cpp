@@ -55,7 +55,7 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
   if (static_cast<double>(fit.left_out) > kLeftOutMost * all) {
     against.push_back(fmt::format(
         "The tip stood still for {:.0f} % of the motion: its friction is too high for the force "
-        "that is allowed.",
+        "that is allowed. Allow more by --force-most.",
         100 * static_cast<double>(fit.left_out) / all));
   }
   return against;

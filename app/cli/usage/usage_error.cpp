@@ -385,4 +385,22 @@ void check_numbers(CLI::App& program) {
   }
 }
 
+void check_texts(CLI::App& program) {
+  for (CLI::Option* option : program.get_options([](CLI::Option*) { return true; })) {
+    if (!option->get_type_name().starts_with("TEXT") || option->get_positional()) continue;
+    if (option->get_items_expected_max() == 0) continue;  // a flag
+    option->check(CLI::Validator(
+        [](const std::string& text) {
+          return text.empty() ? std::string(
+                                    "its value is empty; leave the option out if none is "
+                                    "meant")
+                              : std::string();
+        },
+        ""));
+  }
+  for (CLI::App* below : program.get_subcommands([](CLI::App*) { return true; })) {
+    check_texts(*below);
+  }
+}
+
 }  // namespace thimble::app

@@ -27,4 +27,9 @@ std::vector<std::string> without_separator(const CLI::App& program, std::vector<
 /// forms, which the argument library takes, infinities and NaN. For after all commands were added.
 void check_numbers(CLI::App& program);
 
+/// Lets every option that takes a text refuse an empty one: a variable of a script that is not set
+/// must not mean that a file is not written or that nothing is held to run. For after all commands
+/// were added.
+void check_texts(CLI::App& program);
+
 }  // namespace thimble::app

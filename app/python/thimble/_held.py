@@ -148,6 +148,8 @@ def begin(
     ros2: Union[None, bool, dict[str, Any]] = None,
     meshes: Optional[Meshes] = None,
 ) -> _core.Run:
+    if hold_to_run == "":
+        raise ValueError('hold_to_run: is empty; "button", "button2" to "button16", or None.')
     run = _core.Run(
         scene_file(scene, set, keep=record is not None),
         arm=optional_path("arm", arm),

@@ -19,6 +19,11 @@ std::string hold_in_words(const driver::HoldToRun& hold) {
   return words;
 }
 
+std::string power_in_words(const driver::GateLimits& limits) {
+  if (limits.power_max <= 0) return "mean power: none";
+  return fmt::format("mean power {:g} W over {:g} s", limits.power_max, limits.power_time);
+}
+
 }  // namespace
 
 std::string limits_in_force(const Setup& setup, std::size_t arm) {
@@ -28,12 +33,14 @@ std::string limits_in_force(const Setup& setup, std::size_t arm) {
   const auto ms = [](std::int64_t ns) { return 1e-6 * static_cast<double>(ns); };
   const auto& walls = settings.walls;
   return fmt::format(
-      "Limits in force: {:g} N, {:g} m/s, rise {:g} N/s, soft start {:g} s and {:g} s after a gap, "
+      "Limits in force: {:g} N, {:g} m/s, {}, rise {:g} N/s, soft start {:g} s and {:g} s after a "
+      "gap, "
       "gap of {:g} ms, stall fault at {:g} ms, silence fault at {:g} ms, energy stage {}, force "
       "held without counts {:g} s, walls of {:g} N/m from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) "
       "mm with the fault {:g} mm behind them, enabling input: {}, feel check: {}.",
-      limits.force_max, limits.speed_max, limits.rise_max, limits.soft_start, limits.reopen,
-      ms(limits.stall_ns), ms(limits.watchdog_ns), ms(settings.silence_limit_ns),
+      limits.force_max, limits.speed_max, power_in_words(limits), limits.rise_max,
+      limits.soft_start, limits.reopen, ms(limits.stall_ns), ms(limits.watchdog_ns),
+      ms(settings.silence_limit_ns),
       scene::kEnergyStageNames[static_cast<std::size_t>(settings.energy.stage)],
       settings.motion.hold_most, walls.stiffness, 1e3 * walls.min_W.x(), 1e3 * walls.min_W.y(),
       1e3 * walls.min_W.z(), 1e3 * walls.max_W.x(), 1e3 * walls.max_W.y(), 1e3 * walls.max_W.z(),

@@ -1,6 +1,14 @@
 #include "gate/workspace_walls.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace thimble::driver {
+
+// Depth behind a wall over which a force that pushes out fades, m. A force that ended at once would
+// drive the tip to and fro across the wall. [chosen: 5 N, the most of most arms here, fades as a
+// spring of 333 N/m, which the damping on the way out holds at 3 ms of latency beside the wall's]
+constexpr double kFade = 0.015;
 
 WorkspaceWalls::WorkspaceWalls(const WallSettings& settings) noexcept
     : settings_(settings), min_W_(settings.min_W), max_W_(settings.max_W) {}
@@ -26,7 +34,7 @@ ForceCommand WorkspaceWalls::stop(const ForceCommand& command, const Eigen::Vect
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (out[i] == 0) continue;
     double& f = stopped.f_T_W[i];
-    if (f * out[i] > 0) f = 0;
+    if (f * out[i] > 0) f *= std::max(0.0, 1 - std::abs(out[i]) / kFade);
     f -= settings_.stiffness * out[i];
     if (v_WT[i] * out[i] > 0) f -= settings_.damping * v_WT[i];
   }

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <string>
 
+#include "bringup/identify/identify.h"
+#include "bringup/identify/new_file/identified_further.h"
 #include "read_scene.h"
 #include "support/refuses.h"
 #include "support/scratch.h"
@@ -114,6 +116,13 @@ TEST(IdentifiedFile, WritesNoWeightWhereNoneWasSeen) {
   const auto written = identified_text(text, found, {});
   ASSERT_TRUE(written.ok()) << written.error().message;
   EXPECT_NE(written->find("weight: 0  #"), std::string::npos) << *written;
+}
+
+TEST(IdentifiedFile, TakesAPeriodOfMoreDigitsThanItWrites) {
+  Identified found;
+  found.reports = ReportTiming{.period = {0.001000004, 1e-8}, .jitter = {1.4e-4, 3e-6}};
+  const auto written = further_text(text_of("vintage_phantom"), found, {});
+  EXPECT_TRUE(written.ok()) << written.error().message;
 }
 
 TEST(IdentifiedFile, RefusesAFormThatItCannotChange) {

@@ -44,7 +44,8 @@ class Further {
   bool agrees(const scene::ArmFile& read) const {
     const auto& firmware = read.simulated.firmware;
     const auto& wire = read.simulated.wire;
-    return std::abs(firmware.report_period_ns - ns(period_)) <= 1 &&
+    // Values are written with six digits.
+    return std::abs(firmware.report_period_ns - ns(period_)) <= ns(1e-5 * period_) + 1 &&
            std::abs(firmware.watchdog_ns - ns(watchdog_)) <= ns(1e-5 * watchdog_) + 1 &&
            std::abs(wire.jitter_ns - ns(jitter_)) <= ns(1e-5 * jitter_) + 1 &&
            (file_.is<driver::DeltaArm>() || (reads_waves(read.simulated.drive_train, found_) &&

@@ -71,7 +71,8 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   const auto lines = log();
   const std::vector<std::string> begin = {
       "info The arm is open: .* \\(sim\\) feels two_boxes at 1000 Hz in virtual time\\.",
-      "info Limits in force: 5 N, 3 m/s, rise 2000 N/s, soft start 0\\.3 s .*, energy stage .*, "
+      "info Limits in force: 5 N, 3 m/s, mean power 1 W over 2 s, rise 2000 N/s, soft start 0\\.3 "
+      "s .*, energy stage .*, "
       "walls "
       "of 200 N/m from \\(-110, -110, -110\\) to \\(110, 110, 110\\) mm .*, enabling input: none, "
       "feel check: simulated\\.",

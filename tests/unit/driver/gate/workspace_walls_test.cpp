@@ -64,10 +64,26 @@ TEST_F(WorkspaceWallsTest, PushBackOutside) {
 
 TEST_F(WorkspaceWallsTest, TakeAwayForceThatPushesOut) {
   open({0, 0, 0});
-  move({0.11, 0, 0}, 200, {4, 1, 0});
-  for (int i = 0; i < 50; ++i) tick({0.11, 0, 0}, {4, 1, 0});
-  EXPECT_NEAR(device_->f_sent_W().x(), -2, 1e-9);
+  move({0.115, 0, 0}, 200, {4, 1, 0});
+  for (int i = 0; i < 50; ++i) tick({0.115, 0, 0}, {4, 1, 0});
+  EXPECT_NEAR(device_->f_sent_W().x(), -3, 1e-9);
   EXPECT_NEAR(device_->f_sent_W().y(), 1, 1e-9);
+}
+
+// A force that ended at the wall would push a tip that a hand holds loosely to and fro across it.
+TEST_F(WorkspaceWallsTest, ForceThatPushesOutFadesWithoutSteps) {
+  open({0, 0, 0});
+  move({0.0999, 0, 0}, 500, {4, 0, 0});
+  double before = device_->f_sent_W().x();
+  EXPECT_EQ(before, 4);
+  for (int i = 1; i <= 200; ++i) {
+    for (int k = 0; k < 20; ++k) tick({0.0999 + 1e-4 * i, 0, 0}, {4, 0, 0});  // comes to rest
+    const double now = device_->f_sent_W().x();
+    EXPECT_LE(now, before);
+    EXPECT_GT(now, before - 0.06) << i;  // (200 + 4 / 0.015) N/m over 0.1 mm
+    before = now;
+  }
+  EXPECT_LT(before, -3.9);
 }
 
 TEST_F(WorkspaceWallsTest, KeepForceThatPushesIn) {
