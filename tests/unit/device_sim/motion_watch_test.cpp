@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/identify/motion_rig.h"
+#include "support/long_form.h"
 
 namespace thimble {
 namespace {
@@ -179,6 +180,42 @@ TEST(FrozenEncoder, HoldsASteadyForceForABoundedTimeWhileTheTipMoves) {
   patient.hold_most = 10;
   patient.run(4);
   EXPECT_EQ(patient.fault, Fault::kNone);
+}
+
+/// Strokes of 4 s at a random speed of 0.05 to 0.6 m/s: some 34 of them.
+MotionRun random_strokes(MotionArm arm, std::uint64_t seed) {
+  support::Random random(seed + 1);
+  return strokes(arm, 0.05 * std::pow(12, random.uniform(0, 1)), seed);
+}
+
+TEST(FrozenEncoder, IsNotSeenInRandomStrokesOfSoundArms) {
+  // In the long form 100,000 strokes.
+  const std::uint64_t runs = support::long_form() ? 1000 : 40;
+  for (const MotionArm arm : kMotionArms) {
+    for (std::uint64_t seed = 0; seed < runs; ++seed) {
+      MotionRun run = random_strokes(arm, seed);
+      run.run(4);
+      EXPECT_NE(run.fault, Fault::kEncoderFrozen) << name_of(arm) << " seed " << seed;
+    }
+  }
+}
+
+TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
+  const std::uint64_t runs = support::long_form() ? 200 : 20;
+  for (const MotionArm arm : {MotionArm::kWoody, MotionArm::kPolhem}) {
+    for (const std::size_t joint : {std::size_t{1}, std::size_t{2}}) {
+      std::uint64_t found = 0;
+      for (std::uint64_t seed = 0; seed < runs; ++seed) {
+        MotionRun run = random_strokes(arm, seed);
+        freeze(run, joint, 700);
+        run.run(4);
+        found += run.fault == Fault::kEncoderFrozen ? 1 : 0;
+      }
+      std::printf("%-16s joint %zu: %d of %d\n", name_of(arm).c_str(), joint + 1,
+                  static_cast<int>(found), static_cast<int>(runs));
+      EXPECT_GE(found, runs - runs / 20) << name_of(arm) << " joint " << joint + 1;
+    }
+  }
 }
 
 TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {

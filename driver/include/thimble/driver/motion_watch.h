@@ -73,13 +73,25 @@ class MotionWatch {
     double time = 0;             // mean time of the positions, s
     double f_squared = 0;        // N^2
   };
+  /// What a force has been, N.
+  struct Range {
+    double least = 0, most = 0;
+    void begin(double f) noexcept { least = most = f; }
+    void add(double f) noexcept {
+      least = f < least ? f : least;
+      most = f > most ? f : most;
+    }
+    double width() const noexcept { return most - least; }
+  };
   /// What is known of a joint since its encoder counted last.
   struct Stillness {
-    double f_least = 0;  // along the joint's direction, N
-    double f_most = 0;
-    double way = 0;   // of the tip, m
-    double held = 0;  // under force, s
-    int blocks = 0;   // since then
+    Range along, across;                  // of the force
+    Eigen::Vector3d leg_begin{0, 0, 0};   // of this leg of the tip's path, m
+    Eigen::Vector3d leg_before{0, 0, 0};  // the one counted before, m
+    int legs = 0;                         // that had another direction than the one counted before
+    double way = 0;                       // of the tip, m
+    double held = 0;                      // under force, s
+    int blocks = 0;                       // since then
   };
   /// Accelerations and the forces that belong to them, along one direction.
   struct Pairs {
