@@ -33,16 +33,17 @@ constexpr double kProofChange = 0.7, kProofAnswer = 0.4;
 // What each window counts, and where it ends: one that is clear, or three that are doubtful.
 constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 
-// A joint that does not count may be held by dry friction, or be moved by nobody: a straight stroke
-// may lie in the plane in which the other two joints move the tip, with a hand that takes up any
-// force along this one; 1 in some 1000 strokes into a wall does. So what speaks against an encoder
-// is counted: each leg of the tip's path, straight for kLeg (m), that has another direction than
-// the one counted before, since another coincidence is needed for it; and each multiple of what dry
-// friction can hold (N) by which the force along the joint has changed, since a hand must take that
-// up with a motion of its own. Some legs and some force, and kCoincidences in all, are no
-// coincidence [chosen by tests/unit/device_sim/motion_watch_test.cpp]. Dry friction of 0.26 N, as
-// a Touch has it, holds 0.52 N, from one way to the other.
-constexpr double kLeg = 0.002, kSameWay = 0.85;  // m; cosine of the largest angle that is the same
+// A joint that does not count may be held by dry friction, or not be moved at all: a straight
+// stroke may lie in the surface in which the other two joints move the tip, with a hand that takes
+// up any force along this one. 1 in some 5000 strokes into a wall does. Therefore coincidences are
+// counted: each leg of the tip's path, straight for kLeg, whose direction differs from that of the
+// leg counted before; and each multiple of kHeldByFriction by which the force along the joint has
+// changed, since a hand must take that up with a motion of its own. A fault needs a changed force,
+// kLegs legs, and kCoincidences of both together [chosen: no false alarm in the 100,000 strokes of
+// the long form of tests/unit/device_sim/motion_watch_test.cpp; one less gives the first ones]. Dry
+// friction of 0.26 N, the most of the arms that we know (Touch), holds 0.52 N from one direction to
+// the other.
+constexpr double kLeg = 0.0015, kSameWay = 0.9;  // m; cosine of the largest angle that is the same
 constexpr double kHeldByFriction = 0.55;         // N
 constexpr int kLegs = 2, kForcesMost = 3, kCoincidences = 5;
 // A stroke so long (m) in which one joint under force never counts is no person's [chosen].

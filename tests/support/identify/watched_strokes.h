@@ -368,6 +368,64 @@ inline int draw_strokes(StrokeRun& run, std::uint64_t seed, double duration, dou
   return strokes;
 }
 
+/// Returns an arm with its data in code, as MotionRun has it.
+inline StrokedArm stroked_arm(MotionArm kind) {
+  StrokedArm arm;
+  double mass = 0.1;
+  switch (kind) {
+    case MotionArm::kVintage:
+      arm.model = driver::arm_model(driver::hfab::vintage_model());
+      arm.p_WB = {-0.138, 0, 0.112};
+      mass = 0.075;
+      break;
+    case MotionArm::kWoody:
+      arm.model = driver::arm_model(driver::hfab::woody_model());
+      arm.p_WB = {-0.22, 0, -0.08};
+      mass = 0.15;
+      break;
+    case MotionArm::kPolhem:
+      arm.model = driver::arm_model(driver::hfab::polhem_model());
+      arm.p_WB = {-0.2045, 0, -0.0325};
+      break;
+  }
+  arm.limits = {.force_max = 5,
+                .speed_max = 3,
+                .rise_max = 2000,
+                .soft_start = 0.3,
+                .stall_ns = 20'000'000,
+                .watchdog_ns = 100'000'000};
+  arm.energy = {.stage = driver::EnergyStage::kPassivity,
+                .mass = mass,
+                .allowance = 0.002,
+                .reservoir = 0.015,
+                .onset = 0.002,
+                .speed_floor = 0.02,
+                .delay_ticks = 1};
+  arm.watch = {.mass = mass, .delay_ticks = 1, .hold_most = 10};
+  arm.plant = {.mass = mass, .viscous = 0.005, .coulomb = 0.04};
+  return arm;
+}
+
+/// Draws strokes of any hand at a wall of any stiffness and friction, with the arm turned at random
+/// about its tip, dry friction up to 0.3 N and a limit of 3 to 9 N.
+inline void draw_turned(StrokeRun& run, StrokedArm& arm, std::uint64_t seed, double duration) {
+  Random random(seed + 4242);
+  const auto spread = [&](double low) { return low * std::pow(10, random.uniform(0, 1)); };
+  Eigen::Vector4d turn;
+  for (Eigen::Index i = 0; i < 4; ++i) turn[i] = random.uniform(-1, 1);
+  arm.R_WB = Eigen::Quaterniond(turn[3], turn[2], turn[1], turn[0]).normalized().toRotationMatrix();
+  arm.p_WB = arm.R_WB * arm.p_WB;
+  arm.plant.coulomb = random.uniform(0, 0.3);
+  arm.limits.force_max = random.uniform(3, 9);
+  draw_strokes(run, seed, duration, random.uniform(0.01, 0.03));
+  run.hand.stiffness = spread(100);
+  run.hand.damping = spread(1);
+  run.hand.mass = spread(0.01);
+  if (random.bits() % 2 != 0) run.hand.tremor_amplitude = 0;
+  run.scene.stiffness = spread(200);
+  run.scene.friction = random.bits() % 2 != 0 ? 0 : random.uniform(0, 1);
+}
+
 /// Draws a hand that does anything with any scene, as `any_hand` does. Returns its strokes.
 inline int draw_any(StrokeRun& run, StrokedArm& arm, std::uint64_t seed, double duration) {
   const MotionRun any = any_hand(seed, duration);

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "support/identify/motion_rig.h"
+#include "support/identify/watched_strokes.h"
 #include "support/long_form.h"
 
 namespace thimble {
@@ -182,38 +185,61 @@ TEST(FrozenEncoder, HoldsASteadyForceForABoundedTimeWhileTheTipMoves) {
   EXPECT_EQ(patient.fault, Fault::kNone);
 }
 
-/// Strokes of 4 s at a random speed of 0.05 to 0.6 m/s: some 34 of them.
-MotionRun random_strokes(MotionArm arm, std::uint64_t seed) {
-  support::Random random(seed + 1);
-  return strokes(arm, 0.05 * std::pow(12, random.uniform(0, 1)), seed);
+/// Number of strokes that began before the run ended.
+int strokes_of(const support::StrokeRun& run) {
+  int strokes = -1;
+  for (const auto& point : run.way) strokes += point.first > 0 && point.first < run.end ? 1 : 0;
+  return strokes;
 }
 
 TEST(FrozenEncoder, IsNotSeenInRandomStrokesOfSoundArms) {
-  // In the long form 100,000 strokes.
-  const std::uint64_t runs = support::long_form() ? 1000 : 40;
-  for (const MotionArm arm : kMotionArms) {
-    for (std::uint64_t seed = 0; seed < runs; ++seed) {
-      MotionRun run = random_strokes(arm, seed);
-      run.run(4);
-      EXPECT_NE(run.fault, Fault::kEncoderFrozen) << name_of(arm) << " seed " << seed;
+  // Long form: 160,000 strokes. Short form: those of its runs that a rule with less evidence fails.
+  std::vector<std::uint64_t> seeds{30,   40,   93,   225,  259,  343,  373,  377,
+                                   387,  461,  505,  680,  804,  833,  1096, 1107,
+                                   1141, 1165, 1225, 1315, 1384, 1412, 1430};
+  if (support::long_form()) {
+    seeds.resize(1500);
+    std::iota(seeds.begin(), seeds.end(), 0);
+  }
+  int strokes = 0, touches = 0;
+  for (const std::uint64_t seed : seeds) {
+    for (const MotionArm kind : kMotionArms) {
+      support::StrokedArm arm = support::stroked_arm(kind);
+      support::StrokeRun run;
+      support::draw_turned(run, arm, seed, 4);
+      support::run_strokes(arm, run, 4);
+      strokes += strokes_of(run);
+      touches += run.force_sent > 1.5 ? 1 : 0;
+      EXPECT_NE(run.fault, Fault::kEncoderFrozen) << name_of(kind) << " seed " << seed;
     }
   }
+  std::printf("%d strokes\n", strokes);
+  EXPECT_GT(touches, static_cast<int>(seeds.size()));
 }
 
 TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
-  const std::uint64_t runs = support::long_form() ? 200 : 20;
-  for (const MotionArm arm : {MotionArm::kWoody, MotionArm::kPolhem}) {
-    for (const std::size_t joint : {std::size_t{1}, std::size_t{2}}) {
-      std::uint64_t found = 0;
+  // Of 150 runs per arm and joint, 50 in the short form: B and C of WoodenHaptics and Polhem in
+  // all, B of the PHANTOM in 91 %. Its C, and A of all, carry little of the force of a flat wall.
+  const std::uint64_t runs = support::long_form() ? 150 : 50;
+  for (const MotionArm kind : kMotionArms) {
+    for (const int joint : {1, 2}) {
+      if (kind == MotionArm::kVintage && joint == 2) continue;
+      const support::StrokedArm arm = support::stroked_arm(kind);
+      std::uint64_t shown = 0, found = 0;
       for (std::uint64_t seed = 0; seed < runs; ++seed) {
-        MotionRun run = random_strokes(arm, seed);
-        freeze(run, joint, 700);
-        run.run(4);
+        support::StrokeRun run;
+        support::draw_strokes(run, seed, 4);
+        run.trouble = support::Trouble::kFrozen;
+        run.joint = joint;
+        support::run_strokes(arm, run, 4);
+        shown += run.shown_at >= 0 ? 1 : 0;
         found += run.fault == Fault::kEncoderFrozen ? 1 : 0;
       }
-      std::printf("%-16s joint %zu: %d of %d\n", name_of(arm).c_str(), joint + 1,
-                  static_cast<int>(found), static_cast<int>(runs));
-      EXPECT_GE(found, runs - runs / 20) << name_of(arm) << " joint " << joint + 1;
+      std::printf("%-16s joint %d: %d of %d\n", name_of(kind).c_str(), joint + 1,
+                  static_cast<int>(found), static_cast<int>(shown));
+      EXPECT_GE(shown, runs * 3 / 4) << name_of(kind) << " joint " << joint + 1;
+      EXPECT_GE(10 * found, (kind == MotionArm::kVintage ? 8 : 10) * shown)
+          << name_of(kind) << " joint " << joint + 1;
     }
   }
 }
