@@ -183,7 +183,6 @@ class StrokedLink final : public driver::ArmLink {
   }
 
   void spoil(Eigen::Vector3d& tau, const Eigen::Matrix3d& J) {
-    const Eigen::Vector3d sound = tau;
     if (!begun_) {
       const double f = std::abs(tau[run_.joint]) / J.col(run_.joint).norm();
       begun_ = !in_touch_trouble() ||
