@@ -1,5 +1,6 @@
 #include "thimble/driver/motion_watch.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -32,9 +33,19 @@ constexpr double kProofChange = 0.7, kProofAnswer = 0.4;
 // What each window counts, and where it ends: one that is clear, or three that are doubtful.
 constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 
-// A joint that stands still while the force along it changes by this much (N), and the tip moves so
-// far (m): the softest hand gives way by 1 mm, the stiffest arm of ours counts every 0.06 mm.
-constexpr double kStillForce = 1, kStillWay = 0.002;
+// A joint that does not count may be held by dry friction, or not be moved at all: a straight
+// stroke may lie in the surface in which the other two joints move the tip, with a hand that takes
+// up any force along this one. 1 in some 5000 strokes into a wall does. Therefore coincidences are
+// counted: each leg of the tip's path, straight for kLeg, whose direction differs from that of the
+// leg counted before; and each multiple of kHeldByFriction by which the force along the joint has
+// changed, since a hand must take that up with a motion of its own. A fault needs a changed force,
+// kLegs legs, and kCoincidences of both together [chosen: no false alarm in the 100,000 strokes of
+// the long form of tests/unit/device_sim/motion_watch_test.cpp; one less gives the first ones]. Dry
+// friction of 0.26 N, the most of the arms that we know (Touch), holds 0.52 N from one direction to
+// the other.
+constexpr double kLeg = 0.0015, kSameWay = 0.9;  // m; cosine of the largest angle that is the same
+constexpr double kHeldByFriction = 0.55;         // N
+constexpr int kLegs = 2, kForcesMost = 3, kCoincidences = 5;
 // A stroke so long (m) in which one joint under force never counts is no person's [chosen].
 constexpr double kLongWay = 0.02;
 constexpr std::uint32_t kStillBlocks = 5;  // in which a light tip answers by several counts
@@ -210,14 +221,34 @@ bool MotionWatch::frozen_joint(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3
       f_B = R_WB.transpose() * f_W;
       known = true;
     }
-    const Eigen::Vector3d along_B = J_BT.col(static_cast<Eigen::Index>(i));
-    const double f = along_B.dot(f_B) / along_B.norm();
-    const bool first = still.blocks == static_cast<int>(kStillBlocks) + 1;
-    still.f_least = first ? f : std::min(still.f_least, f);
-    still.f_most = first ? f : std::max(still.f_most, f);
+    const auto k = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d along_B = J_BT.col(k);
+    // Across what the other joints can do: a tip without links of its own is moved by this part,
+    // one whose links are heavy by the torque. Either has to change.
+    const Eigen::Vector3d across_B = J_BT.col((k + 1) % 3).cross(J_BT.col((k + 2) % 3));
+    const double f_along = along_B.dot(f_B) / along_B.norm();
+    const double f_across = across_B.dot(f_B) / across_B.norm();
+    if (still.blocks == static_cast<int>(kStillBlocks) + 1) {
+      still.leg_begin = block(0).p;
+      still.along.begin(f_along);
+      still.across.begin(f_across);
+    }
+    still.along.add(f_along);
+    still.across.add(f_across);
     still.way += (block(0).p - block(1).p).norm();
-    still.held = std::abs(f) >= kHeldForce ? still.held + time : 0;
-    fault |= still.f_most - still.f_least >= kStillForce && still.way >= kStillWay;
+    still.held = std::abs(f_along) >= kHeldForce ? still.held + time : 0;
+    const Eigen::Vector3d leg = block(0).p - still.leg_begin;
+    if (leg.squaredNorm() >= kLeg * kLeg) {
+      const double straight = std::abs(leg.dot(still.leg_before));
+      if (straight <= kSameWay * leg.norm() * still.leg_before.norm()) {
+        ++still.legs;
+        still.leg_before = leg;
+      }
+      still.leg_begin = block(0).p;
+    }
+    const double changed = std::min(still.along.width(), still.across.width()) / kHeldByFriction;
+    const int forces = changed < kForcesMost ? static_cast<int>(changed) : kForcesMost;
+    fault |= forces > 0 && still.legs >= kLegs && still.legs + forces >= kCoincidences;
     fault |= still.held >= settings_.hold_most && still.way >= kLongWay;
   }
   return fault;

@@ -5,9 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "support/identify/motion_rig.h"
+#include "support/identify/watched_strokes.h"
+#include "support/long_form.h"
 
 namespace thimble {
 namespace {
@@ -179,6 +183,65 @@ TEST(FrozenEncoder, HoldsASteadyForceForABoundedTimeWhileTheTipMoves) {
   patient.hold_most = 10;
   patient.run(4);
   EXPECT_EQ(patient.fault, Fault::kNone);
+}
+
+/// Number of strokes that began before the run ended.
+int strokes_of(const support::StrokeRun& run) {
+  int strokes = -1;
+  for (const auto& point : run.way) strokes += point.first > 0 && point.first < run.end ? 1 : 0;
+  return strokes;
+}
+
+TEST(FrozenEncoder, IsNotSeenInRandomStrokesOfSoundArms) {
+  // Long form: 160,000 strokes. Short form: those of its runs that a rule with less evidence fails.
+  std::vector<std::uint64_t> seeds{30,   40,   93,   225,  259,  343,  373,  377,
+                                   387,  461,  505,  680,  804,  833,  1096, 1107,
+                                   1141, 1165, 1225, 1315, 1384, 1412, 1430};
+  if (support::long_form()) {
+    seeds.resize(1500);
+    std::iota(seeds.begin(), seeds.end(), 0);
+  }
+  int strokes = 0, touches = 0;
+  for (const std::uint64_t seed : seeds) {
+    for (const MotionArm kind : kMotionArms) {
+      support::StrokedArm arm = support::stroked_arm(kind);
+      support::StrokeRun run;
+      support::draw_turned(run, arm, seed, 4);
+      support::run_strokes(arm, run, 4);
+      strokes += strokes_of(run);
+      touches += run.force_sent > 1.5 ? 1 : 0;
+      EXPECT_NE(run.fault, Fault::kEncoderFrozen) << name_of(kind) << " seed " << seed;
+    }
+  }
+  std::printf("%d strokes\n", strokes);
+  EXPECT_GT(touches, static_cast<int>(seeds.size()));
+}
+
+TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
+  // Of 150 runs per arm and joint, 50 in the short form: B and C of WoodenHaptics and Polhem in
+  // all, B of the PHANTOM in 91 %. Its C, and A of all, carry little of the force of a flat wall.
+  const std::uint64_t runs = support::long_form() ? 150 : 50;
+  for (const MotionArm kind : kMotionArms) {
+    for (const int joint : {1, 2}) {
+      if (kind == MotionArm::kVintage && joint == 2) continue;
+      const support::StrokedArm arm = support::stroked_arm(kind);
+      std::uint64_t shown = 0, found = 0;
+      for (std::uint64_t seed = 0; seed < runs; ++seed) {
+        support::StrokeRun run;
+        support::draw_strokes(run, seed, 4);
+        run.trouble = support::Trouble::kFrozen;
+        run.joint = joint;
+        support::run_strokes(arm, run, 4);
+        shown += run.shown_at >= 0 ? 1 : 0;
+        found += run.fault == Fault::kEncoderFrozen ? 1 : 0;
+      }
+      std::printf("%-16s joint %d: %d of %d\n", name_of(kind).c_str(), joint + 1,
+                  static_cast<int>(found), static_cast<int>(shown));
+      EXPECT_GE(shown, runs * 3 / 4) << name_of(kind) << " joint " << joint + 1;
+      EXPECT_GE(10 * found, (kind == MotionArm::kVintage ? 8 : 10) * shown)
+          << name_of(kind) << " joint " << joint + 1;
+    }
+  }
 }
 
 TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {

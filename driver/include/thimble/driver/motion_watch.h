@@ -73,13 +73,25 @@ class MotionWatch {
     double time = 0;             // mean time of the positions, s
     double f_squared = 0;        // N^2
   };
+  /// Range of a force, N.
+  struct Range {
+    double min = 0, max = 0;
+    void begin(double f) noexcept { min = max = f; }
+    void add(double f) noexcept {
+      min = f < min ? f : min;
+      max = f > max ? f : max;
+    }
+    double width() const noexcept { return max - min; }
+  };
   /// What is known of a joint since its encoder counted last.
   struct Stillness {
-    double f_least = 0;  // along the joint's direction, N
-    double f_most = 0;
-    double way = 0;   // of the tip, m
-    double held = 0;  // under force, s
-    int blocks = 0;   // since then
+    Range along, across;                  // components of the force
+    Eigen::Vector3d leg_begin{0, 0, 0};   // start of the present leg of the tip's path, m
+    Eigen::Vector3d leg_before{0, 0, 0};  // leg that was counted last, m
+    int legs = 0;                         // legs, each with another direction than the one before
+    double way = 0;                       // length of the tip's path, m
+    double held = 0;                      // time under force, s
+    int blocks = 0;
   };
   /// Accelerations and the forces that belong to them, along one direction.
   struct Pairs {
