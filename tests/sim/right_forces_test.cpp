@@ -83,6 +83,10 @@ TEST(RightForces, AHeldBlockIsFeltWhole) {
   expect_untouched(shipped("held_block"));
 }
 
+TEST(RightForces, ABeamBetweenTwoHandsIsFeltWhole) {
+  expect_untouched(shipped("two_hands"), 2);
+}
+
 TEST(RightForces, APushedBlockIsFeltWhole) {
   expect_untouched(shipped("floating_block"));
 }
