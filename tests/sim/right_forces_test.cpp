@@ -27,8 +27,10 @@ Vector3d plain(const std::array<double, 3>& v) {
 }
 
 /// Runs a scene and expects that every force after the soft start was sent as it was wanted.
-void expect_untouched(const std::filesystem::path& scene, std::size_t arms = 1) {
+void expect_untouched(const std::filesystem::path& scene, std::size_t arms = 1,
+                      const std::function<void(scene::Scene&)>& adjust = {}) {
   session::SessionOptions options;
+  options.adjust = adjust;
   options.several_arms = true;
   auto opened = session::Session::open(scene, options);
   ASSERT_TRUE(opened) << opened.error().message;
@@ -85,6 +87,26 @@ TEST(RightForces, AHeldBlockIsFeltWhole) {
 
 TEST(RightForces, ABeamBetweenTwoHandsIsFeltWhole) {
   expect_untouched(shipped("two_hands"), 2);
+}
+
+/// Repeats the route of a hand until the end of a run.
+void repeat(scene::HandRoute& route, double seconds) {
+  const scene::HandRoute once = route;
+  const double length = once.back().time;
+  for (double begin = length; begin < seconds; begin += length) {
+    for (auto waypoint = once.begin() + 1; waypoint != once.end(); ++waypoint) {
+      route.push_back(*waypoint);
+      route.back().time += begin;
+    }
+  }
+}
+
+TEST(RightForces, ABeamIsFeltWholeForAMinute) {
+  expect_untouched(shipped("two_hands"), 2, [](scene::Scene& scene) {
+    scene.duration = 60;
+    repeat(scene.hand, scene.duration);
+    for (scene::SceneArm& arm : scene.more_arms) repeat(arm.hand, scene.duration);
+  });
 }
 
 TEST(RightForces, APushedBlockIsFeltWhole) {

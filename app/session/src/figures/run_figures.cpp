@@ -6,6 +6,7 @@
 
 #include "thimble/driver/fault.h"
 #include "thimble/driver/heat_guard.h"
+#include "wall_side.h"
 
 namespace thimble::session {
 namespace {
@@ -112,6 +113,20 @@ std::string summary(const RunFigures& report) {
     s += fmt::format(
         "Gravity   the motors carried {}{:.3g} N of the arm beside the scene's forces.\n",
         report.carried_by_pose ? "up to " : "", report.carried_weight);
+  }
+  if (report.carry_withdrawn > 0) {
+    s += fmt::format(
+        "Gravity   compensation is not trusted: it was switched off {} time{} because the tip "
+        "moved along its force. If no hand moved it, correct gravity_compensation of the arm "
+        "file: see `thimble identify`.\n",
+        report.carry_withdrawn, report.carry_withdrawn == 1 ? "" : "s");
+  }
+  if (report.walls.pushed > 0) {
+    s += fmt::format(
+        "Walls     the tip left the workspace of the arm file: walls pushed in {} ticks, with "
+        "{:.2f} N at most ({} wall).\n",
+        report.walls.pushed, report.walls.f_strongest_W.norm(),
+        wall_side(report.walls.f_strongest_W));
   }
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(
