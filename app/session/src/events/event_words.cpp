@@ -46,8 +46,7 @@ constexpr std::array<ActivityWords, kActivities> kWords{{
      "The force was lowered for its mean power"},
     {spdlog::level::warn,
      "The program's force oscillates and grows, so it is lowered: its spring or damper is too "
-     "stiff "
-     "for this arm and loop.",
+     "stiff for this arm and loop.",
      "The program's force was lowered after an oscillation"},
     {spdlog::level::warn, "A wall of the workspace pushes the tip back.",
      "A wall of the workspace pushed"},

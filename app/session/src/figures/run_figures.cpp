@@ -145,8 +145,7 @@ std::string summary(const RunFigures& report) {
   if (report.gate.oscillations > 0) {
     s += fmt::format(
         "Program   its force oscillated and grew {} time{}, at {:.0f} Hz at last: it was lowered "
-        "in "
-        "{} ticks. Its spring or damper is too stiff for this arm and loop.\n",
+        "in {} ticks. Its spring or damper is too stiff for this arm and loop.\n",
         report.gate.oscillations, report.gate.oscillations == 1 ? "" : "s",
         report.gate.oscillation_frequency, report.gate.calmed);
   }
