@@ -11,9 +11,11 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "support/scratch.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/simulated_device.h"
 #include "thimble/session/session.h"
 
@@ -90,8 +92,8 @@ TEST(RightForces, ABeamBetweenTwoHandsIsFeltWhole) {
 }
 
 /// Repeats the route of a hand until the end of a run.
-void repeat(scene::HandRoute& route, double seconds) {
-  const scene::HandRoute once = route;
+void repeat(std::vector<scene::HandWaypoint>& route, double seconds) {
+  const std::vector<scene::HandWaypoint> once = route;
   const double length = once.back().time;
   for (double begin = length; begin < seconds; begin += length) {
     for (auto waypoint = once.begin() + 1; waypoint != once.end(); ++waypoint) {
