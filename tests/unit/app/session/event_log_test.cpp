@@ -99,7 +99,8 @@ TEST_F(EventLogTest, NamesTheWallThatPushesTheTipBack) {
   // The wall is 10 mm outside of the workspace, the hand 15 mm behind it for half a second.
   options_.adjust = [](scene::Scene& scene) {
     scene.arm.workspace.max_W.x() = 0.02;
-    scene.hand.assign(3, {.p_W = {0.045, 0, 0.06}});
+    scene.hand.assign(3, scene::HandWaypoint());
+    for (scene::HandWaypoint& waypoint : scene.hand) waypoint.p_W = {0.045, 0, 0.06};
     scene.hand[0].p_W.x() = 0;
     scene.hand[1].time = 0.5;
     scene.hand[2].time = 1;
