@@ -141,7 +141,8 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   if (!options.report.empty()) sides.page = std::make_unique<RunPage>(session);
   std::optional<session::HoldKey> key;
   if (session.setup().hold().by_caller) {
-    scene::terminal().info("Hold the space bar of this terminal to have forces.");
+    scene::terminal().info(
+        "Hold the space bar, in this terminal or in the viewer window, to have forces.");
     key.emplace(session);
   }
   std::optional<session::ReplugWatches> watch;

@@ -6,6 +6,7 @@
 #include "report/figure.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
+#include "wall_side.h"
 
 namespace thimble::app {
 namespace {
@@ -79,7 +80,16 @@ Json to_json(const session::RunFigures& report) {
                   {"oscillations", report.gate.oscillations},
                   {"oscillation_Hz", report.gate.oscillation_frequency},
                   {"calmed", report.gate.calmed}};
-  if (report.carried_weight > 0) json["carried_weight_N"] = report.carried_weight;
+  json["walls"] = {{"ticks", report.walls.pushed},
+                   {"force_max_N", report.walls.f_strongest_W.norm()}};
+  if (report.walls.pushed > 0) {
+    json["walls"]["side"] = session::wall_side(report.walls.f_strongest_W);
+  }
+  if (report.carried_weight > 0) {
+    json["carried_weight_N"] = report.carried_weight;
+    json["gravity_compensation"] = {{"trusted", report.carry_withdrawn == 0},
+                                    {"withdrawn", report.carry_withdrawn}};
+  }
   if (report.heat_known) {
     json["heat"] = {{"motors", report.heat},
                     {"most", report.heat_most},

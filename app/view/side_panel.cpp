@@ -33,7 +33,8 @@ constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
                               Key{"ctrl + left drag", "lead the simulated hand; wheel: push"},
                               Key{"H", "swap the two left drags"},
                               Key{"F", "frame the scene"},
-                              Key{"space", "pause, go on; of a recording: play"},
+                              Key{"space", "pause, continue; of a recording: play"},
+                              Key{"space held", "forces of a run with --hold-to-run key"},
                               Key{"left, right", "a moment back, on (shift: a second)"},
                               Key{"Home, End", "oldest moment; now, or the end"},
                               Key{", .", "slower, faster"},
@@ -369,7 +370,9 @@ void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
       choice.close = true;
       break;
     case GLFW_KEY_SPACE:
-      if (reader != nullptr) reader->ask_pause(!reader->pause_asked());
+      // Held to have forces (Content::hold_key), it pauses nothing.
+      if (reader != nullptr && !reader->scene().hold_by_key)
+        reader->ask_pause(!reader->pause_asked());
       break;
     case GLFW_KEY_R:
       if (reader != nullptr) toggle_record(*reader);

@@ -81,6 +81,7 @@ class Content {
   void draw_scene(const ScreenPart& part, int below, float ratio);
   void lead_hand(const ScreenPart& part);
   bool arrows_lead() const;
+  void hold_key();
   void begin_run(session::SharedReader& run, bool again);
   void take_picture();
   void tell(const std::string& message);
@@ -147,6 +148,18 @@ bool Content::arrows_lead() const {
          hand_.input().source() == HandSource::kKeyboard;
 }
 
+/// Reports that the space bar is held where the run needs it. GLFW releases all keys of a window
+/// that loses the focus.
+void Content::hold_key() {
+  session::SharedReader* const reader = source_.reader();
+  if (reader == nullptr || !reader->scene().hold_by_key) return;
+  GLFWwindow* const window = screen_.window();
+  const bool held = glfwGetKey(window, GLFW_KEY_SPACE) == GLFW_PRESS &&
+                    glfwGetWindowAttrib(window, GLFW_FOCUSED) == GLFW_TRUE &&
+                    !ImGui::GetIO().WantTextInput;
+  if (held) reader->hold_key();
+}
+
 void Content::draw_scene(const ScreenPart& part, int below, float ratio) {
   const int width = std::max(1, static_cast<int>(part.width * ratio));
   const int height = std::max(1, static_cast<int>(part.height * ratio));
@@ -176,6 +189,7 @@ void Content::begin_run(session::SharedReader& run, bool again) {
   const bool by_mouse = hand_.input().source() == HandSource::kMouse;
   if (!again) choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
   hand_.input().let_go();
+  if (scene.hold_by_key) tell("Hold the space bar in this window to have forces.");
   if (!by_mouse && !scene.hand_by_mouse) {
     tell("The hand of this run follows its path: begin it with --hand to lead it.");
   }
@@ -214,6 +228,7 @@ driver::Result<void> Content::draw(double frame_time) {
   glClearColor(ground[0], ground[1], ground[2], 1);
   glClear(GL_COLOR_BUFFER_BIT);
   keys_ = screen_.take_keys();
+  hold_key();
   frame_time_ = frame_time;
   for (const int key : keys_) {
     if (!TimeLine::take_key(key, source_, !arrows_lead())) take_key(key, source_.reader(), choice_);

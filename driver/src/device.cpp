@@ -433,6 +433,11 @@ void Device::stop_at_walls(const ForceCommand& command) noexcept {
     gate_.trip(Fault::kOutsideWorkspace);
   }
   ForceCommand stopped = walls_->stop(command, state_.p_WT, v_gate_W());
+  wall_counters_.f_W = stopped.f_T_W - command.f_T_W;
+  ++wall_counters_.pushed;
+  if (wall_counters_.f_W.squaredNorm() > wall_counters_.f_strongest_W.squaredNorm()) {
+    wall_counters_.f_strongest_W = wall_counters_.f_W;
+  }
   stopped.f_program_W.setZero();  // what is left of it is not known, and is the gate's to fade
   pass_on(stopped, walls_->held(state_.p_WT));
 }

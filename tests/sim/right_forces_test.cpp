@@ -11,9 +11,11 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "support/scratch.h"
 #include "thimble/driver/servo_loop.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/scene/simulated_device.h"
 #include "thimble/session/session.h"
 
@@ -27,8 +29,10 @@ Vector3d plain(const std::array<double, 3>& v) {
 }
 
 /// Runs a scene and expects that every force after the soft start was sent as it was wanted.
-void expect_untouched(const std::filesystem::path& scene, std::size_t arms = 1) {
+void expect_untouched(const std::filesystem::path& scene, std::size_t arms = 1,
+                      const std::function<void(scene::Scene&)>& adjust = {}) {
   session::SessionOptions options;
+  options.adjust = adjust;
   options.several_arms = true;
   auto opened = session::Session::open(scene, options);
   ASSERT_TRUE(opened) << opened.error().message;
@@ -81,6 +85,30 @@ TEST(RightForces, ChargesAndSnapsAreFeltWhole) {
 
 TEST(RightForces, AHeldBlockIsFeltWhole) {
   expect_untouched(shipped("held_block"));
+}
+
+TEST(RightForces, ABeamBetweenTwoHandsIsFeltWhole) {
+  expect_untouched(shipped("two_hands"), 2);
+}
+
+/// Repeats the route of a hand until the end of a run.
+void repeat(std::vector<scene::HandWaypoint>& route, double seconds) {
+  const std::vector<scene::HandWaypoint> once = route;
+  const double length = once.back().time;
+  for (double begin = length; begin < seconds; begin += length) {
+    for (auto waypoint = once.begin() + 1; waypoint != once.end(); ++waypoint) {
+      route.push_back(*waypoint);
+      route.back().time += begin;
+    }
+  }
+}
+
+TEST(RightForces, ABeamIsFeltWholeForAMinute) {
+  expect_untouched(shipped("two_hands"), 2, [](scene::Scene& scene) {
+    scene.duration = 60;
+    repeat(scene.hand, scene.duration);
+    for (scene::SceneArm& arm : scene.more_arms) repeat(arm.hand, scene.duration);
+  });
 }
 
 TEST(RightForces, APushedBlockIsFeltWhole) {

@@ -163,7 +163,7 @@ std::vector<std::string> viewer_arguments(const RunOptions& options) {
 void add_hold_option(CLI::App& command, std::string& hold) {
   command.add_option("--hold-to-run", hold,
                      "Give forces only while this is held: button (the arm's first), button2 to "
-                     "button16, or key (the space bar in this terminal)");
+                     "button16, or key (the space bar, in this terminal or in the window)");
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {

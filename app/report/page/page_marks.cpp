@@ -33,6 +33,7 @@ PageMark::Kind kind_of(const TickEvent& event) noexcept {
     case Activity::kBounded:
     case Activity::kPower:
     case Activity::kCalmed:
+    case Activity::kWall:
       return PageMark::Kind::kGate;
     case Activity::kMissedTicks:
     case Activity::kHeat:

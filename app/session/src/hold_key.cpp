@@ -3,10 +3,12 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string_view>
 
 #include "setup.h"
+#include "share/shared_run.h"
 #include "thimble/session/session.h"
 
 namespace thimble::session {
@@ -62,31 +64,39 @@ Terminal HoldKey::terminal() {
   return terminal;
 }
 
+void HoldKey::read_terminal(HeldKey& key) {
+  char text[64];
+  const ssize_t count = read(STDIN_FILENO, text, sizeof text);
+  if (count <= 0) {
+    closed_.store(true);
+    return;
+  }
+  const std::string_view keys(text, static_cast<std::size_t>(count));
+  if (keys.find('\n') != std::string_view::npos) enter_.store(true);
+  // All bytes of one read count as one press: pasted text holds nothing.
+  if (keys.find(' ') != std::string_view::npos) key.press(session_.setup().clock().now_ns());
+}
+
 void HoldKey::watch() {
   constexpr int kLook_ms = 5;
   const driver::Clock& clock = session_.setup().clock();
+  const SharedRun* const shared = session_.shared();
   HeldKey key;
+  ViewerKey viewer(shared != nullptr ? shared->key_held() : 0);
+  std::int64_t until_ns = clock.now_ns();
   while (!stop_.load()) {
     pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    if (closed_.load() || poll(&terminal, 1, kLook_ms) <= 0) {
-      if (closed_.load()) std::this_thread::sleep_for(std::chrono::milliseconds(kLook_ms));
-      continue;
+    if (closed_.load()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(kLook_ms));
+    } else if (poll(&terminal, 1, kLook_ms) > 0) {
+      read_terminal(key);
     }
-    char text[64];
-    const ssize_t count = read(STDIN_FILENO, text, sizeof text);
-    if (count <= 0) {
-      closed_.store(true);
-      continue;
-    }
-    const std::string_view keys(text, static_cast<std::size_t>(count));
-    if (keys.find('\n') != std::string_view::npos) enter_.store(true);
-    // Whatever comes at once is one press: pasted text holds nothing.
-    if (keys.find(' ') == std::string_view::npos) continue;
-    const std::int64_t now_ns = clock.now_ns();
-    key.press(now_ns);
-    if (key.until_ns() <= now_ns) continue;
+    if (shared != nullptr) viewer.look(shared->key_held(), clock.now_ns());
+    const std::int64_t until = std::max(key.until_ns(), viewer.until_ns());
+    if (until <= until_ns || until <= clock.now_ns()) continue;
+    until_ns = until;
     for (std::size_t arm = 0; arm < session_.arms(); ++arm) {
-      session_.device(arm).hold_until(key.until_ns());
+      session_.device(arm).hold_until(until_ns);
     }
   }
 }

@@ -51,7 +51,7 @@ void ReplugWatch::step() {
     if (record.link != LinkState::kLost && !home_asked_next) {
       terminal_.tell("Press Enter to let forces through again.");
     }
-    if (record.fault == driver::Fault::kTransportLost) gone_ = true;  // the fault says so itself
+    if (record.fault == driver::Fault::kTransportLost) gone_ = true;  // as the fault reports
     terminal_.key();
   }
   follow_link(record);

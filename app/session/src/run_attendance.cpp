@@ -59,10 +59,12 @@ void RunAttendance::warn_of_carried() {
     const std::uint64_t now = session_.carry_withdrawn(arm);
     if (now == withdrawn_[arm]) continue;
     withdrawn_[arm] = now;
+    const std::string& arm_name = session_.arm_name(arm);
     scene::logger().warn(
-        "The force that carries the arm's weight is taken away, for the tip moves with it; it "
-        "comes back once the tip rests. If nobody moved it, gravity_compensation of the arm file "
-        "is wrong: see `thimble identify`.");
+        "{}Gravity compensation is not trusted: the tip moves along its force, so it is switched "
+        "off until the tip rests. If no hand moved it, correct gravity_compensation of the arm "
+        "file: see `thimble identify`.",
+        arm_name.empty() ? "" : arm_name + ": ");
   }
 }
 

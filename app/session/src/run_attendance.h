@@ -12,7 +12,7 @@
 
 namespace thimble::session {
 
-/// Returns how far a run is, in a line for the terminal. `total`: s; 0 if nobody knows.
+/// Returns how far a run is, in a line for the terminal. `total`: s; 0 if unknown.
 std::string progress_line(const driver::TickRecord& record, double total);
 
 /// A warning about the heat of an arm's motors, given once in a run.
@@ -51,8 +51,8 @@ class RunAttendance {
   ReplugWatches* watch_;
   ViewerRequestHandler* desk_;
   bool on_terminal_;
-  double total_;                          // s; 0: nobody knows
-  std::vector<std::uint64_t> withdrawn_;  // of each arm's carried force, as was said
+  double total_;                          // s; 0: unknown
+  std::vector<std::uint64_t> withdrawn_;  // of each arm's carried force, as was reported
   HeatWarning heat_;
 };
 

@@ -338,7 +338,9 @@ RunFigures Session::figures(const driver::RealTimeGrant& grant, std::size_t arm)
   auto end = loop.end().value_or(driver::ServoEnd::kStopped);
   // The loop that comes to its end first stops the others.
   if (parts_->more_arms.end() == driver::ServoEnd::kDone) end = driver::ServoEnd::kDone;
-  return figures_of(*parts_->setup, arm, parts_->records_of(arm), end, grant);
+  RunFigures figures = figures_of(*parts_->setup, arm, parts_->records_of(arm), end, grant);
+  figures.carry_withdrawn = loop.carry_withdrawn();
+  return figures;
 }
 
 std::optional<int> Session::find_object(const std::string& name) const {

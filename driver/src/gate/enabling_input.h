@@ -9,7 +9,7 @@
 
 namespace thimble::driver {
 
-/// Looks whether the enabling input is held. A button that is down from the first tick on does not
+/// Checks whether the enabling input is held. A button that is down from the first tick on does not
 /// count until it was seen released: it may be stuck, or taped. All functions are Real-time: safe.
 class EnablingInput {
  public:
@@ -26,9 +26,6 @@ class EnablingInput {
   void hold_until(std::int64_t time_ns) noexcept {
     until_ns_.store(time_ns, std::memory_order_relaxed);
   }
-
-  /// Returns whether there is an input to hold.
-  bool named() const noexcept { return settings_.named(); }
 
   /// Returns whether all inputs are held in this tick.
   bool held(const DeviceState& state) noexcept {

@@ -12,7 +12,7 @@
 namespace thimble::session {
 
 /// Gravity compensation: a force law that carries the arm's own weight beside what another law asks
-/// for, so that a tip that nobody holds stays where it is: a weight at the tip, and the links of a
+/// for, so that a free tip stays where it is: a weight at the tip, and the links of a
 /// serial arm by their pose, as far as the motion lets it be trusted. What it adds is part of the
 /// requested force, so that the gate's soft start, limits and faults hold for the sum. Made only
 /// for an arm whose file names a weight: a run without one calls its law itself.

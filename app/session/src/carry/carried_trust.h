@@ -10,7 +10,7 @@ namespace thimble::session {
 
 /// How far the force that carries an arm's weight is trusted: by whether the tip moves with it.
 ///
-/// A right one holds a tip that nobody holds where it is, so that nothing moves along it by itself.
+/// A right one holds a free tip where it is, so that nothing moves along it by itself.
 /// A wrong one (another weight, a tilted base, a wrong sign) makes a free tip run away. A hand may
 /// move the tip as well, so that motion is no proof and no fault:
 /// - On trial, in the first second, a tip that goes kTrialWay along the force takes it away.

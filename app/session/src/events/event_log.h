@@ -20,7 +20,7 @@
 
 namespace thimble::session {
 
-/// What an event log is told of the run that it logs.
+/// Description of the run that an event log belongs to.
 struct LoggedRun {
   std::string name = {};                  ///< Stands in every line.
   std::string what = {};                  ///< What is run with which arm, for the first line.

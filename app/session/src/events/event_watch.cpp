@@ -1,10 +1,18 @@
 #include "events/event_watch.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace thimble::session {
+namespace {
+
+double wall_force_squared(const std::array<double, 3>& f_W) noexcept {
+  return f_W[0] * f_W[0] + f_W[1] * f_W[1] + f_W[2] * f_W[2];
+}
+
+}  // namespace
 
 std::uint64_t DeviceCounters::changes() const noexcept {
   // Each of them only grows.
@@ -31,11 +39,17 @@ ActivityCounts DeviceCounters::activities() const noexcept {
   at(Activity::kRefused) = wire.refused;
   at(Activity::kPower) = gate.power_limited;
   at(Activity::kCalmed) = gate.calmed;
+  at(Activity::kWall) = device_.wall_counters().pushed;
   return counts;
 }
 
 std::uint64_t DeviceCounters::wires_taken() const noexcept {
   return device_.wire_counters().replugged;
+}
+
+std::array<double, 3> DeviceCounters::f_wall_W() const noexcept {
+  const Eigen::Vector3d& f_W = device_.wall_counters().f_W;
+  return {f_W.x(), f_W.y(), f_W.z()};
 }
 
 EventWatch::EventWatch(const EventCounters& counters, std::int64_t period_ns,
@@ -101,7 +115,7 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
           .kind = EventKind::kFault,
           .fault = record.fault});
   }
-  // Where the fault is the news of the link, it says so itself.
+  // These faults already report the state of the link.
   const bool named_by_fault =
       record.fault != fault_ &&
       (record.fault == driver::Fault::kTransportLost || record.fault == driver::Fault::kNoReports);
@@ -134,18 +148,24 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
       if (episode.count > 0 && record.time_ns - episode.newest_ns > kQuiet_ns) {
         tick_ = record.tick;
         time_ns_ = record.time_ns;
-        end(static_cast<Activity>(i), episode);
+        end(activity, episode);
       }
       wait_for(episode);
       continue;
     }
+    const auto f_wall_W =
+        activity == Activity::kWall ? counters_.f_wall_W() : std::array<double, 3>{};
     if (episode.count == 0) {
       episode.began_ns = record.time_ns;
+      episode.f_wall_W = f_wall_W;
       push({.tick = record.tick,
             .time_ns = record.time_ns,
             .kind = EventKind::kActivityBegan,
-            .activity = static_cast<Activity>(i)});
+            .activity = activity,
+            .f_wall_W = f_wall_W});
     }
+    if (wall_force_squared(f_wall_W) > wall_force_squared(episode.f_wall_W))
+      episode.f_wall_W = f_wall_W;
     episode.newest_ns = record.time_ns;
     episode.count += counts[i] - counts_[i];
     wait_for(episode);
@@ -156,7 +176,7 @@ void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
 void EventWatch::watch_change(const driver::TickRecord& record, Activity activity,
                               bool acted) noexcept {
   Change& change = changes_of_force_[static_cast<std::size_t>(activity)];
-  if (change.told) return;
+  if (change.reported) return;
   double off = 0, wanted = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double difference = record.f_sent_W[k] - record.f_wanted_W[k];
@@ -165,17 +185,14 @@ void EventWatch::watch_change(const driver::TickRecord& record, Activity activit
   }
   // Written so that NaN changes nothing: it is a fault.
   if (!(acted && off > kChange * kChange * wanted && off > 0)) {
-    change.goes_on = false;
+    change.newest_ns = kLongAgo_ns;
     return;
   }
-  // Ticks in which no stage acted are not looked at.
-  if (!change.goes_on || record.time_ns - change.newest_ns >= 2 * period_ns_) {
-    change.began_ns = record.time_ns;
-  }
-  change.goes_on = true;
+  // Ticks in which no stage acted are not examined.
+  if (record.time_ns - change.newest_ns >= 2 * period_ns_) change.began_ns = record.time_ns;
   change.newest_ns = record.time_ns;
   if (record.time_ns - change.began_ns < kChangeTime_ns) return;
-  change.told = true;
+  change.reported = true;
   const double share = wanted > 0 ? std::min(1.0, std::sqrt(off / wanted)) : 1.0;
   push({.tick = record.tick,
         .time_ns = record.time_ns,
@@ -195,7 +212,8 @@ void EventWatch::end(Activity activity, Episode& episode) noexcept {
         .count = episode.count,
         .lasted_ns = episode.newest_ns - episode.began_ns,
         .kind = EventKind::kActivityEnded,
-        .activity = activity});
+        .activity = activity,
+        .f_wall_W = episode.f_wall_W});
   episode.count = 0;
 }
 

@@ -22,6 +22,9 @@ class EventCounters {
   virtual ActivityCounts activities() const noexcept = 0;
   /// Returns how often a lost wire was replaced.
   virtual std::uint64_t wires_taken() const noexcept = 0;
+  /// Returns the force of the walls of the workspace in the last tick in which one pushed, N in the
+  /// world; zero without walls.
+  virtual std::array<double, 3> f_wall_W() const noexcept { return {}; }
 };
 
 /// The counters of a device, which must outlive it.
@@ -31,6 +34,7 @@ class DeviceCounters final : public EventCounters {
   std::uint64_t changes() const noexcept override;
   ActivityCounts activities() const noexcept override;
   std::uint64_t wires_taken() const noexcept override;
+  std::array<double, 3> f_wall_W() const noexcept override;
 
  private:
   const driver::Device& device_;
@@ -44,8 +48,9 @@ class EventWatch final : public TickObserver {
   /// the rise limit on a rough surface, is one thing for a person]
   static constexpr std::int64_t kQuiet_ns = 100'000'000;
 
-  /// Change of a force by a stage that a person is told of, over what was wanted, and how long it
-  /// must last, ns. [chosen: more than is felt (PHYSICS 6: 7 %), and longer than a stroke's impact]
+  /// Change of a force by a stage that is reported to the user, over what was wanted, and how long
+  /// it must last, ns. [chosen: more than is felt (PHYSICS 6: 7 %), and longer than a stroke's
+  /// impact]
   static constexpr double kChange = 0.1;
   static constexpr std::int64_t kChangeTime_ns = 200'000'000;
 
@@ -56,7 +61,7 @@ class EventWatch final : public TickObserver {
 
   /// Compares a tick with the one before.
   void take(const driver::TickRecord& record) noexcept override;
-  /// Ends the activities that go on. After the last tick, on any thread.
+  /// Ends the activities that have not ended. After the last tick, on any thread.
   void finish() noexcept;
 
   /// Returns how many events found no room in the ring. From any thread.
@@ -64,20 +69,21 @@ class EventWatch final : public TickObserver {
 
  private:
   static constexpr std::int64_t kNever_ns = INT64_MAX;
+  static constexpr std::int64_t kLongAgo_ns = INT64_MIN / 2;
 
   /// An activity that has not ended.
   struct Episode {
     std::int64_t began_ns = 0;
     std::int64_t newest_ns = 0;
-    std::uint64_t count = 0;  // 0: it does not go on
+    std::uint64_t count = 0;           // 0: it has ended
+    std::array<double, 3> f_wall_W{};  // strongest force of the walls, N
   };
 
   /// Ticks in a row in which a stage changed the force by more than `kChange`.
   struct Change {
     std::int64_t began_ns = 0;
-    std::int64_t newest_ns = 0;
-    bool goes_on = false;
-    bool told = false;
+    std::int64_t newest_ns = kLongAgo_ns;
+    bool reported = false;
   };
 
   bool quiet(const driver::TickRecord& record) const noexcept;
@@ -97,7 +103,7 @@ class EventWatch final : public TickObserver {
   std::uint64_t wires_taken_;
   std::array<Episode, kActivities> episodes_{};
   std::array<Change, kActivities> changes_of_force_{};
-  std::int64_t earliest_end_ns_ = kNever_ns;  // until then no activity that goes on can have ended
+  std::int64_t earliest_end_ns_ = kNever_ns;  // until then no activity can have ended
   std::uint64_t tick_ = 0;
   std::int64_t time_ns_ = 0, due_ns_ = 0;
   bool begun_ = false;  // a tick has been taken

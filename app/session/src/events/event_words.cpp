@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstddef>
+
+#include "wall_side.h"
 
 namespace thimble::session {
 namespace {
@@ -43,9 +46,10 @@ constexpr std::array<ActivityWords, kActivities> kWords{{
      "The force was lowered for its mean power"},
     {spdlog::level::warn,
      "The program's force oscillates and grows, so it is lowered: its spring or damper is too "
-     "stiff "
-     "for this arm and loop.",
+     "stiff for this arm and loop.",
      "The program's force was lowered after an oscillation"},
+    {spdlog::level::warn, "A wall of the workspace pushes the tip back.",
+     "A wall of the workspace pushed"},
 }};
 
 /// Returns what a stage is called, and where it is set or what helps.
@@ -67,6 +71,8 @@ const char* stage_words(Activity activity) noexcept {
       return "The limit of power (power_max of the arm file)";
     case Activity::kCalmed:
       return "The guard against oscillations (the program's spring or damper is too stiff)";
+    case Activity::kWall:
+      return "The wall of the workspace (workspace of the arm file)";
     default:
       break;
   }
@@ -75,6 +81,19 @@ const char* stage_words(Activity activity) noexcept {
 
 const ActivityWords& words_for(Activity activity) noexcept {
   return kWords[static_cast<std::size_t>(activity)];
+}
+
+/// Returns which wall pushes, or pushed and how strongly.
+std::string wall_sentence(const TickEvent& event) {
+  const Eigen::Vector3d f_W(event.f_wall_W.data());
+  if (event.kind == EventKind::kActivityBegan) {
+    return fmt::format("The {} wall of the workspace pushes the tip back.", wall_side(f_W));
+  }
+  return fmt::format(
+      "The walls of the workspace pushed in {} tick{} within {:.3f} s, with {:.2f} N at most ({} "
+      "wall).",
+      event.count, event.count == 1 ? "" : "s", 1e-9 * static_cast<double>(event.lasted_ns),
+      f_W.norm(), wall_side(f_W));
 }
 
 std::string sentence(const TickEvent& event, std::span<const std::string> objects) {
@@ -90,8 +109,10 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
     case EventKind::kWireTaken:
       return "A new wire to the arm was taken; its force stays off until the user lets it through.";
     case EventKind::kActivityBegan:
+      if (event.activity == Activity::kWall) return wall_sentence(event);
       return words_for(event.activity).began;
     case EventKind::kActivityEnded:
+      if (event.activity == Activity::kWall) return wall_sentence(event);
       return fmt::format("{} {} time{} within {:.3f} s.", words_for(event.activity).happened,
                          event.count, event.count == 1 ? "" : "s",
                          1e-9 * static_cast<double>(event.lasted_ns));
@@ -151,7 +172,8 @@ level_enum level_of(const TickEvent& event) noexcept {
 bool is_notice(const TickEvent& event) noexcept {
   return event.kind == EventKind::kForceChanged ||
          (event.kind == EventKind::kActivityBegan &&
-          (event.activity == Activity::kPower || event.activity == Activity::kCalmed));
+          (event.activity == Activity::kPower || event.activity == Activity::kCalmed ||
+           event.activity == Activity::kWall));
 }
 
 std::string at_tick(std::uint64_t tick, std::int64_t time_ns) {

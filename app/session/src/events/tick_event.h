@@ -9,7 +9,7 @@
 
 namespace thimble::session {
 
-/// What can act on a force or get in its way for some ticks: told when it begins and when it ends.
+/// What can change a force, or disturb the loop, for some ticks: logged when it begins and ends.
 enum class Activity : std::uint8_t {
   kSoftStart,    ///< The gate's limit opens (GateCounters::soft_started).
   kForceCut,     ///< The gate cuts to the arm's limit (limited).
@@ -24,8 +24,9 @@ enum class Activity : std::uint8_t {
   kRefused,      ///< The arm took no messages (refused).
   kPower,        ///< The gate lowers the force for its mean power (power_limited).
   kCalmed,       ///< The gate lowers a program's force that oscillated (calmed).
+  kWall,         ///< A wall of the workspace pushes (WallCounters::pushed).
 };
-inline constexpr std::size_t kActivities = 13;
+inline constexpr std::size_t kActivities = 14;
 
 /// Returns whether an activity is a stage that changes forces.
 constexpr bool changes_force(Activity activity) noexcept {
@@ -63,6 +64,9 @@ struct TickEvent {
   driver::Fault fault = driver::Fault::kNone;
   driver::LinkState link = driver::LinkState::kConnected;
   std::int16_t object = -1;
+  /// Force of the walls of the workspace, N in the world: where kWall began, or the strongest
+  /// until it ended.
+  std::array<double, 3> f_wall_W{};
 
   bool operator==(const TickEvent&) const = default;
 };

@@ -24,6 +24,7 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.paging = setup.objects().paging();
   figures.wire = device.wire_counters();
   figures.gate = device.gate_counters();
+  figures.walls = device.wall_counters();
   figures.energy_stage = device.gate().energy_stage();
   figures.reopen = device.gate().limits().reopen;
   figures.carried_weight = setup.arm_file(arm).carried_most;

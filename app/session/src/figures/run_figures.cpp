@@ -6,6 +6,7 @@
 
 #include "thimble/driver/fault.h"
 #include "thimble/driver/heat_guard.h"
+#include "wall_side.h"
 
 namespace thimble::session {
 namespace {
@@ -113,6 +114,20 @@ std::string summary(const RunFigures& report) {
         "Gravity   the motors carried {}{:.3g} N of the arm beside the scene's forces.\n",
         report.carried_by_pose ? "up to " : "", report.carried_weight);
   }
+  if (report.carry_withdrawn > 0) {
+    s += fmt::format(
+        "Gravity   compensation is not trusted: it was switched off {} time{} because the tip "
+        "moved along its force. If no hand moved it, correct gravity_compensation of the arm "
+        "file: see `thimble identify`.\n",
+        report.carry_withdrawn, report.carry_withdrawn == 1 ? "" : "s");
+  }
+  if (report.walls.pushed > 0) {
+    s += fmt::format(
+        "Walls     the tip left the workspace of the arm file: walls pushed in {} ticks, with "
+        "{:.2f} N at most ({} wall).\n",
+        report.walls.pushed, report.walls.f_strongest_W.norm(),
+        wall_side(report.walls.f_strongest_W));
+  }
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(
         "Gate      energy watched: {:.2f} mJ given at most beyond what it took; damped in {} "
@@ -130,8 +145,7 @@ std::string summary(const RunFigures& report) {
   if (report.gate.oscillations > 0) {
     s += fmt::format(
         "Program   its force oscillated and grew {} time{}, at {:.0f} Hz at last: it was lowered "
-        "in "
-        "{} ticks. Its spring or damper is too stiff for this arm and loop.\n",
+        "in {} ticks. Its spring or damper is too stiff for this arm and loop.\n",
         report.gate.oscillations, report.gate.oscillations == 1 ? "" : "s",
         report.gate.oscillation_frequency, report.gate.calmed);
   }

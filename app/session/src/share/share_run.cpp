@@ -25,6 +25,7 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   scene.period_ns = setup.period_ns();
   scene.wall_clock = setup.real_time();
   scene.hand_by_mouse = setup.hand_by_mouse();
+  scene.hold_by_key = setup.hold().by_caller;
   scene.paced = setup.paced();
   scene.restarts = options.restarts && !setup.any_real();
   if (setup.arms() == 1) scene.knobs = knobs.described();

@@ -105,6 +105,8 @@ struct SharedHead {
   std::uint32_t hand_by_mouse = 0;  ///< 1: a viewer leads the simulated hand.
   std::uint32_t paced = 0;          ///< 1: simulated time, at a pace that viewers choose.
   std::uint32_t restarts = 0;       ///< 1: it is begun anew, or with another scene, when asked.
+  std::uint32_t hold_by_key = 0;    ///< 1: a key must be held to have forces (HoldToRun).
+  std::uint32_t unused = 0;
   SharedText<64> scene{};
   SharedText<1024> scene_file{};
   SharedArm arm;
@@ -195,6 +197,8 @@ struct SharedRequests {
   std::atomic<std::uint32_t> pause;  ///< kNotPaused, or which viewer holds the loop: see is_pause.
   std::atomic<std::uint32_t> stop;   ///< 1: end the run.
   std::atomic<std::uint32_t> loop;   ///< 1: begin anew whenever the run ends; 0: not.
+  /// Grows with each picture in which a viewer's window has its key held (HoldToRun).
+  std::atomic<std::uint64_t> key_held;
   std::atomic<double> speed;         ///< Times real time; nonsense is ignored.
   std::atomic<std::uint64_t> steps;  ///< Grows by the ticks that a paused run may go on by.
   std::atomic<std::uint64_t> restart_number;  ///< Grows with each order, once `restart` has it.

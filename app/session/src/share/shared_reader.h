@@ -122,6 +122,9 @@ class SharedReader {
   /// too many viewers: should it die, the run would not know.
   bool lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept;
 
+  /// Reports that the key of the enabling input is held now; call it with each picture while it is.
+  void hold_key() noexcept { live_->requests.key_held.fetch_add(1, std::memory_order_relaxed); }
+
   /// Counts what was read from the memory and made no sense.
   std::uint64_t rejected() const noexcept { return rejected_; }
 

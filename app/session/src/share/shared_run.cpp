@@ -131,6 +131,7 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->force_max = scene.force_max;
   head_->wall_clock = scene.wall_clock ? 1 : 0;
   head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
+  head_->hold_by_key = scene.hold_by_key ? 1 : 0;
   head_->paced = scene.paced ? 1 : 0;
   head_->restarts = scene.restarts ? 1 : 0;
   last_hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());

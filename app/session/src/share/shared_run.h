@@ -82,6 +82,11 @@ class SharedRun final : public KnobRequests {
   bool loop_asked() const noexcept {
     return live_->requests.loop.load(std::memory_order_relaxed) == 1;
   }
+  /// Returns a number that has grown since it was asked last if a viewer's key is held. Any number
+  /// may stand there.
+  std::uint64_t key_held() const noexcept {
+    return live_->requests.key_held.load(std::memory_order_relaxed);
+  }
   /// Returns how fast the run shall go, times real time; empty if a viewer wrote nonsense.
   std::optional<double> speed_wanted() const noexcept;
   /// Returns how many ticks a paused run was let go on by so far. Any number may stand there.

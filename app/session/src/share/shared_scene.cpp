@@ -243,6 +243,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   scene.force_max = head.force_max;
   scene.wall_clock = head.wall_clock == 1;
   scene.hand_by_mouse = head.hand_by_mouse == 1;
+  scene.hold_by_key = head.hold_by_key == 1;
   scene.paced = head.paced == 1;
   scene.restarts = head.restarts == 1;
   scene.shaped = head.shaped;

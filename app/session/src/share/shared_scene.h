@@ -63,8 +63,9 @@ struct SharedScene {
   double force_max = 0;        ///< N
   bool wall_clock = false;
   bool hand_by_mouse = false;
-  bool paced = false;     ///< Simulated time, at a pace that viewers choose.
-  bool restarts = false;  ///< It is begun anew, or with another scene, when a viewer asks.
+  bool hold_by_key = false;  ///< A key must be held to have forces (HoldToRun).
+  bool paced = false;        ///< Simulated time, at a pace that viewers choose.
+  bool restarts = false;     ///< It is begun anew, or with another scene, when a viewer asks.
   Arm arm;
   std::vector<Arm> more_arms;  ///< After the first; at most kMoreArmsMost.
   std::vector<Object> objects;

@@ -47,6 +47,15 @@ struct WallSettings {
   double beyond = kBeyond;  ///< Depth behind a wall at which the force goes off, m.
 };
 
+/// Counts what the walls around a workspace did. The force of a wall is what it adds to the force
+/// that was asked for, so that on each axis its sign is opposite to the side of the box at which
+/// the tip is outside.
+struct WallCounters {
+  std::uint64_t pushed = 0;                ///< Ticks in which a wall pushed.
+  Eigen::Vector3d f_W{0, 0, 0};            ///< Force of the walls in the last of them, N.
+  Eigen::Vector3d f_strongest_W{0, 0, 0};  ///< Strongest force of the walls, N.
+};
+
 /// Sets an enabling input: what a person must hold so that an arm gets a force. Of several all must
 /// be held. None by default.
 struct HoldToRun {
@@ -228,6 +237,8 @@ class Device {
   const WireCounters& wire_counters() const noexcept { return wire_; }
   /// Counts what the gate did. Real-time: safe.
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
+  /// Counts what the walls around the workspace did. Real-time: safe.
+  const WallCounters& wall_counters() const noexcept { return wall_counters_; }
   const SafetyGate& gate() const noexcept { return gate_; }  ///< Shows the gate. Real-time: safe.
   /// Returns the settings that it was opened with. Real-time: safe.
   const DeviceSettings& settings() const noexcept { return settings_; }
@@ -291,6 +302,7 @@ class Device {
       own_velocity_;                  // where the other is slower than the gate may be
   Eigen::Vector3d v_own_W_{0, 0, 0};  // m/s, by it
   std::unique_ptr<WorkspaceWalls> walls_;
+  WallCounters wall_counters_;
   std::unique_ptr<EnablingInput> enabling_;  // null: nothing is to be held
   WireCounters wire_;
   // One holds what is believed, the other takes the next report.

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "body/motion/body_motions.h"
 
@@ -32,7 +35,51 @@ class SharedBodyOf final : public SharedBody {
  public:
   explicit SharedBodyOf(Motion motion) : motion_(std::move(motion)) {}
 
-  void step(double step) noexcept override { motion_.step(step); }
+  /// Adds a hand; returns its number. Real-time: never from the servo thread.
+  std::size_t join() {
+    hands_.emplace_back();
+    first_ = motion_.energy();
+    return hands_.size() - 1;
+  }
+  /// Pushes by the hand of this number with `f_W` (N) at `p_W` (m) during the next step, once in a
+  /// step. Real-time: safe.
+  void push(std::size_t hand, const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept {
+    motion_.push(f_W, p_W);
+    hands_[hand].f_W = f_W;
+    hands_[hand].p_W = p_W;
+  }
+  /// Returns the stored energy of a hand (J), whose fall is what the body gave this hand.
+  ///
+  /// With E the energy of motion and height, E_0 the same at first, W_i the work of hand i on the
+  /// body and L = E_0 + sum W_i - E what the body has lost, the stored energy of hand i is
+  ///
+  ///     S_i = E - sum of W_j of the other hands + max L = E_0 + W_i + (max L - L).
+  ///
+  /// Without a loss that is E less what the other hands put in. What the body loses belongs to no
+  /// hand: without the last term it would be a fall of all S_i, so that one hand's drag over a
+  /// table would pay for a wrong force on another. Energy that a body gains without work lets L
+  /// fall below its maximum and raises S_i, as it does with one hand. The sum of what all hands get
+  /// by falls of S_i is therefore what they put in. Real-time: safe.
+  double energy_for(std::size_t hand) const noexcept {
+    double energy = motion_.energy() + lost_;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      if (i != hand) energy -= hands_[i].given;
+    }
+    return energy;
+  }
+
+  void step(double step) noexcept override {
+    for (Hand& hand : hands_) hand.power = hand.f_W.dot(motion_.velocity_at(hand.p_W));
+    motion_.step(step);
+    double lost = first_ - motion_.energy();
+    for (Hand& hand : hands_) {
+      // A force that is held does work by the mean velocity.
+      hand.given += step / 2 * (hand.power + hand.f_W.dot(motion_.velocity_at(hand.p_W)));
+      hand.f_W.setZero();
+      lost += hand.given;
+    }
+    lost_ = std::max(lost_, lost);
+  }
   Eigen::Vector3d momentum_W() const noexcept override { return motion_.body().momentum_W(); }
   Eigen::Vector3d angular_momentum_W() const noexcept override {
     if constexpr (requires { motion_.body().angular_momentum_W(); }) {
@@ -46,7 +93,18 @@ class SharedBodyOf final : public SharedBody {
   const Motion& motion() const noexcept { return motion_; }
 
  private:
+  /// Push of a hand in this tick, and its work.
+  struct Hand {
+    Eigen::Vector3d f_W{0, 0, 0};
+    Eigen::Vector3d p_W{0, 0, 0};
+    double power = 0;  // W, before the step
+    double given = 0;  // J
+  };
+
   Motion motion_;
+  std::vector<Hand> hands_;
+  double first_ = 0;  // energy before any step, J
+  double lost_ = 0;   // largest loss of energy so far, J
 };
 
 /// One hand's side of a SharedBody, as a BodyMotion. Its `step` does nothing: a hand's tick does
@@ -60,8 +118,9 @@ class SharedBodyOf final : public SharedBody {
 template <class Motion>
 class SharedMotion {
  public:
-  SharedMotion(std::shared_ptr<SharedBodyOf<Motion>> body, std::size_t hands) noexcept
-      : body_(std::move(body)), hands_(static_cast<double>(hands)) {}
+  /// Takes part in the body as one of `hands`. Real-time: never from the servo thread.
+  SharedMotion(std::shared_ptr<SharedBodyOf<Motion>> body, std::size_t hands)
+      : body_(std::move(body)), hand_(body_->join()), hands_(static_cast<double>(hands)) {}
 
   Eigen::Matrix3d R_WB() const noexcept { return body_->motion().R_WB(); }
   Eigen::Vector3d p_WB() const noexcept { return body_->motion().p_WB(); }
@@ -74,13 +133,14 @@ class SharedMotion {
     return hands_ * body_->motion().gain_at(p_W, impulse);
   }
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept {
-    body_->motion().push(f_W, p_W);
+    body_->push(hand_, f_W, p_W);
   }
-  double energy() const noexcept { return body_->motion().energy(); }
+  double energy() const noexcept { return body_->energy_for(hand_); }
   void step(double) noexcept {}
 
  private:
   std::shared_ptr<SharedBodyOf<Motion>> body_;
+  std::size_t hand_;
   double hands_;
 };
 

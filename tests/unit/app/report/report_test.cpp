@@ -97,6 +97,35 @@ TEST(Report, TellsTheRunInPlainWords) {
   EXPECT_LE(lines, 12);
 }
 
+TEST(Report, NamesTheWallThatPushed) {
+  session::RunFigures report = example();
+  EXPECT_EQ(summary(report).find("Walls"), std::string::npos);
+  report.walls = {.pushed = 51, .f_strongest_W = {0, 0, 2.5}};
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("walls pushed in 51 ticks, with 2.50 N at most (-z wall)"), std::string::npos)
+      << text;
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report_walls";
+  ASSERT_TRUE(write_report(report, folder).ok());
+  EXPECT_EQ(read(folder / "report.json")["walls"],
+            nlohmann::json({{"ticks", 51}, {"force_max_N", 2.5}, {"side", "-z"}}));
+}
+
+TEST(Report, NamesGravityCompensationThatIsNotTrusted) {
+  session::RunFigures report = example();
+  report.carried_weight = 0.06;
+  EXPECT_EQ(summary(report).find("not trusted"), std::string::npos);
+  report.carry_withdrawn = 2;
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("Gravity   compensation is not trusted: it was switched off 2 times"),
+            std::string::npos)
+      << text;
+  const std::filesystem::path folder = support::scratch_folder() / "thimble_report_carried";
+  ASSERT_TRUE(write_report(report, folder).ok());
+  const auto carried = read(folder / "report.json")["gravity_compensation"];
+  EXPECT_EQ(carried["trusted"], false);
+  EXPECT_EQ(carried["withdrawn"], 2);
+}
+
 TEST(Report, NamesTheFaultThatEndedIt) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kFault;

@@ -25,10 +25,12 @@ class ScriptedCounters final : public EventCounters {
   }
   ActivityCounts activities() const noexcept override { return counts; }
   std::uint64_t wires_taken() const noexcept override { return taken; }
+  std::array<double, 3> f_wall_W() const noexcept override { return wall_W; }
   std::uint64_t& of(Activity activity) { return counts[static_cast<std::size_t>(activity)]; }
 
   ActivityCounts counts{};
   std::uint64_t taken = 0;
+  std::array<double, 3> wall_W{};
 };
 
 /// A run whose ticks the test writes, 1 ms apart.
@@ -356,6 +358,45 @@ TEST_F(EventWatchTest, CountsTheTimeOfAChangeFromItsLastGap) {
     tick();
   }
   for (const TickEvent& event : events()) EXPECT_NE(event.kind, EventKind::kForceChanged);
+}
+
+TEST_F(EventWatchTest, KeepsTheStrongestForceOfAWall) {
+  for (const double force : {1.0, 3.0, 2.0}) {
+    counters_.wall_W = {0, -force, 0};
+    ++counters_.of(Activity::kWall);
+    tick();
+  }
+  ticks(200);
+  TickEvent first = began(0, Activity::kWall);
+  first.f_wall_W = {0, -1, 0};
+  TickEvent last = ended(103, Activity::kWall, 3, 2 * kPeriod_ns);
+  last.f_wall_W = {0, -3, 0};
+  EXPECT_EQ(events(), Events({first, last}));
+}
+
+TEST_F(EventWatchTest, ForgetsTheForceOfAWallThatPushedBefore) {
+  for (const double force : {3.0, 1.0}) {
+    counters_.wall_W = {force, 0, 0};
+    ++counters_.of(Activity::kWall);
+    ticks(200);
+  }
+  const auto got = events();
+  ASSERT_EQ(got.size(), 4U);
+  EXPECT_EQ(got[3].f_wall_W, (std::array<double, 3>{1, 0, 0}));
+}
+
+TEST(EventWords, NameTheWallThatPushes) {
+  TickEvent event{.kind = EventKind::kActivityBegan, .activity = Activity::kWall};
+  event.f_wall_W = {0, 0.5, 0.1};
+  EXPECT_TRUE(is_notice(event));
+  EXPECT_EQ(words_of(event, {}),
+            "tick 0, 0.000 s: The -y wall of the workspace pushes the tip back.");
+  event = {.count = 51, .lasted_ns = 50'000'000, .kind = EventKind::kActivityEnded};
+  event.activity = Activity::kWall;
+  event.f_wall_W = {-3, 0, 0};
+  EXPECT_EQ(words_of(event, {}),
+            "tick 0, 0.000 s: The walls of the workspace pushed in 51 ticks within 0.050 s, with "
+            "3.00 N at most (+x wall).");
 }
 
 TEST(EventWords, NameTheStageThatChangedAForce) {

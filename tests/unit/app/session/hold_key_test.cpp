@@ -47,6 +47,28 @@ TEST(HeldKey, SlowTypingHoldsNothing) {
   }
 }
 
+TEST(ViewerKey, HoldsNothingWithoutAPicture) {
+  ViewerKey key(7);
+  key.look(7, 1000 * kMs);
+  EXPECT_LE(key.until_ns(), 1000 * kMs);
+}
+
+TEST(ViewerKey, IsHeldWhilePicturesReportIt) {
+  ViewerKey key(7);
+  for (int i = 0; i < 100; ++i) {
+    const std::int64_t now = (1000 + 16 * i) * kMs;
+    key.look(8 + static_cast<std::uint64_t>(i), now);
+    EXPECT_GT(key.until_ns(), now + 16 * kMs);
+  }
+}
+
+TEST(ViewerKey, LapsesSoonAfterTheLastPicture) {
+  ViewerKey key(7);
+  key.look(8, 1000 * kMs);
+  for (int i = 1; i < 100; ++i) key.look(8, (1000 + 5 * i) * kMs);
+  EXPECT_EQ(key.until_ns(), 1000 * kMs + HeldKey::kLasts_ns);
+}
+
 TEST(HoldNamed, NamesButtonsAndTheKey) {
   EXPECT_FALSE(hold_named("")->named());
   EXPECT_EQ(hold_named("button")->buttons, 1);

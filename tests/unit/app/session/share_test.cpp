@@ -20,6 +20,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hold_key.h"
 #include "mesh/contact_mesh.h"
 #include "share/arm_lines.h"
 #include "share/knob_order.h"
@@ -465,6 +466,30 @@ void tear(driver::Snapshot<T>& snapshot) {
 template <class T>
 bool is_torn(const driver::Snapshot<T>& snapshot) {
   return reinterpret_cast<const std::atomic<std::uint64_t>*>(&snapshot)->load() % 2 != 0;
+}
+
+TEST(Share, SaysThatAKeyMustBeHeld) {
+  session::SharedScene scene = small_scene();
+  EXPECT_FALSE(joined(scene).reader->scene().hold_by_key);
+  scene.hold_by_key = true;
+  EXPECT_TRUE(joined(scene).reader->scene().hold_by_key);
+}
+
+TEST(Share, CountsPicturesInWhichAKeyIsHeld) {
+  const Pair pair = joined(small_scene());
+  EXPECT_EQ(pair.run->key_held(), 0U);
+  pair.reader->hold_key();
+  pair.reader->hold_key();
+  EXPECT_EQ(pair.run->key_held(), 2U);
+}
+
+TEST(Share, KeyOfAViewerThatDiesIsReleased) {
+  const Pair pair = joined(small_scene());
+  viewer_that_is_killed(pair, [](auto& viewer) { viewer.hold_key(); });
+  session::ViewerKey key(0);
+  key.look(pair.run->key_held(), 0);
+  key.look(pair.run->key_held(), 1'000'000'000);
+  EXPECT_LE(key.until_ns(), session::HeldKey::kLasts_ns);
 }
 
 TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {

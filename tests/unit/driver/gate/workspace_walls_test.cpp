@@ -142,6 +142,24 @@ TEST_F(WorkspaceWallsTest, BrakeOnTheWayOutAlone) {
   EXPECT_NEAR(device_->f_sent_W().x(), -2, 1e-6);
 }
 
+TEST_F(WorkspaceWallsTest, CountTheTicksInWhichTheyPush) {
+  open({0, 0, 0});
+  EXPECT_EQ(device_->wall_counters().pushed, 0U);
+  move({0.11, 0, 0}, 22, {0, 0, 0});  // 5 mm a tick
+  for (int i = 0; i < 50; ++i) tick({0.11, 0, 0}, {0, 0, 0});
+  for (int i = 0; i < 50; ++i) tick({0.09, 0, 0}, {0, 0, 0});
+  EXPECT_EQ(device_->wall_counters().pushed, 52U);
+}
+
+TEST_F(WorkspaceWallsTest, KeepTheirStrongestForce) {
+  open({0, 0, 0});
+  move({0, 0, -0.12}, 400, {0, 0, 0});
+  for (int i = 0; i < 50; ++i) tick({0, 0, -0.12}, {0, 0, 0});
+  for (int i = 0; i < 50; ++i) tick({0, 0, -0.105}, {0, 0, 0});
+  EXPECT_NEAR(device_->wall_counters().f_W.z(), 1, 1e-9);
+  EXPECT_GE(device_->wall_counters().f_strongest_W.z(), 4 - 1e-9);
+}
+
 TEST_F(WorkspaceWallsTest, AreNoneUnlessNamed) {
   auto opened =
       Device::open(std::make_unique<support::MovedArm>(moved_), support::moved_settings(), 0);

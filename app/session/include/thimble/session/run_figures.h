@@ -40,9 +40,12 @@ struct RunFigures {
   std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
   driver::WireCounters wire;                     ///< What came from the arm.
   driver::GateCounters gate;                     ///< What the safety gate did.
+  driver::WallCounters walls;                    ///< Pushes of the walls of the workspace.
   driver::EnergyStage energy_stage = driver::EnergyStage::kNone;  ///< Of the gate.
   double reopen = 0;                                              ///< The gate's, s.
-  double carried_weight = 0;        ///< What of the requested force carried the arm, N; 0: nothing.
+  double carried_weight = 0;  ///< What of the requested force carried the arm, N; 0: nothing.
+  /// How often gravity compensation was switched off because the tip moved along its force.
+  std::uint64_t carry_withdrawn = 0;
   bool carried_by_pose = false;     ///< That hangs on the pose, and is the most over the workspace.
   bool heat_known = false;          ///< The arm file says what the motors carry for long.
   std::array<double, 3> heat{};     ///< Of the motors at the end; 1: the winding's limit.

@@ -13,9 +13,9 @@ THIMBLE_LAYOUT(thimble::session::SharedTable, offset, count)
 THIMBLE_LAYOUT(thimble::session::SharedArm, name, device, in_scene, shape, unused, numbers, R_WB,
                p_WB, min_W, max_W)
 THIMBLE_LAYOUT(thimble::session::SharedHead, ready, layout, total_bytes, hash, pid, began_ns,
-               period_ns, force_max, wall_clock, hand_by_mouse, paced, restarts, scene, scene_file,
-               arm, more_arms, others, objects, knobs, vertices, triangles, field, shaped, splits,
-               ring)
+               period_ns, force_max, wall_clock, hand_by_mouse, paced, restarts, hold_by_key,
+               unused, scene, scene_file, arm, more_arms, others, objects, knobs, vertices,
+               triangles, field, shaped, splits, ring)
 THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, unused,
                first_vertex, vertex_count, first_triangle, triangle_count, first_shaped,
                first_split, splits_most, crease_angle, texture, friction)
@@ -26,8 +26,8 @@ THIMBLE_LAYOUT(thimble::session::SharedTick, serial, record)
 THIMBLE_LAYOUT(thimble::session::SharedKnobState, wanted, now)
 THIMBLE_LAYOUT(thimble::session::SharedHand, p_WH, active, viewer)
 THIMBLE_LAYOUT(thimble::session::SharedRestart, number, scene)
-THIMBLE_LAYOUT(thimble::session::SharedRequests, pause, stop, loop, speed, steps, restart_number,
-               restart, record_number, record_path, hand, viewers)
+THIMBLE_LAYOUT(thimble::session::SharedRequests, pause, stop, loop, key_held, speed, steps,
+               restart_number, restart, record_number, record_path, hand, viewers)
 THIMBLE_LAYOUT(thimble::session::SharedLive, state, closed, recording, ticks, missed, paused,
                record_dropped, shape_moves, recording_path, notice, poses, patch, others, knobs,
                requests)
