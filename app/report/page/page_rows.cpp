@@ -214,6 +214,16 @@ void keep_where_it_errs(const PageTicks& ticks, const std::array<double, kDrawn>
   }
 }
 
+// Spends what is still left evenly on the ticks that are not kept: there nothing changes.
+void keep_evenly(std::size_t ticks, std::size_t rows_most, KeptTicks& kept) {
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < ticks; ++i) {
+    if (!kept.has(i)) others.push_back(i);
+  }
+  const std::size_t left = std::min(others.size(), rows_most - std::min(rows_most, kept.count()));
+  for (std::size_t n = 0; n < left; ++n) kept.keep(others[n * others.size() / left]);
+}
+
 // Keeps the ticks before and after each touch begins and ends, up to `rows` of them.
 void keep_touch_ends(const PageTicks& ticks, std::size_t rows, KeptTicks& kept) {
   const std::size_t most = kept.count() + rows;
@@ -271,6 +281,7 @@ std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most
   keep_outlines(ticks, touching, rows - for_free, kept);
   keep_outlines(ticks, free, for_free, kept);
   keep_where_it_errs(ticks, ranges, rows_most, kept);
+  keep_evenly(count, rows_most, kept);
   return kept.list();
 }
 
