@@ -79,8 +79,10 @@ ExitCode end_recording(session::Session& session, const std::string& asked) {
 driver::Result<void> write_files(const session::Session& session,
                                  const driver::RealTimeGrant& grant, const RunOptions& options,
                                  RunPage* page, int object) {
+  if (page != nullptr) page->finish();
   if (!options.report.empty()) {
-    if (auto written = write_run_files(session, grant, options.report); !written) return written;
+    auto written = write_run_files(session, grant, options.report, page);
+    if (!written) return written;
     report("Report and pictures: {}\n", options.report);
   }
   if (page != nullptr) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -9,11 +10,16 @@
 namespace thimble::app {
 namespace {
 
-constexpr std::size_t kBucketsMax = 3000;  // about two per pixel of a panel's width
+constexpr std::size_t kBucketsMax = 1500;  // about one per pixel of a panel's width
 constexpr double kVisible = 0.02;          // of the largest force: a line's width in the panel
 
+// What of a row is plotted over time.
+std::array<double, 3> plotted(const driver::TickRecord& row) {
+  return {length_of(row.f_wanted_W), length_of(row.f_sent_W), row.depth};
+}
+
 // Writes time, wanted force, sent force and depth. Long runs are cut into buckets of which the
-// rows with the least and the most force stay, so that no peak is lost.
+// rows with the least and the most of each stay, so that no peak is lost.
 std::string table(std::span<const driver::TickRecord> rows) {
   std::ostringstream text;
   text.precision(7);
@@ -25,14 +31,26 @@ std::string table(std::span<const driver::TickRecord> rows) {
   const std::size_t bucket = (rows.size() + kBucketsMax - 1) / kBucketsMax;
   for (std::size_t begin = 0; begin < rows.size(); begin += bucket) {
     const std::size_t end = std::min(begin + bucket, rows.size());
-    std::size_t least = begin;
-    std::size_t most = begin;
+    std::array<std::size_t, 6> own;
+    own.fill(begin);
+    auto least = plotted(rows[begin]);
+    auto most = least;
     for (std::size_t i = begin; i < end; ++i) {
-      if (length_of(rows[i].f_sent_W) < length_of(rows[least].f_sent_W)) least = i;
-      if (length_of(rows[i].f_sent_W) > length_of(rows[most].f_sent_W)) most = i;
+      const auto values = plotted(rows[i]);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        if (values[k] < least[k]) {
+          least[k] = values[k];
+          own[2 * k] = i;
+        }
+        if (values[k] > most[k]) {
+          most[k] = values[k];
+          own[2 * k + 1] = i;
+        }
+      }
     }
-    put(std::min(least, most));
-    if (least != most) put(std::max(least, most));
+    std::sort(own.begin(), own.end());
+    const auto last = std::unique(own.begin(), own.end());
+    std::for_each(own.begin(), last, put);
   }
   return text.str();
 }

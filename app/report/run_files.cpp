@@ -9,7 +9,8 @@ namespace {
 
 driver::Result<void> write_arm_files(const session::Session& session,
                                      const session::RunFigures& figures,
-                                     const std::filesystem::path& folder, std::size_t arm) {
+                                     const std::filesystem::path& folder, std::size_t arm,
+                                     const RunPage* page) {
   if (auto written = write_report(figures, folder); !written) return written;
   const std::string whose = session.arms() > 1 ? ", " + session.arm_name(arm) : "";
   const PictureInfo info{.title = figures.scene + ", " + figures.arm + whose,
@@ -17,7 +18,8 @@ driver::Result<void> write_arm_files(const session::Session& session,
                          .period = 1 / figures.rate_asked,
                          .period_times = &figures.statistics.period(),
                          .work_times = &figures.statistics.work()};
-  auto drawn = draw_pictures(session.ticks(arm), session.setup().objects().mesh_W(), info, folder);
+  auto drawn = draw_pictures(page != nullptr ? page->ticks(arm) : session.ticks(arm),
+                             session.setup().objects().mesh_W(), info, folder);
   if (!drawn) return drawn;
   auto dent = session.deepest_dent();
   if (!dent) return {};
@@ -37,10 +39,10 @@ std::vector<std::string> run_file_names() {
 
 driver::Result<void> write_run_files(const session::Session& session,
                                      const driver::RealTimeGrant& grant,
-                                     const std::filesystem::path& folder) {
+                                     const std::filesystem::path& folder, const RunPage* page) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
     const auto own = session.arms() == 1 ? folder : folder / session.arm_name(arm);
-    auto written = write_arm_files(session, session.figures(grant, arm), own, arm);
+    auto written = write_arm_files(session, session.figures(grant, arm), own, arm, page);
     if (!written) return written;
   }
   return {};

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "report/page/touch_page.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
@@ -17,8 +18,12 @@ std::vector<std::string> run_file_names();
 /// the pictures (draw_pictures) and, of a scene that was dented, dent.png; of several arms into a
 /// folder each, by their names. `grant`: what the kernel granted the servo's thread. Fails, naming
 /// the file, if that cannot be done. Real-time: never from the servo thread.
+///
+/// The pictures are drawn of the ticks of `page`, which is finished, if it is not null, else of
+/// those that the session keeps.
 driver::Result<void> write_run_files(const session::Session& session,
                                      const driver::RealTimeGrant& grant,
-                                     const std::filesystem::path& folder);
+                                     const std::filesystem::path& folder,
+                                     const RunPage* page = nullptr);
 
 }  // namespace thimble::app

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "energy_choice.h"
@@ -24,6 +25,16 @@ constexpr double kShare = 0.7;
 /// The part of what the worst of those hands carries: there oscillations die within a second
 /// [measured, tests/sim/hand_constants_test].
 constexpr double kShareAnyHand = 0.8;
+
+/// Returns the time between the reports of an arm, or between those that a Falcon is asked for, ms.
+double report_period_ms(const scene::ArmFile& arm, double rate) {
+  return arm.is<driver::DeltaArm>()
+             ? 1e3 / rate
+             : 1e-6 * static_cast<double>(arm.simulated.firmware.report_period_ns);
+}
+
+/// The most periods of delay that the exact map of a tick is made for [chosen].
+constexpr double kPeriodsLate = 32;
 
 /// The worst of what simulated walls could carry.
 struct Edges {
@@ -66,17 +77,91 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
   return edges;
 }
 
-/// Says what to change about a wall that is too stiff.
+/// The fastest loop that advice names, Hz [chosen: what a scene may ask for].
+constexpr double kRateMost = 1e5;
+
+/// Finds a rate at which the law allows what an object asks for, a whole multiple of the scene's;
+/// none where a faster loop would wait for the arm's reports and wire.
+std::optional<double> rate_that_carries(const scene::Scene& scene,
+                                        const scene::SceneObject& object) {
+  const auto carries = [&](double rate) {
+    return carried_by(scene.arm, loop_times(scene.arm, rate), object.stiffness, object.damping)
+               .stiffness_exact >= object.stiffness;
+  };
+  for (int times = 2; times <= 8; ++times) {
+    if (times * scene.rate <= kRateMost && carries(times * scene.rate)) return times * scene.rate;
+  }
+  return {};
+}
+
+/// Finds the largest damping below an object's own at which its stiffness is safe, N s/m; none
+/// where less damping does not help.
+std::optional<double> damping_that_carries(const scene::Scene& scene,
+                                           const scene::SceneObject& object,
+                                           const scene::LoopTimes& times) {
+  const auto carries = [&](double damping) {
+    return carried_by(scene.arm, times, object.stiffness, damping).stiffness_safe >=
+           object.stiffness;
+  };
+  double low = object.damping;
+  for (int halved = 0; halved < 12; ++halved) {
+    low /= 2;
+    if (!carries(low)) continue;
+    double high = 2 * low;
+    for (int i = 0; i < 7; ++i) {
+      const double middle = (low + high) / 2;
+      (carries(middle) ? low : high) = middle;
+    }
+    return low;
+  }
+  return carries(0) ? std::optional<double>(0) : std::nullopt;
+}
+
+/// Returns a number of two digits that is not above `value`.
+double rounded_down(double value) {
+  if (!(value > 0)) return 0;
+  double digit = 1e-9;
+  while (digit * 100 <= value) digit *= 10;
+  return digit * std::floor(value / digit);
+}
+
+/// Returns what to change about a wall whose damping alone makes it grow, at any stiffness.
+std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObject& object,
+                                const Carried& carried) {
+  const std::optional<double> damping = damping_that_carries(scene, object, carried.times);
+  std::string text = fmt::format(
+      "{} asks for a damping of {:.3g} N s/m, but over a latency of {:.2f} ms that is unstable at "
+      "any stiffness: ",
+      object.name, object.damping, 1e3 * carried.latency);
+  if (damping) return text + fmt::format("set it to {:.2g} N s/m or less.", rounded_down(*damping));
+  // Without the surface's damping at most.
+  const double safe = carried_by(scene.arm, carried.times, object.stiffness, 0).stiffness_safe;
+  return text +
+         fmt::format("set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
+}
+
+/// Returns what to change about a wall that is too stiff.
 std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
                    const Carried& carried) {
-  const double limit = carried.stiffness_safe;
-  const double rate = scene.rate * std::ceil(object.stiffness / carried.stiffness_exact);
-  return fmt::format(
+  if (!(carried.stiffness_exact > 0)) return advice_to_damp_less(scene, object, carried);
+  std::string text = fmt::format(
       "{} asks for {:.0f} N/m, but arm, loop and hand carry {:.0f} N/m (damping of {:.3g} N s/m "
-      "over a latency of {:.2f} ms): set its stiffness to {:.0f} N/m or less, or run at {:.0f} Hz "
-      "if the arm's delay of {:.1f} ms falls with it.",
+      "over a latency of {:.2f} ms): set its stiffness to {:.0f} N/m or less",
       object.name, object.stiffness, carried.stiffness_exact, carried.damping + object.damping,
-      1e3 * carried.latency, limit, rate, 1e3 * carried.times.delay);
+      1e3 * carried.latency, carried.stiffness_safe);
+  const std::optional<double> damping =
+      object.damping > 0 ? damping_that_carries(scene, object, carried.times) : std::nullopt;
+  if (damping && *damping > 0) {
+    text += fmt::format(", or its damping to {:.2g} N s/m", rounded_down(*damping));
+  }
+  if (const auto rate = rate_that_carries(scene, object)) {
+    return text + fmt::format(", or run at {:.0f} Hz.", *rate);
+  }
+  return text +
+         fmt::format(
+             ". A faster loop is not enough, for the arm's reports come every {:.3g} ms and its "
+             "wire takes {:.3g} ms.",
+             report_period_ms(scene.arm, scene.rate), 1e3 * scene::loop_delay(scene.arm));
 }
 
 /// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
@@ -151,7 +236,10 @@ void tell_topics(const scene::Scene& scene, const scene::LoopTimes& times, const
 }  // namespace
 
 scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double period_spread) {
-  return {.period = 1 / rate, .period_spread = period_spread, .delay = scene::loop_delay(arm)};
+  scene::LoopTimes times = scene::loop_pace(arm, rate);
+  times.period_spread =
+      std::sqrt(times.period_spread * times.period_spread + period_spread * period_spread);
+  return times;
 }
 
 Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, double stiffness,
@@ -164,14 +252,18 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
   carried.stiffness_law = scene::stiffness_limit(carried.damping + damping, carried.latency);
   // Jitter acts as so much more delay [PHYSICS 1.1].
   const double more = carried.latency - times.period / 2;
+  // A delay of many periods is the same wall to a coarser loop of the same latency, whose map of a
+  // tick stays small.
+  const bool many = more > kPeriodsLate * times.period;
+  const double period = many ? carried.latency / (kPeriodsLate + 0.5) : times.period;
   const auto edge_with = [&](const device_sim::HandSettings& hand) {
     return stiffness_edge({.mass = carried.tip.mass + hand.mass,
                            .viscous = carried.tip.damping + hand.damping,
                            .hand_stiffness = hand.stiffness,
                            .damping = damping,
                            .velocity_corner = arm.velocity_corner_frequency,
-                           .period = times.period,
-                           .delay = more});
+                           .period = period,
+                           .delay = carried.latency - period / 2});
   };
   carried.stiffness_exact = edge_with(arm.simulated.hand);
   carried.stiffness_any_hand = carried.stiffness_exact;
@@ -235,14 +327,18 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
   const scene::ArmFile& arm = scene.arm;
   const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
   const Carried bare = carried_by(arm, times, 1000, 0);
+  const double waited = times.delay - scene::loop_delay(arm);
   result.text += fmt::format(
       "{} at {:.0f} Hz, with the hand of its file ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m):\n",
       arm.name, scene.rate, arm.simulated.hand.mass, arm.simulated.hand.stiffness,
       arm.simulated.hand.damping);
-  result.text +=
-      fmt::format("Latency   {:.3f} ms: half a period {:.3f}, jitter {:.3f}, wire {:.3f}.\n",
-                  1e3 * bare.latency, 0.5e3 * times.period,
-                  1e3 * (bare.latency - times.period / 2 - times.delay), 1e3 * times.delay);
+  result.text += fmt::format(
+      "Latency   {:.3f} ms: half a period {}{:.3f}, jitter {:.3f}, wire {:.3f}{}.\n",
+      1e3 * bare.latency, times.period > 1.001 / scene.rate ? "of the arm's reports " : "",
+      0.5e3 * times.period, 1e3 * (bare.latency - times.period / 2 - times.delay),
+      1e3 * scene::loop_delay(arm),
+      waited > 0 ? fmt::format(", reports that wait for a tick {:.3f}", 1e3 * waited)
+                 : std::string());
   result.text += fmt::format(
       "Tip       {:.3g} kg, {:.3g} N s/m, {:.3g} N of dry friction; one step of the encoders is up "
       "to {:.0f} um.\n",
@@ -273,7 +369,9 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
     result.figures.push_back({name + ".law", carried.stiffness_law, "N/m", ""});
     result.figures.push_back({name + ".exact", carried.stiffness_exact, "N/m", ""});
     double edge = carried.stiffness_exact;
-    if (arm.is<driver::DeltaArm>()) {
+    if (!(carried.stiffness_exact > 0)) {
+      result.text += "  simulated not: its damping makes it unstable at any stiffness\n";
+    } else if (arm.is<driver::DeltaArm>()) {
       result.text += "  simulated not: a Falcon's simulation is for whole scenes only\n";
     } else {
       const Edges edges =

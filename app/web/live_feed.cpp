@@ -85,6 +85,10 @@ LiveFeed::LiveFeed(session::SharedReader& reader)
   base_ = meshes_ = first_;
 }
 
+std::string LiveFeed::run() const {
+  return std::to_string(reader_.scene().began_ns);
+}
+
 driver::Result<std::string> LiveFeed::page(std::uint16_t port) const {
   const session::SharedScene& scene = reader_.scene();
   PageTouch touch{.title = scene.name,
@@ -99,6 +103,7 @@ driver::Result<std::string> LiveFeed::page(std::uint16_t port) const {
   }
   const PageSource source{.port = port,
                           .rows = kTicksMost,
+                          .run = run(),
                           .no_restart = reader_.why_no_restart(),
                           .no_step = reader_.why_no_step()};
   return page_text(touch, &source);
@@ -181,7 +186,7 @@ void LiveFeed::take_other_arms(Json& json, PageBlock& block) {
       other_ticks_[i] = tick.tick;
       const std::string prefix = "arm" + std::to_string(i + 1) + ".";
       const std::size_t only = 0;
-      add_rows(block, prefix, {&tick, 1}, {&only, 1}, begin_ns_);
+      add_rows(block, prefix, std::span<const driver::TickRecord>(&tick, 1), {&only, 1}, begin_ns_);
       add_bars(reader_.scene().more_arms[i], {&tick, 1}, begin_ns_, prefix, arm, block);
       arm["rows"] = 1;
     }
@@ -277,7 +282,7 @@ void LiveFeed::forget() {
 
 std::string LiveFeed::base(std::uint64_t lost) const {
   PageBlock block;
-  Json json{{"base", true}, {"lost_here", lost}};
+  Json json{{"base", true}, {"run", run()}, {"lost_here", lost}};
   std::vector<ShapeStep> shapes;
   for (std::size_t i = 0; i < base_.size(); ++i) {
     ShapeStep step = shape_step(first_[i], base_[i]);

@@ -19,6 +19,9 @@ namespace thimble::app {
 /// What the pages of a run that goes on are told: updates, each with all ticks since the one
 /// before, kept for a while for whoever comes later or is slow.
 ///
+/// The first update of each connection, and of each that has fallen behind, names the run ("run"):
+/// a page of another run must load itself again and show nothing of it.
+///
 /// An update is, little-endian: the bytes of its JSON and those of its numbers (u32 each), the
 /// JSON, the numbers (PageBlock), either filled up to a multiple of 8. A message holds one or more.
 ///
@@ -45,6 +48,8 @@ class LiveFeed {
   /// Returns the page as it is before it is told anything. The error is that of page_text.
   driver::Result<std::string> page(std::uint16_t port) const;
 
+  /// Returns what tells this run from others of the same name: when it began.
+  std::string run() const;
   /// Looks what is new and makes an update of it, if there is anything to tell.
   void step();
   /// Returns whether there is a message for a page.

@@ -35,7 +35,7 @@ class Visitor {
   /// Returns whether it has been disconnected by this side.
   bool is_cut() const noexcept { return cut_; }
   /// Returns whether it is a page that is told what goes on.
-  bool is_page() const noexcept { return open_; }
+  bool is_page() const noexcept { return open_ && !closing_; }
   /// Returns whether it has been sent all that there is.
   bool has_all(const LiveFeed* feed) const noexcept {
     return !sending_ && (feed == nullptr || !feed->has_message(place_));
@@ -94,14 +94,14 @@ class Visitor {
 
   /// Sends what is new; a page that is slow gets it with what comes meanwhile.
   void tell(const LiveFeed& feed) {
-    if (!open_ || sending_ || !feed.has_message(place_)) return;
+    if (!is_page() || sending_ || !feed.has_message(place_)) return;
     send(feed.message(place_));
   }
-  /// Closes it with a word of why, once it has what is being sent.
+  /// Closes it with a code and a word of why, once it has what is being sent, however slow it is.
+  /// It is told nothing from now on.
   void close(boost::beast::websocket::close_code why, const char* words) {
     if (!open_ || closing_) return;
     closing_ = true;
-    if (sending_) return cut();
     ++under_way_;
     stream_.async_close({why, words}, [this](const error_code&) {
       --under_way_;

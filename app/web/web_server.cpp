@@ -162,7 +162,14 @@ class WebServer::Parts {
       return refuse(visitor, http::status::method_not_allowed, "Pages are looked at by GET.");
     }
     if (!feed_) return wait(visitor);
-    if (asks) return steer(visitor, request.body());
+    if (asks) {
+      const std::string_view run = view_of(request["X-Thimble-Run"]);
+      if (!run.empty() && run != feed_->run()) {
+        return refuse(visitor, http::status::conflict,
+                      "This page shows a run that is over. Load the page again.");
+      }
+      return steer(visitor, request.body());
+    }
     auto page = feed_->page(port_);
     if (!page) {
       return refuse(visitor, http::status::internal_server_error, page.error().message);

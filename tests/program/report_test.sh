@@ -22,4 +22,16 @@ expect 0 '"elephant.margin"' cat tuned/figures.json
 sed 's/stiffness: 800/stiffness: 8000/' "$source_dir/app/scenes/elephant.yaml" >stiff.yaml
 expect 5 'asks for 8000 N/m.* set its stiffness to' "$thimble" tune stiff.yaml
 expect 0 'asks for 8000 N/m.*See thimble tune' "$thimble" run stiff.yaml --duration 0.5
+# Too much damping: no stiffness is carried, so the damping is what to change.
+sed 's/damping: 1 .*/damping: 200/' "$source_dir/app/scenes/elephant.yaml" >damped.yaml
+expect 5 'asks for a damping of 200 N s/m.*unstable at any stiffness: set it to [0-9.]+ N s/m or less' "$thimble" tune damped.yaml --out damped
+expect 1 '' grep -iE 'nan|inf|null' damped/figures.json
+expect 0 'asks for a damping of 200 N s/m' "$thimble" run damped.yaml --duration 0.5
+# What it names is accepted.
+less=$("$thimble" run damped.yaml --duration 0.1 2>&1 | sed -nE 's/.*set it to ([0-9.]+) N s.m or less.*/\1/p' | head -1)
+sed "s/damping: 1 .*/damping: ${less:-none}/" "$source_dir/app/scenes/elephant.yaml" >less.yaml
+expect 1 '' bash -c '"$0" run less.yaml --duration 0.1 2>&1 | grep "asks for"' "$thimble"
+# The reports of the arm bound what a fast loop carries.
+sed -E 's/^rate: .*//; s/stiffness: 800/stiffness: 3000/; $ a rate: 10000' "$source_dir/app/scenes/elephant.yaml" >fast.yaml
+expect 0 "asks for 3000 N/m.* A faster loop is not enough, for the arm's reports come every 1 ms" "$thimble" run fast.yaml --duration 0.1
 finish

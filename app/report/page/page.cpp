@@ -83,6 +83,7 @@ Json live_part(const PageTouch& touch, const PageSource& source) {
                      {"initial", knob.initial}});
   }
   return {{"rows", source.rows},
+          {"run", source.run},
           {"knobs", knobs},
           {"no_restart", source.no_restart},
           {"no_step", source.no_step}};

@@ -23,9 +23,11 @@ namespace thimble::app {
 /// One arm of a touch that a page plays.
 struct PageArm {
   std::span<const driver::TickRecord> ticks;  ///< Oldest first; must outlive the writing.
-  double force_limit = 0;                     ///< N; 0: not known.
-  std::vector<PageMark> marks;                ///< What happened.
-  std::vector<Figure> figures;                ///< What it sums up to.
+  /// The time since the tick before of each, ns, if ticks are missing between them; else empty.
+  std::span<const std::int64_t> periods_ns{};
+  double force_limit = 0;       ///< N; 0: not known.
+  std::vector<PageMark> marks;  ///< What happened.
+  std::vector<Figure> figures;  ///< What it sums up to.
 };
 
 /// The mesh of an object that was shaped for good, as it was left; where the object was at first
@@ -61,6 +63,7 @@ inline constexpr std::size_t kPageTrianglesMost = 120'000;
 struct PageSource {
   std::uint16_t port = 0;       ///< Of this computer (127.0.0.1), WebSocket and HTTP.
   std::size_t rows = 0;         ///< Ticks of all arms that it keeps.
+  std::string run = {};         ///< Which run it is; another run of the same name has another.
   std::string no_restart = {};  ///< Why the run cannot be begun anew; empty: it can.
   std::string no_step = {};     ///< Why it cannot go on by single ticks; empty: it can.
 };

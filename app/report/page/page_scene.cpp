@@ -241,9 +241,10 @@ Json page_arm(const PageTouch& touch, std::size_t number, PageBlock& block) {
   const PageArm& arm = touch.arms[number];
   const SharedScene::Arm& drawn = number == 0 ? touch.scene.arm : touch.scene.more_arms[number - 1];
   const std::string prefix = "arm" + std::to_string(number) + ".";
-  const auto kept = rows_kept(arm.ticks, kPageRowsMost / touch.arms.size());
+  const PageTicks ticks(arm.ticks, arm.periods_ns);
+  const auto kept = rows_kept(ticks, kPageRowsMost / touch.arms.size());
   const std::int64_t begin = arm.ticks.empty() ? 0 : arm.ticks.front().time_ns;
-  add_rows(block, prefix, arm.ticks, kept, begin);
+  add_rows(block, prefix, ticks, kept, begin);
   Json json{{"name", drawn.in_scene},   {"arm", drawn.name},         {"device", drawn.device},
             {"limit", arm.force_limit}, {"ticks", arm.ticks.size()}, {"rows", kept.size()}};
   for (const Eigen::Vector3d& corner : {drawn.min_W, drawn.max_W}) {

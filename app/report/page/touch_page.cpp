@@ -85,10 +85,23 @@ RunPage::RunPage(session::Session& session) : session_(session) {
     events_.push_back(std::make_unique<EventKeeper>(session.device(arm), setup.period_ns()));
     (void)session.add_observer(*events_.back(), arm);
   }
+  for (std::size_t arm = 0; session.stride() > 1 && arm < session.arms(); ++arm) {
+    outlines_.push_back(std::make_unique<OutlineTrace>(setup.ticks()));
+    (void)session.add_observer(*outlines_.back(), arm);
+  }
+}
+
+void RunPage::finish() {
+  for (const auto& outline : outlines_) outline->finish();
+}
+
+std::span<const driver::TickRecord> RunPage::ticks(std::size_t arm) const noexcept {
+  return outlines_.empty() ? session_.ticks(arm) : outlines_[arm]->ticks();
 }
 
 driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
                                     const std::filesystem::path& file) {
+  finish();
   const session::Setup& setup = session_.setup();
   PageTouch touch{.title = setup.scene().name,
                   .subtitle = setup.scene().description,
@@ -101,7 +114,9 @@ driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
   std::vector<std::string> devices;
   for (std::size_t arm = 0; arm < session_.arms(); ++arm) {
     devices.push_back(setup.device_name(arm));
-    touch.arms.push_back({.ticks = session_.ticks(arm),
+    touch.arms.push_back({.ticks = ticks(arm),
+                          .periods_ns = outlines_.empty() ? std::span<const std::int64_t>()
+                                                          : outlines_[arm]->periods_ns(),
                           .force_limit = setup.arm_file(arm).limits.force_max,
                           .marks = events_[arm]->finish(),
                           .figures = session::figures_of(session_.figures(grant, arm))});

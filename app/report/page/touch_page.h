@@ -8,6 +8,7 @@
 #include "observers/body_trace.h"
 #include "observers/dent_trace.h"
 #include "recording/replay_film.h"
+#include "report/page/outline_trace.h"
 #include "report/page/page_marks.h"
 #include "report/page/shape_trace.h"
 #include "thimble/driver/real_time.h"
@@ -17,12 +18,20 @@
 namespace thimble::app {
 
 /// What the page of a run needs beyond what a session keeps: where its objects have moved, and what
-/// happened to its arms. It observes the run's ticks.
+/// happened to its arms, and the outline of a run of which the session keeps every n-th tick only.
+/// It observes the run's ticks.
 class RunPage {
  public:
   /// Looks at a session whose arm is open and whose first tick has not come; it must outlive the
   /// run. Real-time: never from the servo thread.
   explicit RunPage(session::Session& session);
+
+  /// Ends the observation, after the run and before what follows. Real-time: never from the servo
+  /// thread.
+  void finish();
+
+  /// Returns the ticks that stand for an arm's run, with every peak, oldest first. After `finish`.
+  std::span<const driver::TickRecord> ticks(std::size_t arm) const noexcept;
 
   /// Writes the page (write_page) of the run that is over; `grant` is what the kernel granted the
   /// servo's thread. Once. Real-time: never from the servo thread.
@@ -34,6 +43,7 @@ class RunPage {
   std::unique_ptr<session::DentTrace> dents_;   // null if nothing dents
   std::unique_ptr<ShapeTrace> shapes_;          // null if nothing is shaped for good
   std::vector<std::unique_ptr<EventKeeper>> events_;
+  std::vector<std::unique_ptr<OutlineTrace>> outlines_;  // of each arm; empty if each tick is kept
 };
 
 /// The film of a replay, and the page of it.

@@ -177,10 +177,9 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
 }
 
 /// Returns whether every surface of the scene is well within what its loop holds with one arm.
-bool bears_its_rate(const Scene& scene, const device_sim::SimulatedArmSettings& arm) {
-  const double latency = latency_of(
-      {.period = 1 / scene.rate,
-       .delay = 1e-9 * static_cast<double>(arm.wire.delay_in_ns + arm.wire.delay_out_ns)});
+bool bears_its_rate(const Scene& scene, const ArmFile& file) {
+  const device_sim::SimulatedArmSettings& arm = file.simulated;
+  const double latency = latency_of(loop_pace(file, scene.rate));
   return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
     const double held = arm.plant.viscous + arm.hand.damping + object.damping;
     // Written so that NaN is not borne.
@@ -190,10 +189,9 @@ bool bears_its_rate(const Scene& scene, const device_sim::SimulatedArmSettings& 
 
 /// Returns the same of all arms of the scene.
 bool bears_its_rate(const Scene& scene) {
-  return bears_its_rate(scene, scene.arm.simulated) &&
-         std::all_of(scene.more_arms.begin(), scene.more_arms.end(), [&](const SceneArm& other) {
-           return bears_its_rate(scene, other.arm.simulated);
-         });
+  return bears_its_rate(scene, scene.arm) &&
+         std::all_of(scene.more_arms.begin(), scene.more_arms.end(),
+                     [&](const SceneArm& other) { return bears_its_rate(scene, other.arm); });
 }
 
 /// Notes a rate at which the gate of an arm would take the loop for stalled.

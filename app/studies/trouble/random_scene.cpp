@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "energy_choice.h"
 #include "stability/draw.h"
 #include "stability/stability_laws.h"
 #include "studies/trouble/small_meshes.h"
@@ -103,13 +104,8 @@ class Drawing {
   double stiffness_max() const {
     const scene::ArmFile& arm = limits_.arm;
     const device_sim::SimulatedArmSettings& sim = arm.simulated;
-    // A loop that is faster than the arm's reports has old news in between.
-    const double report = static_cast<double>(sim.firmware.report_period_ns) * 1e-9;
-    const scene::LoopTimes times{
-        .period = std::max(1 / rate_, report),
-        .delay = static_cast<double>(sim.wire.delay_in_ns + sim.wire.delay_out_ns) * 1e-9};
-    const double law =
-        scene::stiffness_limit(sim.plant.viscous + hand_.damping, scene::latency_of(times));
+    const double law = scene::stiffness_limit(sim.plant.viscous + hand_.damping,
+                                              scene::latency_of(scene::loop_pace(arm, rate_)));
     return std::min(limits_.stiffness_share * law, arm.declared.stiffness);
   }
 

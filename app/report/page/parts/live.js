@@ -153,11 +153,15 @@ function makeLive(changed) {
   }
 
   const decoder = new TextDecoder();
+  let leaving = false;
   function read(buffer) {
     const view = new DataView(buffer);
     for (let at = 0; at < buffer.byteLength;) {
       const [text, block] = [view.getUint32(at, true), view.getUint32(at + 4, true)];
       const update = JSON.parse(decoder.decode(new Uint8Array(buffer, at + 8, text)));
+      // Another run has the name by now: its ticks are not of this page's objects.
+      if (update.run && update.run !== about.live.run) leaving = true;
+      if (leaving) return location.reload();
       take(update, arraysOf(update.arrays, buffer, at + 8 + text));
       at += 8 + text + block;
     }
@@ -172,9 +176,11 @@ function makeLive(changed) {
     socket.onmessage = event => read(event.data);
     socket.onclose = event => {
       if (event.code === 1012) return location.reload();  // another run
-      if (event.code === 1000) live.state = 'ended';
-      else if (live.state !== 'ended') {
-        live.state = 'not connected';
+      if (event.code === 1000) {
+        live.state = 'ended';
+      } else {
+        // A run that has ended may be followed by the next one of its name.
+        if (live.state !== 'ended') live.state = 'not connected';
         setTimeout(connect, 1000);
       }
       changed();

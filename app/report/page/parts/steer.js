@@ -17,7 +17,7 @@ function makeSteer() {
 
   async function ask(words) {
     try {
-      const answered = await fetch('/steer', {method: 'POST', headers: {'X-Thimble-Token': token}, body: words});
+      const answered = await fetch('/steer', {method: 'POST', headers: {'X-Thimble-Token': token, 'X-Thimble-Run': about.live.run}, body: words});
       answer = answered.ok ? '' : (await answered.text()).trim();
     } catch {
       answer = 'The run cannot be reached.';

@@ -15,6 +15,7 @@
 #include "observers/body_trace.h"
 #include "observers/dent_trace.h"
 #include "report/page/light_mesh.h"
+#include "report/page/outline_trace.h"
 #include "report/page/page.h"
 #include "report/page/page_block.h"
 #include "report/page/page_marks.h"
@@ -147,6 +148,94 @@ TEST(PageRows, KeepLeastAndMostInEveryStretch) {
       most_kept = std::max(most_kept, size_of(ticks[*i].f_sent_W));
     ASSERT_EQ(most_kept, most) << "from tick " << begin;
   }
+}
+
+// Ten minutes at rest, with one stroke of ten seconds in contact.
+std::vector<TickRecord> one_touch() {
+  constexpr std::size_t kTouch = 300'000;
+  auto ticks = lively_run(600'000);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    TickRecord& tick = ticks[i];
+    const double moved = std::clamp((static_cast<double>(i) - kTouch) * 1e-3, -0.5, 10.5);
+    tick.p_WT = tick.p_WP = {0.05 * moved, 0, 0};
+    tick.in_contact = i >= kTouch && i < kTouch + 10'000;
+    tick.object = tick.in_contact ? 0 : -1;
+    tick.depth = tick.in_contact ? 1e-3 : 0;
+    tick.f_sent_W = tick.f_wanted_W = {0, 0, tick.in_contact ? 1.0 : 0.0};
+  }
+  return ticks;
+}
+
+TEST(PageRows, KeepEachTickOfATouchInALongRun) {
+  const auto ticks = one_touch();
+  const auto kept = rows_kept(ticks, kPageRowsMost);
+  EXPECT_LE(kept.size(), kPageRowsMost);
+  std::size_t touching = 0;
+  for (const std::size_t i : kept) touching += ticks[i].in_contact ? 1 : 0;
+  EXPECT_EQ(touching, 10'000U);
+  for (const std::size_t end : {299'999U, 300'000U, 309'999U, 310'000U}) {
+    EXPECT_TRUE(std::binary_search(kept.begin(), kept.end(), end)) << end;
+  }
+}
+
+TEST(PageRows, KeepThePathOfALongRun) {
+  const auto ticks = one_touch();
+  const auto kept = rows_kept(ticks, kPageRowsMost);
+  // The page shows the last row until the next one.
+  double off = 0;
+  for (std::size_t i = 0, row = 0; i < ticks.size(); ++i) {
+    if (row + 1 < kept.size() && kept[row + 1] == i) ++row;
+    off = std::max(off, std::abs(ticks[i].p_WT[0] - ticks[kept[row]].p_WT[0]));
+  }
+  EXPECT_LE(off, 1e-4);
+}
+
+TEST(PageRows, AreNearlyAllOfARunJustTooLong) {
+  const auto kept = rows_kept(lively_run(61'000), kPageRowsMost);
+  EXPECT_LE(kept.size(), kPageRowsMost);
+  EXPECT_GE(kept.size(), 59'000U);
+}
+
+TEST(PageRows, KnowThePeriodWhereTicksAreMissing) {
+  auto ticks = lively_run(1000);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ticks[i].tick = 2 * i;
+    ticks[i].time_ns = static_cast<std::int64_t>(2 * i) * kMillisecond;
+  }
+  PageBlock block;
+  add_rows(block, "arm0.", ticks, rows_kept(ticks, 1000), 0);
+  for (const float period : numbers_of<float>(block, "arm0.period")) ASSERT_EQ(period, 1e-3F);
+}
+
+TEST(OutlineTrace, KeepsPeaksAndPeriodsOfMillionsOfTicks) {
+  constexpr std::size_t kCount = 2'500'000, kPeak = 1'234'567, kLate = 2'000'001;
+  OutlineTrace trace(kCount);
+  TickRecord tick;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    tick.tick = i;
+    tick.time_ns = static_cast<std::int64_t>(i) * kMillisecond + (i >= kLate ? 300'000 : 0);
+    tick.p_WT = {0.03 * std::sin(0.01 * static_cast<double>(i)), 0, 0};
+    tick.in_contact = i >= 700'000 && i < 720'000;
+    tick.f_sent_W = {0, 0, i == kPeak ? 7.5 : 0.0};
+    trace.take(tick);
+  }
+  trace.finish();
+  const auto ticks = trace.ticks();
+  EXPECT_LE(ticks.size(), OutlineTrace::kRowsMost);
+  double peak = 0;
+  std::size_t touching = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (i > 0) {
+      ASSERT_LT(ticks[i - 1].tick, ticks[i].tick);
+      ASSERT_EQ(trace.periods_ns()[i], ticks[i].tick == kLate ? 1'300'000 : kMillisecond);
+    }
+    peak = std::max(peak, ticks[i].f_sent_W[2]);
+    touching += ticks[i].in_contact ? 1 : 0;
+  }
+  EXPECT_EQ(peak, 7.5);
+  EXPECT_EQ(touching, 20'000U);
+  EXPECT_EQ(ticks.back().tick, kCount - 1);
+  EXPECT_EQ(*std::max_element(trace.periods_ns().begin(), trace.periods_ns().end()), 1'300'000);
 }
 
 TEST(PageRows, AreTheTicksAsTheyWere) {

@@ -56,6 +56,32 @@ std::pair<int, int> png_size(const std::filesystem::path& file) {
   return {number(16), number(20)};
 }
 
+TEST(ForcePicture, KeepsPeaksOfRequestedForceAndDepth) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path folder = support::scratch_folder() / "peaks";
+  std::filesystem::create_directories(folder / "data");
+  std::vector<driver::TickRecord> rows(100'000);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].time_ns = static_cast<std::int64_t>(i) * 1'000'000;
+    rows[i].in_contact = true;
+    rows[i].f_sent_W = {0, 0, 1 + 0.1 * std::sin(0.1 * static_cast<double>(i))};
+    rows[i].f_wanted_W = {0, 0, i == 34'567 ? 54.0 : 5.0};
+    rows[i].depth = i == 76'543 ? 0.02 : 0.001;
+  }
+  ASSERT_TRUE(draw_force_and_depth(rows, {.title = "peaks"}, folder));
+  std::ifstream table(folder / "data/force_and_depth.dat");
+  std::string line;
+  double wanted_max = 0, depth_max = 0;
+  while (std::getline(table, line)) {
+    double time = 0, wanted = 0, sent = 0, depth = 0;
+    if (!(std::istringstream(line) >> time >> wanted >> sent >> depth)) continue;
+    wanted_max = std::max(wanted_max, wanted);
+    depth_max = std::max(depth_max, depth);
+  }
+  EXPECT_DOUBLE_EQ(wanted_max, 54);
+  EXPECT_DOUBLE_EQ(depth_max, 20);
+}
+
 TEST(MeshView, HidesWhatLiesBehindAndNothingBeside) {
   const auto& front = view_directions()[0];
   const MeshView view(tetrahedron(), front, {0.02, 0.02, 0.02}, 0.08, 200);

@@ -100,12 +100,14 @@ class WebServerTest : public ::testing::Test {
   }
 
   /// Asks something of the run, as a page does; returns the status.
-  unsigned post(const std::string& words, const Asking& asking, const std::string& token) {
+  unsigned post(const std::string& words, const Asking& asking, const std::string& token,
+                const std::string& run = {}) {
     tcp::socket socket = connect();
     http::request<http::string_body> request(http::verb::post, asking.target, 11);
     request.set(http::field::host, here());
     request.set(http::field::origin, asking.origin);
     if (!token.empty()) request.set("X-Thimble-Token", token);
+    if (!run.empty()) request.set("X-Thimble-Run", run);
     request.body() = words;
     request.prepare_payload();
     http::write(socket, request);
@@ -374,6 +376,52 @@ TEST_F(WebServerTest, AnotherRunOfTheNameIsToldToPagesThatLoadAnew) {
   Page next(io_);
   ASSERT_EQ(open(next), 101U);
   EXPECT_EQ(read_ticks(next, 7), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6}));
+}
+
+TEST_F(WebServerTest, SlowPagesAreClosedWithTheCodeOfAnotherRun) {
+  constexpr std::uint32_t kNextRun = 5'000'000;
+  Page page(io_);
+  ASSERT_EQ(open(page), 101U);
+  // More than the sockets hold, so that the server is still sending.
+  for (int part = 0; part < 20; ++part) {
+    run_ticks(10'000);
+    std::this_thread::sleep_for(2 * WebServer::kStep);
+  }
+  begin_run();
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // it looks four times a second
+  next_ = kNextRun;
+  run_ticks(10);
+  for (const std::uint32_t tick : read_ticks(page, 10'000'000)) ASSERT_LT(tick, kNextRun);
+  EXPECT_EQ(page.reason().code, websocket::close_code::service_restart);
+}
+
+TEST_F(WebServerTest, TheFirstUpdateNamesTheRun) {
+  std::vector<std::string> runs;
+  for (int run = 0; run < 2; ++run) {
+    if (run > 0) begin_run();
+    // It looks for another run four times a second.
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    run_ticks(1);
+    Page page(io_);
+    ASSERT_EQ(open(page), 101U);
+    beast::flat_buffer buffer;
+    page.read(buffer);
+    const auto updates = updates_of(beast::buffers_to_string(buffer.data()));
+    ASSERT_FALSE(updates.empty());
+    runs.push_back(updates.front().json.value("run", std::string()));
+  }
+  EXPECT_FALSE(runs[0].empty());
+  EXPECT_NE(runs[0], runs[1]);
+}
+
+TEST_F(WebServerTest, ARunIsNotSteeredByAPageOfAnother) {
+  const std::string own = "http://" + here(), token = token_.substr(7);
+  run_ticks(1);
+  Page page(io_);
+  ASSERT_EQ(open(page), 101U);
+  ASSERT_EQ(read_ticks(page, 1).size(), 1U);
+  EXPECT_EQ(post("pause", {"/steer", {}, own}, token, "1"), 409U);
+  EXPECT_FALSE(run_->pause_asked());
 }
 
 TEST(WebServer, APortThatIsTakenIsRefusedWithASentence) {

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "thimble/driver/tick_record.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::app {
+
+/// The ticks of a run that is too long to keep each of them: those in contact, while there is room,
+/// and of each stretch of all ticks those at which force, asked force, depth, period, computing
+/// time and each coordinate of the tip are least and most. Each has the time since the tick before
+/// it. All memory is there and touched when it is made.
+class OutlineTrace final : public session::TickObserver {
+ public:
+  /// Ticks that it keeps, 110 MB. [chosen]
+  static constexpr std::size_t kRowsMost = 400'000;
+  /// Ticks in contact that it keeps beyond the outline. [chosen: more than a page shows]
+  static constexpr std::size_t kTouchRowsMost = 100'000;
+
+  /// Makes room for a run of `expected_ticks` (> 0). Real-time: never from the servo thread.
+  explicit OutlineTrace(std::uint64_t expected_ticks);
+
+  /// Looks at a tick. Real-time: safe.
+  void take(const driver::TickRecord& tick) noexcept override;
+
+  /// Brings what was kept into order. After the last tick. Real-time: never from the servo
+  /// thread.
+  void finish();
+
+  /// Returns the ticks, oldest first. After `finish`.
+  std::span<const driver::TickRecord> ticks() const noexcept { return {ticks_.data(), kept_}; }
+  /// Returns the time since the tick before each, ns. After `finish`.
+  std::span<const std::int64_t> periods_ns() const noexcept { return {periods_ns_.data(), kept_}; }
+  /// Returns how many ticks the run had.
+  std::uint64_t seen() const noexcept { return seen_; }
+
+ private:
+  static constexpr std::size_t kOutlined = 8;
+  /// The first and the last of a stretch, the least and the most of each, and both sides of its
+  /// first change of contact.
+  static constexpr std::size_t kPerStretch = 4 + 2 * kOutlined;
+
+  struct Row {
+    driver::TickRecord tick;
+    std::int64_t period_ns = 0;
+  };
+
+  void end_stretch() noexcept;
+  void keep(const Row& row) noexcept;
+
+  std::vector<driver::TickRecord> ticks_;
+  std::vector<std::int64_t> periods_ns_;
+  std::size_t kept_ = 0, touch_rows_ = 0;
+  std::uint64_t stretch_ = 1, in_stretch_ = 0, seen_ = 0;
+  std::array<Row, kPerStretch>
+      own_{};  // first, last, before and after a change, then least and most
+  std::array<double, kOutlined> least_{}, most_{};
+  bool changed_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace thimble::app
