@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +13,11 @@ class TriangleSet {
  public:
   /// Returns whether a triangle is in the set.
   bool has(std::int32_t triangle) const noexcept {
-    const auto end = triangles_.begin() + static_cast<std::ptrdiff_t>(size_);
-    return std::find(triangles_.begin(), end, triangle) != end;
+    // No std::find: GCC 12 takes its first comparison in an empty set for one of what was not set.
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (triangles_[i] == triangle) return true;
+    }
+    return false;
   }
 
   /// Adds a triangle, unless it is in the set or the set is full.

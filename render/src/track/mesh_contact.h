@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "thimble/render/surface/surface_response.h"
 #include "track/hollow_hold.h"
 #include "track/offset_tracker.h"
+#include "track/passed_through.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -67,10 +69,11 @@ class TrackedContact {
   ///
   /// Contact begins when the path since the last tick enters the mesh, however fast, and the
   /// tracker runs in the same tick. A tip that is inside on the first tick touches nothing until it
-  /// has been outside: it would be thrown out otherwise. A position that is NaN or beyond
-  /// `kPositionMax` ends the contact and makes the next tick a first one. In the tick that ends a
-  /// contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in contact and
-  /// far from the mesh, else one question to the search.
+  /// has been outside: it would be thrown out otherwise. A tip that is outside again behind a thin
+  /// part is held by the face that it has passed through (passed_through.h). A position that is NaN
+  /// or beyond `kPositionMax` ends the contact and makes the next tick a first one. In the tick
+  /// that ends a contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in
+  /// contact and far from the mesh, else one question to the search.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Returns the result of the last `update`. Real-time: safe.
@@ -141,6 +144,8 @@ class TrackedContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
+  [[gnu::noinline, gnu::cold]] void end(const Eigen::Vector3d& p_WT) noexcept;
+
   // On the heap, so that search and tracker keep pointing at them when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const ContactSearch> search_;
@@ -163,7 +168,11 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   if (!follow && has_before_) {
     const Entry entry = free_space_.first_entry(*search_, p_WT_before_, p_WT);
     follow = entry.triangle >= 0;
-    if (follow) tracker_.start(entry.triangle);
+    if (follow) {
+      tracker_.start(entry.triangle);
+      state_.n_W = mesh_->cell(entry.triangle).face.n;
+      state_.p_WP = p_WT_before_ + entry.parameter * (p_WT - p_WT_before_);
+    }
   }
   p_WT_before_ = p_WT;
   has_before_ = true;
@@ -173,7 +182,7 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   }
   const TrackerStep step = tracker_.follow(p_WT);
   if (!step.touching) {
-    state_ = {};
+    end(p_WT);
     state_.hops = step.hops;
     return state_;
   }
@@ -184,6 +193,24 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   state_.p_WP = p_WT + step.depth * state_.n_W;
   state_.hops = step.hops;
   return state_;
+}
+
+// Ends the contact, unless the tip has passed through a thin part.
+template <class Tracker>
+void TrackedContact<Tracker>::end(const Eigen::Vector3d& p_WT) noexcept {
+  const PassedThrough passed =
+      passed_through(p_WT, state_.p_WP, state_.n_W,
+                     [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+                       return search_->first_entry(from, to);
+                     });
+  state_ = {};
+  if (passed.entry.triangle < 0) return;
+  tracker_.start(passed.entry.triangle);
+  state_.touching = true;
+  state_.triangle = passed.entry.triangle;
+  state_.n_W = mesh_->cell(passed.entry.triangle).face.n;
+  state_.depth = std::max(0.0, mesh_->depth(passed.entry.triangle, p_WT));
+  state_.p_WP = p_WT + state_.depth * state_.n_W;
 }
 
 /// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.

@@ -124,6 +124,7 @@ class PackedContact {
   void report(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;
   void measure(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;
   [[gnu::noinline]] void end() noexcept;
+  [[gnu::noinline, gnu::cold]] bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
 
   static bool absent(const PackedTriangle* packed) noexcept {
     return !Store::kComplete && packed == nullptr;

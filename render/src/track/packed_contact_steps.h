@@ -10,6 +10,7 @@
 #include "track/packed_find_steps.h"
 #include "track/packed_follow_steps.h"
 #include "track/packed_hollow_steps.h"
+#include "track/passed_through.h"
 
 namespace thimble::render {
 
@@ -171,11 +172,30 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
   }
   if (outcome != Outcome::kYes) {
     const std::uint16_t hops = state_.hops;
+    if (Store::kComplete && hold_behind(p_WT)) return;
     end();
     state_.hops = hops;
     if constexpr (!Store::kComplete) felt_.hops = hops;
     above_ = true;
   }
+}
+
+// Holds a tip that has passed through a thin part by the face above it.
+template <PackedStore Store>
+bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT) noexcept {
+  const PassedThrough passed =
+      passed_through(p_WT, state_.p_WP, state_.n_W,
+                     [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+                       return store_.first_entry(from, to).entry;
+                     });
+  if (passed.entry.triangle < 0 || !activate(passed.entry.triangle)) return false;
+  state_.touching = true;
+  state_.triangle = offset_.source();
+  state_.n_W = offset_.face();
+  state_.depth = std::max(0.0, state_.n_W.dot(passed.p_WP - p_WT));
+  state_.p_WP = p_WT + state_.depth * state_.n_W;
+  steady_ = false;
+  return true;
 }
 
 template <PackedStore Store>

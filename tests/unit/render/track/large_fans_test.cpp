@@ -10,6 +10,7 @@
 
 #include "support/covered.h"
 #include "support/random.h"
+#include "support/tracker_names.h"
 #include "thimble/render/build_object_touch.h"
 
 namespace thimble::render {
@@ -66,23 +67,6 @@ struct FanTip {
   }
 };
 
-// The name of a tracker in a scene.
-const char* scene_name(TrackerChoice tracker) {
-  switch (tracker) {
-    case TrackerChoice::kEdgePlanes:
-      return "edge_planes";
-    case TrackerChoice::kNormalProjection:
-      return "normal_projection";
-    case TrackerChoice::kOffset:
-      return "offset";
-    case TrackerChoice::kGodObject:
-      return "god_object";
-    case TrackerChoice::kPacked:
-      break;
-  }
-  return "compact";
-}
-
 class LargeFans : public testing::TestWithParam<TrackerChoice> {};
 
 TEST_P(LargeFans, StrokeOverTheApexEndsWithTheForceOfAFreshTouch) {
@@ -103,7 +87,7 @@ TEST_P(LargeFans, StrokeOverTheApexEndsWithTheForceOfAFreshTouch) {
       }
     }
   }
-  support::Covered("trackers").add(scene_name(GetParam()));
+  support::Covered("trackers").add(support::scene_name(GetParam()));
 }
 
 TEST_P(LargeFans, NothingIsFeltAboveTheSurfaceAfterAStroke) {
@@ -134,27 +118,10 @@ TEST_P(LargeFans, OneObjectTouchedAllAroundFeelsLikeAFreshOne) {
   }
 }
 
-std::string name_of_tracker(const testing::TestParamInfo<TrackerChoice>& info) {
-  switch (info.param) {
-    case TrackerChoice::kEdgePlanes:
-      return "EdgePlanes";
-    case TrackerChoice::kNormalProjection:
-      return "NormalProjection";
-    case TrackerChoice::kOffset:
-      return "Offset";
-    case TrackerChoice::kGodObject:
-      return "GodObject";
-    case TrackerChoice::kPacked:
-      break;
-  }
-  return "Compact";
-}
-
-INSTANTIATE_TEST_SUITE_P(Trackers, LargeFans,
-                         testing::Values(TrackerChoice::kEdgePlanes,
-                                         TrackerChoice::kNormalProjection, TrackerChoice::kOffset,
-                                         TrackerChoice::kGodObject, TrackerChoice::kPacked),
-                         name_of_tracker);
+INSTANTIATE_TEST_SUITE_P(Trackers, LargeFans, testing::ValuesIn(support::kTrackers),
+                         [](const auto& tested) {
+                           return std::string(support::scene_name(tested.param));
+                         });
 
 }  // namespace
 }  // namespace thimble::render
