@@ -192,9 +192,8 @@ constexpr int kTogetherMost = 4;
 /// Lets constants take other values one after the other, always the one that mends most, starting
 /// with the best single one, until the twin is near. Sets `file` to the arm with all of them.
 /// Returns each constant with its last value.
-driver::Result<std::vector<TwinRemedy>> mend_together(Relive& relive, double step_error,
-                                                      const TwinRemedy& first,
-                                                      scene::ArmFile& file) {
+std::vector<TwinRemedy> mend_together(Relive& relive, double step_error, const TwinRemedy& first,
+                                      scene::ArmFile& file) {
   const std::vector<TwinConstant> constants = twin_constants(file);
   std::vector<TwinRemedy> together{first};
   const auto set = [&](const TwinRemedy& remedy) {
@@ -205,15 +204,15 @@ driver::Result<std::vector<TwinRemedy>> mend_together(Relive& relive, double ste
   set(first);
   for (int round = 1; round < kTogetherMost; ++round) {
     auto now = relive(file);
-    if (!now) return now.error();
+    if (!now) break;
     const double before = now->rms();
     if (before < kNearSteps * step_error) break;
     TwinRemedy best;
     best.error_rms = before;
     for (const TwinConstant& constant : constants) {
+      // Beside constants that are not its own an arm may be none that can be simulated.
       auto remedy = Remedy(relive, file, constant, *now).find();
-      if (!remedy) return remedy.error();
-      if (remedy->error_rms < best.error_rms) best = std::move(remedy).value();
+      if (remedy && remedy->error_rms < best.error_rms) best = std::move(remedy).value();
     }
     if (best.key.empty() || !(best.error_rms < (1 - kFurther) * before)) break;
     set(best);
@@ -268,8 +267,7 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
   if (found.has_remedy()) {
     scene::ArmFile mended = file;
     auto together = mend_together(*relive, found.step_error, found.remedies.front(), mended);
-    if (!together) return together.error();
-    if (together->size() > 1) found.together = std::move(together).value();
+    if (together.size() > 1) found.together = std::move(together);
     forces.constants_explain = forces.other_acted() && !twin_forces(*motion, mended).other_acted();
   }
   return TwinResult{

@@ -144,7 +144,7 @@ class TrackedContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
-  [[gnu::noinline, gnu::cold]] void end(const Eigen::Vector3d& p_WT) noexcept;
+  [[gnu::noinline, gnu::cold]] bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
 
   // On the heap, so that search and tracker keep pointing at them when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
@@ -154,6 +154,7 @@ class TrackedContact {
   FreeSpace free_space_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
+  bool behind_ = false;  // outside, behind the thin part that it has passed through
 };
 
 template <class Tracker>
@@ -161,7 +162,7 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   const Eigen::Vector3d& p_WT = state.p_WT;
   if (!within_range(p_WT)) {
     state_ = {};
-    has_before_ = false;
+    has_before_ = behind_ = false;
     return state_;
   }
   bool follow = state_.touching;
@@ -178,11 +179,18 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   has_before_ = true;
   if (!follow) {
     state_ = {};
+    behind_ = false;
     return state_;
   }
+  if (behind_) [[unlikely]] {
+    behind_ = hold_behind(p_WT);
+    if (behind_) return state_;
+  }
   const TrackerStep step = tracker_.follow(p_WT);
-  if (!step.touching) {
-    end(p_WT);
+  if (!step.touching) [[unlikely]] {
+    behind_ = hold_behind(p_WT);
+    if (behind_) return state_;
+    state_ = {};
     state_.hops = step.hops;
     return state_;
   }
@@ -195,22 +203,33 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   return state_;
 }
 
-// Ends the contact, unless the tip has passed through a thin part.
+// Holds a tip that has passed through a thin part by the face above it: the one that is found from
+// itself again, so that a second tick at the same place is answered alike.
 template <class Tracker>
-void TrackedContact<Tracker>::end(const Eigen::Vector3d& p_WT) noexcept {
-  const PassedThrough passed =
-      passed_through(p_WT, state_.p_WP, state_.n_W,
-                     [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-                       return search_->first_entry(from, to);
-                     });
-  state_ = {};
-  if (passed.entry.triangle < 0) return;
-  tracker_.start(passed.entry.triangle);
-  state_.touching = true;
-  state_.triangle = passed.entry.triangle;
-  state_.n_W = mesh_->cell(passed.entry.triangle).face.n;
-  state_.depth = std::max(0.0, mesh_->depth(passed.entry.triangle, p_WT));
-  state_.p_WP = p_WT + state_.depth * state_.n_W;
+bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept {
+  if (behind_ && search_->inside(p_WT)) return false;
+  std::int32_t last = -1;
+  for (int round = 0; round < kPassedRounds; ++round) {
+    const PassedThrough passed =
+        passed_through(p_WT, state_.p_WP, state_.n_W,
+                       [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+                         return search_->first_entry(from, to);
+                       });
+    const std::int32_t triangle = passed.entry.triangle;
+    if (triangle < 0) return false;
+    state_.n_W = mesh_->cell(triangle).face.n;
+    state_.depth = std::max(0.0, mesh_->depth(triangle, p_WT));
+    state_.p_WP = p_WT + state_.depth * state_.n_W;
+    if (triangle == last) {
+      tracker_.start(triangle);
+      state_.touching = true;
+      state_.triangle = triangle;
+      state_.hops = 0;
+      return true;
+    }
+    last = triangle;
+  }
+  return false;
 }
 
 /// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.

@@ -7,6 +7,10 @@
 
 namespace thimble::render {
 
+/// The most faces that are tried in turn to hold a tip [chosen: wedges, corners and needles take
+/// 3].
+inline constexpr int kPassedRounds = 8;
+
 /// Where a tip is held that has left a thin part through its back within one tick.
 struct PassedThrough {
   Entry entry;                    ///< Triangle above the tip, -1: nothing is between them.

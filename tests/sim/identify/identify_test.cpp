@@ -225,9 +225,9 @@ TEST(Identify, TellsAWrongModelApart) {
         true);
     EXPECT_NE(held, "") << "a hand that holds";
     EXPECT_EQ(held.find("pulls against its encoder"), std::string::npos) << "no sign is wrong";
-    EXPECT_NE(said_of(seed, [](scene::ArmFile& file) { file.simulated.wire.jitter_ns = 500'000; })
-                  .find("without a new report"),
-              std::string::npos);
+    // Some jitter is no wrong model: ticks come behind the latest reports.
+    EXPECT_EQ(said_of(seed, [](scene::ArmFile& file) { file.simulated.wire.jitter_ns = 200'000; }),
+              "");
   }
 }
 
