@@ -11,10 +11,12 @@
 namespace thimble::app {
 namespace {
 
-/// Makes text safe for roff: dashes that stay dashes, no line that begins as a request.
+/// Makes text safe for roff: dashes that stay dashes, no line that begins as a request, and lists
+/// without blanks that can be broken behind their commas.
 std::string roff(const std::string& text) {
   std::string safe;
   for (const char c : text) {
+    if (c != ' ' && !safe.empty() && safe.back() == ',') safe += "\\:";
     if (c == '-' || c == '\\') safe += '\\';
     if ((c == '.' || c == '\'') && (safe.empty() || safe.back() == '\n')) safe += "\\&";
     safe += c;

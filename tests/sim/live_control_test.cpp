@@ -178,9 +178,9 @@ TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
 
 class KnobsOfScene : public ::testing::TestWithParam<std::string> {};
 
-// Bodies that move or dent change their depth faster than the last tick shows. Where static friction
-// is higher than sliding friction, turning makes the tip slip a tick earlier or later: that step is
-// the law's own.
+// Bodies that move or dent change their depth faster than the last tick shows. Where static
+// friction is higher than sliding friction, turning makes the tip slip a tick earlier or later:
+// that step is the law's own.
 TEST_P(KnobsOfScene, ChangeTheForceByNoMoreThanIsStated) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet in it";

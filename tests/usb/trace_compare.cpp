@@ -233,7 +233,16 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                       report.number + 1 == trace.reports[k + 1].number;
     const auto message = trace.messages.find(best.message_of[i]);
     if (!sure || message == trace.messages.end()) continue;
-    early += message->second.frame <= report.sampled_frame ? 1 : 0;
+    if (message->second.frame <= report.sampled_frame) {
+      // Of the same counts, and before the message: that is the report which it answers.
+      bool answers_another = false;
+      for (std::size_t j = k; j-- > 0 && !answers_another;) {
+        answers_another = trace.reports[j].counts == report.counts &&
+                          trace.reports[j].sampled_frame < message->second.frame;
+      }
+      if (answers_another) continue;
+      ++early;
+    }
     delays.push_back(1e-6 * static_cast<double>(message->second.time_ns - report.sampled_ns));
   }
   std::sort(delays.begin(), delays.end());

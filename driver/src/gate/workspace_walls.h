@@ -9,9 +9,9 @@ namespace thimble::driver {
 
 /// The walls around a workspace. Inside of them forces are bit-identical. Outside, the part
 /// of a force that pushes further out fades within 15 mm, and a spring, damped on the way out,
-/// pushes back; how far a tip may be is up to the caller (`depth`). An arm that begins outside (some are
-/// parked there) has the box that its pose widens, until forces begin again. All functions are
-/// Real-time: safe.
+/// pushes back; how far a tip may be is up to the caller (`depth`). An arm that begins outside
+/// (some are parked there) has the box that its pose widens, until forces begin again. All
+/// functions are Real-time: safe.
 class WorkspaceWalls {
  public:
   /// Takes the walls.

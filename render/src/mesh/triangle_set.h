@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,11 +14,8 @@ class TriangleSet {
  public:
   /// Returns whether a triangle is in the set.
   bool has(std::int32_t triangle) const noexcept {
-    // No std::find: GCC 12 takes its first comparison in an empty set for one of what was not set.
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (triangles_[i] == triangle) return true;
-    }
-    return false;
+    const auto end = triangles_.begin() + static_cast<std::ptrdiff_t>(size_);
+    return std::find(triangles_.begin(), end, triangle) != end;
   }
 
   /// Adds a triangle, unless it is in the set or the set is full.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -17,7 +16,6 @@
 #include "thimble/render/surface/surface_response.h"
 #include "track/hollow_hold.h"
 #include "track/offset_tracker.h"
-#include "track/passed_through.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -69,11 +67,10 @@ class TrackedContact {
   ///
   /// Contact begins when the path since the last tick enters the mesh, however fast, and the
   /// tracker runs in the same tick. A tip that is inside on the first tick touches nothing until it
-  /// has been outside: it would be thrown out otherwise. A tip that is outside again behind a thin
-  /// part is held by the face that it has passed through (passed_through.h). A position that is NaN
-  /// or beyond `kPositionMax` ends the contact and makes the next tick a first one. In the tick
-  /// that ends a contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in
-  /// contact and far from the mesh, else one question to the search.
+  /// has been outside: it would be thrown out otherwise. A position that is NaN or beyond
+  /// `kPositionMax` ends the contact and makes the next tick a first one. In the tick that ends a
+  /// contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in contact and
+  /// far from the mesh, else one question to the search.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Returns the result of the last `update`. Real-time: safe.
@@ -144,8 +141,6 @@ class TrackedContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
-  [[gnu::noinline, gnu::cold]] bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
-
   // On the heap, so that search and tracker keep pointing at them when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const ContactSearch> search_;
@@ -154,7 +149,6 @@ class TrackedContact {
   FreeSpace free_space_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
-  bool behind_ = false;  // outside, behind the thin part that it has passed through
 };
 
 template <class Tracker>
@@ -162,34 +156,23 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   const Eigen::Vector3d& p_WT = state.p_WT;
   if (!within_range(p_WT)) {
     state_ = {};
-    has_before_ = behind_ = false;
+    has_before_ = false;
     return state_;
   }
   bool follow = state_.touching;
   if (!follow && has_before_) {
     const Entry entry = free_space_.first_entry(*search_, p_WT_before_, p_WT);
     follow = entry.triangle >= 0;
-    if (follow) {
-      tracker_.start(entry.triangle);
-      state_.n_W = mesh_->cell(entry.triangle).face.n;
-      state_.p_WP = p_WT_before_ + entry.parameter * (p_WT - p_WT_before_);
-    }
+    if (follow) tracker_.start(entry.triangle);
   }
   p_WT_before_ = p_WT;
   has_before_ = true;
   if (!follow) {
     state_ = {};
-    behind_ = false;
     return state_;
   }
-  if (behind_) [[unlikely]] {
-    behind_ = hold_behind(p_WT);
-    if (behind_) return state_;
-  }
   const TrackerStep step = tracker_.follow(p_WT);
-  if (!step.touching) [[unlikely]] {
-    behind_ = hold_behind(p_WT);
-    if (behind_) return state_;
+  if (!step.touching) {
     state_ = {};
     state_.hops = step.hops;
     return state_;
@@ -201,35 +184,6 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   state_.p_WP = p_WT + step.depth * state_.n_W;
   state_.hops = step.hops;
   return state_;
-}
-
-// Holds a tip that has passed through a thin part by the face above it: the one that is found from
-// itself again, so that a second tick at the same place is answered alike.
-template <class Tracker>
-bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept {
-  if (behind_ && search_->inside(p_WT)) return false;
-  std::int32_t last = -1;
-  for (int round = 0; round < kPassedRounds; ++round) {
-    const PassedThrough passed =
-        passed_through(p_WT, state_.p_WP, state_.n_W,
-                       [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-                         return search_->first_entry(from, to);
-                       });
-    const std::int32_t triangle = passed.entry.triangle;
-    if (triangle < 0) return false;
-    state_.n_W = mesh_->cell(triangle).face.n;
-    state_.depth = std::max(0.0, mesh_->depth(triangle, p_WT));
-    state_.p_WP = p_WT + state_.depth * state_.n_W;
-    if (triangle == last) {
-      tracker_.start(triangle);
-      state_.touching = true;
-      state_.triangle = triangle;
-      state_.hops = 0;
-      return true;
-    }
-    last = triangle;
-  }
-  return false;
 }
 
 /// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.

@@ -124,7 +124,6 @@ class PackedContact {
   void report(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;
   void measure(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;
   [[gnu::noinline]] void end() noexcept;
-  [[gnu::noinline, gnu::cold]] bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
 
   static bool absent(const PackedTriangle* packed) noexcept {
     return !Store::kComplete && packed == nullptr;
@@ -135,7 +134,6 @@ class PackedContact {
   bool wide_ = wide_lanes();
   bool steady_ = false;  // in contact, where there is no crease and hops are rare
   bool has_before_ = false;
-  bool behind_ = false;     // outside, behind the thin part that it has passed through
   bool path_kept_ = false;  // whether the path began before the last tick
   bool above_ = false;      // free, and known to be above the smooth surface
   int recent_hops_ = 0;     // counts up to 3 with ticks that hop, and down with the others

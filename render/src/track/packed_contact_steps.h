@@ -10,7 +10,6 @@
 #include "track/packed_find_steps.h"
 #include "track/packed_follow_steps.h"
 #include "track/packed_hollow_steps.h"
-#include "track/passed_through.h"
 
 namespace thimble::render {
 
@@ -135,17 +134,8 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
     return;
   }
   [[maybe_unused]] const Eigen::Vector3d from = p_WT_before_;
-  if (!state_.touching) {
-    behind_ = false;
-    if (!begin(p_WT)) return;
-  }
+  if (!state_.touching && !begin(p_WT)) return;
   p_WT_before_ = p_WT;
-  if constexpr (Store::kComplete) {
-    if (behind_) [[unlikely]] {
-      behind_ = hold_behind(p_WT);
-      if (behind_) return;
-    }
-  }
   // Where the tip was out of sight the way from the last triangle says nothing.
   const bool late = !Store::kComplete && path_kept_;
   const bool lost = late || (!Store::kComplete && held_.holding());
@@ -181,44 +171,11 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
   }
   if (outcome != Outcome::kYes) {
     const std::uint16_t hops = state_.hops;
-    if constexpr (Store::kComplete) {
-      behind_ = hold_behind(p_WT);
-      if (behind_) return;
-    }
     end();
     state_.hops = hops;
     if constexpr (!Store::kComplete) felt_.hops = hops;
     above_ = true;
   }
-}
-
-// Holds a tip that has passed through a thin part by the face above it: the one that is found from
-// itself again, so that a second tick at the same place is answered alike.
-template <PackedStore Store>
-bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT) noexcept {
-  if (behind_ && store_.inside(p_WT) == Known::kYes) return false;
-  std::int32_t last = -1;
-  for (int round = 0; round < kPassedRounds; ++round) {
-    const PassedThrough passed =
-        passed_through(p_WT, state_.p_WP, state_.n_W,
-                       [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-                         return store_.first_entry(from, to).entry;
-                       });
-    const std::int32_t triangle = passed.entry.triangle;
-    if (triangle < 0 || !activate(triangle)) return false;
-    state_.n_W = offset_.face();
-    state_.depth = std::max(0.0, state_.n_W.dot(passed.p_WP - p_WT));
-    state_.p_WP = p_WT + state_.depth * state_.n_W;
-    if (triangle == last) {
-      state_.touching = true;
-      state_.triangle = offset_.source();
-      state_.hops = 0;
-      steady_ = false;
-      return true;
-    }
-    last = triangle;
-  }
-  return false;
 }
 
 template <PackedStore Store>
