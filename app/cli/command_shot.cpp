@@ -72,8 +72,7 @@ bool is_png(const std::filesystem::path& file) {
   return file.extension() == ".png" || file.extension() == ".PNG";
 }
 
-/// Returns what is wrong with the names of the pictures, or with a film's pace; empty if nothing
-/// is.
+/// Returns what is wrong with the names of the pictures; empty if nothing is.
 std::string wrong_ending(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
     return "--out: pictures are written as PNG; expected a file that ends in .png, found " +
@@ -82,14 +81,6 @@ std::string wrong_ending(const ShotOptions& options) {
   if (!options.animate.empty() && !is_png(options.animate) && !view::is_film(options.animate)) {
     return "--animate: expected a file that ends in .mp4, .gif or .png (animated PNG), found " +
            options.animate + ".";
-  }
-  // Players show what a GIF asks for less than 0.02 s as 0.1 s.
-  if (!options.animate.empty() && options.pace > 50 &&
-      std::filesystem::path(options.animate).extension() == ".gif") {
-    return fmt::format(
-        "--pace {:g}: a GIF shows at most 50 pictures a second. Set --pace 50, or name a file that "
-        "ends in .mp4 or .png.",
-        options.pace);
   }
   return {};
 }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "observers/dent_record.h"
-#include "run_records.h"
 #include "setup.h"
 #include "share/shared_run.h"
 #include "view/marks/legend.h"
@@ -64,12 +63,14 @@ driver::Result<std::unique_ptr<PlayedScene>> PlayedScene::open(
 
 void PlayedScene::play(const std::vector<double>& times, const Look& look) {
   const std::int64_t period_ns = session_->setup().period_ns();
-  if (session::DentRecord* const dents = session_->records().dents.get()) dents->draw_each_tick();
+  const std::uint64_t every = session::DentRecord::ticks_between(period_ns);
   std::vector<std::uint64_t> ticks;
   for (const double time : times) {
-    const double tick = std::round(time * 1e9 / static_cast<double>(period_ns));
-    ticks.push_back(
-        std::min(static_cast<std::uint64_t>(std::max(0.0, tick)), session_->setup().ticks() - 1));
+    const double tick = time * 1e9 / static_cast<double>(period_ns);
+    const auto rounded =
+        static_cast<std::uint64_t>(std::max(0.0, std::round(tick / static_cast<double>(every)))) *
+        every;
+    ticks.push_back(std::min(rounded, (session_->setup().ticks() - 1) / every * every));
   }
   const auto moment = std::make_unique<DrawnMoment>();
   Plots plots;

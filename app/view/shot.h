@@ -30,8 +30,8 @@ class PlayedScene {
   using Look = std::function<void(DrawnMoment& moment, const Plots& plots)>;
 
   /// Plays the scene once and looks at each of these times (s, in order), or at the end if one is
-  /// later. Times are rounded to the nearest tick, dents included. Then it ends the recording, if
-  /// the options asked for one.
+  /// later. Dents are drawn at the rate of a picture: times are rounded to those. Then it ends the
+  /// recording, if the options asked for one.
   void play(const std::vector<double>& times, const Look& look);
 
   const DrawnScene& drawn() const { return live_->scene(); }

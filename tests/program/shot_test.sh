@@ -27,34 +27,6 @@ expect 0 '' cmp a.png b.png  # the same to the bit
 expect 0 'Animated' "$thimble" shot "$scene" --at 1 --until 1.2 --pace 10 --size 160x120 \
   --animate c.png
 expect 0 '^[1-9]' grep -ac fcTL c.png
-# Each moment is drawn at its own tick, with dents and without.
-differ() { ! cmp -s "$1" "$2" && echo differ; }
-for moving in water_balloon elephant; do
-  [ -f "$THIMBLE_MESHES/elephant.off" ] || [ "$moving" != elephant ] || continue
-  for at in 2.001 2.002 2.007; do
-    expect 0 'Picture' "$thimble" shot "$source_dir/app/scenes/$moving.yaml" --at $at --size 320x240 --no-caption --all-colours --out $moving-$at.png
-  done
-  expect 0 'differ' differ $moving-2.001.png $moving-2.007.png
-  expect 0 'differ' differ $moving-2.002.png $moving-2.007.png
-done
-# The pictures of an animation last as long as they should, in all.
-lasts() {
-  python3 - "$1" <<'END'
-import struct, sys
-data, at, total = open(sys.argv[1], 'rb').read(), 8, 0
-while at < len(data):
-    size, name = struct.unpack('>I4s', data[at:at + 8])
-    if name == b'fcTL':
-        total += (lambda n, d: n / d)(*struct.unpack('>HH', data[at + 28:at + 32]))
-    at += 12 + size
-print(f'lasts {total:.4f} s')
-END
-}
-for pace in 60 30 29.97; do
-  expect 0 'Animated' "$thimble" shot "$scene" --at 1 --until 2 --pace $pace --size 64x64 --animate paced.png
-  expect 0 'lasts 1\.00(0|1)[0-9] s' lasts paced.png
-done
-expect 2 '--pace 60: a GIF shows at most 50 .*--pace 50' "$thimble" shot "$scene" --at 1 --pace 60 --animate paced.gif
 # Without ffmpeg a sentence, before anything is drawn.
 mkdir -p nothing
 expect 1 'apt install ffmpeg.*\.png' env PATH="$PWD/nothing" "$thimble" shot "$scene" --at 1 --animate d.mp4

@@ -21,10 +21,6 @@ class DentRecord final : public TickObserver {
   /// Returns every how many ticks a loop with this period (ns) has its dents drawn.
   static std::uint64_t ticks_between(std::int64_t period_ns) noexcept;
 
-  /// Lets a patch be drawn in each tick: for pictures of any moment, in virtual time. Before the
-  /// first tick. Real-time: never from the servo thread.
-  void draw_each_tick() noexcept { every_ = 1; }
-
   /// Draws if it is time. Real-time: safe; some 10 us in one tick of 16.
   void take(const driver::TickRecord& tick) noexcept override;
 

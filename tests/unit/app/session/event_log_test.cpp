@@ -96,36 +96,6 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   EXPECT_EQ(lines.back(), "info The run is over; the arm took zero force.");
 }
 
-TEST_F(EventLogTest, NamesTheWallThatPushesTheTipBack) {
-  // The wall is 10 mm outside of the workspace, the hand 15 mm behind it for half a second.
-  options_.adjust = [](scene::Scene& scene) {
-    scene.arm.workspace.max_W.x() = 0.02;
-    scene.hand.assign(3, scene::HandWaypoint());
-    for (scene::HandWaypoint& waypoint : scene.hand) waypoint.p_W = {0.045, 0, 0.06};
-    scene.hand[0].p_W.x() = 0;
-    scene.hand[1].time = 0.5;
-    scene.hand[2].time = 1;
-  };
-  auto session = open();
-  ASSERT_TRUE(session);
-  EXPECT_EQ(session->run(stop_), driver::ServoEnd::kDone);
-  const RunFigures figures = session->figures({});
-  EXPECT_GT(figures.walls.pushed, 400U);
-  EXPECT_LT(figures.walls.f_strongest_W.x(), -1);
-  session.reset();
-  const auto lines = log();
-  const auto count = [&lines](const std::string& words) {
-    return std::count_if(lines.begin(), lines.end(), [&words](const std::string& line) {
-      return std::regex_search(line, std::regex(words));
-    });
-  };
-  EXPECT_EQ(count("^warning tick \\d+, .* s: The \\+x wall of the workspace pushes the tip back"),
-            1);
-  EXPECT_EQ(count("The walls of the workspace pushed in \\d+ ticks within 0\\.\\d+ s, with "
-                  "[1-4]\\.\\d+ N at most \\(\\+x wall\\)"),
-            1);
-}
-
 TEST_F(EventLogTest, HoldsNothingOfARunThatIsNotToBeLogged) {
   options_.log = false;
   auto session = open();

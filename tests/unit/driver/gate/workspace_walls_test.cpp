@@ -145,10 +145,16 @@ TEST_F(WorkspaceWallsTest, BrakeOnTheWayOutAlone) {
 TEST_F(WorkspaceWallsTest, CountTheTicksInWhichTheyPush) {
   open({0, 0, 0});
   EXPECT_EQ(device_->wall_counters().pushed, 0U);
-  move({0.11, 0, 0}, 22, {0, 0, 0});  // 5 mm a tick
-  for (int i = 0; i < 50; ++i) tick({0.11, 0, 0}, {0, 0, 0});
-  for (int i = 0; i < 50; ++i) tick({0.09, 0, 0}, {0, 0, 0});
-  EXPECT_EQ(device_->wall_counters().pushed, 52U);
+  std::uint64_t behind = 0;
+  const auto at = [&](double x) {
+    tick({x, 0, 0}, {0, 0, 0});
+    behind += device_->state().p_WT.x() > 0.1;
+  };
+  for (int i = 1; i <= 220; ++i) at(5e-4 * i);
+  for (int i = 0; i < 50; ++i) at(0.11);
+  for (int i = 1; i <= 40; ++i) at(0.11 - 5e-4 * i);
+  EXPECT_GT(behind, 60U);
+  EXPECT_EQ(device_->wall_counters().pushed, behind);
 }
 
 TEST_F(WorkspaceWallsTest, KeepTheirStrongestForce) {
