@@ -39,7 +39,7 @@ constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 // counted: each leg of the tip's path, straight for kLeg, whose direction differs from that of the
 // leg counted before; and each multiple of kHeldByFriction by which the force along the joint has
 // changed, since a hand must take that up with a motion of its own. A fault needs a changed force,
-// kLegs legs, and kCoincidences of both together [chosen: no false alarm in the 100,000 strokes of
+// kLegs legs, and kCoincidences of both together [chosen: no false alarm in the 160,000 strokes of
 // the long form of tests/unit/device_sim/motion_watch_test.cpp; one less gives the first ones]. Dry
 // friction of 0.26 N, the most of the arms that we know (Touch), holds 0.52 N from one direction to
 // the other.
