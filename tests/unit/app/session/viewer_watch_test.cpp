@@ -65,16 +65,28 @@ TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
 }
 
 TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
+  int ready[2];  // the child writes once it looks on
+  int leave[2];  // the parent closes once it has seen the child
+  ASSERT_EQ(pipe(ready), 0);
+  ASSERT_EQ(pipe(leave), 0);
   const pid_t child = fork();
+  char byte = 0;
   if (child == 0) {
     static const auto* const left_open = view().release();
-    _exit(left_open == nullptr ? 1 : 0);
+    close(leave[1]);
+    if (left_open == nullptr || write(ready[1], &byte, 1) != 1) _exit(1);
+    _exit(read(leave[0], &byte, 1) == 0 ? 0 : 1);
   }
-  while (step().find("Viewer " + std::to_string(child) + " looks on.") == std::string::npos) {
-  }
+  close(ready[1]);
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " looks on.\n");
+  close(leave[1]);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
   EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " has left.\n");
+  close(ready[0]);
+  close(leave[0]);
 }
 
 TEST_F(ViewerWatchTest, HasRoomForManyViewersAndHoldsOutWithMore) {
