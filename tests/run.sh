@@ -1,25 +1,30 @@
 #!/usr/bin/env bash
-# Runs every test: sets the machine up, builds, and runs all tests as release, those of the libraries of a run
-# (tests/CMakeLists.txt) but for release_only.list under the address and undefined-behaviour sanitizers, and of these
-# the ones in which threads of a run meet under the thread sanitizer.
-#   tests/run.sh [--long] [--without KEY,...] [PRESET...]
-#     --long     all tests under all sanitizers, at full length, the release built by clang, a build in which no
-#                sources are joined, then tests on 64-bit ARM under QEMU (hours), clang-tidy, coverage and mutants
-#                (40, 30 and 30 minutes of two cores)
-#     --without  optional parts (keys of app/optional_parts.list) that are not installed and may be absent
-#     PRESET     only these
+# Sets the machine up, builds, and runs the tests.
+#   tests/run.sh [--sanitizers] [--long] [--without KEY,...] [PRESET...]
+#     (nothing)     all tests of the release build
+#     --sanitizers  in addition: the tests of the libraries of a run (tests/CMakeLists.txt) but for
+#                   release_only.list under the address and undefined-behaviour sanitizers, and of these the ones
+#                   in which threads of a run meet under the thread sanitizer
+#     --long        all tests under all sanitizers, at full length, the release built by clang, a build in which no
+#                   sources are joined, then tests on 64-bit ARM under QEMU (hours), clang-tidy, coverage and mutants
+#                   (40, 30 and 30 minutes of two cores)
+#     --without     optional parts (keys of app/optional_parts.list) that are not installed and may be absent
+#     PRESET        only these
 # Ends with 1 if a test fails, or if an optional part that it installs is absent and not named by --without. A test that
 # depends on the wall clock (label wall_clock, tests/wall_clock.list) has three attempts, every other test has one.
+# Prints the seconds of each stage at the end.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 presets=()
 without=${THIMBLE_WITHOUT:-}
 usage() {
-  sed -n '2,13s/^# \{0,1\}//p' "$0"
+  sed -n '2,16s/^# \{0,1\}//p' "$0"
   exit 2
 }
+sanitizers=
 while [ $# -gt 0 ]; do
   case $1 in
+    --sanitizers) sanitizers=1 ;;
     --long) export THIMBLE_LONG=1 ;;
     --without)
       [ $# -gt 1 ] || usage
@@ -35,14 +40,27 @@ export THIMBLE_WITHOUT=$without
 app/optional_parts.sh keys >/dev/null || exit 2  # a key that does not exist
 more=()
 if [ ${#presets[@]} = 0 ]; then
-  presets=(release "asan${THIMBLE_LONG:+-all}" "tsan${THIMBLE_LONG:+-all}")
-  [ -z "${THIMBLE_LONG:-}" ] || more=(arm64 tidy coverage mutate)
+  presets=(release)
+  if [ -n "${THIMBLE_LONG:-}" ]; then
+    presets+=(asan-all tsan-all)
+    more=(arm64 tidy coverage mutate)
+  elif [ -n "$sanitizers" ]; then
+    presets+=(asan tsan)
+  fi
 fi
+
+stages=()
+stage_begin=$SECONDS
+end_stage() {  # end_stage NAME: notes the seconds since the end of the stage before
+  stages+=("$(printf '%5d s  %s' $((SECONDS - stage_begin)) "$1")")
+  stage_begin=$SECONDS
+}
 
 # Everything is installed before anything is configured. What cannot be installed is named here and fails at the end.
 promised=(base program all tests ${THIMBLE_LONG:+long})
 app/optional_parts.sh install "${promised[@]}" || true
 [[ " $without " == *" usb "* ]] || tests/usb/setup.sh || true
+end_stage "installation"
 if [ ${#more[@]} -gt 0 ] && command -v clang++ >/dev/null; then presets+=(clang); fi
 
 # The output of failed tests, again at the very end: a log of CI is often cut to its last lines.
@@ -100,11 +118,13 @@ for preset in "${presets[@]}"; do
     asan | tsan) leave=(-L .) ;; # what lies in sources, and not in a program, was tested with the release
   esac
   build "$preset"
+  end_stage "build $preset"
   for key in $(app/optional_parts.sh missing "build/$preset" "${promised[@]}"); do
     echo "NOTE: the optional part $key is absent, so $preset fails in the end (--without $key accepts that)." >&2
   done
   echo "== Tests: $preset"
   run_tests "$preset" "${leave[@]}" || failed+=("$preset")
+  end_stage "tests $preset"
 done
 [ ${#more[@]} = 0 ] || app/setup.sh dev || failed+=(dev)  # each source with its own includes
 for name in "${more[@]}"; do
@@ -112,7 +132,10 @@ for name in "${more[@]}"; do
   all=()
   [ "$name" != arm64 ] || all=(--all)
   env -u THIMBLE_LONG "tests/$name.sh" "${all[@]}" || [ $? = 3 ] || failed+=("$name")  # 3: not installed
+  end_stage "$name"
 done
+echo "Stages, in seconds:"
+printf '  %s\n' "${stages[@]}"
 # What was not tested, or passed at a further attempt only, once more where it is seen.
 for preset in "${presets[@]}"; do
   sed "s/^/Passed at a further attempt in $preset: /" "build/$preset.retried"

@@ -4,7 +4,12 @@ _thimble_names() {
   compgen -W "$("${COMP_WORDS[0]}" run --list 2>/dev/null |
     sed -n "/^$1:/,/^[A-Z]/s/^  \([^ ][^ ]*\) .*/\1/p")" -- "$2"
 }
+# _thimble_choices COMMAND OPTION: the words that an option takes, where its help lists them in braces
+_thimble_choices() {
+  "${COMP_WORDS[0]}" ${1:+"$1"} --help 2>/dev/null | sed -nE "s/^ +(-[a-z], *)?$2 TEXT:\\{([^}]*)\\}.*/\\2/p" | tr ',' ' '
+}
 _thimble() {
+  local before=${COMP_WORDS[COMP_CWORD - 1]} choices
   local word=${COMP_WORDS[COMP_CWORD]} words=() i
   for ((i = 1; i < COMP_CWORD; ++i)); do
     [[ ${COMP_WORDS[i]} == -* ]] || words+=("${COMP_WORDS[i]}")
@@ -12,13 +17,17 @@ _thimble() {
   if [[ $word == -* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" ${words[0]:+"${words[0]}"} --help 2>/dev/null |
       grep -oE '(^|[ ,])--?[a-z][a-z-]*' | tr -d ' ,')" -- "$word")
+  elif [[ $before == --hold-to-run ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "button key" -- "$word")
+  elif [[ $before == --?* ]] && choices=$(_thimble_choices "${words[0]:-}" "$before") && [ -n "$choices" ]; then
+    mapfile -t COMPREPLY < <(compgen -W "$choices" -- "$word")
   elif ((${#words[@]} == 0)) || [[ ${words[0]} == @(study|mesh) && ${#words[@]} == 1 ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" ${words[0]:+"${words[0]}"} --help 2>/dev/null |
       sed -n '/^Subcommands:/,$s/^  \([a-z][a-z-]*\).*/\1/p')" -- "$word")
-  elif [[ ${COMP_WORDS[COMP_CWORD - 1]} == --arm ]]; then
+  elif [[ $before == --arm ]]; then
     mapfile -t COMPREPLY < <(_thimble_names Arms "$word")
   elif ((${#words[@]} == 1)) && [[ ${words[0]} == @(run|shot|tune|bench) ]] ||
-    [[ ${words[*]} == "study gating" || ${COMP_WORDS[COMP_CWORD - 1]} == --scene ]]; then
+    [[ ${words[*]} == "study gating" || $before == --scene ]]; then
     mapfile -t COMPREPLY < <(_thimble_names Scenes "$word")
   fi
   ((${#COMPREPLY[@]} > 0)) || mapfile -t COMPREPLY < <(compgen -f -- "$word")

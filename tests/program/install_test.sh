@@ -103,12 +103,18 @@ completed=$(PATH=$work/usr/bin:$PATH bash -c '
   COMP_WORDS=(thimble ru) COMP_CWORD=1 && _thimble && echo "${COMPREPLY[*]}"
   COMP_WORDS=(thimble run --dur) COMP_CWORD=2 && _thimble && echo "${COMPREPLY[*]}"
   COMP_WORDS=(thimble run eleph) COMP_CWORD=2 && _thimble && echo "${COMPREPLY[*]}"
-  COMP_WORDS=(thimble tune box --arm vint) COMP_CWORD=4 && _thimble && echo "${COMPREPLY[*]}"' - \
+  COMP_WORDS=(thimble tune box --arm vint) COMP_CWORD=4 && _thimble && echo "${COMPREPLY[*]}"
+  COMP_WORDS=(thimble hil --check feel) COMP_CWORD=3 && _thimble && echo "${COMPREPLY[*]}"
+  COMP_WORDS=(thimble run box --clock "") COMP_CWORD=4 && _thimble && echo "${COMPREPLY[*]}"
+  COMP_WORDS=(thimble run box --hold-to-run "") COMP_CWORD=4 && _thimble && echo "${COMPREPLY[*]}"' - \
   "$work/usr/share/bash-completion/completions/thimble")
 [ "$completed" = "run
 --duration
 elephant
-vintage_phantom" ] || fail "completion answered: $completed"
+vintage_phantom
+feel_check
+virtual paced wall
+button key" ] || fail "completion answered: $completed"
 if [ ! -d "$work/usr/lib/python3" ]; then
   echo "NOT TESTED: the Python package; it was not built."
 elif ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

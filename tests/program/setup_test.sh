@@ -135,6 +135,12 @@ diff <(names build/release) <(names build/fresh) >&2 || fail "other tests than a
 : >"$FAKE/configured"
 run 0 tests/run.sh release
 expect_configured 0 "nothing has changed since tests/run.sh"
+run 0 tests/run.sh
+says '^== Tests: release$'
+silent_on '^== Tests: [^r]'  # the sanitizers are for --sanitizers and --long
+says '^ +[0-9]+ s  installation$'
+says '^ +[0-9]+ s  build release$'
+says '^ +[0-9]+ s  tests release$'
 
 echo "A part that cannot be installed ..."
 echo mkdocs >"$FAKE/unavailable"

@@ -21,6 +21,7 @@ void RunStatistics::take(const driver::TickRecord& record) noexcept {
     if (fault_ticks_++ == 0) first_fault_ = record.fault;
   }
   const double force_squared = dot(record.f_sent_W, record.f_sent_W);
+  force_squared_all_ += force_squared;
   force_squared_max_ = std::max(force_squared_max_, force_squared);
   if (record.in_contact) {
     ++contact_ticks_;
@@ -59,6 +60,10 @@ double RunStatistics::rate() const noexcept {
 
 double RunStatistics::force_rms() const noexcept {
   return contact_ticks_ > 0 ? std::sqrt(force_squared_ / static_cast<double>(contact_ticks_)) : 0;
+}
+
+double RunStatistics::force_rms_of_run() const noexcept {
+  return ticks_ > 0 ? std::sqrt(force_squared_all_ / static_cast<double>(ticks_)) : 0;
 }
 
 }  // namespace thimble::session

@@ -97,6 +97,20 @@ TEST(Report, TellsTheRunInPlainWords) {
   EXPECT_LE(lines, 12);
 }
 
+TEST(Report, GivesTheMeanForceOfARunThatTouchedNoSurface) {
+  session::RunFigures report;
+  driver::TickRecord record;
+  record.f_sent_W = {0, 0, 1.5};
+  for (int i = 0; i < 10; ++i) {
+    record.time_ns = i * 1'000'000LL;
+    report.statistics.take(record);
+  }
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("1.50 N on average (rms) over the run, which touched no surface"),
+            std::string::npos)
+      << text;
+}
+
 TEST(Report, NamesTheWallThatPushed) {
   session::RunFigures report = example();
   EXPECT_EQ(summary(report).find("Walls"), std::string::npos);

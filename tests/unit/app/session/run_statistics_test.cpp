@@ -115,7 +115,7 @@ TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   session::RunStatistics statistics;
-  double force_max = 0, squares = 0, depth_max = 0, energy = 0;
+  double force_max = 0, squares = 0, squares_of_all = 0, depth_max = 0, energy = 0;
   std::uint64_t touching = 0, missing = 0;
   driver::TickRecord last;
   for (int i = 0; i < 5000; ++i) {
@@ -131,6 +131,7 @@ TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
     force_max = std::max(force_max, force);
     depth_max = std::max(depth_max, record.depth);
     if (record.in_contact) squares += force * force;
+    squares_of_all += force * force;
     touching += record.in_contact ? 1 : 0;
     missing += record.fresh ? 0 : 1;
     statistics.take(record);
@@ -138,6 +139,7 @@ TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
   }
   EXPECT_NEAR(statistics.force_max(), force_max, 1e-12);
   EXPECT_NEAR(statistics.force_rms(), std::sqrt(squares / static_cast<double>(touching)), 1e-9);
+  EXPECT_NEAR(statistics.force_rms_of_run(), std::sqrt(squares_of_all / 5000), 1e-9);
   EXPECT_EQ(statistics.depth_max(), depth_max);
   EXPECT_NEAR(statistics.energy_to_hand(), energy, 1e-9);
   EXPECT_EQ(statistics.missing_reports(), missing);

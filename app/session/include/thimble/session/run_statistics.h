@@ -49,6 +49,8 @@ class RunStatistics final : public TickObserver {
   double force_max() const noexcept { return std::sqrt(force_squared_max_); }
   /// Returns its root mean square over the ticks in contact, N.
   double force_rms() const noexcept;
+  /// Returns the root mean square of the force sent over all ticks, N.
+  double force_rms_of_run() const noexcept;
 
   /// Returns the greatest depth, m.
   double depth_max() const noexcept { return depth_max_; }
@@ -85,7 +87,8 @@ class RunStatistics final : public TickObserver {
   std::uint64_t interruptions_ = 0;
   std::uint64_t contact_ticks_ = 0;
   double force_squared_max_ = 0;
-  double force_squared_ = 0;
+  double force_squared_ = 0;      // of the ticks in contact
+  double force_squared_all_ = 0;  // of all ticks
   double depth_max_ = 0;
   double energy_ = 0;
   double energy_max_ = 0;
