@@ -32,8 +32,8 @@ th:first-child,td:first-child{text-align:left}tr.default td{font-weight:700}
 summary{cursor:pointer;margin:.6rem 0}nav a{margin-right:.9rem;white-space:nowrap}a{color:#005a8c}
 </style></head><body>
 <h1>What accuracy costs in time</h1>
-<p>Each diagram turns one knob: how wrong the result is against a truth that shares no code with it, and what it
-costs. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
+<p>Each diagram turns one knob: how wrong the result is, and what it costs. The truth is named below each diagram: a
+closed form, a computation that shares no code with the product, or the product itself without the error of the knob. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
 The ring marks what Thimble does unless told otherwise, or, where the arm brings the knob's value and nobody chooses it,
 where a PHANTOM-like arm stands.</p>
 <p class="small">Times are medians of this machine, in turn with each other, of the processor time of the work alone,

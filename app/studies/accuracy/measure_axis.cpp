@@ -137,7 +137,7 @@ std::optional<double> slope_of(const std::vector<MeasuredPoint>& points) {
     sxx += x * x;
     sxy += x * y;
   }
-  if (n < 2) return std::nullopt;
+  if (n < kSlopePointsLeast) return std::nullopt;
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 

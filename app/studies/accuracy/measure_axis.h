@@ -71,8 +71,11 @@ MeasuredAxis with_numbers(AccuracyAxis axis, std::span<const double> numbers);
 /// are medians on whatever this machine is. Real-time: never from the servo thread.
 MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options);
 
-/// Finds the slope of log error over log knob through the points that fit; empty if fewer than two
-/// of them have an error. Real-time: never from the servo thread.
+/// The fewest points through which a slope is drawn: through two, every law fits.
+inline constexpr int kSlopePointsLeast = 4;
+
+/// Finds the slope of log error over log knob through the points that fit; empty if fewer than
+/// `kSlopePointsLeast` of them have an error. Real-time: never from the servo thread.
 std::optional<double> slope_of(const std::vector<MeasuredPoint>& points);
 
 }  // namespace thimble::app

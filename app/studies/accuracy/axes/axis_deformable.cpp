@@ -174,7 +174,7 @@ AccuracyAxis deformable_axis() {
                              .prepare = [=] { return work_of(motion_of(which, substeps)); },
                              .ticks = kWorkFrames,
                              .is_default = which == render::kDefaultScheme && substeps == 1,
-                             .fits = substeps * 4 > scheme.finest,
+                             .fits = substeps * 16 > scheme.finest,
                              .law = {}});
     }
     axis.lines.push_back(std::move(line));

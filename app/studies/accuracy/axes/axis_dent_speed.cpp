@@ -127,7 +127,7 @@ AccuracyAxis dent_speed_axis() {
                                };
                              },
                              .ticks = kWorkTicks,
-                             .fits = omega_h <= 0.1 && omega_h >= 0.009,
+                             .fits = omega_h <= 0.1 && omega_h >= 0.0029,
                              .law = {}});
     }
     axis.lines.push_back(std::move(line));

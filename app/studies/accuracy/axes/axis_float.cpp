@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPlaces[] = {0.01, 0.1, 1, 10, 100};  // m
+constexpr double kPlaces[] = {0.01, 0.1, 1, 3, 10, 30, 100};  // m
 
 // The ring's own depth and normal, in numbers of single precision throughout.
 Vector3d single_force(const Eigen::Vector3f& p_W, const Eigen::Vector3f& centre,

@@ -165,7 +165,7 @@ AccuracyAxis rigid_body_axis() {
                           .error = [=] { return error_of(Textbook(method, ms / 1e3), ms / 1e3); },
                           .prepare = [=] { return work_of(Textbook(method, ms / 1e3), ms / 1e3); }};
       point.ticks = kWorkRuns * 1e3 * kTime;
-      point.fits = one.order > 3 ? ms <= 5 && ms >= 1 : ms <= (one.order > 1 ? 2 : 0.5);
+      point.fits = one.order > 3 ? ms <= 5 && ms >= 0.5 : ms <= 2;
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));
@@ -178,7 +178,7 @@ AccuracyAxis rigid_body_axis() {
                         .prepare = [=] { return work_of(Product(ms / 1e3), ms / 1e3); }};
     point.ticks = kWorkRuns * 1e3 * kTime;
     point.is_default = ms == 1;
-    point.fits = ms <= 10 && ms >= 2;
+    point.fits = ms <= 10 && ms >= 1;
     product.points.push_back(std::move(point));
   }
   axis.lines.push_back(std::move(product));

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/closest_point.h"
 #include "search/make_search.h"
 #include "stability/draw.h"
 #include "studies/accuracy/axes/axes.h"
@@ -64,24 +63,43 @@ std::vector<Vector3d> course_at(double speed) {
   return places;
 }
 
+double distance_to_edge(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d edge = b - a;
+  const double t = std::clamp((p - a).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * edge).norm();
+}
+
+// The distance to a triangle, m, in a way of its own so that the truth shares no code with what is
+// judged: to the plane where the foot lies inside all three edges, else to the nearest edge.
+double distance_to(std::int32_t triangle, const Vector3d& p) {
+  const auto& mesh = *surface().mesh;
+  const Vector3d corners[] = {mesh.position(triangle, 0), mesh.position(triangle, 1),
+                              mesh.position(triangle, 2)};
+  const Vector3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  bool inside = true;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d& a = corners[k];
+    const Vector3d& b = corners[(k + 1) % 3];
+    inside = inside && n.dot((b - a).cross(p - a)) >= 0;
+    nearest = std::min(nearest, distance_to_edge(p, a, b));
+  }
+  return inside ? std::abs(n.dot(p - corners[0])) / n.norm() : nearest;
+}
+
 // How far the surface is at each of these places, found by looking at every triangle; m.
 const std::vector<double>& nearest_at(double speed) {
   static std::map<double, std::vector<double>> found;
   const auto [at, fresh] = found.try_emplace(speed);
   if (!fresh) return at->second;
   for (const Vector3d& p : course_at(speed)) {
-    at->second.push_back(
-        surface().linear->closest(p, std::numeric_limits<double>::infinity()).distance);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::int32_t triangle = 0; triangle < surface().mesh->triangle_count(); ++triangle) {
+      nearest = std::min(nearest, distance_to(triangle, p));
+    }
+    at->second.push_back(nearest);
   }
   return at->second;
-}
-
-double distance_to(std::int32_t triangle, const Vector3d& p) {
-  const auto& mesh = *surface().mesh;
-  return (render::closest_point(p, mesh.position(triangle, 0), mesh.position(triangle, 1),
-                                mesh.position(triangle, 2)) -
-          p)
-      .norm();
 }
 
 // Ticks whose triangle is a wrong one, or that have none though the tip is inside; in percent.

@@ -337,7 +337,7 @@ MeasuredAxis measured_by_hand() {
   axis.threshold = 20;
   axis.default_words = "because.";
   AccuracyLine line{.name = "a", .title = "method a"};
-  for (const double knob : {1.0, 2.0, 4.0}) {
+  for (const double knob : {1.0, 2.0, 4.0, 8.0}) {
     AccuracyPoint point{.name = std::to_string(static_cast<int>(knob)),
                         .knob = knob,
                         .error = [knob] { return 10 * knob * knob; },
