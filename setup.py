@@ -36,7 +36,7 @@ class BuildByCMake(build_ext):
         preset = ["-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG"]
         if shutil.which("ninja"):
             preset += ["-G", "Ninja"]
-        self._run("cmake", "-S", str(SOURCE), "-B", build, *preset, "-D", "THIMBLE_BUILD_TESTS=OFF",
+        self._run("cmake", "-S", str(SOURCE), "-B", build, *preset, "-D", "THIMBLE_TESTS=OFF",
                   "-D", f"Python_EXECUTABLE={sys.executable}")
         targets = ["thimble", "thimble_python", "thimble_faces"]
         self._run("cmake", "--build", build, "--parallel", str(os.cpu_count() or 1), "--target", *targets)

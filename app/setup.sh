@@ -2,7 +2,7 @@
 # Makes a Debian 12 machine ready and builds one preset: installs the Debian packages that are missing, unpacks the
 # scanned meshes, configures if the packages have changed since the last time, builds, and lists the optional parts.
 # Quick if there is nothing to do.
-#   app/setup.sh [PRESET [TARGET...]]    PRESET: release (default), dev, clang, asan, asan-all, tsan, tsan-all, coverage
+#   app/setup.sh [PRESET [TARGET...]]    PRESET: release (default), core (the smallest build), dev, clang, asan, asan-all, tsan, tsan-all, coverage
 #                                      TARGET: thimble: the program and the Python package, without tests
 # THIMBLE_WITHOUT="KEY..." in the environment: optional parts (app/optional_parts.list) that are not installed.
 set -euo pipefail
@@ -30,14 +30,21 @@ packages=(
 )
 parts=(base)
 [ ${#targets[@]} -gt 0 ] || parts+=(program all)
+if [ "$preset" = core ]; then
+  packages=(g++ cmake ninja-build pkg-config libeigen3-dev libusb-1.0-0-dev libhidapi-dev zlib1g-dev libpng-dev
+    libyaml-cpp-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev)
+  parts=()
+fi
 for i in "${!targets[@]}"; do
   if [ "${targets[i]}" = thimble ]; then
     parts+=(program)
     targets[i]=thimble_product
   fi
 done
-optional=$(app/optional_parts.sh packages "${parts[@]}")
-mapfile -t -O "${#packages[@]}" packages <<<"$optional"
+if [ ${#parts[@]} -gt 0 ]; then
+  optional=$(app/optional_parts.sh packages "${parts[@]}")
+  mapfile -t -O "${#packages[@]}" packages <<<"$optional"
+fi
 [ "$preset" != clang ] || packages+=(clang)
 
 mapfile -t missing < <(missing_packages "${packages[@]}")
@@ -60,7 +67,7 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 
 # Tests need them; a program without its tests does not.
-app/fetch_meshes.sh || [ ${#targets[@]} -gt 0 ] || exit 3
+[ "$preset" = core ] || app/fetch_meshes.sh || [ ${#targets[@]} -gt 0 ] || exit 3
 
 log=build/$preset.log
 mkdir -p build

@@ -6,7 +6,7 @@
 #                   release_only.list under the address and undefined-behaviour sanitizers, and of these the ones
 #                   in which threads of a run meet under the thread sanitizer
 #     --long        all tests under all sanitizers, at full length, the release built by clang, a build in which no
-#                   sources are joined, then tests on 64-bit ARM under QEMU (hours), clang-tidy, coverage and mutants
+#                   sources are joined, the parts that can be left out, then tests on 64-bit ARM under QEMU (hours), clang-tidy, coverage and mutants
 #                   (40, 30 and 30 minutes of two cores)
 #     --without     optional parts (keys of app/optional_parts.list) that are not installed and may be absent
 #     PRESET        only these
@@ -43,7 +43,7 @@ if [ ${#presets[@]} = 0 ]; then
   presets=(release)
   if [ -n "${THIMBLE_LONG:-}" ]; then
     presets+=(asan-all tsan-all)
-    more=(arm64 tidy coverage mutate)
+    more=(core arm64 tidy coverage mutate)
   elif [ -n "$sanitizers" ]; then
     presets+=(asan tsan)
   fi

@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "arms/falcon/falcon_boot.h"
-#include "bringup/identify/arm_constants.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/plug_orders.h"
 #include "cli/usage/usage_error.h"
 #include "interrupt.h"
+#include "link_gravity.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
 #include "output/output_file.h"
@@ -179,7 +179,7 @@ int plug(const PlugOptions& options) {
     const auto file = simulated_file(options.arm_file);
     if (!file) return complain(file.error(), kExitBadInput);
     shelf.arm = usb::ShelfArm{.model = file->model, .settings = file->simulated};
-    gravity_B = file->R_WB.transpose() * Eigen::Vector3d(0, 0, -kStandardGravity);
+    gravity_B = file->R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity);
   }
   auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {

@@ -85,8 +85,9 @@ void add_cost_probe_command(CLI::App& app, int& exit_code);
 /// `thimble mesh generate OUT`: writes a page file of any number of triangles.
 void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code);
 
-/// A command that is not in this program: it stays in the help, and says how to build the whole.
+/// Adds a command that this program lacks: it is listed in the help, and answers with how to build
+/// the whole program. `part` is the option of CMake that it belongs to, if there is one.
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
-                        const std::string& about);
+                        const std::string& about, const std::string& part = {});
 
 }  // namespace thimble::app

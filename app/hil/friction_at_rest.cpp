@@ -10,7 +10,7 @@
 #include "scene_effects.h"
 #include "stability/rest_trial.h"
 #include "stability/signal.h"
-#include "studies/friction/friction_rig.h"
+#include "stability/friction_rig.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/effect/map_settings.h"
 

@@ -1,6 +1,5 @@
 #include "thimble/driver/discovery.h"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -105,7 +104,11 @@ std::string tty_node(const fs::path& device) {
 }  // namespace
 
 std::string usb_node(const UsbAddress& address) {
-  return fmt::format("/dev/bus/usb/{:03}/{:03}", address.bus, address.device);
+  const auto digits = [](unsigned number) {
+    const std::string text = std::to_string(number);
+    return std::string(text.size() < 3 ? 3 - text.size() : 0, '0') + text;
+  };
+  return "/dev/bus/usb/" + digits(address.bus) + '/' + digits(address.device);
 }
 
 std::string read_line(const fs::path& file) {

@@ -16,7 +16,7 @@
 
 #include "stability/signal.h"
 #include "studies/friction/friction_cases.h"
-#include "studies/friction/friction_rig.h"
+#include "stability/friction_rig.h"
 #include "support/hard_case.h"
 #include "support/identify/rubbing.h"
 #include "support/long_form.h"

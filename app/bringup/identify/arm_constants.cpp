@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "link_gravity.h"
 #include "math/elementary.h"
 
 namespace thimble::app {
@@ -19,7 +20,7 @@ using Slope = Eigen::Matrix<double, kSeen, kWanted>;
 Seen shown(const Wanted& x, double added, const Eigen::Vector3d& down_B, Slope& slope) {
   const double over = 1 / (x[0] + added);
   Seen z = x.tail<kSeen>();
-  z.tail<3>() += added * kStandardGravity * down_B;
+  z.tail<3>() += added * scene::kGravity * down_B;
   z *= over;
   slope.setZero();
   slope.col(0) = -over * z;

@@ -8,9 +8,6 @@
 
 namespace thimble::app {
 
-/// Standard gravity, m/s^2.
-inline constexpr double kStandardGravity = 9.80665;
-
 /// One joint's motor and cable as they are written into an arm file, with their intervals.
 struct CableConstants {
   Estimate inertia;        ///< Of motor and pulley, kg m^2 at the joint.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bringup/identify/identify.h"
+#include "link_gravity.h"
 
 namespace thimble::app {
 namespace {
@@ -82,7 +83,7 @@ driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOpti
                     options.force_most, file.limits.force_max)};
   }
   // Beside what carries the mass something must be left that moves it.
-  const double carried = kCarriedMost * options.force_most / kStandardGravity;
+  const double carried = kCarriedMost * options.force_most / scene::kGravity;
   const double most = std::min(kKnownMassMost, carried);
   if (!(options.known_mass >= 0 && options.known_mass <= most)) {
     return driver::Error{

@@ -9,6 +9,7 @@
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/motor_probe.h"
+#include "link_gravity.h"
 #include "math/elementary.h"
 
 namespace thimble::app {
@@ -110,7 +111,7 @@ class Recorder {
   /// Finds the force that carries a mass (kg): motors that are not as strong as the file says do
   /// not carry what they are asked to.
   driver::Result<void> carry(double mass) {
-    carried_W_ = {0, 0, kStandardGravity * mass};
+    carried_W_ = {0, 0, scene::kGravity * mass};
     HoldPlace hold(p_WM_);
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       left_ = left_ || !within(state.p_WT);

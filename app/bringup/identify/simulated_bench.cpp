@@ -1,6 +1,7 @@
 #include "bringup/identify/simulated_bench.h"
 
 #include "bringup/identify/arm_constants.h"
+#include "link_gravity.h"
 
 namespace thimble::app {
 
@@ -11,7 +12,7 @@ driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& 
   if (!hold_it) bench.simulated.hand = {};
   bench.simulated.hand.mass += added_mass;
   bench.simulated.weight_B +=
-      file.R_WB.transpose() * Eigen::Vector3d(0, 0, -kStandardGravity * added_mass);
+      file.R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity * added_mass);
   // Nobody holds the mass from below until it is carried.
   if (added_mass > 0) bench.limits.soft_start = driver::GateLimits::kSoftStartLeast;
   const Eigen::Vector3d middle = file.workspace.middle();

@@ -2,7 +2,7 @@
 
 #include "studies/accuracy/accuracy_axis.h"
 #include "studies/friction/friction_cases.h"
-#include "studies/friction/friction_rig.h"
+#include "stability/friction_rig.h"
 
 namespace thimble::app {
 

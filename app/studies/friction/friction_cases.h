@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/friction/friction_rig.h"
+#include "stability/friction_rig.h"
 #include "thimble/render/effect/stage_list.h"
 
 namespace thimble::app {

@@ -1,12 +1,14 @@
 #include "system/regular_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <iterator>
+#include <string>
 #include <system_error>
 
 namespace thimble::driver {
@@ -30,9 +32,14 @@ ssize_t read_up_to(int descriptor, char* bytes, std::size_t size) {
 
 std::string size_text(std::uint64_t bytes) {
   const auto value = static_cast<double>(bytes);
-  if (value >= 1e9) return fmt::format("{:.3g} GB", value * 1e-9);
-  if (value >= 1e6) return fmt::format("{:.3g} MB", value * 1e-6);
-  return fmt::format("{:.3g} kB", value * 1e-3);
+  const auto three_digits = [](double number) {
+    char text[32];
+    const auto end = std::to_chars(text, std::end(text), number, std::chars_format::general, 3);
+    return std::string(text, end.ptr);
+  };
+  if (value >= 1e9) return three_digits(value * 1e-9) + " GB";
+  if (value >= 1e6) return three_digits(value * 1e-6) + " MB";
+  return three_digits(value * 1e-3) + " kB";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "bringup/identify/identify.h"
 #include "bringup/identify/record_motion.h"
+#include "link_gravity.h"
 #include "support/fault_cell.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"
@@ -164,7 +165,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
       // As simulated_bench fixes it to the tip, with nobody's hand below.
       bench_file.simulated.hand.mass += support::kKnownMass;
       bench_file.simulated.weight_B +=
-          file.R_WB.transpose() * Eigen::Vector3d(0, 0, -kStandardGravity * support::kKnownMass);
+          file.R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity * support::kKnownMass);
       bench_file.limits.soft_start = driver::GateLimits::kSoftStartLeast;
     }
     auto bench = BenchArm::open(bench_file, {}, {}, one.hand_W, kIdentifyForceMax);

@@ -14,6 +14,7 @@
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
+#include "link_gravity.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"
 #include "support/refuses.h"
@@ -44,7 +45,7 @@ bool is_too_stiff(const HiddenArm& arm) {
 /// Returns whether 0.95 N of an arm's weakest motor carry less than one and a half times the known
 /// mass.
 bool is_too_weak(const HiddenArm& arm) {
-  return 0.95 * weakest(arm) < 1.5 * kKnownMass * kStandardGravity;
+  return 0.95 * weakest(arm) < 1.5 * kKnownMass * scene::kGravity;
 }
 
 /// Returns whether an arm's strongest motor is six times as strong as its weakest.

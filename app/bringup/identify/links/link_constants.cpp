@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "link_gravity.h"
 #include "plant/link_mechanics.h"
 
 namespace thimble::app {
@@ -30,7 +31,7 @@ WrittenLinks links_with_coupling(const SeenLinks& seen, const driver::SerialArm&
   is[Of::kYawB] += mass * lb * lb;
   is[Of::kYawC] += mass * lc * lc;
   is[Of::kCoupling] = mass * lb * lc;
-  const double moment = std::min(0.0, seen[7]) / kStandardGravity;
+  const double moment = std::min(0.0, seen[7]) / scene::kGravity;
   is[Of::kMomentB] = seen[6] + moment * lb;
   is[Of::kMomentC] = moment * lc;
   is[Of::kWeight] = std::max(0.0, seen[7]);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bringup/identify/arm_constants.h"
+#include "link_gravity.h"
 #include "math/elementary.h"
 
 namespace thimble::app {
@@ -26,7 +27,7 @@ LinkEquations::LinkEquations(const ArmMotion& motion)
   for (const MotionSample& sample : motion.samples) {
     levers_.push_back(levers_of(sample));
     pulled_.push_back(sample.G.transpose() * moment_.jacobian(sample.q).transpose() *
-                      (kStandardGravity * motion.down_B));
+                      (scene::kGravity * motion.down_B));
   }
   rate_.assign(motion.samples.size(), Eigen::Vector3d::Zero());
   const int end = static_cast<int>(motion.samples.size()) - kRateTicks;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bringup/identify/arm_constants.h"
+#include "link_gravity.h"
 
 namespace thimble::app {
 
@@ -35,7 +36,7 @@ void LinkRows::fill() {
       noise += links.step_noise(equation);
       fixed_(k, LinkFit::kWeight + equation.axis) = -1;
       fixed_(k, kAdded) =
-          motion.added_mass * (equation.left - kStandardGravity * motion.down_B[equation.axis]);
+          motion.added_mass * (equation.left - scene::kGravity * motion.down_B[equation.axis]);
       clusters_.push_back(first + equation.middle / MotionEquations::kCluster);
       ++k;
     }

@@ -171,7 +171,7 @@ AccuracyAxis modes_axis() {
   axis.knob = "modes moved";
   axis.metric = "largest error of the touched node";
   axis.unit = "% of the largest motion";
-  axis.truth = 
+  axis.truth =
       "All 256 modes, from the eigenvalues of the dense stiffness matrix, each by its complex root "
       "in long double.";
   axis.threshold = 3.5;

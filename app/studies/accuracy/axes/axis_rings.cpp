@@ -73,7 +73,8 @@ AccuracyAxis rings_axis() {
   axis.knob = "rings that move";
   axis.metric = "largest force error";
   axis.unit = "% of the largest force";
-  axis.truth = "The same body with every vertex moving (compared with dense eigenvalues in PhysicsOfDents).";
+  axis.truth =
+      "The same body with every vertex moving (compared with dense eigenvalues in PhysicsOfDents).";
   axis.threshold = 3.5;
   axis.threshold_words = "half the change of force that is felt (3.5 %)";
   axis.default_words =

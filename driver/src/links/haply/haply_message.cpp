@@ -1,10 +1,10 @@
 #include "links/haply/haply_message.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 namespace thimble::driver::haply {
@@ -15,6 +15,13 @@ using nlohmann::json;
 // Far outside of what the arm can be or do, so that a message in mm, say, is no position.
 constexpr double kFarthest = 2;   // m
 constexpr double kFastest = 100;  // m/s
+
+/// Returns a number with six decimals, whatever the locale is.
+std::string number(double value) {
+  char text[400];  // the largest double has 309 digits before the point
+  const auto end = std::to_chars(text, std::end(text), value, std::chars_format::fixed, 6);
+  return {text, end.ptr};
+}
 
 json parsed(std::string_view text) {
   return json::parse(text, nullptr, /*allow_exceptions=*/false);
@@ -168,12 +175,11 @@ StateRead read_state(std::string_view text, std::string_view device_id, ArmState
 }
 
 std::string force_message(std::string_view device_id, const Eigen::Vector3d& f_T_B) {
-  const std::string force =
-      fmt::format("{{\"x\":{:.6f},\"y\":{:.6f},\"z\":{:.6f}}}", f_T_B.x(), f_T_B.y(), f_T_B.z());
-  return fmt::format(
-      "{{\"inverse3\":[{{\"device_id\":{},\"commands\":{{\"set_cursor_force\":{{\"vector\":{},"
-      "\"values\":{}}}}}}}]}}",
-      json(device_id).dump(), force, force);
+  const std::string force = R"({"x":)" + number(f_T_B.x()) + R"(,"y":)" + number(f_T_B.y()) +
+                            R"(,"z":)" + number(f_T_B.z()) + "}";
+  return R"({"inverse3":[{"device_id":)" + json(device_id).dump() +
+         R"(,"commands":{"set_cursor_force":{"vector":)" + force + R"(,"values":)" + force +
+         "}}}]}";
 }
 
 }  // namespace thimble::driver::haply

@@ -1,4 +1,4 @@
-#include "studies/friction/friction_rig.h"
+#include "stability/friction_rig.h"
 
 #include <atomic>
 #include <cassert>

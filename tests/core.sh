@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# Tests the parts that can be left out (CMakeLists.txt).
+#   tests/core.sh [--each]
+#     (nothing)  configures a build without each part alone; builds the preset core in an empty folder, prints the
+#                seconds, touches a scene with it, asks for what it lacks, and builds programs on its installed libraries
+#     --each     also builds the program without each part alone (an hour)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source=$PWD
+work=$source/build/core_test
+rm -rf "$work"
+mkdir -p "$work"
+fail() {
+  echo "FAILED: $1" >&2
+  exit 1
+}
+quiet() {  # quiet LOG COMMAND...
+  "${@:2}" >"$work/$1.log" 2>&1 || fail "$(printf '%s ' "${@:2}"): $(tail -n 30 "$work/$1.log")"
+}
+
+for part in MESH_FORMATS RECORDINGS BAGS VIEW WEB STUDIES COMMISSIONING COMPAT ROS2 PYTHON MPI BENCHMARKS TESTS; do
+  echo "Configuring without THIMBLE_$part ..."
+  quiet "$part" cmake --preset release -B "$work/$part" -D "THIMBLE_$part=OFF"
+  if [ "${1:-}" = --each ]; then
+    quiet "$part" cmake --build "$work/$part" --parallel "$(nproc)" --target thimble
+    quiet "$part" "$work/$part/app/thimble" run box --duration 0.3 --no-view
+  fi
+  rm -rf "${work:?}/$part"
+done
+
+echo "Building core ..."
+begin=$SECONDS
+quiet core cmake --preset core -B "$work/core"
+quiet core cmake --build "$work/core" --parallel "$(nproc)" --target thimble
+echo "core: $((SECONDS - begin)) s from an empty folder, $(nproc) processors"
+thimble=$work/core/app/thimble
+for library in hdf5 assimp sqlite GL epoxy boost python mpi; do
+  ! ldd "$thimble" | grep -i "lib$library" || fail "core loads $library"
+done
+cd "$work"
+"$thimble" run box --duration 1 --no-view --report "$work/report" >said 2>&1 || fail "core does not run a scene: $(cat said)"
+grep -q '^Force ' said || fail "core prints no summary: $(cat said)"
+[ -s report/report.json ] || fail "core writes no report"
+lacks() {  # lacks OPTION COMMAND...: the answer names the option
+  local status=0
+  "$thimble" "${@:2}" >said 2>&1 || status=$?
+  [ $status = 2 ] || fail "thimble ${*:2}: exit code $status: $(cat said)"
+  grep -q "THIMBLE_$1" said || fail "thimble ${*:2} does not name THIMBLE_$1: $(cat said)"
+}
+lacks VIEW shot box
+lacks STUDIES study accuracy
+lacks STUDIES bench box
+lacks COMMISSIONING hil
+lacks COMMISSIONING identify
+lacks COMPAT exec true
+lacks RECORDINGS run box --duration 0.2 --no-view --record run.h5
+touch some.dae some.db3
+lacks MESH_FORMATS mesh some.dae
+echo "Building programs on the installed libraries ..."
+quiet install cmake --install "$work/core" --prefix "$work/usr" --component dev
+mkdir -p driver_only
+cat >driver_only/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(driver_only LANGUAGES CXX)
+# What the driver does not need cannot be found here.
+foreach(package fmt assimp PNG ZLIB yaml-cpp spdlog)
+  set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)
+endforeach()
+find_package(thimble REQUIRED COMPONENTS driver)
+if(TARGET thimble::render OR TARGET thimble::scene)
+  message(FATAL_ERROR "more than the driver")
+endif()
+add_executable(arms arms.cpp)
+target_link_libraries(arms PRIVATE thimble::driver)
+END
+cat >driver_only/arms.cpp <<'END'
+#include <cstdio>
+#include "thimble/driver/discovery.h"
+int main() {
+  std::printf("%zu arms\n", thimble::driver::find_arms().value().size());
+}
+END
+quiet consumer cmake -S driver_only -B driver_only/build -D CMAKE_PREFIX_PATH="$work/usr"
+quiet consumer cmake --build driver_only/build
+driver_only/build/arms | grep -q '^[0-9]* arms$' || fail "a program of the driver alone does not run"
+echo "core: passed"
