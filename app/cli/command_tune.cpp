@@ -57,7 +57,7 @@ int tune_scene(const TuneCommand& command) {
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
   if (!scene) return complain(scene.error(), kExitBadInput);
-  if (!scene->arm.can_simulate) {
+  if (!scene->arms.front().arm.can_simulate) {
     return complain({"The arm file has no section simulation: mass, friction and hand are not "
                      "known. Add one (app/arms/vintage_phantom.yaml shows the form)."},
                     kExitBadInput);

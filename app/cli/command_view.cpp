@@ -66,7 +66,7 @@ int list_runs() {
     }
     const session::SharedScene& scene = (*reader)->scene();
     scene::print_format("%s: %s, %s (%s), process %lld\n", run.name.c_str(), scene.name.c_str(),
-                        scene.arm.name.c_str(), scene.arm.device.c_str(),
+                        scene.arms.front().name.c_str(), scene.arms.front().device.c_str(),
                         static_cast<long long>(scene.pid));
     for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
       const session::SharedScene::Knob& knob = scene.knobs[i];

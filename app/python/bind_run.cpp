@@ -172,7 +172,7 @@ std::vector<std::string> warnings_of(const HeldRun& held) {
   const scene::Scene& scene = held.run->session().scene();
   const session::RecordingInfo info = held.run->session().recording_info();
   // More arms are of files, and a real arm of a calibration, that the text does not tell.
-  if (!scene.more_arms.empty() || info.device != "sim" || info.scene_text.empty()) {
+  if (scene.arms.size() > 1 || info.device != "sim" || info.scene_text.empty()) {
     return app::stability_warnings(scene);
   }
   std::string key = info.scene_text;

@@ -34,7 +34,7 @@ bool same_place(const scene::HandWaypoint& a, const scene::HandWaypoint& b) {
 /// Makes every hold of the hand's path last until what settles has settled; lists them.
 std::vector<Stretch> prolong_rests(scene::Scene& scene) {
   std::vector<Stretch> rests;
-  std::vector<scene::HandWaypoint>& path = scene.hand;
+  std::vector<scene::HandWaypoint>& path = scene.arms.front().hand;
   double later = 0;
   for (std::size_t i = 0; i < path.size();) {
     std::size_t end = i;
@@ -70,7 +70,7 @@ class Run {
     session::SessionOptions options{.adjust = [&](scene::Scene& read) { read = scene; },
                                     .meshes = meshes};
     options.duration = scene.duration + kSettling * static_cast<double>(stops.size());
-    options.arm_file = scene.arm_file;
+    options.arm_file = scene.arms.front().arm_file;
     auto opened = session::Session::open(scene.file, options);
     if (!opened) return opened.error();
     session::Session& session = **opened;
@@ -173,7 +173,7 @@ const Rest* RestTrial::worst() const {
 driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim::HandSettings& hand,
                                     const std::shared_ptr<scene::SharedMeshes>& meshes) {
   scene::Scene resting = scene;
-  resting.arm.simulated.hand = hand;
+  resting.arms.front().arm.simulated.hand = hand;
   scene::Scene stopped = resting;
   const std::vector<Stretch> stretches = prolong_rests(resting);
   auto run = Run::make(resting, {}, meshes);

@@ -96,13 +96,13 @@ struct Loop {
   scene::LoopTimes times;
 
   double edge(double damping) const {
-    return carried_by(scene.arm, times, 0, damping).stiffness_exact;
+    return carried_by(scene.arms.front().arm, times, 0, damping).stiffness_exact;
   }
 };
 
 void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double bare_edge,
                      std::vector<std::string>& warnings) {
-  const double force = loop.scene.arm.limits.force_max;
+  const double force = loop.scene.arms.front().arm.limits.force_max;
   for (const render::EffectPlan& effect : object.effects) {
     if (effect.kind->group == "texture") {
       const double curvature = curvature_of(effect);
@@ -116,14 +116,16 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
       // The arm's own dry friction holds slow oscillations [PHYSICS 1.4].
-      const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
+      const Carried carried = carried_by(loop.scene.arms.front().arm, loop.times, 0, 0);
       const double held_speed = oscillation_speed_limit(
-          hold, carried.damping, loop.scene.arm.simulated.plant.coulomb, carried.latency);
+          hold, carried.damping, loop.scene.arms.front().arm.simulated.plant.coulomb,
+          carried.latency);
       if (!(hold > bare_edge && held_speed < kStroke)) continue;
       warnings.push_back(fmt::format(
           "{} has a friction that holds with {:.0f} N/m, but with this hand ({:.3g} N s/m) the "
           "loop carries {:.0f} N/m: set its stiffness to {:.0f} N/m or less.",
-          object.name, hold, loop.scene.arm.simulated.hand.damping, bare_edge, 0.7 * bare_edge));
+          object.name, hold, loop.scene.arms.front().arm.simulated.hand.damping, bare_edge,
+          0.7 * bare_edge));
     }
   }
 }
@@ -141,9 +143,10 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
   for (const render::EffectPlan& effect : object.effects) {
     if (effect.kind->group == "friction") hold = std::max(hold, hold_of(effect));
   }
-  const Carried carried = carried_by(loop.scene.arm, loop.times, 0, 0);
+  const Carried carried = carried_by(loop.scene.arms.front().arm, loop.times, 0, 0);
   const double felt = motion.kind == render::MotionKind::kRigid ? motion.mass / 3.5 : motion.mass;
-  const double share = felt / (felt + carried.tip.mass + loop.scene.arm.simulated.hand.mass);
+  const double share =
+      felt / (felt + carried.tip.mass + loop.scene.arms.front().arm.simulated.hand.mass);
   const double damping =
       carried.damping * share * share + motion.damping * (1 - share) * (1 - share);
   if (!(hold * carried.latency > damping)) return;
@@ -173,7 +176,7 @@ void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
 }
 
 void warn_of_quantisation_noise(const Loop& loop, std::vector<std::string>& warnings) {
-  const scene::ArmFile& arm = loop.scene.arm;
+  const scene::ArmFile& arm = loop.scene.arms.front().arm;
   const device_sim::HandSettings& hand = arm.simulated.hand;
   double surfaces = 0, fields = 0;
   for (const scene::SceneObject& object : loop.scene.objects) {
@@ -266,7 +269,7 @@ double quantisation_noise_of(double damping, double step, double speed, double c
 std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
   // The account of the passivity stage knows fields, weights and what the motors carry.
-  const driver::EnergyStage stage = scene.energy.value_or(scene.arm.energy.stage);
+  const driver::EnergyStage stage = scene.energy.value_or(scene.arms.front().arm.energy.stage);
   if (stage != driver::EnergyStage::kBounding) return warnings;
   constexpr double kPushFelt = 0.02;  // N [PHYSICS 6]
   const auto warn = [&warnings](const std::string& what, double push) {
@@ -278,10 +281,10 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
         "the scene.",
         what, push));
   };
-  warn("The motors carry the arm", scene.arm.carried_most);
+  warn("The motors carry the arm", scene.arms.front().arm.carried_most);
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field) {
-      warn(object.name + " pushes a hand", try_field(object, scene.arm).push);
+      warn(object.name + " pushes a hand", try_field(object, scene.arms.front().arm).push);
     } else if (object.body.motion &&
                object.body.motion->grip) {  // on the floor it pulls at nothing
       warn(object.name + " pulls by its weight",
@@ -293,8 +296,8 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
 
 std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on) {
   std::vector<std::string> causes;
-  if (!scene.arm.can_simulate) return causes;  // nothing is known of its tip
-  const Loop loop{scene, loop_times(scene.arm, scene.rate)};
+  if (!scene.arms.front().arm.can_simulate) return causes;  // nothing is known of its tip
+  const Loop loop{scene, loop_times(scene.arms.front().arm, scene.rate)};
   const double bare_edge = loop.edge(0);
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(on.empty() || object.name == on)) continue;

@@ -85,7 +85,8 @@ constexpr double kRateMost = 1e5;
 std::optional<double> rate_that_carries(const scene::Scene& scene,
                                         const scene::SceneObject& object) {
   const auto carries = [&](double rate) {
-    return carried_by(scene.arm, loop_times(scene.arm, rate), object.stiffness, object.damping)
+    return carried_by(scene.arms.front().arm, loop_times(scene.arms.front().arm, rate),
+                      object.stiffness, object.damping)
                .stiffness_exact >= object.stiffness;
   };
   for (int times = 2; times <= 8; ++times) {
@@ -100,7 +101,7 @@ std::optional<double> damping_that_carries(const scene::Scene& scene,
                                            const scene::SceneObject& object,
                                            const scene::LoopTimes& times) {
   const auto carries = [&](double damping) {
-    return carried_by(scene.arm, times, object.stiffness, damping).stiffness_safe >=
+    return carried_by(scene.arms.front().arm, times, object.stiffness, damping).stiffness_safe >=
            object.stiffness;
   };
   double low = object.damping;
@@ -135,7 +136,8 @@ std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObj
       object.name, object.damping, 1e3 * carried.latency);
   if (damping) return text + fmt::format("set it to {:.2g} N s/m or less.", rounded_down(*damping));
   // Without the surface's damping at most.
-  const double safe = carried_by(scene.arm, carried.times, object.stiffness, 0).stiffness_safe;
+  const double safe =
+      carried_by(scene.arms.front().arm, carried.times, object.stiffness, 0).stiffness_safe;
   return text +
          fmt::format("set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
 }
@@ -161,13 +163,14 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
          fmt::format(
              ". A faster loop is not enough, for the arm's reports come every {:.3g} ms and its "
              "wire takes {:.3g} ms.",
-             report_period_ms(scene.arm, scene.rate), 1e3 * scene::loop_delay(scene.arm));
+             report_period_ms(scene.arms.front().arm, scene.rate),
+             1e3 * scene::loop_delay(scene.arms.front().arm));
 }
 
 /// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
 void tell_rests(const scene::Scene& scene, const RestTrial& trial,
                 const std::shared_ptr<scene::SharedMeshes>& meshes, TuneResult& result) {
-  const device_sim::HandSettings& own = scene.arm.simulated.hand;
+  const device_sim::HandSettings& own = scene.arms.front().arm.simulated.hand;
   for (const Rest& rest : trial.rests) {
     result.text +=
         fmt::format("Rest      at {:.2f} s{}: {:.2g} N, oscillates by {:.2f} mN RMS\n", rest.time,
@@ -195,7 +198,8 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
     if (object.build_field || !(object.stiffness > stiffest)) continue;
     stiffest = object.stiffness;
     const Carried carried =
-        carried_by(scene.arm, loop_times(scene.arm, scene.rate), object.stiffness, object.damping);
+        carried_by(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
+                   object.stiffness, object.damping);
     safe = carried.stiffness_safe;
     if (others.size() > 2) others.pop_back();
     others.emplace_back("the worst of those", carried.worst_hand);
@@ -219,8 +223,8 @@ void tell_topics(const scene::Scene& scene, const scene::LoopTimes& times, const
                  TuneResult& result) {
   scene::LoopTimes late = times;
   late.delay += ages.most;
-  const Carried here = carried_by(scene.arm, times, 1000, 0);
-  const Carried there = carried_by(scene.arm, late, 1000, 0);
+  const Carried here = carried_by(scene.arms.front().arm, times, 1000, 0);
+  const Carried there = carried_by(scene.arms.front().arm, late, 1000, 0);
   result.text += fmt::format(
       "ROS 2     forces answer positions that are {:.2f} ms old (median), {:.2f} ms (99 %): a wall "
       "without damping that is computed at the other end of the topics carries {:.0f} N/m by the "
@@ -297,20 +301,21 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
 
 std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
-  if (!scene.arm.can_simulate) return warnings;  // nothing is known of its tip
+  if (!scene.arms.front().arm.can_simulate) return warnings;  // nothing is known of its tip
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried =
-        carried_by(scene.arm, loop_times(scene.arm, scene.rate), object.stiffness, object.damping);
+        carried_by(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
+                   object.stiffness, object.damping);
     if (object.stiffness > carried.stiffness_exact) {
       warnings.push_back(advice(scene, object, carried));
     }
   }
   for (std::string& warning : energy_warnings(scene)) warnings.push_back(std::move(warning));
-  for (const scene::SceneArm& other : scene.more_arms) {
+  for (std::size_t i = 1; i < scene.arms.size(); ++i) {
+    const scene::SceneArm& other = scene.arms[i];
     scene::Scene with_it = scene;
-    with_it.arm = other.arm;
-    with_it.more_arms.clear();
+    with_it.arms = {other};
     for (const std::string& warning : stability_warnings(with_it)) {
       warnings.push_back("The arm \"" + other.name + "\": " + warning);
     }
@@ -321,10 +326,10 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
 driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& options) {
   const auto meshes = std::make_shared<scene::SharedMeshes>();  // of all hands
   // First, because a scene that cannot be opened fails here.
-  const auto trial = try_rests(scene, scene.arm.simulated.hand, meshes);
+  const auto trial = try_rests(scene, scene.arms.front().arm.simulated.hand, meshes);
   if (!trial) return trial.error();
   TuneResult result;
-  const scene::ArmFile& arm = scene.arm;
+  const scene::ArmFile& arm = scene.arms.front().arm;
   const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
   const Carried bare = carried_by(arm, times, 1000, 0);
   const double waited = times.delay - scene::loop_delay(arm);

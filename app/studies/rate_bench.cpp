@@ -22,7 +22,7 @@ void change_rate(scene::Scene& scene, double rate) {
   for (scene::SceneObject& object : scene.objects) {
     if (object.body.dent) object.body.dent->step = 1 / rate;
   }
-  scene.arm.simulated.firmware.report_period_ns = std::llround(1e9 / rate);
+  scene.arms.front().arm.simulated.firmware.report_period_ns = std::llround(1e9 / rate);
 }
 
 std::string sentence_of(const RateBench& bench, const RateVerdict& verdict) {

@@ -51,8 +51,8 @@ DrawnObject drawn_object(const session::SharedScene& scene,
 DrawnScene drawn_scene_of(const session::SharedScene& scene) {
   DrawnScene drawn;
   drawn.name = scene.name;
-  drawn.arm = scene.arm.name;
-  drawn.arm_in_scene = scene.arm.in_scene;
+  drawn.arm = scene.arms.front().name;
+  drawn.arm_in_scene = scene.arms.front().in_scene;
   drawn.force_limit = scene.force_max > 0 ? scene.force_max : 5;
   drawn.rate = 1e9 / static_cast<double>(scene.period_ns);
   for (const session::SharedScene::Object& object : scene.objects) {

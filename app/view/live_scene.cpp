@@ -24,13 +24,13 @@ bool LiveScene::update(DrawnMoment& moment) {
   }
   if (!reader_.patch(moment.patch)) moment.patch.triangle_count = 0;
   update_shapes(moment);
-  moment.arm = rods_of(reader_.scene().arm, moment.tick);
+  moment.arm = rods_of(reader_.scene().arms.front(), moment.tick);
   moment.others.clear();
-  for (std::size_t i = 0; i < reader_.scene().more_arms.size(); ++i) {
-    const session::SharedScene::Arm& arm = reader_.scene().more_arms[i];
+  for (std::size_t i = 1; i < reader_.scene().arms.size(); ++i) {
+    const session::SharedScene::Arm& arm = reader_.scene().arms[i];
     DrawnArm other;
     other.name = arm.in_scene;
-    if (!reader_.newest_of(i + 1, other.tick)) continue;
+    if (!reader_.newest_of(i, other.tick)) continue;
     other.rods = rods_of(arm, other.tick);
     moment.others.push_back(std::move(other));
   }

@@ -88,8 +88,8 @@ void draw_head(const session::SharedReader& reader, TouchSource& source) {
   const session::SharedScene& scene = reader.scene();
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(scene.name.c_str());
-  ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arm.name.c_str(), scene.arm.device.c_str(),
-                      1e9 / static_cast<double>(scene.period_ns),
+  ImGui::TextDisabled("%s (%s), %.0f Hz%s", scene.arms.front().name.c_str(),
+                      scene.arms.front().device.c_str(), 1e9 / static_cast<double>(scene.period_ns),
                       scene.wall_clock || scene.paced ? "" : ", virtual time");
   ImGui::PopTextWrapPos();
   draw_tick(source.moment().tick,

@@ -124,7 +124,7 @@ void Content::lead_hand(const ScreenPart& part) {
   const Eigen::Vector3d p_WT(source_.moment().tick.p_WT.data());
   const bool by_mouse = mouse_.hand().holds && live;
   if (by_mouse || !live) hand_.input().let_go();
-  const session::SharedScene::Arm& arm = run.scene().arm;
+  const session::SharedScene::Arm& arm = run.scene().arms.front();
   hand_.step(
       keys_, camera_, p_WT, {arm.min_W, arm.max_W}, frame_time_,
       live && !by_mouse && source_.has_moment() && run.state() == session::RunState::kRunning);

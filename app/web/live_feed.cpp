@@ -74,7 +74,7 @@ void add_dent(const render::BodyPatch& patch, double t, PageBlock& block) {
 LiveFeed::LiveFeed(session::SharedReader& reader)
     : reader_(reader),
       draws_all_(draws_all(reader.scene())),
-      other_ticks_(reader.scene().more_arms.size(), UINT64_MAX),
+      other_ticks_(reader.scene().arms.size() - 1, UINT64_MAX),
       marks_(reader.scene().period_ns),
       statistics_(std::make_unique<session::RunStatistics>()),
       patch_(std::make_unique<render::BodyPatch>()) {
@@ -97,7 +97,7 @@ driver::Result<std::string> LiveFeed::page(std::uint16_t port) const {
                   .rate = 1e9 / static_cast<double>(scene.period_ns),
                   .virtual_time = !scene.wall_clock,
                   .scene = scene};
-  for (std::size_t i = 0; i < 1 + scene.more_arms.size(); ++i) {
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     touch.arms.emplace_back();
     touch.arms.back().force_limit = scene.force_max;
   }
@@ -170,7 +170,8 @@ void LiveFeed::take_ticks(Json& json, PageBlock& block, Update& update) {
     }
     arm["rows"] = kept.size();
     add_rows(block, "arm0.", ticks_, kept, begin_ns_);
-    add_bars(reader_.scene().arm, std::span(ticks_).last(1), begin_ns_, "arm0.", arm, block);
+    add_bars(reader_.scene().arms.front(), std::span(ticks_).last(1), begin_ns_, "arm0.", arm,
+             block);
     update.ticks = ticks_.size() - old;
     now_ = 1e-9 * static_cast<double>(ticks_.back().time_ns - begin_ns_);
     has_last_ = true;
@@ -187,7 +188,7 @@ void LiveFeed::take_other_arms(Json& json, PageBlock& block) {
       const std::string prefix = "arm" + std::to_string(i + 1) + ".";
       const std::size_t only = 0;
       add_rows(block, prefix, std::span<const driver::TickRecord>(&tick, 1), {&only, 1}, begin_ns_);
-      add_bars(reader_.scene().more_arms[i], {&tick, 1}, begin_ns_, prefix, arm, block);
+      add_bars(reader_.scene().arms[i + 1], {&tick, 1}, begin_ns_, prefix, arm, block);
       arm["rows"] = 1;
     }
     json["arms"].push_back(std::move(arm));

@@ -28,8 +28,8 @@ std::vector<std::byte> sound_memory() {
   scene.period_ns = 1'000'000;
   scene.force_max = 5;
   scene.paced = scene.restarts = true;
-  scene.arm.device = "sim";
-  scene.arm.geometry = driver::DeltaArm{.a = 0.05, .b = 0.05, .c = 0.05, .r = 0.05};
+  scene.arms.front().device = "sim";
+  scene.arms.front().geometry = driver::DeltaArm{.a = 0.05, .b = 0.05, .c = 0.05, .r = 0.05};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
   scene.objects.push_back({.name = "a", .moves = true, .vertex_count = 3, .triangle_count = 1});
@@ -123,7 +123,7 @@ void read_everything(session::SharedReader& reader) {
   for (const auto& one : ticks) {
     promise(one.object < static_cast<int>(scene.objects.size()), "a tick names an object");
     promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick is somewhere");
-    static_cast<void>(session::arm_lines(scene.arm, one));
+    static_cast<void>(session::arm_lines(scene.arms.front(), one));
   }
   session::ScenePoses poses;
   if (reader.poses(poses)) {

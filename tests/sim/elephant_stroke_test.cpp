@@ -80,7 +80,8 @@ TEST_F(ElephantStroke, TouchesForMostOfItsTimeAndMoreThanOnce) {
   EXPECT_GT(session_->statistics().contact_time(), 5.0);
   EXPECT_GE(session_->statistics().contacts(), 2u);
   EXPECT_GT(session_->statistics().force_max(), 0.5);
-  EXPECT_LE(session_->statistics().force_max(), session_->scene().arm.limits.force_max);
+  EXPECT_LE(session_->statistics().force_max(),
+            session_->scene().arms.front().arm.limits.force_max);
 }
 
 TEST_F(ElephantStroke, LosesNoContactWhileTheTipIsInside) {

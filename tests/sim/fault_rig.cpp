@@ -97,7 +97,7 @@ FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::Wirin
   const std::tuple key(tested.file, phase == Phase::kDeforming, stiff);
   if (!read_before.contains(key)) read_before.emplace(key, read(tested, phase, stiff));
   scene::Scene& scene = read_before.at(key);
-  file_ = scene.arm;
+  file_ = scene.arms.front().arm;
   file_.simulated.firmware.wiring = wiring;
   file_.limits.soft_start = 0.05;  // what is tested is what comes after
   auto objects = scene::SceneObjects::build(scene);

@@ -82,14 +82,15 @@ TEST(HandConstants, NoHandIsThrownBackFasterByAnyShippedWall) {
   double most = 0;
   int walls = 0;
   for (const auto& [scene, object] : shipped_walls()) {
-    for (const device_sim::HandSettings& hand : hands_around(scene.arm.simulated.hand)) {
-      support::Wall wall{.plant = scene.arm.simulated.plant, .hand = hand};
+    for (const device_sim::HandSettings& hand :
+         hands_around(scene.arms.front().arm.simulated.hand)) {
+      support::Wall wall{.plant = scene.arms.front().arm.simulated.plant, .hand = hand};
       wall.stiffness = object.stiffness;
       wall.damping = object.damping;
       wall.encoder_step = 3e-5;
-      wall.velocity_corner = scene.arm.velocity_corner_frequency;
+      wall.velocity_corner = scene.arms.front().arm.velocity_corner_frequency;
       wall.period_ns = std::llround(1e9 / scene.rate);
-      wall.delay_ns = std::llround(1e9 * scene::loop_delay(scene.arm));
+      wall.delay_ns = std::llround(1e9 * scene::loop_delay(scene.arms.front().arm));
       for (const double speed : {0.05, 0.2, 1.0}) {
         for (int i = 0; i < 20; ++i) {
           const double e = thrown_back(wall, speed, (i + 0.5) / 20);
@@ -143,11 +144,13 @@ Unrest unrest_of(const scene::ArmFile& file, double rate, double stiffness, doub
 TEST(HandConstants, EveryHandRestsOnEveryShippedWall) {
   double most = 0;
   for (const auto& [scene, object] : shipped_walls()) {
-    const Unrest unrest = unrest_of(scene.arm, scene.rate, object.stiffness, object.damping);
+    const Unrest unrest =
+        unrest_of(scene.arms.front().arm, scene.rate, object.stiffness, object.damping);
     EXPECT_EQ(unrest.loud, 0) << object.name << " " << object.stiffness << ", " << unrest.who;
     most = std::max(most, unrest.force_rms);
-    const app::Carried carried = app::carried_by(scene.arm, app::loop_times(scene.arm, scene.rate),
-                                                 object.stiffness, object.damping);
+    const app::Carried carried =
+        app::carried_by(scene.arms.front().arm, app::loop_times(scene.arms.front().arm, scene.rate),
+                        object.stiffness, object.damping);
     EXPECT_LE(object.stiffness, carried.stiffness_safe) << object.name;
   }
   support::record_hard_case(7, "the same walls pressed along three axes, through wire and gate",

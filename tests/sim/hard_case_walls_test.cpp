@@ -435,7 +435,7 @@ TEST(HardCase07, SpringAndDamperOfAnyShippedSurfaceNeverGiveSpeedAtAnyPhase) {
     if (entry.path().extension() != ".yaml") continue;
     const auto scene = scene::load_scene(entry.path(), {.mesh_folder = THIMBLE_MESHES});
     if (!scene) continue;  // a mesh is not installed; the walls of other scenes are the same
-    const scene::ArmFile& arm = scene->arm;
+    const scene::ArmFile& arm = scene->arms.front().arm;
     for (const scene::SceneObject& object : scene->objects) {
       if (object.build_field) continue;
       ++surfaces;

@@ -100,8 +100,8 @@ Rest rest_in(const support::Hollow& hollow, const Pressed& pressed) {
   session::SessionOptions options;
   if (pressed.bare) {
     options.adjust = [](scene::Scene& scene) {
-      scene.arm.simulated.plant.coulomb = 0;
-      scene.arm.simulated.firmware.ideal_encoders = true;
+      scene.arms.front().arm.simulated.plant.coulomb = 0;
+      scene.arms.front().arm.simulated.firmware.ideal_encoders = true;
     };
   }
   const auto session = session::Session::open(file, options);

@@ -419,7 +419,7 @@ TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
   const auto reader = reader_of(*session);
   ASSERT_TRUE(reader->lead_hand({5, 5, 5}, true));
   session->run(std::atomic<bool>{false});
-  const auto& box = session->scene().arm.workspace;
+  const auto& box = session->scene().arms.front().arm.workspace;
   for (const auto& row : session->ticks()) {
     for (int k = 0; k < 3; ++k) {
       ASSERT_LE(row.p_WT[static_cast<std::size_t>(k)], box.max_W[k] + 2e-3) << row.tick;

@@ -242,10 +242,10 @@ TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
   ASSERT_TRUE(reader) << reader.error().message;
   const session::SharedScene& shown = (*reader)->scene();
   EXPECT_EQ(shown.arm.in_scene, "left");
-  ASSERT_EQ(shown.more_arms.size(), 1u);
-  EXPECT_EQ(shown.more_arms[0].in_scene, "right");
-  EXPECT_EQ(shown.more_arms[0].device, "board_of_right");
-  EXPECT_EQ(shown.more_arms[0].p_WB, session.setup().arm_file(1).p_WB);
+  ASSERT_EQ(shown.arms.size(), 2u);
+  EXPECT_EQ(shown.arms[1].in_scene, "right");
+  EXPECT_EQ(shown.arms[1].device, "board_of_right");
+  EXPECT_EQ(shown.arms[1].p_WB, session.setup().arm_file(1).p_WB);
   EXPECT_TRUE(shown.knobs.empty()) << "which would turn one arm's alone";
   driver::TickRecord tick;
   EXPECT_FALSE((*reader)->newest_of(1, tick)) << "there is none yet";

@@ -47,7 +47,8 @@ std::uint64_t hash_of(session::Session& session) {
 TEST(OwnWire, OfTheWoodenHapticsGivesTheForcesOfTheReportsThatItSpokeBefore) {
   const auto own = open_arm("woodenhaptics", {.duration = 2});
   const auto before = open_arm("woodenhaptics", {.duration = 2, .adjust = [](scene::Scene& scene) {
-                                                   scene.arm.protocol = driver::ArmKind::kPolhem;
+                                                   scene.arms.front().arm.protocol =
+                                                       driver::ArmKind::kPolhem;
                                                  }});
   ASSERT_TRUE(own && before);
   EXPECT_EQ(hash_of(*own), hash_of(*before));
@@ -56,7 +57,7 @@ TEST(OwnWire, OfTheWoodenHapticsGivesTheForcesOfTheReportsThatItSpokeBefore) {
 TEST(Orientation, ComesFromTheGimbalOfThePolhemAndChangesNoForce) {
   const auto with = open_arm("polhem", {.duration = 2});
   const auto without = open_arm("polhem", {.duration = 2, .adjust = [](scene::Scene& scene) {
-                                             scene.arm.model.gimbal.reset();
+                                             scene.arms.front().arm.model.gimbal.reset();
                                            }});
   ASSERT_TRUE(with && without);
   EXPECT_EQ(hash_of(*with), hash_of(*without));

@@ -106,8 +106,7 @@ void repeat(std::vector<scene::HandWaypoint>& route, double seconds) {
 TEST(RightForces, ABeamIsFeltWholeForAMinute) {
   expect_untouched(shipped("two_hands"), 2, [](scene::Scene& scene) {
     scene.duration = 60;
-    repeat(scene.hand, scene.duration);
-    for (scene::SceneArm& arm : scene.more_arms) repeat(arm.hand, scene.duration);
+    for (scene::SceneArm& arm : scene.arms) repeat(arm.hand, scene.duration);
   });
 }
 

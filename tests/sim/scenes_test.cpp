@@ -66,7 +66,8 @@ TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOr
     EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
     EXPECT_EQ(session::count_lost_contacts(session->ticks(), session->touch()), 0u);
     EXPECT_GT(session->statistics().force_max(), 0.3);
-    EXPECT_LT(session->statistics().force_max(), session->scene().arm.limits.force_max);
+    EXPECT_LT(session->statistics().force_max(),
+              session->scene().arms.front().arm.limits.force_max);
     // What an ideal texture or field does not do, a loop of 1 kHz with a delay does a little
     // [PHYSICS 1.5]; felt is what exceeds a millijoule.
     EXPECT_LT(session->statistics().energy_to_hand(), 1e-3);

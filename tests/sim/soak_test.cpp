@@ -61,12 +61,12 @@ class Wanderer {
   static constexpr std::uint64_t kTicksPerPlace = 300;
 
   Wanderer(session::Session& session, std::uint64_t seed) : session_(session), random_(seed) {
-    for (const scene::HandWaypoint& waypoint : session.scene().hand)
+    for (const scene::HandWaypoint& waypoint : session.scene().arms.front().hand)
       places_.push_back(waypoint.p_W);
   }
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     if (state.tick % kTicksPerPlace == 0) {
-      const scene::ArmFile& arm = session_.scene().arm;
+      const scene::ArmFile& arm = session_.scene().arms.front().arm;
       const Vector3d place = places_[random_.bits() % places_.size()] + random_.in_box(0.012);
       const Vector3d inside =
           place.cwiseMax(0.9 * arm.workspace.min_W).cwiseMin(0.9 * arm.workspace.max_W);
@@ -122,7 +122,7 @@ Soaked soak(const std::string& scene, std::uint64_t ticks) {
   }
   session::Session& session = **opened;
   Wanderer wanderer(session, 404);
-  Witness witness(ticks, session.scene().arm.limits.force_max);
+  Witness witness(ticks, session.scene().arms.front().arm.limits.force_max);
   driver::run_servo(session.device(), session.setup().clock(), driver::ForceLaw(wanderer),
                     driver::TickSink(witness),
                     {.period_ns = session.setup().period_ns(), .ticks = ticks},

@@ -58,7 +58,7 @@ double oscillation_stopped_at(const std::filesystem::path& file, double time) {
 /// Returns what `tune` would warn of for the hand of a scene, all but what the energy stage does.
 std::vector<std::string> warnings_of(const scene::Scene& scene) {
   std::vector<std::string> warnings;
-  const auto trial = try_rests(scene, scene.arm.simulated.hand);
+  const auto trial = try_rests(scene, scene.arms.front().arm.simulated.hand);
   EXPECT_TRUE(trial) << trial.error().message;
   if (trial) warnings = rest_warnings(scene, *trial);
   const std::size_t by_law = stability_warnings(scene).size() - energy_warnings(scene).size();
@@ -89,7 +89,7 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     const bool alarm = !warnings_of(*scene).empty();
     if (alarm && !oscillates) {
       // Where the scene's own rest touches nothing, tune stops the hand on its path.
-      const auto trial = try_rests(*scene, scene->arm.simulated.hand);
+      const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
       ASSERT_TRUE(trial && trial->worst());
       oscillates = oscillation_stopped_at(file, trial->worst()->time) > kLimitCycleMost;
     }
@@ -151,7 +151,7 @@ TEST(TuneRest, IsSilentInAGroove) {
         << "    - {t: 0.9, at: [0, 0, -0.009]}\n";
     const auto scene = scene::load_scene(file);
     ASSERT_TRUE(scene) << scene.error().message;
-    const auto trial = try_rests(*scene, scene->arm.simulated.hand);
+    const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
     ASSERT_TRUE(trial) << trial.error().message;
     ASSERT_NE(trial->worst(), nullptr);
     EXPECT_EQ(trial->worst()->on, "groove");
@@ -175,7 +175,7 @@ TEST(TuneRest, StopsTheHandInWhatItOnlyStrokes) {
       << "    - {t: 0.6, at: [0.01, 0, -0.01]}\n    - {t: 1, at: [0.02, 0, 0.02]}\n";
   const auto scene = scene::load_scene(file);
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto trial = try_rests(*scene, scene->arm.simulated.hand);
+  const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
   ASSERT_TRUE(trial) << trial.error().message;
   ASSERT_EQ(trial->rests.size(), 2u);  // in the air, and on the wall
   EXPECT_EQ(trial->rests[0].on, "");

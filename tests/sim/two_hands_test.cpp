@@ -161,9 +161,10 @@ TEST(TwoHands, FeelEachOtherThroughTheBeam) {
     const auto session = open_two_hands([&](scene::Scene& scene) {
       free_the_beam(scene);
       scene.objects[0].body.motion->gravity_W.setZero();
-      scene.hand = {station(0, {0, -0.045, -0.03}), station(1, {0, -0.045 - way, -0.03}),
-                    station(2, {0, -0.045 - way, -0.03})};
-      scene.more_arms[0].hand = {station(0, {0, 0.045, -0.03}), station(2, {0, 0.045, -0.03})};
+      scene.arms.front().hand = {station(0, {0, -0.045, -0.03}),
+                                 station(1, {0, -0.045 - way, -0.03}),
+                                 station(2, {0, -0.045 - way, -0.03})};
+      scene.arms[1].hand = {station(0, {0, 0.045, -0.03}), station(2, {0, 0.045, -0.03})};
     });
     Vector3d left(0, 0, 0), right(0, 0, 0);
     for (int tick = 0; tick < 2000; ++tick) {
@@ -320,7 +321,7 @@ TEST(TwoHands, AreRefusedWithASentenceWhereOneArmIsMeant) {
   other.arm_file = "touch";
   EXPECT_NE(refusal(other).find("in place of all"), std::string::npos);
   other = options;
-  other.adjust = [](scene::Scene& scene) { scene.more_arms[0].hand[1].p_W = {0, 0.4, 0}; };
+  other.adjust = [](scene::Scene& scene) { scene.arms[1].hand[1].p_W = {0, 0.4, 0}; };
   EXPECT_NE(refusal(other).find("the arm \"right\": At "), std::string::npos) << refusal(other);
   other.adjust = [](scene::Scene& scene) { scene.objects[0].body.shape.clay.emplace(); };
   EXPECT_NE(refusal(other).find("by one arm alone"), std::string::npos) << refusal(other);

@@ -30,7 +30,7 @@ TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
         Grip{"stiff and without damping", 0.025, 1000, 1, 0}, Grip{"heavy", 0.1, 300, 3, 0}}) {
     session::SessionOptions options;
     options.adjust = [&](scene::Scene& scene) {
-      device_sim::HandSettings& hand = scene.arm.simulated.hand;
+      device_sim::HandSettings& hand = scene.arms.front().arm.simulated.hand;
       hand.mass = grip.mass;
       hand.stiffness = grip.stiffness;
       hand.damping = grip.damping;
@@ -71,7 +71,7 @@ class PressedPlate : public ::testing::TestWithParam<const char*> {
            "{t: 0.7, at: [0, 0, -0.01]}]\n";
     session::SessionOptions options;
     options.adjust = [reversed](scene::Scene& scene) {
-      if (reversed) scene.arm.simulated.firmware.wiring.motor_gain = {-1, -1, -1};
+      if (reversed) scene.arms.front().arm.simulated.firmware.wiring.motor_gain = {-1, -1, -1};
     };
     auto opened = session::Session::open(folder / "plate.yaml", options);
     if (!opened) {

@@ -111,7 +111,7 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   const auto open = session::open_arm(*session_, terminal, stop);
   if (!open) return open.error();
   if (!*open) return driver::Error{"It was stopped before the arm was in its place."};
-  const scene::ArmFile& arm = session_->scene().arm;
+  const scene::ArmFile& arm = session_->scene().arms.front().arm;
   client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device(),
                                           !session_->setup().real_arm());
   publisher_ = std::make_unique<ReadingPublisher>(channel_, *client_, session_->device(), arm);

@@ -22,7 +22,7 @@ ArmFacts known_facts(const ExecOptions& options, const ExecArm& arm) {
   std::filesystem::path file = arm.arm_file;
   if (file.empty() && !options.scene.empty()) {
     const auto scene = scene::load_scene(options.scene);
-    if (scene) file = scene->arm_file;
+    if (scene) file = scene->arms.front().arm_file;
   }
   const auto read = scene::load_arm(file.empty() ? "vintage_phantom" : file);
   return read ? facts_of(*read) : ArmFacts{};

@@ -239,7 +239,7 @@ Json page_dents(const PageTouch& touch, PageBlock& block) {
 
 Json page_arm(const PageTouch& touch, std::size_t number, PageBlock& block) {
   const PageArm& arm = touch.arms[number];
-  const SharedScene::Arm& drawn = number == 0 ? touch.scene.arm : touch.scene.more_arms[number - 1];
+  const SharedScene::Arm& drawn = touch.scene.arms[number];
   const std::string prefix = "arm" + std::to_string(number) + ".";
   const PageTicks ticks(arm.ticks, arm.periods_ns);
   const auto kept = rows_kept(ticks, kPageRowsMost / touch.arms.size());

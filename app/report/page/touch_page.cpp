@@ -150,13 +150,13 @@ driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
                   .left = shapes_left(scene(), objects())};
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / info.rate));
   // The recordings came in any order; the page shows the scene's arms in theirs.
-  std::vector<const session::Replay*> order(1 + scene().more_arms.size(), nullptr);
+  std::vector<const session::Replay*> order(scene().arms.size(), nullptr);
   for (const session::Replay& replay : replays) order[arm_of(replay.felt.info)] = &replay;
   std::vector<std::string> devices;
   for (std::size_t arm = 0; arm < order.size(); ++arm) {
     const session::Recording& felt = order[arm]->felt;
     devices.push_back(felt.info.device);
-    const auto& limits = arm == 0 ? scene().arm.limits : scene().more_arms[arm - 1].arm.limits;
+    const auto& limits = scene().arms[arm].arm.limits;
     touch.arms.push_back({.ticks = felt.ticks,
                           .force_limit = limits.force_max,
                           .marks = marks_of_ticks(felt.ticks, period_ns),

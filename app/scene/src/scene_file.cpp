@@ -189,9 +189,8 @@ bool bears_its_rate(const Scene& scene, const ArmFile& file) {
 
 /// Returns the same of all arms of the scene.
 bool bears_its_rate(const Scene& scene) {
-  return bears_its_rate(scene, scene.arm) &&
-         std::all_of(scene.more_arms.begin(), scene.more_arms.end(),
-                     [&](const SceneArm& other) { return bears_its_rate(scene, other.arm); });
+  return std::all_of(scene.arms.begin(), scene.arms.end(),
+                     [&](const SceneArm& one) { return bears_its_rate(scene, one.arm); });
 }
 
 /// Notes a rate at which the gate of an arm would take the loop for stalled.
@@ -217,7 +216,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   scene.name = root.require_string("name");
   scene.description = root.optional_string("description", "");
   const bool several = root.has("arms");
-  if (!several) scene.arm_file = find_own_arm_file(root, folder);
+  if (!several) scene.arms.front().arm_file = find_own_arm_file(root, folder);
   scene.rate =
       std::clamp(root.optional_number("rate", 1000, "Hz", kRateMin, kRateMax) * reading.rate_factor,
                  kRateMin, kRateMax);
@@ -236,25 +235,26 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   if (several) {
     if (auto read = read_arms(root, folder, reading, arms, scene); !read) return read.error();
   }
-  scene.own_arm_file = scene.arm_file;
+  scene.arms.front().own_arm_file = scene.arms.front().arm_file;
   if (!reading.arm.empty()) {
     auto other = find_arm_file(reading.arm.string());
     if (!other) return other.error();
-    scene.arm_file = std::move(other).value();
+    scene.arms.front().arm_file = std::move(other).value();
   }
   std::optional<driver::Error> arm_error;
   if (!several) {
-    auto arm = load_arm(scene.arm_file);
+    auto arm = load_arm(scene.arms.front().arm_file);
     if (arm) {
-      scene.arm = std::move(arm).value();
+      scene.arms.front().arm = std::move(arm).value();
     } else {
       arm_error = arm.error();
       root.ignore_checks();  // they would compare with an arm that is not there
     }
   }
-  if (!arm_error) check_stall(root, scene.rate, scene.arm);
-  for (const SceneArm& other : scene.more_arms) check_stall(root, scene.rate, other.arm);
-  const render::EffectContext context = effect_context_of(scene.arm, scene.rate);
+  if (!arm_error) {
+    for (const SceneArm& one : scene.arms) check_stall(root, scene.rate, one.arm);
+  }
+  const render::EffectContext context = effect_context_of(scene.arms.front().arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {
     scene.objects.push_back(read_object(object, folder, mesh_folder, context));
   }
@@ -266,8 +266,8 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   if (several) {
     read_hands(arms, folder, scene);
   } else {
-    scene.hand =
-        read_hand(root.require_map("hand"), scene.objects, folder, scene.arm.simulated.hand);
+    scene.arms.front().hand = read_hand(root.require_map("hand"), scene.objects, folder,
+                                        scene.arms.front().arm.simulated.hand);
   }
   root.finish();
   if (auto done = yaml.finish(); !done) return done.error();
@@ -296,8 +296,7 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
         auto& period_ns = arm.simulated.firmware.report_period_ns;
         period_ns = std::min<std::int64_t>(period_ns, std::llround(1e9 / scene->rate));
       };
-      report_as_often(scene->arm);
-      for (SceneArm& other : scene->more_arms) report_as_often(other.arm);
+      for (SceneArm& one : scene->arms) report_as_often(one.arm);
     }
     return scene;
   }

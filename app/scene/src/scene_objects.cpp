@@ -151,7 +151,7 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   auto loaded = load_meshes(scene, *held, objects->notes_);
   if (!loaded) return loaded.error();
   const std::vector<MeshPointer>& meshes_W = objects->meshes_W_ = std::move(loaded).value();
-  const std::size_t arms = 1 + scene.more_arms.size();
+  const std::size_t arms = scene.arms.size();
   const double reach = reach_of(scene);
   std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
   for (std::size_t i = 0; i < meshes_W.size(); ++i) {

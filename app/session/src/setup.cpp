@@ -38,59 +38,47 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   auto found = scene::find_scene(scene.string());
   if (!found) return found.error();
   std::unique_ptr<Setup> setup(new Setup);
-  setup->scene_file_ = std::move(found).value();
-  setup->firmware_ = options.firmware;
-  setup->hand_by_mouse_ = options.hand_by_mouse;
-  setup->hand_by_program_ = options.hand_by_program;
-  setup->homed_ = options.homed;
-  setup->hold_ = options.hold;
-  setup->endless_ = options.endless;
-  setup->keep_ = options.keep;
-  setup->meshes_ = options.meshes ? options.meshes : std::make_shared<scene::SharedMeshes>();
-  setup->real_time_ = options.clock == ClockKind::kWall || any_real_in(options);
-  setup->paced_ = options.clock == ClockKind::kPaced && !setup->real_time_ && !options.own_clock;
+  setup->plan_.scene_file = std::move(found).value();
+  setup->plan_.firmware = options.firmware;
+  setup->plan_.hand_by_mouse = options.hand_by_mouse;
+  setup->plan_.hand_by_program = options.hand_by_program;
+  setup->plan_.homed = options.homed;
+  setup->plan_.hold = options.hold;
+  setup->plan_.endless = options.endless;
+  setup->plan_.keep = options.keep;
+  setup->plan_.meshes = options.meshes ? options.meshes : std::make_shared<scene::SharedMeshes>();
+  setup->plan_.real_time = options.clock == ClockKind::kWall || any_real_in(options);
+  setup->plan_.paced =
+      options.clock == ClockKind::kPaced && !setup->plan_.real_time && !options.own_clock;
   const auto stood_in = [](const auto& use) { return use.second && use.second->open_link; };
-  if (!setup->real_time_ || options.open_link ||
+  if (!setup->plan_.real_time || options.open_link ||
       std::any_of(options.real_arms.begin(), options.real_arms.end(), stood_in)) {
     setup->clock_ = options.own_clock;
-    setup->own_clock_ = options.own_clock != nullptr;
+    setup->plan_.own_clock = options.own_clock != nullptr;
   }
   if (auto read = setup->read(options); !read) return read.error();
 
   if (auto built = setup->build_objects(); !built) return built.error();
   const std::vector<std::string>& notes = setup->objects_->notes();
-  setup->told_.insert(setup->told_.end(), notes.begin(), notes.end());
+  setup->plan_.told.insert(setup->plan_.told.end(), notes.begin(), notes.end());
   if (setup->objects_->moving().size() > ScenePoses::kMost) {
     return driver::Error{fmt::format("{}: at most {} objects may move.",
-                                     setup->scene_file_.string(), ScenePoses::kMost)};
+                                     setup->plan_.scene_file.string(), ScenePoses::kMost)};
   }
   if (auto simulated = setup->simulate_arms(); !simulated) return simulated.error();
-  if (!options.meshes) setup->meshes_->drop_unused();  // the path, which the arm has
-  if (setup->real_time_) setup->objects_->start_loaders();
+  if (!options.meshes) setup->plan_.meshes->drop_unused();  // the path, which the arm has
+  if (setup->plan_.real_time) setup->objects_->start_loaders();
   return setup;
 }
 
 driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, std::uint64_t seed) {
-  if (other.real_time_ || other.own_clock_) {
+  if (other.plan_.real_time || other.plan_.own_clock) {
     return driver::Error{
         "A session like another is in virtual time, on a clock of its own, as that one must be."};
   }
   std::unique_ptr<Setup> setup(new Setup);
-  setup->scene_file_ = other.scene_file_;
-  setup->scene_ = other.scene_;
-  setup->choices_ = other.choices_;
-  setup->told_ = other.told_;
-  setup->firmware_ = other.firmware_;
-  setup->paced_ = other.paced_;
-  setup->endless_ = other.endless_;
-  setup->hand_by_mouse_ = other.hand_by_mouse_;
-  setup->hand_by_program_ = other.hand_by_program_;
-  setup->hold_ = other.hold_;
-  setup->seed_ = seed;
-  setup->ticks_ = other.ticks_;
-  setup->period_ns_ = other.period_ns_;
-  setup->keep_ = other.keep_;
-  setup->meshes_ = other.meshes_;
+  setup->plan_ = other.plan_;
+  setup->plan_.seed = seed;
   if (auto built = setup->build_objects(); !built) return built.error();
   setup->arms_.resize(other.arms_.size());
   for (std::size_t i = 0; i < setup->arms_.size(); ++i) {
@@ -104,7 +92,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, s
 }
 
 driver::Result<void> Setup::build_objects() {
-  auto objects = scene::SceneObjects::build(*scene_, meshes_);
+  auto objects = scene::SceneObjects::build(*plan_.scene, plan_.meshes);
   if (!objects) return objects.error();
   objects_ = std::move(objects).value();
   return {};
@@ -118,28 +106,29 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
                                      options.quality, fmt::join(scene::kQualityNames, ", "))};
   }
   auto scene = scene::load_scene(
-      scene_file_, {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
-                    .mesh_folder = options.mesh_folder,
-                    .rate_factor = real ? 1 : options.rate_factor * scene::rate_factor_of(*quality),
-                    .several_arms = options.several_arms});
+      plan_.scene_file,
+      {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
+       .mesh_folder = options.mesh_folder,
+       .rate_factor = real ? 1 : options.rate_factor * scene::rate_factor_of(*quality),
+       .several_arms = options.several_arms});
   if (!scene) return scene.error();
-  scene_ = std::make_shared<scene::Scene>(std::move(scene).value());
+  plan_.scene = std::make_shared<scene::Scene>(std::move(scene).value());
   if (auto fits = check_several(options); !fits) return fits;
-  quality_choices_ = scene::apply_quality(*quality, *scene_, options.budget);
-  choices_ = {.quality = options.quality,
-              .budget = options.budget,
-              .rate_factor = scene_->rate_factor,
-              .adjusted = static_cast<bool>(options.adjust)};
-  if (options.adjust) options.adjust(*scene_);
+  plan_.quality_choices = scene::apply_quality(*quality, *plan_.scene, options.budget);
+  plan_.choices = {.quality = options.quality,
+                   .budget = options.budget,
+                   .rate_factor = plan_.scene->rate_factor,
+                   .adjusted = static_cast<bool>(options.adjust)};
+  if (options.adjust) options.adjust(*plan_.scene);
   if (auto used = use_real_arms(options); !used) return used;
-  seed_ = options.seed.value_or(scene_->seed);
-  period_ns_ = std::llround(1e9 / scene_->rate);
-  const double duration = options.duration.value_or(scene_->duration);
+  plan_.seed = options.seed.value_or(plan_.scene->seed);
+  plan_.period_ns = std::llround(1e9 / plan_.scene->rate);
+  const double duration = options.duration.value_or(plan_.scene->duration);
   // Led by a person, or by another program, it goes on until he has enough, unless he says how
   // long.
   if ((!hand_led() && !options.endless) || options.duration) {
-    ticks_ =
-        static_cast<std::uint64_t>(std::ceil(duration * 1e9 / static_cast<double>(period_ns_)));
+    plan_.ticks = static_cast<std::uint64_t>(
+        std::ceil(duration * 1e9 / static_cast<double>(plan_.period_ns)));
   }
   return {};
 }
@@ -149,11 +138,11 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
   if (arms() == 1) {
     return driver::Error{
         fmt::format("{}: the scene has one arm; name it without {}=: --device WHICH.",
-                    scene_file_.string(), options.real_arms.begin()->first)};
+                    plan_.scene_file.string(), options.real_arms.begin()->first)};
   }
   const auto refuse = [this](const char* what) {
     return driver::Error{
-        fmt::format("{}: the scene has {} arms; {}", scene_file_.string(), arms(), what)};
+        fmt::format("{}: the scene has {} arms; {}", plan_.scene_file.string(), arms(), what)};
   };
   if (options.real_arm) {
     return refuse(fmt::format("say which one is meant: --device {}=WHICH.", arm_name(0)).c_str());
@@ -163,8 +152,7 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
   for (const auto& real : options.real_arms) {
     const std::string& name = real.first;
     const auto same = [&name](const scene::SceneArm& arm) { return arm.name == name; };
-    if (name != scene_->arm_name &&
-        std::none_of(scene_->more_arms.begin(), scene_->more_arms.end(), same)) {
+    if (std::none_of(plan_.scene->arms.begin(), plan_.scene->arms.end(), same)) {
       return refuse(fmt::format("none is called \"{}\": {}.", name, names).c_str());
     }
   }
@@ -179,16 +167,16 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
 
 driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
   arms_.resize(arms());
-  for (ArmOfRun& arm : arms_) arm.energy = scene_->energy;
+  for (ArmOfRun& arm : arms_) arm.energy = plan_.scene->energy;
   if (options.real_arm) {
     ArmOfRun& arm = arms_.front();
     arm.real = options.real_arm;
     arm.open_link = options.open_link;
-    arm.start_pose = StartPose::of(scene_->arm, arm.real->kind);
-    auto told = scene::put_on_terms(*scene_, scene_file_, *options.terms);
+    arm.start_pose = StartPose::of(plan_.scene->arms.front().arm, arm.real->kind);
+    auto told = scene::put_on_terms(*plan_.scene, plan_.scene_file, *options.terms);
     if (!told) return told.error();
-    told_ = std::move(told).value();
-    arm.energy = scene_->energy;
+    plan_.told = std::move(told).value();
+    arm.energy = plan_.scene->energy;
     arm.feel_check = options.terms->feel_check;
     return {};
   }
@@ -205,8 +193,7 @@ driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
 }
 
 driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& use) {
-  const scene::ArmPlace& place = i == 0 ? scene_->arm_place : scene_->more_arms[i - 1].place;
-  auto& path = i == 0 ? scene_->arm_file : scene_->more_arms[i - 1].arm_file;
+  scene::SceneArm& in_scene = plan_.scene->arms[i];
   const auto of_arm = [&](const std::string& what) {
     return "The arm \"" + arm_name(i) + "\": " + what;
   };
@@ -217,25 +204,25 @@ driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& us
   // Where it stands comes from the scene, how it counts from its home pose from its file alone.
   const auto uncalibrated = scene::load_arm(use.terms.arm.path);
   if (!uncalibrated) return driver::Error{of_arm(uncalibrated.error().message)};
-  arm.start_pose = StartPose::of(place.put(*uncalibrated), use.arm.kind);
+  arm.start_pose = StartPose::of(in_scene.place.put(*uncalibrated), use.arm.kind);
   // What the scene says of limits is kept as with one arm, for this one.
   scene::Scene alone;
-  alone.own_arm_file = path;
-  alone.energy = scene_->energy;
-  alone.energy_line = scene_->energy_line;
-  auto told = scene::put_on_terms(alone, scene_file_, use.terms);
+  alone.arms.front().own_arm_file = in_scene.arm_file;
+  alone.energy = plan_.scene->energy;
+  alone.energy_line = plan_.scene->energy_line;
+  auto told = scene::put_on_terms(alone, plan_.scene_file, use.terms);
   if (!told) return driver::Error{of_arm(told.error().message)};
-  for (const std::string& sentence : *told) told_.push_back(of_arm(sentence));
-  own_arm_file(i) = place.put(alone.arm);
-  path = alone.arm_file;
+  for (const std::string& sentence : *told) plan_.told.push_back(of_arm(sentence));
+  in_scene.arm = in_scene.place.put(alone.arms.front().arm);
+  in_scene.arm_file = alone.arms.front().arm_file;
   arm.energy.reset();  // the arm has it now
   return {};
 }
 
 driver::Result<void> Setup::simulate_arms() {
   std::vector<std::pair<std::string, std::shared_ptr<const render::TriangleMesh>>> named;
-  for (std::size_t i = 0; i < scene_->objects.size(); ++i) {
-    const scene::SceneObject& object = scene_->objects[i];
+  for (std::size_t i = 0; i < plan_.scene->objects.size(); ++i) {
+    const scene::SceneObject& object = plan_.scene->objects[i];
     if (object.build_field || object.paged) continue;
     named.emplace_back(object.name, objects_->shared_mesh_W(i));
   }
@@ -247,31 +234,29 @@ driver::Result<void> Setup::simulate_arms() {
     const auto in_file = [&whose](const std::filesystem::path& file, const driver::Error& error) {
       return driver::Error{file.string() + ": " + whose + error.message};
     };
-    const auto planned = meshes_->hand_route(hand, named);
-    if (!planned) return in_file(scene_file_, planned.error());
+    const auto planned = plan_.meshes->hand_route(hand, named);
+    if (!planned) return in_file(plan_.scene_file, planned.error());
     const scene::HandRoute& route = **planned;
     if (auto reach = scene::check_reach(arm, route); !reach) {
-      return in_file(scene_file_, reach.error());
+      return in_file(plan_.scene_file, reach.error());
     }
     start = route.front().second;
     // A hand that is led waits where the planned path begins.
     auto simulation = scene::ArmSimulation::make(
-        arm, hand_led() ? scene::HandRoute{route.front()} : route, firmware_, seed);
+        arm, hand_led() ? scene::HandRoute{route.front()} : route, plan_.firmware, seed);
     if (!simulation) return in_file(arm_file, simulation.error());
     return simulation;
   };
   for (std::size_t i = 0; i < arms(); ++i) {
     if (arms_[i].real) continue;
     // A seed of its own each, so that two hands do not tremble as one.
-    const bool first = i == 0;
     Eigen::Vector3d start;
-    auto simulation = simulate(
-        arm_file(i), first ? scene_->arm_file : scene_->more_arms[i - 1].arm_file,
-        first ? scene_->hand : scene_->more_arms[i - 1].hand, arm_name(i), seed_ + i, start);
+    const scene::SceneArm& one = plan_.scene->arms[i];
+    auto simulation = simulate(one.arm, one.arm_file, one.hand, one.name, plan_.seed + i, start);
     if (!simulation) return simulation.error();
     arms_[i].simulation = std::move(simulation).value();
     if (auto inside = find_start_inside(i, start); !inside.empty()) {
-      told_.push_back(std::move(inside));
+      plan_.told.push_back(std::move(inside));
     }
   }
   return {};
@@ -283,9 +268,9 @@ std::string Setup::find_start_inside(std::size_t i, const Eigen::Vector3d& p_WT)
   const render::SceneTouch& touch = objects_->touch(i);
   for (std::size_t object = 0; object < touch.size(); ++object) {
     // What the hand holds is around the tip from the first tick.
-    const auto& motion = scene_->objects[object].body.motion;
+    const auto& motion = plan_.scene->objects[object].body.motion;
     if (motion && motion->grip) continue;
-    if (touch.object(object).inside(p_WT)) inside.push_back(scene_->objects[object].name);
+    if (touch.object(object).inside(p_WT)) inside.push_back(plan_.scene->objects[object].name);
   }
   if (inside.empty()) return {};
   return fmt::format(
@@ -308,17 +293,18 @@ driver::Result<void> Setup::open(std::size_t i) {
   }
   if (arm.real) {
     auto opened = arm.open_link ? arm.open_link(arm_file(i), *clock_)
-                                : scene::open_link(*arm.real, arm_file(i), firmware_, *clock_);
+                                : scene::open_link(*arm.real, arm_file(i), plan_.firmware, *clock_);
     if (!opened) return opened.error();
     link = std::move(opened).value();
   } else {
     link = arm.simulation->link(*clock_);
   }
-  driver::DeviceSettings settings = scene::device_settings(arm_file(i), scene_->rate, arm.energy);
+  driver::DeviceSettings settings =
+      scene::device_settings(arm_file(i), plan_.scene->rate, arm.energy);
   // A simulated hand that is led has no tremor, and its arm sends no old positions.
   constexpr double kAnyTime = 1e9;  // s
   if (hand_led()) settings.motion.hold_most = kAnyTime;
-  settings.hold = hold_;
+  settings.hold = plan_.hold;
   driver::HeatSettings& heat = settings.heat;
   if (arm.real && heat.named()) {
     const scene::KnownHeat known = scene::load_heat(arm.real->name(), heat, scene::world_time());
@@ -337,8 +323,8 @@ driver::Result<void> Setup::open(std::size_t i) {
 driver::Result<void> Setup::open_arm() {
   // The clock starts last, so that the arms' time begins with the session's. A real arm knows only
   // the time of the world.
-  if (!clock_ && real_time_) clock_ = std::make_unique<driver::WallClock>();
-  if (!clock_ && paced_) {
+  if (!clock_ && plan_.real_time) clock_ = std::make_unique<driver::WallClock>();
+  if (!clock_ && plan_.paced) {
     auto clock = std::make_shared<PacedClock>();
     pace_ = clock.get();
     clock_ = std::move(clock);
@@ -380,7 +366,7 @@ driver::Result<void> Setup::check_start_pose() const {
   for (std::size_t i = 0; i < arms(); ++i) {
     if (!arms_[i].real) continue;
     const std::string trouble =
-        start_pose(i).trouble(device(i).state().p_WT, !homed_ || device(i).home_needed());
+        start_pose(i).trouble(device(i).state().p_WT, !plan_.homed || device(i).home_needed());
     if (trouble.empty()) {
       device(i).confirm_home();
       continue;
@@ -404,25 +390,25 @@ Terminal terminal_of(const Setup& setup, std::size_t arm, Terminal terminal) {
 }
 
 std::string Setup::scene_path() const {
-  return full_path(scene_file_);
+  return full_path(plan_.scene_file);
 }
 
 RecordingInfo Setup::recording_info(std::size_t arm) const {
-  const auto& file = arm == 0 ? scene_->arm_file : scene_->more_arms[arm - 1].arm_file;
-  return {.scene = scene_->name,
-          .scene_file = full_path(scene_file_),
-          .scene_text = scene::text_of(scene_file_),
+  const auto& file = plan_.scene->arms[arm].arm_file;
+  return {.scene = plan_.scene->name,
+          .scene_file = full_path(plan_.scene_file),
+          .scene_text = scene::text_of(plan_.scene_file),
           .arm = arm_file(arm).name,
           .arm_file = full_path(file),
           .arm_text = scene::text_of(file),
           .device = device_name(arm),
-          .clock = real_time_ ? "wall" : "virtual",
+          .clock = plan_.real_time ? "wall" : "virtual",
           .program = scene::program_name(),
-          .rate = scene_->rate,
-          .seed = seed_ + arm,
+          .rate = plan_.scene->rate,
+          .seed = plan_.seed + arm,
           .arm_in_scene = arm_name(arm),
           .inside_at_start = fmt::format("{}", fmt::join(inside_at_start(arm), ", ")),
-          .options = text_of(choices_)};
+          .options = text_of(plan_.choices)};
 }
 
 }  // namespace thimble::session

@@ -27,6 +27,29 @@
 
 namespace thimble::session {
 
+/// What is run, before anything is built from it: a copy with another seed is another run of it.
+struct RunPlan {
+  std::filesystem::path scene_file;
+  std::shared_ptr<scene::Scene> scene;  ///< Of sessions alike; changed only while it is read.
+  std::vector<std::string> told;        ///< What the user must know, a sentence each.
+  std::vector<std::string> quality_choices;
+  RunChoices choices;
+  std::filesystem::path firmware;
+  bool real_time = false;
+  bool paced = false;
+  bool own_clock = false;  ///< The caller moves the clock on.
+  bool endless = false;
+  bool hand_by_mouse = false;
+  bool hand_by_program = false;
+  bool homed = false;
+  driver::HoldToRun hold{};
+  std::uint64_t seed = 0;
+  std::uint64_t ticks = 0;
+  std::int64_t period_ns = 0;
+  Keep keep = Keep::kRun;
+  std::shared_ptr<scene::SharedMeshes> meshes;
+};
+
 /// One arm of a run: what it is, and as its loop drives it.
 struct ArmOfRun {
   std::optional<driver::FoundArm> real;  ///< The arm on the desk, if it is not simulated.
@@ -65,23 +88,23 @@ class Setup {
   /// thread.
   driver::Result<void> activate();
 
-  const scene::Scene& scene() const noexcept { return *scene_; }
+  const scene::Scene& scene() const noexcept { return *plan_.scene; }
   scene::SceneObjects& objects() const noexcept { return *objects_; }
   /// Returns how many arms touch the scene.
-  std::size_t arms() const noexcept { return 1 + scene_->more_arms.size(); }
+  std::size_t arms() const noexcept { return plan_.scene->arms.size(); }
   /// Returns what the scene calls an arm, counted from 0; empty if it is the only one.
   const std::string& arm_name(std::size_t arm) const noexcept {
-    return arm == 0 ? scene_->arm_name : scene_->more_arms[arm - 1].name;
+    return plan_.scene->arms[arm].name;
   }
   /// Returns an arm's file.
   const scene::ArmFile& arm_file(std::size_t arm) const noexcept {
-    return arm == 0 ? scene_->arm : scene_->more_arms[arm - 1].arm;
+    return plan_.scene->arms[arm].arm;
   }
   /// Returns the arm as the loop drives it. Precondition: the arm is open, as for `clock`.
   driver::Device& device(std::size_t arm = 0) const noexcept { return *arms_[arm].device; }
   driver::Clock& clock() const noexcept { return *clock_; }
   /// Returns whether simulated time passes at a pace that viewers choose.
-  bool paced() const noexcept { return paced_; }
+  bool paced() const noexcept { return plan_.paced; }
   /// Returns the clock that has that pace; null if there is none. Precondition: the arm is open.
   PacedClock* pace() const noexcept { return pace_; }
   /// Returns the simulation of the arm; null if the arm is real.
@@ -98,37 +121,37 @@ class Setup {
   /// Returns whether an arm of the run is real.
   bool any_real() const noexcept;
   /// Returns the firmware image for an arm that needs one; may be empty.
-  const std::filesystem::path& firmware() const noexcept { return firmware_; }
+  const std::filesystem::path& firmware() const noexcept { return plan_.firmware; }
 
   /// Returns what is kept of the ticks.
-  Keep keep() const noexcept { return keep_; }
+  Keep keep() const noexcept { return plan_.keep; }
   /// Returns whether the run goes by the time of the world; threads load pages and write then.
-  bool real_time() const noexcept { return real_time_; }
+  bool real_time() const noexcept { return plan_.real_time; }
   /// Returns whether a real arm's counters are known to be right: it was in its home pose when it
   /// got power.
-  bool homed() const noexcept { return homed_; }
+  bool homed() const noexcept { return plan_.homed; }
   /// Returns what must be held for a force.
-  const driver::HoldToRun& hold() const noexcept { return hold_; }
+  const driver::HoldToRun& hold() const noexcept { return plan_.hold; }
   /// Returns whether it runs until it is stopped, faults or not.
-  bool endless() const noexcept { return endless_; }
+  bool endless() const noexcept { return plan_.endless; }
   /// Returns whether a viewer leads the simulated hand.
-  bool hand_by_mouse() const noexcept { return hand_by_mouse_; }
+  bool hand_by_mouse() const noexcept { return plan_.hand_by_mouse; }
   /// Returns whether somebody leads the simulated hand in place of the scene's path.
-  bool hand_led() const noexcept { return hand_by_mouse_ || hand_by_program_; }
-  std::int64_t period_ns() const noexcept { return period_ns_; }  ///< Between two ticks.
+  bool hand_led() const noexcept { return plan_.hand_by_mouse || plan_.hand_by_program; }
+  std::int64_t period_ns() const noexcept { return plan_.period_ns; }  ///< Between two ticks.
   /// Returns how many periods the run lasts; 0: until it is stopped.
-  std::uint64_t ticks() const noexcept { return ticks_; }
-  std::uint64_t seed() const noexcept { return seed_; }  ///< Of everything random.
+  std::uint64_t ticks() const noexcept { return plan_.ticks; }
+  std::uint64_t seed() const noexcept { return plan_.seed; }  ///< Of everything random.
   /// Returns what the user must know, a sentence each: what was put right, left out or guessed of
   /// the meshes, and what became of limits that the scene names, where the arm is real.
-  const std::vector<std::string>& told() const noexcept { return told_; }
+  const std::vector<std::string>& told() const noexcept { return plan_.told; }
   /// Returns the names of the objects that the tip of an arm starts in; of a real arm once it is
   /// activated.
   const std::vector<std::string>& inside_at_start(std::size_t arm = 0) const noexcept {
     return arms_[arm].inside_at_start;
   }
   /// Returns what the quality that was asked for has chosen for the scene, a sentence each.
-  const std::vector<std::string>& quality_choices() const noexcept { return quality_choices_; }
+  const std::vector<std::string>& quality_choices() const noexcept { return plan_.quality_choices; }
   /// Returns what is known of an arm's feel check.
   scene::FeelCheckState feel_check(std::size_t arm = 0) const noexcept {
     return arms_[arm].feel_check;
@@ -146,9 +169,6 @@ class Setup {
   Setup() = default;
   driver::Result<void> read(const SessionOptions& options);
   driver::Result<void> check_several(const SessionOptions& options) const;
-  scene::ArmFile& own_arm_file(std::size_t arm) noexcept {
-    return arm == 0 ? scene_->arm : scene_->more_arms[arm - 1].arm;
-  }
   driver::Result<void> use_real_arms(const SessionOptions& options);
   driver::Result<void> use_among_others(std::size_t arm, const RealArmUse& use);
   driver::Result<void> build_objects();
@@ -156,24 +176,8 @@ class Setup {
   std::string find_start_inside(std::size_t arm, const Eigen::Vector3d& p_WT);
   driver::Result<void> open(std::size_t arm);
 
-  std::filesystem::path scene_file_;
-  std::shared_ptr<scene::Scene> scene_;  // of sessions alike; changed only while it is read
-  std::vector<std::string> told_, quality_choices_;
-  RunChoices choices_;
-  std::filesystem::path firmware_;
-  bool real_time_ = false;
-  bool paced_ = false;
-  bool own_clock_ = false;  // that the caller moves on
-  bool endless_ = false;
-  bool hand_by_mouse_ = false;
-  bool hand_by_program_ = false;
-  bool homed_ = false;
-  driver::HoldToRun hold_{};
-  std::uint64_t seed_ = 0;
-  std::uint64_t ticks_ = 0;
-  std::int64_t period_ns_ = 0;
-  Keep keep_ = Keep::kRun;
-  std::shared_ptr<scene::SharedMeshes> meshes_;
+  RunPlan plan_;
+  // What is built from it.
   std::unique_ptr<scene::SceneObjects> objects_;
   std::shared_ptr<driver::Clock> clock_;
   PacedClock* pace_ = nullptr;  // the same, or null

@@ -1,3 +1,4 @@
+#include "report/page/page_block.h"
 #include "studies/accuracy/accuracy_page.h"
 
 #include <cmath>
@@ -41,24 +42,8 @@ with half the distance between the quartiles. Instructions are counted by callgr
 that runs the same binary; they decide what is cheaper. Errors are the same bits in every run.</p>
 )";
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string cell(const std::string& text) {
-  return "<td>" + escaped(text) + "</td>";
+  return "<td>" + html_text(text) + "</td>";
 }
 
 // Lists the diagrams of one kind, if there are any.
@@ -77,8 +62,8 @@ void add_contents(const std::vector<AxisSection>& sections, bool given, const ch
 void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
   const AccuracyAxis& a = axis.axis;
   page << "<details><summary>Figures</summary><div class=\"scroll\"><table><tr><th>method</th><th>"
-       << escaped(a.knob) << (a.knob_unit.empty() ? "" : ", ") << escaped(a.knob_unit)
-       << "</th><th>" << escaped(a.unit) << "</th><th>ns " << (a.cost_is_added ? "more " : "")
+       << html_text(a.knob) << (a.knob_unit.empty() ? "" : ", ") << html_text(a.knob_unit)
+       << "</th><th>" << html_text(a.unit) << "</th><th>ns " << (a.cost_is_added ? "more " : "")
        << "per " << a.per << "</th><th>&plusmn;</th><th>instructions</th>"
        << "<th>best bargain</th></tr>\n";
   for (const MeasuredLine& line : axis.lines) {
@@ -106,16 +91,16 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
   for (const AxisSection& section : sections) {
     const MeasuredAxis& axis = *section.axis;
     const AccuracyAxis& a = axis.axis;
-    page << "<h2 id=\"" << a.name << "\">" << escaped(a.title) << "</h2>\n<p class=\"felt\">"
-         << escaped(felt_sentence(axis)) << "</p>\n<div class=\"pictures\">\n";
+    page << "<h2 id=\"" << a.name << "\">" << html_text(a.title) << "</h2>\n<p class=\"felt\">"
+         << html_text(felt_sentence(axis)) << "</p>\n<div class=\"pictures\">\n";
     for (const std::string& name : section.pictures) {
       page << inline_picture(folder / (name + ".svg"), name + "-") << '\n';
     }
-    page << "</div>\n<p>" << escaped(default_sentence(axis)) << "</p>\n";
+    page << "</div>\n<p>" << html_text(default_sentence(axis)) << "</p>\n";
     if (const std::string orders = order_sentence(axis); !orders.empty()) {
-      page << "<p>" << escaped(orders) << "</p>\n";
+      page << "<p>" << html_text(orders) << "</p>\n";
     }
-    page << "<p class=\"small\">Truth: " << escaped(a.truth) << " Left out: " << escaped(a.left_out)
+    page << "<p class=\"small\">Truth: " << html_text(a.truth) << " Left out: " << html_text(a.left_out)
          << "</p>\n";
     add_table(axis, page);
   }

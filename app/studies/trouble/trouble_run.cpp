@@ -31,7 +31,7 @@ class Account {
   explicit Account(const session::Session& session)
       : arm_(*session.simulation()->board_arm()),
         period_(static_cast<double>(session.setup().period_ns()) * 1e-9),
-        force_max_(session.scene().arm.limits.force_max),
+        force_max_(session.scene().arms.front().arm.limits.force_max),
         p_(arm_.plant().p_BT()) {
     for (auto& axis : force_) axis.reserve(session.setup().ticks());
   }
@@ -114,9 +114,10 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
                     {.period_ns = session.setup().period_ns(), .ticks = session.setup().ticks()},
                     stop);
   found = account.close();
-  found.given_bound = energy_let_go(scene::energy_settings(
-                          session.scene().arm, session.scene().rate, session.scene().energy)) +
-                      scene.own_energy;
+  found.given_bound =
+      energy_let_go(scene::energy_settings(session.scene().arms.front().arm, session.scene().rate,
+                                           session.scene().energy)) +
+      scene.own_energy;
   found.must_oscillate = scene.oscillates;
   found.unforetold = !found.must_oscillate && found.limit_cycle > kLimitCycleMost &&
                      rest_causes(session.scene()).empty();

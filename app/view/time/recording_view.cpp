@@ -176,13 +176,13 @@ void RecordingView::show(double time, DrawnMoment& moment) const {
   for (std::size_t i = 0; i < drawn_.objects.size(); ++i) {
     moment.shapes[i] = film_.shape_at(i, moment.tick.time_ns);
   }
-  moment.arm = rods_of(shared_.arm, moment.tick);
+  moment.arm = rods_of(shared_.arms.front(), moment.tick);
   moment.others.resize(arms() - 1);
   for (std::size_t i = 0; i + 1 < arms(); ++i) {
     DrawnArm& other = moment.others[i];
-    other.name = shared_.more_arms[i].in_scene;
+    other.name = shared_.arms[i + 1].in_scene;
     other.tick = ticks(i + 1)[tick_at(arms_[i + 1].ticks, time_ns)];
-    other.rods = rods_of(shared_.more_arms[i], other.tick);
+    other.rods = rods_of(shared_.arms[i + 1], other.tick);
   }
 }
 

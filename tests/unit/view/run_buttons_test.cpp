@@ -67,7 +67,7 @@ TEST(RunButtons, AreDrawnForAnyRunAndTellWhyAPhysicalArmRefuses) {
   for (const char* device : {"sim", "polhem_1"}) {
     session::SharedScene scene;
     scene.period_ns = 1'000'000;
-    scene.arm.device = device;
+    scene.arms.front().device = device;
     scene.paced = scene.restarts = true;
     const auto run = session::SharedRun::create("", scene, 8).value();
     const auto reader = session::SharedReader::over(run->memory().again().value()).value();

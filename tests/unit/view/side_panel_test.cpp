@@ -86,8 +86,8 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   io.DisplaySize = {width, height};
   session::SharedScene scene;
   scene.name = "a scene with a name that is rather long";
-  scene.arm.name = "vintage_phantom";
-  scene.arm.device = "sim";
+  scene.arms.front().name = "vintage_phantom";
+  scene.arms.front().device = "sim";
   scene.period_ns = 1'000'000;
   scene.field.push_back({{0, 0, 0}, {0, 0, 1}});
   scene.knobs = {knob(1e-6, 1e-3), knob(0, 1000)};

@@ -65,7 +65,7 @@ class TouchPlayerTest : public ::testing::Test {
     scene.force_max = 4;
     scene.wall_clock = wall_clock;
     scene.paced = paced;
-    scene.arm.device = "sim";
+    scene.arms.front().device = "sim";
     run_ = session::SharedRun::create("", scene, 1000).value();
     reader_ = session::SharedReader::over(run_->memory().again().value()).value();
     run_->set_state(session::RunState::kRunning);

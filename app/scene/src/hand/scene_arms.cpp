@@ -134,21 +134,15 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
                     "change the entries of arms.",
                     scene.file.string(), read.size())};
   }
-  if (read.empty()) return {};
-  scene.arm_name = read.front().name;
-  scene.arm_place = read.front().place;
-  scene.arm_file = read.front().arm_file;
-  scene.arm = std::move(read.front().arm);
-  scene.more_arms.assign(std::make_move_iterator(read.begin() + 1),
-                         std::make_move_iterator(read.end()));
+  if (!read.empty()) scene.arms = std::move(read);
   return {};
 }
 
 void read_hands(std::vector<YamlMap>& arms, const std::filesystem::path& folder, Scene& scene) {
   for (std::size_t i = 0; i < arms.size(); ++i) {
-    auto& hand = i == 0 ? scene.hand : scene.more_arms[i - 1].hand;
-    ArmFile& arm = i == 0 ? scene.arm : scene.more_arms[i - 1].arm;
-    hand = read_hand(arms[i].require_map("hand"), scene.objects, folder, arm.simulated.hand);
+    SceneArm& arm = scene.arms[i];
+    arm.hand =
+        read_hand(arms[i].require_map("hand"), scene.objects, folder, arm.arm.simulated.hand);
     arms[i].finish();
   }
 }

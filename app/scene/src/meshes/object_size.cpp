@@ -10,9 +10,9 @@ double reach_of(const Scene& scene) {
   const auto side = [](const ArmFile& arm) {
     return (arm.workspace.max_W - arm.workspace.min_W).maxCoeff();
   };
-  double reach = side(scene.arm);
-  for (const SceneArm& arm : scene.more_arms) reach = std::max(reach, side(arm.arm));
-  return std::max(reach, 0.0);
+  double reach = 0;
+  for (const SceneArm& arm : scene.arms) reach = std::max(reach, side(arm.arm));
+  return reach;
 }
 
 std::string unit_advice(const std::string& kind) {

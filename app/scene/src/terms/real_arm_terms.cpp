@@ -75,27 +75,30 @@ driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealAr
 driver::Result<std::vector<std::string>> put_on_terms(Scene& scene, const fs::path& scene_file,
                                                       const RealArmTerms& terms) {
   std::vector<std::string> told;
-  scene.arm = terms.arm.file;
-  scene.arm_file = terms.arm.path;
+  scene.arms.front().arm = terms.arm.file;
+  scene.arms.front().arm_file = terms.arm.path;
   std::error_code missing;
-  const bool same = fs::equivalent(scene.own_arm_file, terms.arm.path, missing);
-  if (!same && is_installed_arm(scene.own_arm_file)) {
-    told.push_back(scene_file.string() + ": its arm, " + scene.own_arm_file.stem().string() +
+  const bool same = fs::equivalent(scene.arms.front().own_arm_file, terms.arm.path, missing);
+  if (!same && is_installed_arm(scene.arms.front().own_arm_file)) {
+    told.push_back(scene_file.string() + ": its arm, " +
+                   scene.arms.front().own_arm_file.stem().string() +
                    ", is what it is simulated with; a real arm has its own.");
   } else if (!same) {
-    const auto own = load_arm(scene.own_arm_file);
+    const auto own = load_arm(scene.arms.front().own_arm_file);
     if (!own) return own.error();
-    for (std::string& sentence : tighten(scene.arm, terms.arm.path, *own, scene.own_arm_file)) {
+    for (std::string& sentence :
+         tighten(scene.arms.front().arm, terms.arm.path, *own, scene.arms.front().own_arm_file)) {
       told.push_back(std::move(sentence));
     }
   }
   if (scene.energy) {
-    const auto energy =
-        tighten_energy(scene.arm, terms.arm.path, *scene.energy, scene_file, scene.energy_line);
+    const auto energy = tighten_energy(scene.arms.front().arm, terms.arm.path, *scene.energy,
+                                       scene_file, scene.energy_line);
     if (energy) told.push_back(*energy);
     scene.energy.reset();  // the arm has it now
   }
-  scene.arm.limits.force_max = std::min(scene.arm.limits.force_max, terms.force_most);
+  scene.arms.front().arm.limits.force_max =
+      std::min(scene.arms.front().arm.limits.force_max, terms.force_most);
   return told;
 }
 

@@ -124,8 +124,8 @@ void feel_again(const Recording& recording, std::size_t i, ReplayedLaw& law, Rep
 driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> recordings,
                                                  const scene::Scene& scene,
                                                  const std::filesystem::path& file) {
-  std::vector<std::string> names{scene.arm_name};
-  for (const scene::SceneArm& arm : scene.more_arms) names.push_back(arm.name);
+  std::vector<std::string> names;
+  for (const scene::SceneArm& arm : scene.arms) names.push_back(arm.name);
   std::vector<std::size_t> order;
   for (const std::string& name : names) {
     const auto is_it = [&name](const Recording& one) { return one.info.arm_in_scene == name; };
@@ -187,7 +187,7 @@ driver::Result<Replay> replay_alone(const Recording& recording, const std::strin
   if (!objects) return objects.error();
 
   Replay replay = begin_replay(recording, *scene, *file);
-  ReplayedLaw law(recording, *scene, scene->arm, (*objects)->touch());
+  ReplayedLaw law(recording, *scene, scene->arms.front().arm, (*objects)->touch());
   for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
     feel_again(recording, i, law, replay);
     (*objects)->serve_pages();
@@ -232,9 +232,8 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
   }
   std::vector<std::unique_ptr<ReplayedLaw>> laws;
   for (std::size_t arm = 0; arm < order->size(); ++arm) {
-    const scene::ArmFile& own = arm == 0 ? scene->arm : scene->more_arms[arm - 1].arm;
-    laws.push_back(std::make_unique<ReplayedLaw>(recordings[(*order)[arm]], *scene, own,
-                                                 (*objects)->touch(arm)));
+    laws.push_back(std::make_unique<ReplayedLaw>(recordings[(*order)[arm]], *scene,
+                                                 scene->arms[arm].arm, (*objects)->touch(arm)));
   }
   const double period = 1 / recordings.front().info.rate;
   for (std::size_t i = 0; i < recordings.front().ticks.size(); ++i) {

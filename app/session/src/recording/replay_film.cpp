@@ -29,8 +29,8 @@ void ReplayFilm::take(const driver::TickRecord& tick) {
 }
 
 std::size_t ReplayFilm::arm_of(const RecordingInfo& info) const {
-  for (std::size_t i = 0; i < scene_.more_arms.size(); ++i) {
-    if (scene_.more_arms[i].name == info.arm_in_scene) return i + 1;
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    if (scene_.arms[i].name == info.arm_in_scene) return i;
   }
   return 0;
 }

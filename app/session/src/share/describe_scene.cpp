@@ -55,8 +55,8 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
                            const std::string& device) {
   SharedScene described;
   described.name = scene.name;
-  described.force_max = scene.arm.limits.force_max;
-  described.arm = describe_arm(scene.arm, device);
+  described.force_max = scene.arms.front().arm.limits.force_max;
+  described.arms = {describe_arm(scene.arms.front().arm, device)};
   const render::TriangleMesh& mesh = objects.mesh_W();
   described.vertices = mesh.vertices;
   described.triangles.reserve(mesh.triangles.size());
@@ -90,10 +90,10 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
 SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
                            const std::vector<std::string>& devices) {
   SharedScene all = describe_scene(scene, objects, devices.front());
-  all.arm.in_scene = scene.arm_name;
-  for (std::size_t i = 0; i < scene.more_arms.size(); ++i) {
-    all.more_arms.push_back(describe_arm(scene.more_arms[i].arm, devices[i + 1]));
-    all.more_arms.back().in_scene = scene.more_arms[i].name;
+  all.arms.clear();
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    all.arms.push_back(describe_arm(scene.arms[i].arm, devices[i]));
+    all.arms.back().in_scene = scene.arms[i].name;
   }
   return all;
 }

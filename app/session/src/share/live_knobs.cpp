@@ -19,7 +19,7 @@ double length(const std::array<double, 3>& v) noexcept {
 }  // namespace
 
 LiveKnobs::LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch) {
-  const scene::DeclaredLimits& declared = scene.arm.declared;
+  const scene::DeclaredLimits& declared = scene.arms.front().arm.declared;
   for (std::size_t i = 0; i < touch.size(); ++i) {
     render::LiveSettings settings(declared.stiffness, declared.damping);
     touch.object(i).list_settings(settings);

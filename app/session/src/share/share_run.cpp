@@ -29,9 +29,10 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   scene.paced = setup.paced();
   scene.restarts = options.restarts && !setup.any_real();
   if (setup.arms() == 1) scene.knobs = knobs.described();
-  for (std::size_t i = 0; setup.arms() > 1 && i < setup.arms(); ++i) {
-    if (i > 0) scene.more_arms.push_back(describe_arm(setup.arm_file(i), setup.device_name(i)));
-    (i == 0 ? scene.arm : scene.more_arms.back()).in_scene = setup.arm_name(i);
+  scene.arms.clear();
+  for (std::size_t i = 0; i < setup.arms(); ++i) {
+    scene.arms.push_back(describe_arm(setup.arm_file(i), setup.device_name(i)));
+    scene.arms.back().in_scene = setup.arm_name(i);
   }
   const auto ring = std::min(
       static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMost);

@@ -37,7 +37,7 @@ inline constexpr std::int64_t kFirstViewerByte = 16;    ///< And on: the viewers
 inline constexpr std::size_t kKnobsMost = 64;           ///< Chosen: more than a person can find.
 inline constexpr std::size_t kObjectsMost = 1024;       ///< Chosen, as a bound for readers.
 inline constexpr std::size_t kFieldSamplesMost = 4096;  ///< Chosen: more hide each other.
-inline constexpr std::size_t kMoreArmsMost = 7;         ///< After the first, as in a scene.
+inline constexpr std::size_t kArmsMost = 8;             ///< As in a scene.
 /// The most ticks that one request lets a paused run go on by; what asks for more is nonsense.
 /// Chosen.
 inline constexpr std::uint64_t kStepsMost = 10'000;
@@ -109,9 +109,8 @@ struct SharedHead {
   std::uint32_t unused = 0;
   SharedText<64> scene{};
   SharedText<1024> scene_file{};
-  SharedArm arm;
-  std::uint64_t more_arms = 0;  ///< That there are of the next.
-  std::array<SharedArm, kMoreArmsMost> others{};
+  std::uint64_t arm_count = 0;  ///< That there are of the next; at least 1.
+  std::array<SharedArm, kArmsMost> arms{};
   SharedTable objects, knobs, vertices, triangles, field, shaped, splits, ring;
 };
 static_assert(std::is_standard_layout_v<SharedHead>);
@@ -238,7 +237,8 @@ struct SharedLive {
   driver::Snapshot<SharedText<1024>> notice;          ///< What viewers must be told; empty: none.
   driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;
-  std::array<driver::Snapshot<driver::TickRecord>, kMoreArmsMost> others;  ///< Newest ticks.
+  std::array<driver::Snapshot<driver::TickRecord>, kArmsMost - 1>
+      others;  ///< Newest ticks, of the arms after the first.
   std::array<SharedKnobState, kKnobsMost> knobs;
   SharedRequests requests;
 };

@@ -135,7 +135,7 @@ bool SharedReader::newest(driver::TickRecord& record) const noexcept {
 }
 
 bool SharedReader::newest_of(std::size_t arm, driver::TickRecord& record) const noexcept {
-  if (arm < 1 || arm > scene_.more_arms.size()) return false;
+  if (arm < 1 || arm >= scene_.arms.size()) return false;
   driver::TickRecord tick;
   if (!live_->others[arm - 1].load(tick) || !sound(tick)) return false;
   record = tick;

@@ -139,9 +139,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   live_->requests.loop.store(kLoopUnasked);
   put(scene.name, head_->scene);
   put(scene.file, head_->scene_file);
-  put_arm(scene.arm, head_->arm);
-  head_->more_arms = std::min(scene.more_arms.size(), kMoreArmsMost);
-  for (std::size_t i = 0; i < head_->more_arms; ++i) put_arm(scene.more_arms[i], head_->others[i]);
+  head_->arm_count = std::min(scene.arms.size(), kArmsMost);
+  for (std::size_t i = 0; i < head_->arm_count; ++i) put_arm(scene.arms[i], head_->arms[i]);
 
   const auto objects = table_in<SharedObject>(memory, head_->objects);
   std::uint64_t shaped = 0, splits = 0;

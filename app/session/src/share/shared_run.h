@@ -50,7 +50,7 @@ class SharedRun final : public KnobRequests {
   void store_tick(const driver::TickRecord& record) noexcept;
   /// Stores a tick of an arm after the first, counted from 1; one that is not there is ignored.
   void store_tick_of(std::size_t arm, const driver::TickRecord& record) noexcept {
-    if (arm >= 1 && arm <= kMoreArmsMost) live_->others[arm - 1].store(record);
+    if (arm >= 1 && arm < kArmsMost) live_->others[arm - 1].store(record);
   }
   void store_poses(const ScenePoses& poses) noexcept { live_->poses.store(poses); }
   void store_patch(const render::BodyPatch& patch) noexcept { live_->patch.store(patch); }

@@ -207,11 +207,10 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   if (!(head.period_ns > 0) || !(head.force_max >= 0) || !std::isfinite(head.force_max)) {
     return broken("its loop has no period or no limit");
   }
-  if (!take_arm(head.arm, scene.arm)) return broken("its arm makes no sense");
-  if (head.more_arms > kMoreArmsMost) return broken("too many arms");
-  scene.more_arms.resize(head.more_arms);
-  for (std::size_t i = 0; i < scene.more_arms.size(); ++i) {
-    if (!take_arm(head.others[i], scene.more_arms[i])) return broken("an arm makes no sense");
+  if (head.arm_count < 1 || head.arm_count > kArmsMost) return broken("no arm, or too many");
+  scene.arms.resize(head.arm_count);
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    if (!take_arm(head.arms[i], scene.arms[i])) return broken("an arm makes no sense");
   }
   for (const SharedTriangle& triangle : scene.triangles) {
     for (const std::uint32_t vertex : triangle) {

@@ -66,8 +66,7 @@ struct SharedScene {
   bool hold_by_key = false;  ///< A key must be held to have forces (HoldToRun).
   bool paced = false;        ///< Simulated time, at a pace that viewers choose.
   bool restarts = false;     ///< It is begun anew, or with another scene, when a viewer asks.
-  Arm arm;
-  std::vector<Arm> more_arms;  ///< After the first; at most kMoreArmsMost.
+  std::vector<Arm> arms = std::vector<Arm>(1);  ///< From 1 to kArmsMost.
   std::vector<Object> objects;
   std::vector<Knob> knobs;
   std::vector<FieldSample> field;         ///< At most kFieldSamplesMost; none: no field.

@@ -51,8 +51,8 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
     damping = std::max(damping, object.damping);
     for (const auto& plan : object.effects) friction = friction || plan.kind->group == "friction";
   }
-  const auto context = scene::effect_context_of(scene.arm, scene.rate);
-  const auto& simulated = scene.arm.simulated;
+  const auto context = scene::effect_context_of(scene.arms.front().arm, scene.rate);
+  const auto& simulated = scene.arms.front().arm.simulated;
   std::vector<GateDecision> all;
   const double step = context.encoder_step;
   const double by_spring = stiffness * step;
@@ -90,13 +90,14 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
                  .rule = "to be below 5 % of the latency; this simulator has none",
                  .left_out = true,
                  .changes = false});
-  all.push_back({.effect = "saturation",
-                 .name = "saturation",
-                 .rule = fmt::format("K x = {:.2f} N at most, to be below the arm's {:.2f} N; the "
-                                     "limit is the gate's, which nothing leaves out",
-                                     stiffness * seen.depth_max, scene.arm.limits.force_max),
-                 .left_out = stiffness * seen.depth_max < scene.arm.limits.force_max,
-                 .changes = false});
+  all.push_back(
+      {.effect = "saturation",
+       .name = "saturation",
+       .rule = fmt::format("K x = {:.2f} N at most, to be below the arm's {:.2f} N; the "
+                           "limit is the gate's, which nothing leaves out",
+                           stiffness * seen.depth_max, scene.arms.front().arm.limits.force_max),
+       .left_out = stiffness * seen.depth_max < scene.arms.front().arm.limits.force_max,
+       .changes = false});
   all.push_back({.effect = "model of the hand",
                  .name = "hand",
                  .rule = "leads the tip in this scene, so it stays; a replay needs none",
@@ -106,8 +107,8 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
 }
 
 void leave_out(const std::string& name, scene::Scene& scene) {
-  auto& simulated = scene.arm.simulated;
-  if (name == "quantisation") scene.arm.simulated.firmware.ideal_encoders = true;
+  auto& simulated = scene.arms.front().arm.simulated;
+  if (name == "quantisation") scene.arms.front().arm.simulated.firmware.ideal_encoders = true;
   if (name == "delay") simulated.wire.delay_in_ns = simulated.wire.delay_out_ns = 0;
   if (name == "coulomb") simulated.plant.coulomb = 0;
 }

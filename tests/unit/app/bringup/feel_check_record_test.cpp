@@ -25,7 +25,7 @@ TEST_F(RealArmTermsTest, WithoutAPassedFeelCheckTheForceStaysBelowHalfANewton) {
   const auto force_of = [&](const scene::RealArmTerms& terms) {
     auto scene = scene::load_scene(file, {.arm = terms.arm.path});
     EXPECT_TRUE(scene && scene::put_on_terms(*scene, file, terms));
-    return scene->arm.limits.force_max;
+    return scene->arms.front().arm.limits.force_max;
   };
   const auto none = scene::terms_for(arm, {});
   ASSERT_TRUE(none);

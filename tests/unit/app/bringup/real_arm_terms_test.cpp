@@ -218,11 +218,13 @@ TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
     ++scenes;
     const auto told = scene::put_on_terms(*scene, entry.path(), *terms);
     ASSERT_TRUE(told) << told.error().message;
-    EXPECT_EQ(scene->arm.name, "polhem") << entry.path();
-    EXPECT_TRUE(scene->arm.is<driver::LinkageArm>()) << entry.path();
-    EXPECT_EQ(scene->arm.limits.force_max, terms->arm.file.limits.force_max) << entry.path();
-    EXPECT_EQ(scene->arm.limits.soft_start, terms->arm.file.limits.soft_start) << entry.path();
-    EXPECT_EQ(scene::energy_settings(scene->arm, scene->rate, scene->energy).stage,
+    EXPECT_EQ(scene->arms.front().arm.name, "polhem") << entry.path();
+    EXPECT_TRUE(scene->arms.front().arm.is<driver::LinkageArm>()) << entry.path();
+    EXPECT_EQ(scene->arms.front().arm.limits.force_max, terms->arm.file.limits.force_max)
+        << entry.path();
+    EXPECT_EQ(scene->arms.front().arm.limits.soft_start, terms->arm.file.limits.soft_start)
+        << entry.path();
+    EXPECT_EQ(scene::energy_settings(scene->arms.front().arm, scene->rate, scene->energy).stage,
               EnergyStage::kPassivity)
         << entry.path();
   }
@@ -248,7 +250,7 @@ TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
     ASSERT_TRUE(scene) << scene.error().message;
     const auto told = scene::put_on_terms(*scene, file, *terms);
     ASSERT_TRUE(told);
-    EXPECT_EQ(scene::energy_settings(scene->arm, 1000, scene->energy).stage, one.gets)
+    EXPECT_EQ(scene::energy_settings(scene->arms.front().arm, 1000, scene->energy).stage, one.gets)
         << one.wanted;
     const std::string text = all_of(*told);
     EXPECT_TRUE(holds(text, one.said)) << text;
@@ -280,12 +282,12 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   const auto told = scene::put_on_terms(*scene, file, *terms);
   ASSERT_TRUE(told);
   const std::string text = all_of(*told);
-  EXPECT_EQ(scene->arm.name, "woodenhaptics");
-  EXPECT_EQ(scene->arm.limits.force_max, 5);
-  EXPECT_EQ(scene->arm.limits.soft_start, 0.3);
-  EXPECT_EQ(scene->arm.limits.watchdog_ns, 500'000'000);
-  EXPECT_EQ(scene->arm.limits.speed_max, 0.5);
-  EXPECT_EQ(scene->arm.energy.stage, EnergyStage::kPassivity);
+  EXPECT_EQ(scene->arms.front().arm.name, "woodenhaptics");
+  EXPECT_EQ(scene->arms.front().arm.limits.force_max, 5);
+  EXPECT_EQ(scene->arms.front().arm.limits.soft_start, 0.3);
+  EXPECT_EQ(scene->arms.front().arm.limits.watchdog_ns, 500'000'000);
+  EXPECT_EQ(scene->arms.front().arm.limits.speed_max, 0.5);
+  EXPECT_EQ(scene->arms.front().arm.energy.stage, EnergyStage::kPassivity);
   EXPECT_TRUE(holds(text, "own.yaml:46: force_max 100 N is ignored")) << text;
   EXPECT_TRUE(holds(text, "own.yaml:47: speed_max 0.5 m/s is kept")) << text;
   EXPECT_TRUE(holds(text, "own.yaml:49: soft_start 0.05 s is ignored")) << text;
@@ -341,7 +343,7 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
     EXPECT_EQ(gate.limits().force_max, unchecked ? 5 : 0.5);
     EXPECT_EQ(gate.limits().speed_max, 0.5);
     EXPECT_EQ(gate.energy_stage(), EnergyStage::kPassivity);
-    EXPECT_EQ((*session)->scene().arm.name, "vintage_phantom");
+    EXPECT_EQ((*session)->scene().arms.front().arm.name, "vintage_phantom");
     EXPECT_TRUE(holds(all_of((*session)->told()), "energy: none is ignored"));
     const session::RunFigures report = (*session)->figures();
     EXPECT_EQ(report.feel_check,

@@ -18,7 +18,7 @@ const std::filesystem::path kSmallMeshes =
 Scene scene_of(const std::string& mesh) {
   Scene scene;
   scene.rate = 1000;
-  scene.arm.workspace = {.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}};
+  scene.arms.front().arm.workspace = {.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}};
   SceneObject object;
   object.name = "part";
   object.mesh_file = kSmallMeshes / mesh;
@@ -77,8 +77,8 @@ TEST(ObjectSize, SaysNothingWhereTheSizeIsStated) {
 TEST(ObjectSize, TakesTheLargestOfSeveralArms) {
   Scene scene = scene_of("box.off");
   EXPECT_DOUBLE_EQ(reach_of(scene), 0.2);
-  scene.more_arms.emplace_back();
-  scene.more_arms[0].arm.workspace = {.min_W = {-1, 0, 0}, .max_W = {1, 0.1, 0.1}};
+  scene.arms.emplace_back();
+  scene.arms[1].arm.workspace = {.min_W = {-1, 0, 0}, .max_W = {1, 0.1, 0.1}};
   EXPECT_DOUBLE_EQ(reach_of(scene), 2);
   EXPECT_DOUBLE_EQ(reach_of(Scene()), 0);
 }

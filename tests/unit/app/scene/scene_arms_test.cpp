@@ -39,18 +39,18 @@ TEST(SceneArms, PlacesEachOfSeveralArms) {
                        arm_entry("right", ", at: {position: [0.01, 0.2, 0.03], turn_degrees: 90}"),
                    "faults: apart\n");
   ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(scene->arm_name, "left");
+  EXPECT_EQ(scene->arms.front().name, "left");
   EXPECT_EQ(scene->faults, scene::FaultRule::kApart);
-  ASSERT_EQ(scene->more_arms.size(), 1U);
-  const scene::SceneArm& right = scene->more_arms[0];
+  ASSERT_EQ(scene->arms.size(), 2U);
+  const scene::SceneArm& right = scene->arms[1];
   EXPECT_EQ(right.name, "right");
   EXPECT_EQ(right.hand.size(), 1U);
-  const Eigen::Vector3d p = scene->arm.p_WB;  // where the arm stands alone
+  const Eigen::Vector3d p = scene->arms.front().arm.p_WB;  // where the arm stands alone
   const Eigen::Vector3d placed(-p.y() + 0.01, p.x() + 0.2, p.z() + 0.03);
   EXPECT_LT((right.arm.p_WB - placed).norm(), 1e-15);
   Eigen::Matrix3d R;
   R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  EXPECT_EQ(right.arm.R_WB, R * scene->arm.R_WB);
+  EXPECT_EQ(right.arm.R_WB, R * scene->arms.front().arm.R_WB);
   EXPECT_LT((right.arm.workspace.min_W - Eigen::Vector3d(-0.09, 0.1, -0.07)).norm(), 1e-12);
   EXPECT_LT((right.arm.workspace.max_W - Eigen::Vector3d(0.11, 0.3, 0.13)).norm(), 1e-12);
   EXPECT_EQ(read_several(arm_entry("a") + arm_entry("b"))->faults, scene::FaultRule::kTogether);

@@ -42,14 +42,14 @@ TEST(SceneFile, ReadsObjectsAndTheHandsWay) {
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->name, "test");
   EXPECT_EQ(scene->rate, 1000);
-  EXPECT_EQ(scene->arm_file, kFolder / "arm.yaml");
+  EXPECT_EQ(scene->arms.front().arm_file, kFolder / "arm.yaml");
   ASSERT_EQ(scene->objects.size(), 1U);
   EXPECT_EQ(scene->objects[0].mesh_file, kFolder / "meshes/ball.off");
   EXPECT_EQ(scene->objects[0].stiffness, 500);
-  ASSERT_EQ(scene->hand.size(), 2U);
-  EXPECT_FALSE(scene->hand[0].on.has_value());
-  EXPECT_EQ(scene->hand[1].on, "ball");
-  EXPECT_EQ(scene->hand[1].press, 0.004);
+  ASSERT_EQ(scene->arms.front().hand.size(), 2U);
+  EXPECT_FALSE(scene->arms.front().hand[0].on.has_value());
+  EXPECT_EQ(scene->arms.front().hand[1].on, "ball");
+  EXPECT_EQ(scene->arms.front().hand[1].press, 0.004);
 }
 
 TEST(SceneFile, ReadsSeveralObjectsIfTheirNamesDiffer) {
@@ -162,8 +162,8 @@ TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
   for (const std::string name : {"falcon", "falcon.yaml"}) {
     const auto named = with_arm(name);
     ASSERT_TRUE(named.ok()) << named.error().message;
-    EXPECT_EQ(named->arm_file.filename(), "falcon.yaml");
-    EXPECT_EQ(named->own_arm_file, named->arm_file);
+    EXPECT_EQ(named->arms.front().arm_file.filename(), "falcon.yaml");
+    EXPECT_EQ(named->arms.front().own_arm_file, named->arms.front().arm_file);
   }
   std::filesystem::copy_file(kFolder / "arm.yaml", kFolder / "falcon");
   EXPECT_EQ(with_arm("falcon")->arm_file, kFolder / "falcon");

@@ -33,7 +33,7 @@ TEST(LoadByName, ReadsTheArmAndTheSceneThatTheProgramKnowsByThatName) {
   const auto other = scene::load_scene("rubber", {.arm = "woodenhaptics"});
   ASSERT_TRUE(other) << other.error().message;
   EXPECT_EQ(other->arm.name, "woodenhaptics");
-  EXPECT_EQ(other->own_arm_file, touched->arm_file);
+  EXPECT_EQ(other->arms.front().own_arm_file, touched->arms.front().arm_file);
 }
 
 TEST(LoadByName, SaysWhichNamesThereAreWhereItKnowsNone) {

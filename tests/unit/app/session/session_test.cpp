@@ -65,7 +65,7 @@ TEST_F(SessionTest, FindsScenesAndArmsByNameOrPath) {
   EXPECT_EQ(open("box", options)->scene().name, "box");
   EXPECT_EQ(open("app/scenes/box.yaml", options)->scene().name, "box");
   options.arm_file = "polhem";
-  EXPECT_EQ(open("box", options)->scene().arm.name, "polhem");
+  EXPECT_EQ(open("box", options)->scene().arms.front().arm.name, "polhem");
   const auto nowhere = session::Session::open("no_such_scene", {});
   ASSERT_FALSE(nowhere);
   EXPECT_NE(nowhere.error().message.find("no_such_scene"), std::string::npos);

@@ -41,9 +41,10 @@ session::SharedScene small_scene() {
   scene.file = "scenes/small.yaml";
   scene.period_ns = 1'000'000;
   scene.force_max = 6;
-  scene.arm.name = "vintage";
-  scene.arm.device = "sim";
-  scene.arm.geometry = driver::SerialArm{.height = 0.1, .length_b = 0.13, .length_c = 0.16};
+  scene.arms.front().name = "vintage";
+  scene.arms.front().device = "sim";
+  scene.arms.front().geometry =
+      driver::SerialArm{.height = 0.1, .length_b = 0.13, .length_c = 0.16};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
   scene.objects.push_back({.name = "stiff", .dents = true, .vertex_count = 3, .triangle_count = 1});
@@ -900,7 +901,7 @@ void read_all(session::SharedReader& reader) {
   static_cast<void>(reader.counters());
   static_cast<void>(reader.recording_path());
   static_cast<void>(reader.state());
-  static_cast<void>(session::arm_lines(reader.scene().arm, tick));
+  static_cast<void>(session::arm_lines(reader.scene().arms.front(), tick));
 }
 
 TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {

@@ -73,8 +73,8 @@ inline session::SharedScene live_scene() {
   scene.name = "small";
   scene.period_ns = 1'000'000;
   scene.force_max = 6;
-  scene.arm.name = "vintage";
-  scene.arm.device = "sim";
+  scene.arms.front().name = "vintage";
+  scene.arms.front().device = "sim";
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
   scene.objects.push_back({.name = "stiff", .dents = true, .vertex_count = 3, .triangle_count = 1});

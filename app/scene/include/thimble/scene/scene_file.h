@@ -68,10 +68,12 @@ struct ArmPlace {
   ArmFile put(ArmFile arm) const;
 };
 
-/// One of several arms of a scene, with the hand that leads it if it is simulated.
+/// An arm of a scene, with the hand that leads it if it is simulated.
 struct SceneArm {
-  std::string name;                ///< Unlike any other of the scene ("left").
-  std::filesystem::path arm_file;  ///< Whence `arm` comes.
+  std::string name;  ///< Unlike any other of the scene ("left"); of a single arm empty.
+  std::filesystem::path arm_file;  ///< Where `arm` comes from.
+  std::filesystem::path
+      own_arm_file;                ///< What the scene itself names; used for the simulation alone.
   ArmPlace place;                  ///< Where the scene puts it.
   ArmFile arm;                     ///< Put there.
   std::vector<HandWaypoint> hand;  ///< What the simulated hand does.
@@ -83,26 +85,19 @@ enum class FaultRule {
   kApart,     ///< The others go on.
 };
 
-/// One scene: which arm touches what, how fast the loop runs, and what the simulated hand does.
+/// One scene: which arms touch what, how fast the loop runs, and what the simulated hand does.
 struct Scene {
-  std::string name;                ///< For people.
-  std::string description;         ///< A few sentences; may be empty.
-  std::filesystem::path file;      ///< Whence the scene comes.
-  std::filesystem::path arm_file;  ///< Whence `arm` comes.
-  std::filesystem::path
-      own_arm_file;        ///< What the scene itself names; used for the simulation alone.
-  ArmFile arm;             ///< The arm that touches.
-  double rate = 1000;      ///< Ticks per second, Hz.
-  double rate_factor = 1;  ///< Of that, over what the scene's file says.
-  double duration = 0;     ///< s
-  std::uint64_t seed = 0;  ///< Of everything random in the simulation.
+  std::string name;                                       ///< For people.
+  std::string description;                                ///< A few sentences; may be empty.
+  std::filesystem::path file;                             ///< Where the scene comes from.
+  std::vector<SceneArm> arms = std::vector<SceneArm>(1);  ///< That touch it; at least one.
+  double rate = 1000;                                     ///< Ticks per second, Hz.
+  double rate_factor = 1;                     ///< Of that, over what the scene's file says.
+  double duration = 0;                        ///< s
+  std::uint64_t seed = 0;                     ///< Of everything random in the simulation.
   std::optional<driver::EnergyStage> energy;  ///< In place of the arm's own, if named.
   int energy_line = 0;                        ///< Where in the scene's file; 0 if not named.
   std::vector<SceneObject> objects;           ///< What can be touched.
-  std::vector<HandWaypoint> hand;             ///< What the simulated hand does.
-  std::string arm_name;                       ///< Of the first of several arms; else empty.
-  ArmPlace arm_place;                         ///< Of the first of several arms.
-  std::vector<SceneArm> more_arms;            ///< The arms after the first, if there are several.
   FaultRule faults = FaultRule::kTogether;    ///< Of several arms.
 };
 
@@ -116,7 +111,7 @@ struct SceneReading {
   /// Below 1 only where the scene bears it: every stiffness at most half of what the law of the
   /// latency lets this arm and hand hold [PHYSICS 1.1], and no setting refused at that rate.
   double rate_factor = 1;
-  /// Whether the reader knows of several arms (Scene::more_arms); a scene that has them is an error
+  /// Whether the reader knows of several arms (Scene::arms); a scene that has them is an error
   /// for all others.
   bool several_arms = false;
 };

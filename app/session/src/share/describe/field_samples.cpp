@@ -61,7 +61,8 @@ std::vector<SharedScene::FieldSample> sample(const Fields& fields, const Eigen::
 
 std::vector<SharedScene::FieldSample> sample_fields(const scene::Scene& scene) {
   const Fields fields(scene);
-  const Eigen::AlignedBox3d workspace(scene.arm.workspace.min_W, scene.arm.workspace.max_W);
+  const Eigen::AlignedBox3d workspace(scene.arms.front().arm.workspace.min_W,
+                                      scene.arms.front().arm.workspace.max_W);
   if (fields.empty() || workspace.isEmpty() || !workspace.sizes().allFinite()) return {};
   const auto looks = sample(fields, workspace, Eigen::Array3i::Constant(kLooks));
   double most = 0;

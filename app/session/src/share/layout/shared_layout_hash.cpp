@@ -14,8 +14,8 @@ THIMBLE_LAYOUT(thimble::session::SharedArm, name, device, in_scene, shape, unuse
                p_WB, min_W, max_W)
 THIMBLE_LAYOUT(thimble::session::SharedHead, ready, layout, total_bytes, hash, pid, began_ns,
                period_ns, force_max, wall_clock, hand_by_mouse, paced, restarts, hold_by_key,
-               unused, scene, scene_file, arm, more_arms, others, objects, knobs, vertices,
-               triangles, field, shaped, splits, ring)
+               unused, scene, scene_file, arm_count, arms, objects, knobs, vertices, triangles,
+               field, shaped, splits, ring)
 THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, unused,
                first_vertex, vertex_count, first_triangle, triangle_count, first_shaped,
                first_split, splits_most, crease_angle, texture, friction)

@@ -23,8 +23,8 @@ void NextRun::begin(Session& session) {
   session.shared()->set_notice(notice_);
   notice_.clear();
   if (!reload_) return;
-  std::vector<std::filesystem::path> files{scene_, session.scene().arm_file};
-  for (const scene::SceneArm& arm : session.scene().more_arms) files.push_back(arm.arm_file);
+  std::vector<std::filesystem::path> files{scene_};
+  for (const scene::SceneArm& arm : session.scene().arms) files.push_back(arm.arm_file);
   files_ = FileWatch(files);
 }
 

@@ -9,11 +9,8 @@ namespace thimble::session {
 
 std::string SharedReader::why_real() const {
   const auto real = [](const SharedScene::Arm& arm) { return arm.device != "sim"; };
-  const SharedScene::Arm* found = real(scene_.arm) ? &scene_.arm : nullptr;
-  for (const SharedScene::Arm& arm : scene_.more_arms) {
-    if (found == nullptr && real(arm)) found = &arm;
-  }
-  if (found == nullptr) return {};
+  const auto found = std::find_if(scene_.arms.begin(), scene_.arms.end(), real);
+  if (found == scene_.arms.end()) return {};
   return "The run has a physical arm (" + found->device +
          "): it can be paused and stopped; its time is that of the world, and only a person at the "
          "arm begins a run.";
