@@ -272,10 +272,8 @@ class LateCounter {
   LateTicks& sum_;
 };
 
-/// Identifies an arm as `identify` does, and counts the late ticks of all motions.
-driver::Result<Identified> identify_motion(const OpenBench& open, const scene::ArmFile& file,
-                                           const IdentifyOptions& options,
-                                           const std::atomic<bool>& stop, LateTicks& late) {
+/// Returns why an arm cannot be identified with these options, if so.
+driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptions& options) {
   if (file.is<driver::ToldArm>()) {
     return driver::Error{
         "Identifying needs an arm whose motors turn its joints by currents (PHANTOM, "
@@ -285,162 +283,256 @@ driver::Result<Identified> identify_motion(const OpenBench& open, const scene::A
   if (!(options.seconds >= 10 && options.seconds <= 600)) {
     return driver::Error{"Each motion takes from 10 to 600 s."};
   }
-  if (auto right = check_forces(file, options); !right) return right.error();
-  Identified found;
-  Eigen::Vector3d down_B(0, 0, -1), share(1, 1, 1);
-  bool held_tip = false;
-  PerMass rigid;         // fit of the motion with the bare tip
-  double read_late = 0;  // s
-  for (const bool loaded : {false, true}) {
-    if (loaded && options.known_mass == 0) break;
-    auto bench = open(loaded);
-    if (!bench) return bench.error();
-    const LateCounter counter(**bench, late);
-    if (!loaded) (*bench)->watch(options.watch);
-    auto motion = record_motion(**bench, file,
-                                {.seconds = options.seconds,
-                                 .lead = options.lead,
-                                 .added_mass = loaded ? options.known_mass : 0,
-                                 .force_most = options.force_most,
-                                 .seed = options.seed + (loaded ? 1 : 0),
-                                 .share = share},
-                                stop);
-    if (!motion) return motion.error();
-    share = motion->share;
-    // The same motors, which all torques come through.
-    if (loaded) {
-      if (auto done = free_loaded(*motion, found); !done) return done.error();
-    }
-    auto fit = fit_motion(*motion, false);
-    if (!fit) return fit.error();
-    if (!loaded) found.encoders.step = encoder_steps(*motion);
-    if (!loaded) found.spectrum = line_spectrum(*motion);
-    if (!loaded) found.lines = fit_cables(found.spectrum, *fit, motion->dt);
-    if (!loaded) {
-      if (auto done = look_for_waves(file, *motion, *fit, found); !done) return done.error();
-      if (options.play) {
-        if (auto done = look_for_rubbing(*motion, *fit, found); !done) return done.error();
-      }
-    }
-    const double blamed = options.cables ? 0 : found.lines.better;
-    if (!options.cables) found.lines = {};
-    driver::Result<ArmMotion> links = *motion;
-    std::optional<PerMass> held_fit;
-    if (!loaded && options.play && found.lines.stretches) {
-      found.play = find_play(*motion, *fit, found.lines);
-      if (found.play.like_play) found.against.push_back(like_play_text(found.play));
-    }
-    if (found.play.understood()) {
-      const GapFit gap =
-          loaded ? fit_play_again(*motion, *fit, rigid, found.play) : found.play.best();
-      rigid = *fit;
-      if (!loaded) {
-        found.lines.elastic = two_mass_of(gap, found.lines.elastic);
-        found.lines.rotor_viscous = gap.theta.segment<3>(GapTheta::kRotorViscous);
-        found.lines.rotor_coulomb = gap.theta.segment<3>(GapTheta::kRotorCoulomb);
-      }
-      auto behind = motion_of_links(*motion, found.lines, file);
-      if (!behind) return behind.error();
-      links = std::move(behind).value();
-      fit = per_mass_of(gap, *motion);
-      held_fit = *fit;
-    } else if (found.lines.stretches) {
-      // A mass on the tip changes neither motors nor cables.
-      auto behind = behind_cables(*motion, file, found.lines, !loaded, *fit);
-      if (!behind) return behind.error();
-      links = std::move(behind).value();
-    }
-    auto held = held_fit ? driver::Result<PerMass>(*held_fit) : fit_motion(*links, true);
-    if (!held) return held.error();
-    down_B = motion->down_B;
-    if (!loaded) {
-      const auto mass = arm_constants(*fit, down_B, {}, 0);
-      auto over = look_over_places(
-          **bench, file,
-          {.seconds = options.place_seconds,
-           .lead = kPlaceLead,
-           .force_most = options.force_most,
-           .seed = options.seed + 2,
-           .share = share},
-          options.places, *links,
-          [&](const ArmMotion& other) {
-            return freed_of_rubbing(freed_of_waves(other, found.waves), found.rubbing, *fit);
-          },
-          found.lines.stretches, mass.ok() && is_held(*held, mass->mass.value), stop);
-      if (!over) return over.error();
-      found.over = std::move(over).value();
-    } else if (found.over.links()) {
-      if (auto added = add_loaded(found.over, *links, file); !added) return added.error();
-    }
-    if (found.over.links()) {
-      links = freed_of_links(*links, *found.over.fit);
-      fit = fit_motion(*links, false);
-      if (!fit) return fit.error();
-      held = fit_motion(*links, true);
-      if (!held) return held.error();
-    }
-    if (loaded) {
-      found.loaded = *fit;
-    } else {
-      found.bare = *fit;
-      found.moved = std::move(links).value();
-      if (found.lines.stretches) {
-        found.moved_ahead = found.lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion->dt;
-      }
-    }
-    const auto alone = arm_constants(*fit, down_B, {}, 0);
-    if (!alone) return alone.error();
-    held_tip = held_tip || is_held(*held, alone->mass.value);
-    for (std::string& sentence :
-         speaks_against(*fit, *held, alone->mass.value, found.lines.stretches)) {
-      found.against.push_back((loaded ? "With the known mass: " : "") + sentence);
-    }
-    if (!loaded && blamed > kCablesBlamed) {
-      found.against.push_back(fmt::format(
-          "Above {:g} Hz the arm does not move like a rigid one; with a mass behind each "
-          "cable it is understood better (by {:.0f} of the Bayesian information). Its "
-          "cables stretch, which were not looked for.",
-          LineForces::kLowest, blamed));
-    }
-    if (!loaded && options.link) {
-      look_at_link(**bench, file, *alone, options.force_most, stop, found);
-    }
-    if (!loaded) read_late = (*bench)->read_late();
-  }
-  auto constants = arm_constants(found.bare, down_B, found.loaded, options.known_mass);
-  if (!constants) return constants.error();
-  found.constants = *constants;
-  constexpr double kMisfitMost = 50;
-  if (found.loaded && found.lines.stretches) {
-    const auto apart = arm_constants(with_method(found.bare), down_B, with_method(*found.loaded),
-                                     options.known_mass);
-    found.constants.misfit = apart ? apart->misfit : HUGE_VAL;
-  }
-  if (found.constants.misfit > kMisfitMost) {
-    found.against.push_back(fmt::format(
-        "The two motions are not those of one arm with {:g} kg on it (chi^2 {:.0f} per degree of "
-        "freedom): weigh the mass, and fix it so that it does not swing.",
-        options.known_mass, found.constants.misfit));
-  }
-  found.constants.links_sought = found.over.fit.has_value();
-  if (found.over.links()) put_links(found, down_B);
-  // Reports waited for their tick; the delay of the arm is the mean of a distribution without that.
-  found.constants.delay.value -= read_late;
-  widen(found.constants);
-  put_rubbing(found);
-  if (found.lines.stretches) put_cables(found);
-  look_at_intervals(found);
-  look_closer(found, held_tip);
-  found.over.motions.clear();
-  return found;
+  return check_forces(file, options);
 }
+
+/// The steps of an identification, for the motion with the bare tip and then for the one with the
+/// known mass: record it, clean it of what motors, joints and cables add, fit it, keep it; last of
+/// all judge both and write the constants.
+class Identification {
+ public:
+  Identification(const OpenBench& open, const scene::ArmFile& file, const IdentifyOptions& options,
+                 const std::atomic<bool>& stop, LateTicks& late)
+      : open_(open), file_(file), options_(options), stop_(stop), late_(late) {}
+
+  driver::Result<Identified> run() {
+    if (auto asked = check_asked(file_, options_); !asked) return asked.error();
+    if (auto done = move(false); !done) return done.error();
+    if (options_.known_mass != 0) {
+      if (auto done = move(true); !done) return done.error();
+    }
+    return write();
+  }
+
+ private:
+  /// A motion on its way to the constants. `links`: of the links, where cables stretch.
+  struct Motion {
+    ArmMotion recorded;
+    ArmMotion links;
+    PerMass fit;
+    std::optional<PerMass> held;  ///< The fit with a hand on the tip.
+  };
+
+  driver::Result<void> move(bool loaded) {
+    auto bench = open_(loaded);
+    if (!bench) return bench.error();
+    const LateCounter counter(**bench, late_);
+    if (!loaded) (*bench)->watch(options_.watch);
+    Motion motion;
+    if (auto done = record(**bench, loaded, motion); !done) return done;
+    if (auto done = loaded ? clean_loaded(motion) : clean_bare(motion); !done) return done;
+    if (auto done = look_behind_cables(loaded, motion); !done) return done;
+    if (auto done = loaded ? take_links_of_loaded(motion) : look_over(**bench, motion); !done) {
+      return done;
+    }
+    if (auto done = free_of_links(motion); !done) return done;
+    keep(loaded, motion);
+    const auto alone = arm_constants(motion.fit, down_B_, {}, 0);
+    if (!alone) return alone.error();
+    judge(loaded, motion, *alone);
+    if (loaded) return {};
+    if (options_.link) look_at_link(**bench, file_, *alone, options_.force_most, stop_, found_);
+    read_late_ = (*bench)->read_late();
+    return {};
+  }
+
+  driver::Result<void> record(BenchArm& bench, bool loaded, Motion& motion) {
+    auto recorded = record_motion(bench, file_,
+                                  {.seconds = options_.seconds,
+                                   .lead = options_.lead,
+                                   .added_mass = loaded ? options_.known_mass : 0,
+                                   .force_most = options_.force_most,
+                                   .seed = options_.seed + (loaded ? 1 : 0),
+                                   .share = share_},
+                                  stop_);
+    if (!recorded) return recorded.error();
+    motion.recorded = std::move(recorded).value();
+    share_ = motion.recorded.share;
+    down_B_ = motion.recorded.down_B;
+    return {};
+  }
+
+  driver::Result<void> clean_bare(Motion& motion) {
+    auto fit = fit_motion(motion.recorded, false);
+    if (!fit) return fit.error();
+    motion.fit = *fit;
+    found_.encoders.step = encoder_steps(motion.recorded);
+    found_.spectrum = line_spectrum(motion.recorded);
+    found_.lines = fit_cables(found_.spectrum, motion.fit, motion.recorded.dt);
+    if (auto done = look_for_waves(file_, motion.recorded, motion.fit, found_); !done) return done;
+    if (options_.play) {
+      if (auto done = look_for_rubbing(motion.recorded, motion.fit, found_); !done) return done;
+    }
+    if (options_.cables) return {};
+    cables_blamed_ = found_.lines.better;
+    found_.lines = {};
+    return {};
+  }
+
+  driver::Result<void> clean_loaded(Motion& motion) {
+    // The same motors, which all torques come through.
+    if (auto done = free_loaded(motion.recorded, found_); !done) return done;
+    auto fit = fit_motion(motion.recorded, false);
+    if (!fit) return fit.error();
+    motion.fit = *fit;
+    return {};
+  }
+
+  /// Finds what the links did, where cables stretch or have play between them and the motors.
+  driver::Result<void> look_behind_cables(bool loaded, Motion& motion) {
+    motion.links = motion.recorded;
+    if (!loaded && options_.play && found_.lines.stretches) {
+      found_.play = find_play(motion.recorded, motion.fit, found_.lines);
+      if (found_.play.like_play) found_.against.push_back(like_play_text(found_.play));
+    }
+    if (found_.play.understood()) {
+      if (auto done = take_play(loaded, motion); !done) return done;
+    } else if (found_.lines.stretches) {
+      // A mass on the tip changes neither motors nor cables.
+      auto behind = behind_cables(motion.recorded, file_, found_.lines, !loaded, motion.fit);
+      if (!behind) return behind.error();
+      motion.links = std::move(behind).value();
+    }
+    if (motion.held) return {};
+    auto held = fit_motion(motion.links, true);
+    if (!held) return held.error();
+    motion.held = *held;
+    return {};
+  }
+
+  driver::Result<void> take_play(bool loaded, Motion& motion) {
+    const GapFit gap = loaded ? fit_play_again(motion.recorded, motion.fit, rigid_, found_.play)
+                              : found_.play.best();
+    rigid_ = motion.fit;
+    if (!loaded) {
+      found_.lines.elastic = two_mass_of(gap, found_.lines.elastic);
+      found_.lines.rotor_viscous = gap.theta.segment<3>(GapTheta::kRotorViscous);
+      found_.lines.rotor_coulomb = gap.theta.segment<3>(GapTheta::kRotorCoulomb);
+    }
+    auto behind = motion_of_links(motion.recorded, found_.lines, file_);
+    if (!behind) return behind.error();
+    motion.links = std::move(behind).value();
+    motion.fit = per_mass_of(gap, motion.recorded);
+    motion.held = motion.fit;
+    return {};
+  }
+
+  /// Moves the bare tip about other places of the workspace, which tells the links apart.
+  driver::Result<void> look_over(BenchArm& bench, const Motion& motion) {
+    const auto mass = arm_constants(motion.fit, down_B_, {}, 0);
+    auto over = look_over_places(
+        bench, file_,
+        {.seconds = options_.place_seconds,
+         .lead = kPlaceLead,
+         .force_most = options_.force_most,
+         .seed = options_.seed + 2,
+         .share = share_},
+        options_.places, motion.links,
+        [&](const ArmMotion& other) {
+          return freed_of_rubbing(freed_of_waves(other, found_.waves), found_.rubbing, motion.fit);
+        },
+        found_.lines.stretches, mass.ok() && is_held(*motion.held, mass->mass.value), stop_);
+    if (!over) return over.error();
+    found_.over = std::move(over).value();
+    return {};
+  }
+
+  driver::Result<void> take_links_of_loaded(const Motion& motion) {
+    if (!found_.over.links()) return {};
+    return add_loaded(found_.over, motion.links, file_);
+  }
+
+  /// Takes the links out of the motion, if they were told apart: what is left is the tip's.
+  driver::Result<void> free_of_links(Motion& motion) {
+    if (!found_.over.links()) return {};
+    motion.links = freed_of_links(motion.links, *found_.over.fit);
+    auto fit = fit_motion(motion.links, false);
+    if (!fit) return fit.error();
+    motion.fit = *fit;
+    auto held = fit_motion(motion.links, true);
+    if (!held) return held.error();
+    motion.held = *held;
+    return {};
+  }
+
+  void keep(bool loaded, const Motion& motion) {
+    if (loaded) {
+      found_.loaded = motion.fit;
+      return;
+    }
+    found_.bare = motion.fit;
+    found_.moved = motion.links;
+    if (found_.lines.stretches) {
+      found_.moved_ahead =
+          found_.lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion.recorded.dt;
+    }
+  }
+
+  /// Notes what speaks against a fit.
+  void judge(bool loaded, const Motion& motion, const ArmConstants& alone) {
+    held_tip_ = held_tip_ || is_held(*motion.held, alone.mass.value);
+    for (std::string& sentence :
+         speaks_against(motion.fit, *motion.held, alone.mass.value, found_.lines.stretches)) {
+      found_.against.push_back((loaded ? "With the known mass: " : "") + sentence);
+    }
+    if (loaded || !(cables_blamed_ > kCablesBlamed)) return;
+    found_.against.push_back(
+        fmt::format("Above {:g} Hz the arm does not move like a rigid one; with a mass behind each "
+                    "cable it is understood better (by {:.0f} of the Bayesian information). Its "
+                    "cables stretch, which were not looked for.",
+                    LineForces::kLowest, cables_blamed_));
+  }
+
+  /// Finds the constants of both motions, and what speaks against them.
+  driver::Result<Identified> write() {
+    auto constants = arm_constants(found_.bare, down_B_, found_.loaded, options_.known_mass);
+    if (!constants) return constants.error();
+    found_.constants = *constants;
+    constexpr double kMisfitMost = 50;
+    if (found_.loaded && found_.lines.stretches) {
+      const auto apart = arm_constants(with_method(found_.bare), down_B_,
+                                       with_method(*found_.loaded), options_.known_mass);
+      found_.constants.misfit = apart ? apart->misfit : HUGE_VAL;
+    }
+    if (found_.constants.misfit > kMisfitMost) {
+      found_.against.push_back(fmt::format(
+          "The two motions are not those of one arm with {:g} kg on it (chi^2 {:.0f} per degree of "
+          "freedom): weigh the mass, and fix it so that it does not swing.",
+          options_.known_mass, found_.constants.misfit));
+    }
+    found_.constants.links_sought = found_.over.fit.has_value();
+    if (found_.over.links()) put_links(found_, down_B_);
+    // Reports waited for their tick; the delay of the arm is the mean of a distribution without
+    // that.
+    found_.constants.delay.value -= read_late_;
+    widen(found_.constants);
+    put_rubbing(found_);
+    if (found_.lines.stretches) put_cables(found_);
+    look_at_intervals(found_);
+    look_closer(found_, held_tip_);
+    found_.over.motions.clear();
+    return std::move(found_);
+  }
+
+  const OpenBench& open_;
+  const scene::ArmFile& file_;
+  const IdentifyOptions& options_;
+  const std::atomic<bool>& stop_;
+  LateTicks& late_;
+  Identified found_;
+  Eigen::Vector3d down_B_{0, 0, -1}, share_{1, 1, 1};
+  bool held_tip_ = false;
+  PerMass rigid_;             // fit of the motion with the bare tip
+  double cables_blamed_ = 0;  // Bayesian information for cables that were not asked for
+  double read_late_ = 0;      // s
+};
 
 }  // namespace
 
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop) {
   LateTicks late;
-  auto found = identify_motion(open, file, options, stop, late);
+  auto found = Identification(open, file, options, stop, late).run();
   if (!found) {
     if (!late.many() || stop.load()) return found;
     return driver::Error{late_ticks_text(late) + " (" + found.error().message + ")"};
