@@ -241,7 +241,7 @@ TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
   auto reader = session::SharedReader::over(session.shared()->memory().again().value());
   ASSERT_TRUE(reader) << reader.error().message;
   const session::SharedScene& shown = (*reader)->scene();
-  EXPECT_EQ(shown.arm.in_scene, "left");
+  EXPECT_EQ(shown.arms.front().in_scene, "left");
   ASSERT_EQ(shown.arms.size(), 2u);
   EXPECT_EQ(shown.arms[1].in_scene, "right");
   EXPECT_EQ(shown.arms[1].device, "board_of_right");

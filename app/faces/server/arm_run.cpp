@@ -87,7 +87,7 @@ driver::Result<void> ArmRun::prepare(int number) {
   const bool alone = options_.scene.empty();
   asked.adjust = [path, alone, this](scene::Scene& adjusted) {
     if (alone) adjusted.name = options_.program;
-    if (!path.empty()) adjusted.hand = path;
+    if (!path.empty()) adjusted.arms.front().hand = path;
   };
   auto prepared = session::Session::prepare(scene, asked);
   if (!prepared) return prepared.error();

@@ -125,7 +125,8 @@ TEST(CopiedScene, RunsWhereverItLiesIfItCameWithThimble) {
     ASSERT_TRUE(original.ok()) << original.error().message;
     const auto copied = load_scene(copy, {.several_arms = true});
     ASSERT_TRUE(copied.ok()) << copied.error().message;
-    EXPECT_EQ(fs::weakly_canonical(copied->arm_file), fs::weakly_canonical(original->arm_file));
+    EXPECT_EQ(fs::weakly_canonical(copied->arms.front().arm_file),
+              fs::weakly_canonical(original->arms.front().arm_file));
     for (std::size_t i = 0; i < original->objects.size(); ++i) {
       EXPECT_EQ(fs::weakly_canonical(copied->objects[i].mesh_file),
                 fs::weakly_canonical(original->objects[i].mesh_file));

@@ -109,8 +109,9 @@ TEST(Quality, DraftAndReferenceChangeSomethingInEveryShippedScene) {
         }
       }
     }
-    EXPECT_LE(1e-9 * static_cast<double>(reference.arm.simulated.firmware.report_period_ns),
-              1 / reference.rate + 1e-9);
+    EXPECT_LE(
+        1e-9 * static_cast<double>(reference.arms.front().arm.simulated.firmware.report_period_ns),
+        1 / reference.rate + 1e-9);
     ++scenes;
     covered.add(entry.path().stem().string());
   }

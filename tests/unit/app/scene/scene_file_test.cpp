@@ -166,7 +166,7 @@ TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
     EXPECT_EQ(named->arms.front().own_arm_file, named->arms.front().arm_file);
   }
   std::filesystem::copy_file(kFolder / "arm.yaml", kFolder / "falcon");
-  EXPECT_EQ(with_arm("falcon")->arm_file, kFolder / "falcon");
+  EXPECT_EQ(with_arm("falcon")->arms.front().arm_file, kFolder / "falcon");
   std::filesystem::remove(kFolder / "falcon");
   const auto unknown = with_arm("eagle");
   ASSERT_FALSE(unknown.ok());

@@ -32,7 +32,7 @@ TEST(LoadByName, ReadsTheArmAndTheSceneThatTheProgramKnowsByThatName) {
   // Another arm in place of the scene's own, by name as well.
   const auto other = scene::load_scene("rubber", {.arm = "woodenhaptics"});
   ASSERT_TRUE(other) << other.error().message;
-  EXPECT_EQ(other->arm.name, "woodenhaptics");
+  EXPECT_EQ(other->arms.front().arm.name, "woodenhaptics");
   EXPECT_EQ(other->arms.front().own_arm_file, touched->arms.front().arm_file);
 }
 

@@ -131,9 +131,9 @@ TEST(Share, ShowsTheSceneAsItWasDescribed) {
   EXPECT_EQ(seen.period_ns, scene.period_ns);
   EXPECT_EQ(seen.force_max, scene.force_max);
   EXPECT_EQ(seen.pid, getpid());
-  EXPECT_EQ(seen.arm.name, "vintage");
-  ASSERT_TRUE(seen.arm.geometry.has_value());
-  const auto& built = std::get<driver::SerialArm>(*seen.arm.geometry);
+  EXPECT_EQ(seen.arms.front().name, "vintage");
+  ASSERT_TRUE(seen.arms.front().geometry.has_value());
+  const auto& built = std::get<driver::SerialArm>(*seen.arms.front().geometry);
   EXPECT_EQ(built.height, 0.1);
   EXPECT_EQ(built.length_b, 0.13);
   EXPECT_EQ(built.length_c, 0.16);

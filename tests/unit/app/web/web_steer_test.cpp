@@ -68,7 +68,7 @@ TEST(SteerRun, TellsWhatItCannotAskFor) {
   EXPECT_EQ(steered.run->knob_wanted(0), 300);
 
   session::SharedScene real = Steered::steered_scene();
-  real.arm.device = "omega3";
+  real.arms.front().device = "omega3";
   const Steered desk(real);
   EXPECT_NE(desk.ask("restart").find("physical arm (omega3)"), std::string::npos);
   EXPECT_NE(desk.ask("step 1").find("physical arm (omega3)"), std::string::npos);
