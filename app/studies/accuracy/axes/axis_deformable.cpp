@@ -132,7 +132,7 @@ struct Scheme {
 constexpr Scheme kSchemes[] = {
     {"symplectic", "symplectic Euler", SpringScheme::kSymplecticEuler, 1, 128},
     {"verlet", "Verlet", SpringScheme::kVerlet, 2, 128},
-    {"implicit", "implicit Euler", SpringScheme::kImplicitEuler, 1, 128},
+    {"implicit", "implicit Euler", SpringScheme::kImplicitEuler, 1, 512},
     {"trapezoid", "trapezoid", SpringScheme::kTrapezoid, 2, 128},
     {"explicit", "explicit Euler", SpringScheme::kExplicitEuler, 1, 1024},
 };
