@@ -8,9 +8,9 @@
 
 #include "bringup/hold_place.h"
 #include "scene_effects.h"
+#include "stability/friction_rig.h"
 #include "stability/rest_trial.h"
 #include "stability/signal.h"
-#include "stability/friction_rig.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/effect/map_settings.h"
 

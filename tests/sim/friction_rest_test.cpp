@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "stability/friction_rig.h"
 #include "stability/signal.h"
 #include "studies/friction/friction_cases.h"
-#include "stability/friction_rig.h"
 #include "support/hard_case.h"
 #include "support/identify/rubbing.h"
 #include "support/long_form.h"

@@ -1,5 +1,5 @@
-#include "report/page/page_block.h"
 #include "studies/accuracy/accuracy_page.h"
+#include "report/page/page_block.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -100,8 +100,8 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
     if (const std::string orders = order_sentence(axis); !orders.empty()) {
       page << "<p>" << html_text(orders) << "</p>\n";
     }
-    page << "<p class=\"small\">Truth: " << html_text(a.truth) << " Left out: " << html_text(a.left_out)
-         << "</p>\n";
+    page << "<p class=\"small\">Truth: " << html_text(a.truth)
+         << " Left out: " << html_text(a.left_out) << "</p>\n";
     add_table(axis, page);
   }
   const scene::BuildInfo build = scene::build_info();

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "stability/friction_rig.h"
 #include "studies/accuracy/accuracy_axis.h"
 #include "studies/friction/friction_cases.h"
-#include "stability/friction_rig.h"
 
 namespace thimble::app {
 

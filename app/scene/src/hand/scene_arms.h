@@ -10,8 +10,8 @@
 namespace thimble::scene {
 
 /// Reads the list `arms` of a scene, and `faults`. Gives the maps of the list, whose hands
-/// `read_hands` reads once the objects are known. `folder`: where the scene lies. Mistakes of form are noted in the maps; the
-/// error is of an arm's file, or that the reader knows of one arm alone.
+/// `read_hands` reads once the objects are known. `folder`: where the scene lies. Mistakes of form
+/// are noted in the maps; the error is of an arm's file, or that the reader knows of one arm alone.
 /// Real-time: never from the servo thread.
 driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folder,
                                const SceneReading& reading, std::vector<YamlMap>& arms,

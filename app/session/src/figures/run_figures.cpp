@@ -67,11 +67,11 @@ std::string summary(const RunFigures& report) {
     s += fmt::format("Start     the tip was inside {}, so no surface was felt there at first.\n",
                      fmt::join(report.inside_at_start, ", "));
   }
-  s += fmt::format(
-      "Force     {:.2f} N at most (limit {:.2f} N), {:.2f} N on average (rms) {}.\n",
-      run.force_max(), report.force_limit,
-      run.contacts() > 0 ? run.force_rms() : run.force_rms_of_run(),
-      run.contacts() > 0 ? "while touching" : "over the run, which touched no surface");
+  s +=
+      fmt::format("Force     {:.2f} N at most (limit {:.2f} N), {:.2f} N on average (rms) {}.\n",
+                  run.force_max(), report.force_limit,
+                  run.contacts() > 0 ? run.force_rms() : run.force_rms_of_run(),
+                  run.contacts() > 0 ? "while touching" : "over the run, which touched no surface");
   s += report.triangles == 0
            ? fmt::format("Depth     {:.2f} mm at most; no triangles, all shapes are exact.\n",
                          1e3 * run.depth_max())
