@@ -42,7 +42,7 @@ driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm,
 double moved_mass(const scene::ArmFile& arm, const Eigen::Vector3d& n_W);
 
 /// One wall in front of one arm, and how it is begun; the one way in which walls are tried
-/// (wall_trial.h and study/wall_measures.h say what is looked at). SI units.
+/// (wall_trial.h and studies/stability/wall_measures.h say what is looked at). SI units.
 struct WallCase {
   ArmDirection direction;
   device_sim::PlantSettings tip;

@@ -20,7 +20,9 @@ struct Study {
   driver::Result<std::vector<Figure>> (*run)(const std::filesystem::path& folder);
 };
 
-/// Returns every study. To add one: write its file under study/, add its line here.
+/// Returns the studies without options of their own. To add one: write its file in a folder of
+/// studies/ and add its line in studies.cpp. Studies with options (accuracy, gating, stability,
+/// trouble) are commands in cli/study/.
 std::span<const Study> studies();
 
 }  // namespace thimble::app

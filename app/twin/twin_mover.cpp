@@ -12,7 +12,7 @@ namespace thimble::app {
 namespace {
 
 /// A rigid arm: the tip is a mass with friction, which each axis of the simulated arm moves exactly
-/// (device_sim/axis_dynamics.h). The joints' pull is taken where the recorded tip was, from which a
+/// (plant/axis_dynamics.h). The joints' pull is taken where the recorded tip was, from which a
 /// twin is some micrometres away at the most.
 class RigidTwin final : public TwinMover {
  public:

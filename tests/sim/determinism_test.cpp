@@ -85,7 +85,7 @@ TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
     }
   }
   support::record_hard_case(41,
-                            std::to_string(runs) + " runs of three scenes, alone and four at once",
+                            std::to_string(runs) + " runs of four scenes, alone and four at once",
                             "== runs of other bits than those stored", others, 0, "1");
 }
 

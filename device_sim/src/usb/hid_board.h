@@ -11,7 +11,7 @@ namespace thimble::device_sim::usb {
 /// What the reports of a HID arm look like. All hold little-endian 16-bit words.
 enum class HidLayout : std::uint8_t {
   kWoodenHaptics,  ///< 8 bytes: 3 counts and a counter in; 3 currents (mA) and an unused word out.
-  kPolhem,         ///< 14 bytes, as thimble/driver/arms/hfab/hfab_report.h has them.
+  kPolhem,         ///< 14 bytes, as arms/hfab/hfab_report.h of the driver has them.
   kPolhemPadded,   ///< The same in 64 bytes, as boards built on the Teensy send them.
 };
 

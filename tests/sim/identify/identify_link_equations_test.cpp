@@ -1,5 +1,5 @@
 // What links take of force, in the weak form, against bodies whose equations of motion come out of
-// their places and turns alone (support/rigid_links.h).
+// their places and turns alone (support/identify/rigid_links.h).
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>

@@ -23,7 +23,7 @@ struct RecordingSize {
   std::uint64_t room = std::uint64_t{1} << 17;
 };
 
-/// Writes a recording: an HDF5 file with one data set per column (recording_columns.h), its unit
+/// Writes a recording: an HDF5 file with one data set per column (recording_columns.cpp), its unit
 /// and meaning as attributes, and what the run was.
 ///
 /// The file has its name from the first tick on, and can be opened at any moment, however this

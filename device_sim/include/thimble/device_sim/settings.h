@@ -158,7 +158,7 @@ struct WiringSettings {
   }
 };
 
-/// Describes the firmware. Sources of the defaults: device_sim/README.md.
+/// Describes the firmware. Sources of the defaults: app/guide/pages/simulated_arm.md.
 struct FirmwareSettings {
   std::int64_t report_period_ns = 1'000'000;  ///< One report is sampled and sent in each period.
   /// Without a message for this long the motors go off [S, DEVICES 1].

@@ -54,11 +54,11 @@ struct FoundArm {
 /// mbed board, and so names none. Real-time: safe.
 bool is_placeholder(std::string_view serial) noexcept;
 
-/// Lists the boards on USB that may be arms (driver/README.md names the sources), from what the
-/// kernel tells under `root`/sys: ids, strings and report descriptors. Opens nothing and needs no
-/// right to. Of this computer ("/") it lists the arms behind vendors' services as well: those are
-/// listened to for half a second at most, on this computer alone, and told nothing. Fails if USB
-/// cannot be listed at all and there is no such arm. Real-time: never from the servo thread.
+/// Lists the boards on USB that may be arms (app/guide/pages/driver.md names the sources), from
+/// what the kernel tells under `root`/sys: ids, strings and report descriptors. Opens nothing and
+/// needs no right to. Of this computer ("/") it lists the arms behind vendors' services as well:
+/// those are listened to for half a second at most, on this computer alone, and told nothing. Fails
+/// if USB cannot be listed at all and there is no such arm. Real-time: never from the servo thread.
 Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
 
 /// Reads a small text file of the kernel without its newline; empty if it cannot be read.

@@ -13,7 +13,7 @@ namespace thimble::driver {
 // The wires to real arms on HID and serial ports. Each keeps the clock by reference (its deadlines
 // are on it), so the clock must outlive the transport. Opening is for set-up; the transports
 // themselves are Real-time: safe, with what their libraries do beneath said at each.
-// driver/README.md has the table.
+// app/guide/pages/driver.md has the table.
 
 /// Opens an arm on USB HID by its node (/dev/hidraw3), for this program alone (NodeLock). Messages
 /// are filled up with zeros to `message_size` bytes (0: sent as they are), with report id 0 in

@@ -12,8 +12,8 @@
 namespace thimble::driver::hfab {
 
 // The 14-byte reports of the Haptikfabriken arms (Polhem v2, 16c0:0486), little endian, as read in
-// their published firmware and host library (see driver/README.md, mark [S]). Boards built on the
-// Teensy pad both to 64 bytes. Everything here is Real-time: safe.
+// their published firmware and host library (see app/guide/pages/driver.md, mark [S]). Boards built
+// on the Teensy pad both to 64 bytes. Everything here is Real-time: safe.
 
 inline constexpr std::size_t kReportSize = 14;
 inline constexpr std::size_t kPaddedReportSize = 64;

@@ -49,7 +49,7 @@ class ObjectTouch {
   /// Real-time: never from the servo thread.
   virtual void list_settings(LiveSettings&) {}
 
-  // The following are for readers beside the servo, and for bodies (render/body) to answer.
+  // The following are for readers beside the servo, and for bodies (render/src/body) to answer.
 
   /// Returns whether the surface is where it was before the first tick: neither moved nor bent.
   virtual bool stands_still() const noexcept { return true; }
