@@ -225,6 +225,8 @@ function(thimble_write_optional_parts)
   thimble_part(animations HAS has_ffmpeg OFF "${no_tests}")
   thimble_has_modules(has_analysis matplotlib pandas numba)
   thimble_part(analysis HAS has_analysis OFF "${no_release_tests}")
+  thimble_has_modules(has_yaml yaml)
+  thimble_part(workflows HAS has_yaml OFF "${no_release_tests}")
   thimble_has_modules(has_wheel pip setuptools wheel venv ensurepip)
   thimble_part(wheel HAS has_wheel OFF "${no_release_tests}")
 

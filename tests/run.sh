@@ -5,9 +5,10 @@
 #     --sanitizers  in addition: the tests of the libraries of a run (tests/CMakeLists.txt) but for
 #                   release_only.list under the address and undefined-behaviour sanitizers, and of these the ones
 #                   in which threads of a run meet under the thread sanitizer
-#     --long        all tests under all sanitizers, at full length, the release built by clang, a build in which no
-#                   sources are joined, the parts that can be left out, then tests on 64-bit ARM under QEMU (hours), clang-tidy, coverage and mutants
-#                   (40, 30 and 30 minutes of two cores)
+#     --long        all tests under all sanitizers, at full length and with fresh random cases (THIMBLE_SEED=N in the
+#                   environment repeats those of N), the release built by clang, a build in which no sources are
+#                   joined, the parts that can be left out, then tests on 64-bit ARM under QEMU (hours), clang-tidy,
+#                   coverage and mutants (40, 30 and 30 minutes of two cores)
 #     --without     optional parts (keys of app/optional_parts.list) that are not installed and may be absent
 #     PRESET        only these
 # Ends with 1 if a test fails, or if an optional part that it installs is absent and not named by --without. A test that
@@ -18,7 +19,7 @@ cd "$(dirname "$0")/.."
 presets=()
 without=${THIMBLE_WITHOUT:-}
 usage() {
-  sed -n '2,16s/^# \{0,1\}//p' "$0"
+  sed -n '2,17s/^# \{0,1\}//p' "$0"
   exit 2
 }
 sanitizers=
@@ -38,6 +39,8 @@ while [ $# -gt 0 ]; do
 done
 export THIMBLE_WITHOUT=$without
 app/optional_parts.sh keys >/dev/null || exit 2  # a key that does not exist
+# The long form draws fresh random cases: one number for all of its tests (tests/support/seed.h).
+[ -z "${THIMBLE_LONG:-}" ] || export THIMBLE_SEED="${THIMBLE_SEED:-$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')}"
 more=()
 if [ ${#presets[@]} = 0 ]; then
   presets=(release)
@@ -131,7 +134,7 @@ for name in "${more[@]}"; do
   echo "== $name"
   all=()
   [ "$name" != arm64 ] || all=(--all)
-  env -u THIMBLE_LONG "tests/$name.sh" "${all[@]}" || [ $? = 3 ] || failed+=("$name")  # 3: not installed
+  env -u THIMBLE_LONG -u THIMBLE_SEED "tests/$name.sh" "${all[@]}" || [ $? = 3 ] || failed+=("$name")  # 3: not installed
   end_stage "$name"
 done
 echo "Stages, in seconds:"
@@ -143,6 +146,7 @@ for preset in "${presets[@]}"; do
 done
 app/optional_parts.sh table "build/${presets[0]}" "${promised[@]}"
 status=0
+[ -z "${THIMBLE_SEED:-}" ] || echo "Random cases: THIMBLE_SEED=$THIMBLE_SEED repeats them, of all tests or one: CONTRIBUTING.md"
 if [ ${#failed[@]} -gt 0 ]; then
   for preset in "${failed[@]}"; do report_failures "$preset" >&2; done
   echo "Tests failed in: ${failed[*]}" >&2

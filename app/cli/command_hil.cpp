@@ -50,22 +50,8 @@ std::string now_utc() {
   return text;
 }
 
-const char* word_of(HilOutcome outcome) {
-  switch (outcome) {
-    case HilOutcome::kPassed:
-      return "ok";
-    case HilOutcome::kFailed:
-      return "FAILED";
-    case HilOutcome::kSkipped:
-      return "skipped";
-    case HilOutcome::kNotRun:
-      return "NOT RUN";
-  }
-  return "";
-}
-
 void print(const HilResult& result) {
-  scene::print_format("%-7s %-16s %s\n", word_of(result.outcome), result.name.c_str(),
+  scene::print_format("%-7s %-16s %s\n", words_of(result.outcome).on_terminal, result.name.c_str(),
                       result.text.c_str());
   for (const Figure& figure : result.figures) {
     if (figure.met()) continue;

@@ -72,7 +72,8 @@ bool is_png(const std::filesystem::path& file) {
   return file.extension() == ".png" || file.extension() == ".PNG";
 }
 
-/// Returns what is wrong with the names of the pictures; empty if nothing is.
+/// Returns what is wrong with the names of the pictures, or with a film's pace; empty if nothing
+/// is.
 std::string wrong_ending(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
     return "--out: pictures are written as PNG; expected a file that ends in .png, found " +
@@ -81,6 +82,12 @@ std::string wrong_ending(const ShotOptions& options) {
   if (!options.animate.empty() && !is_png(options.animate) && !view::is_film(options.animate)) {
     return "--animate: expected a file that ends in .mp4, .gif or .png (animated PNG), found " +
            options.animate + ".";
+  }
+  if (options.pace > 50 && view::is_gif(options.animate)) {
+    return fmt::format(
+        "--pace {:g}: a GIF shows at most 50 pictures a second. Set --pace 50, or name a file that "
+        "ends in .mp4 or .png.",
+        options.pace);
   }
   return {};
 }
@@ -170,9 +177,9 @@ int take_shot(const ShotOptions& options) {
   }
   const bool animated = !options.animate.empty();
   std::vector<double> times = {at};
-  for (int i = 1; animated && at + i / options.pace < options.until; ++i) {
-    times.push_back(at + i / options.pace);
-  }
+  // Rounding must not add a picture at the very end.
+  const double pictures_wanted = (options.until - at) * options.pace - 1e-6;
+  for (int i = 1; animated && i < pictures_wanted; ++i) times.push_back(at + i / options.pace);
   session.duration = times.back() + 0.1;
   auto played = view::PlayedScene::open(options.scene, session);
   if (!played) return complain(played.error(), kExitBadInput);

@@ -53,26 +53,12 @@ std::string in_xml(std::string_view text) {
 
 }  // namespace
 
-std::string outcome_name(HilOutcome outcome) {
-  switch (outcome) {
-    case HilOutcome::kPassed:
-      return "passed";
-    case HilOutcome::kFailed:
-      return "failed";
-    case HilOutcome::kSkipped:
-      return "skipped";
-    case HilOutcome::kNotRun:
-      return "not_run";
-  }
-  return "not_run";
-}
-
 driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<HilResult>& results,
                                     const std::filesystem::path& file) {
   Json checks = Json::array();
   for (const HilResult& result : results) {
     checks.push_back(Json{{"name", result.name},
-                          {"outcome", outcome_name(result.outcome)},
+                          {"outcome", words_of(result.outcome).in_files},
                           {"text", result.text},
                           {"seconds", result.seconds},
                           {"figures", figures_json(result.figures)}});

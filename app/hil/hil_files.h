@@ -22,9 +22,6 @@ struct HilRecord {
   int exit_code = -1;                     ///< Of the program; -1 while it runs.
 };
 
-/// Returns passed, failed, skipped or not_run.
-std::string outcome_name(HilOutcome outcome);
-
 /// Writes the results as JSON: the record's members, and "checks", a list of {"name", "outcome",
 /// "text", "seconds", "figures"} with figures as `write_figures` writes them. Fails, naming the
 /// file, if that cannot be done.

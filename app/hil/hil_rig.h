@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -71,6 +72,29 @@ enum class HilOutcome {
   kSkipped,  ///< It does not apply to this arm, or was not asked for.
   kNotRun,   ///< It should have run and did not: stopped, out of time, or not safe.
 };
+
+/// The words for an outcome.
+struct HilOutcomeWords {
+  HilOutcome outcome;
+  const char* in_files;     ///< In JSON.
+  const char* on_terminal;  ///< At most 7 characters.
+};
+
+/// All of them.
+inline constexpr std::array<HilOutcomeWords, 4> kHilOutcomeWords{{
+    {HilOutcome::kPassed, "passed", "ok"},
+    {HilOutcome::kFailed, "failed", "FAILED"},
+    {HilOutcome::kSkipped, "skipped", "skipped"},
+    {HilOutcome::kNotRun, "not_run", "NOT RUN"},
+}};
+
+/// Returns those of one.
+constexpr const HilOutcomeWords& words_of(HilOutcome outcome) {
+  for (const HilOutcomeWords& words : kHilOutcomeWords) {
+    if (words.outcome == outcome) return words;
+  }
+  return kHilOutcomeWords.back();
+}
 
 /// What one check found.
 struct HilResult {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "report/extremes.h"
 #include "report/figure.h"
 #include "report/gnuplot.h"
 #include "report/picture_parts.h"
@@ -31,23 +32,9 @@ std::string table(std::span<const driver::TickRecord> rows) {
   const std::size_t bucket = (rows.size() + kBucketsMax - 1) / kBucketsMax;
   for (std::size_t begin = 0; begin < rows.size(); begin += bucket) {
     const std::size_t end = std::min(begin + bucket, rows.size());
-    std::array<std::size_t, 6> own;
-    own.fill(begin);
-    auto least = plotted(rows[begin]);
-    auto most = least;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto values = plotted(rows[i]);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        if (values[k] < least[k]) {
-          least[k] = values[k];
-          own[2 * k] = i;
-        }
-        if (values[k] > most[k]) {
-          most[k] = values[k];
-          own[2 * k + 1] = i;
-        }
-      }
-    }
+    Extremes<3> extremes;
+    for (std::size_t i = begin; i < end; ++i) extremes.take(plotted(rows[i]), i);
+    auto own = extremes.places();
     std::sort(own.begin(), own.end());
     const auto last = std::unique(own.begin(), own.end());
     std::for_each(own.begin(), last, put);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "observers/dent_record.h"
 #include "setup.h"
 #include "share/shared_run.h"
 #include "view/marks/legend.h"
@@ -63,14 +62,11 @@ driver::Result<std::unique_ptr<PlayedScene>> PlayedScene::open(
 
 void PlayedScene::play(const std::vector<double>& times, const Look& look) {
   const std::int64_t period_ns = session_->setup().period_ns();
-  const std::uint64_t every = session::DentRecord::ticks_between(period_ns);
+  const std::uint64_t last = session_->setup().ticks() - 1;
   std::vector<std::uint64_t> ticks;
   for (const double time : times) {
-    const double tick = time * 1e9 / static_cast<double>(period_ns);
-    const auto rounded =
-        static_cast<std::uint64_t>(std::max(0.0, std::round(tick / static_cast<double>(every)))) *
-        every;
-    ticks.push_back(std::min(rounded, (session_->setup().ticks() - 1) / every * every));
+    const std::int64_t time_ns = std::max<std::int64_t>(0, std::llround(1e9 * time));
+    ticks.push_back(std::min(static_cast<std::uint64_t>(time_ns / period_ns), last));
   }
   const auto moment = std::make_unique<DrawnMoment>();
   Plots plots;

@@ -29,9 +29,11 @@ class PlayedScene {
   /// Says what to do at a moment; `last` is the last tick that was.
   using Look = std::function<void(DrawnMoment& moment, const Plots& plots)>;
 
-  /// Plays the scene once and looks at each of these times (s, in order), or at the end if one is
-  /// later. Dents are drawn at the rate of a picture: times are rounded to those. Then it ends the
-  /// recording, if the options asked for one.
+  /// Plays the scene once and looks at the tick of each of these times (s, in order): the last tick
+  /// that is no later, or the last of the run. As in a viewer and in a recording (RecordingView),
+  /// tip, force and poses are those of the tick, and a dent is the one that was drawn last
+  /// (session::DentRecord), at most 16 ms before. Then it ends the recording, if the options asked
+  /// for one.
   void play(const std::vector<double>& times, const Look& look);
 
   const DrawnScene& drawn() const { return live_->scene(); }

@@ -12,6 +12,7 @@
 
 #include "faces/exec_rig.h"
 #include "faces/hd/hd_parameters.h"
+#include "support/seed.h"
 
 namespace thimble::faces {
 namespace {
@@ -303,7 +304,7 @@ TEST(FaceHdFuzz, BearsAnyCallsInAnyOrderFromSeveralThreads) {
   std::atomic<int> calls{0};
   for (unsigned t = 0; t < kThreads; ++t) {
     threads.emplace_back([&, t] {
-      std::mt19937 random(t + 1);
+      std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(t + 1)));
       std::vector<HDSchedulerHandle> handles;
       for (int k = 0; k < kCalls; ++k) {
         any_call(random, handles);

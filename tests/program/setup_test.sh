@@ -6,7 +6,7 @@ set -euo pipefail
 source=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-unset THIMBLE_WITHOUT THIMBLE_LONG MAKEFLAGS CTEST_PARALLEL_LEVEL
+unset THIMBLE_WITHOUT THIMBLE_LONG THIMBLE_SEED MAKEFLAGS CTEST_PARALLEL_LEVEL
 fail() {
   echo "FAILED: $*" >&2
   exit 1
@@ -182,6 +182,15 @@ echo 3 >"$FAKE/clock.slow.failures"
 run 1 tests/run.sh release
 says '^Failed in release: clock\.slow$'
 [ "$(wc -l <"$FAKE/clock.slow.ran")" = 3 ] || fail "not three attempts: $(wc -l <"$FAKE/clock.slow.ran")"
+
+echo "Random cases ..."
+rm -f "$FAKE"/*.ran "$FAKE/clock.slow.failures"
+run 0 tests/run.sh release
+silent_on 'THIMBLE_SEED'
+run 0 tests/run.sh --long release
+says '^Random cases: THIMBLE_SEED=[0-9]+ repeats them'
+run 0 env THIMBLE_SEED=77 tests/run.sh --long release
+says '^Random cases: THIMBLE_SEED=77 repeats them'
 
 echo "What CMake found before ..."
 mkdir -p "$work/search/app" "$work/prefix"/{bin,lib/pkgconfig,lib/cmake/Fake}

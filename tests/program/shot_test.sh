@@ -27,6 +27,59 @@ expect 0 '' cmp a.png b.png  # the same to the bit
 expect 0 'Animated' "$thimble" shot "$scene" --at 1 --until 1.2 --pace 10 --size 160x120 \
   --animate c.png
 expect 0 '^[1-9]' grep -ac fcTL c.png
+# Each moment is drawn at its own tick: where objects dent, where they move, and where they do neither.
+differ() { ! cmp -s "$1" "$2" && echo differ; }
+for moving in water_balloon floating_block sandpaper; do
+  for at in 2.001 2.007; do
+    expect 0 'Picture' "$thimble" shot "$source_dir/app/scenes/$moving.yaml" --at $at --size 320x240 --no-caption \
+      --all-colours --out $moving-$at.png
+  done
+  expect 0 'differ' differ $moving-2.001.png $moving-2.007.png
+done
+# An animation lasts as long as it should, to one unit of its file: the sum of what its pictures ask for.
+lasts() {
+  python3 - "$1" <<'END'
+import struct, sys
+
+data, total, pictures = open(sys.argv[1], 'rb').read(), 0, 0
+if data[:4] == b'GIF8':
+    flags, at = data[10], 13
+    at += 3 << ((flags & 7) + 1) if flags & 128 else 0
+    while data[at] != 0x3b:
+        if data[at] == 0x21:  # an extension; the graphic control has the delay, in 0.01 s
+            if data[at + 1] == 0xf9:
+                total += struct.unpack('<H', data[at + 4:at + 6])[0] / 100
+                pictures += 1
+            at += 2
+        else:  # a picture
+            flags = data[at + 9]
+            at += 11 + (3 << ((flags & 7) + 1) if flags & 128 else 0)
+        while data[at]:
+            at += 1 + data[at]
+        at += 1
+else:
+    at = 8
+    while at < len(data):
+        size, name = struct.unpack('>I4s', data[at:at + 8])
+        if name == b'fcTL':
+            delay, unit = struct.unpack('>HH', data[at + 28:at + 32])
+            total += delay / unit
+            pictures += 1
+        at += 12 + size
+print(f'{pictures} pictures last {total:.4f} s')
+END
+}
+film() {  # film FILE UNTIL PACE: from second 1
+  expect 0 'Animated' "$thimble" shot "$scene" --at 1 --until "$2" --pace "$3" --size 64x64 --animate "$1"
+}
+film paced.png 2 60
+expect 0 '^60 pictures last 1\.0000 s' lasts paced.png
+film paced.png 2 29.97
+expect 0 '^30 pictures last 1\.0010 s' lasts paced.png
+film paced.png 1.3 10  # 1 + 2 / 10 and 0.3 * 10 are no round numbers in binary
+expect 0 '^3 pictures last 0\.3000 s' lasts paced.png
+expect 2 '--pace 60: a GIF shows at most 50 .*--pace 50' "$thimble" shot "$scene" --at 1 --pace 60 --animate paced.gif
+expect 2 '--pace 51: a GIF' "$thimble" shot "$scene" --at 1 --pace 51 --animate paced.GIF
 # Without ffmpeg a sentence, before anything is drawn.
 mkdir -p nothing
 expect 1 'apt install ffmpeg.*\.png' env PATH="$PWD/nothing" "$thimble" shot "$scene" --at 1 --animate d.mp4
@@ -38,6 +91,10 @@ if command -v ffmpeg >/dev/null; then
     stream=width,height,nb_read_frames -of csv=p=0 c.mp4
   expect 0 'by ffmpeg' "$thimble" shot "$scene" --at 1 --until 1.3 --pace 10 --size 160x120 --animate c.gif
   expect 0 '^GIF89a$' head -c 6 c.gif
+  for pace in 50 30; do
+    film paced.gif 2 $pace
+    expect 0 "^$pace pictures last (0\\.99|1\\.00|1\\.01)00 s" lasts paced.gif
+  done
   expect 2 'cannot be written: the folder .* does not exist' "$thimble" shot "$scene" --at 1 --size 160x120 --animate no/such/c.gif
 else
   echo "NOT TESTED: MP4 and GIF, for want of ffmpeg."

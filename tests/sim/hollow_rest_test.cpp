@@ -151,7 +151,7 @@ TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
   std::array<double, kContacts.size()> most{};
   int pressed_on = 0, in_crease = 0;
   for (int i = 0; i < count; ++i) {
-    support::Random random(1000 + static_cast<std::uint64_t>(i));
+    support::Random random(1000 + i);
     const support::Hollow hollow = support::random_hollow(random);
     Pressed pressed;
     pressed.arm = kArms[random.bits() % kArms.size()];

@@ -19,6 +19,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 #include "support/run_hash.h"
+#include "support/seed.h"
 #include "support/shipped_scenes.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/arm_simulation.h"
@@ -121,7 +122,7 @@ Soaked soak(const std::string& scene, std::uint64_t ticks) {
     return {};
   }
   session::Session& session = **opened;
-  Wanderer wanderer(session, 404);
+  Wanderer wanderer(session, support::seed_of(404));
   Witness witness(ticks, session.scene().arms.front().arm.limits.force_max);
   driver::run_servo(session.device(), session.setup().clock(), driver::ForceLaw(wanderer),
                     driver::TickSink(witness),

@@ -4,12 +4,17 @@
 #include <cstdint>
 #include <random>
 
+#include "support/seed.h"
+
 namespace thimble::support {
 
 /// Draws numbers that are the same with every standard library: raw bits of the Mersenne twister,
 /// scaled here.
 class Random {
  public:
+  /// The random cases of a test, which have a number: fresh ones in the long form (seed_of).
+  explicit Random(int cases) : Random(seed_of(static_cast<std::uint64_t>(cases))) {}
+  /// Numbers that follow from this seed in every form.
   explicit Random(std::uint64_t seed) : bits_(seed) {}
 
   std::uint64_t bits() { return bits_(); }

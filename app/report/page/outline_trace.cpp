@@ -27,19 +27,10 @@ void OutlineTrace::take(const driver::TickRecord& tick) noexcept {
                                              tick.p_WT[2]};
   if (in_stretch_ == 0) {
     own_.fill(row);
-    least_ = most_ = values;
+    extremes_.clear();
     changed_ = false;
   }
-  for (std::size_t k = 0; k < kOutlined; ++k) {
-    if (values[k] < least_[k]) {
-      least_[k] = values[k];
-      own_[4 + 2 * k] = row;
-    }
-    if (values[k] > most_[k]) {
-      most_[k] = values[k];
-      own_[5 + 2 * k] = row;
-    }
-  }
+  extremes_.take(values, row);
   if (!changed_ && seen_ > 0 && tick.in_contact != last.tick.in_contact) {
     changed_ = true;
     own_[2] = last;
@@ -56,13 +47,15 @@ void OutlineTrace::take(const driver::TickRecord& tick) noexcept {
 
 void OutlineTrace::end_stretch() noexcept {
   in_stretch_ = 0;
-  std::array<std::size_t, kPerStretch> order;
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [this](std::size_t a, std::size_t b) { return own_[a].tick.tick < own_[b].tick.tick; });
+  std::array<const Row*, kPerStretch> rows;
+  const auto address = [](const Row& row) { return &row; };
+  const auto rest = std::transform(own_.begin(), own_.end(), rows.begin(), address);
+  std::transform(extremes_.places().begin(), extremes_.places().end(), rest, address);
+  std::sort(rows.begin(), rows.end(),
+            [](const Row* a, const Row* b) { return a->tick.tick < b->tick.tick; });
   for (std::size_t n = 0; n < kPerStretch; ++n) {
-    if (n > 0 && own_[order[n]].tick.tick == own_[order[n - 1]].tick.tick) continue;
-    keep(own_[order[n]]);
+    if (n > 0 && rows[n]->tick.tick == rows[n - 1]->tick.tick) continue;
+    keep(*rows[n]);
   }
 }
 

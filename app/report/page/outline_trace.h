@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "report/extremes.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/tick_observer.h"
 
@@ -41,9 +42,10 @@ class OutlineTrace final : public session::TickObserver {
 
  private:
   static constexpr std::size_t kOutlined = 8;
-  /// The first and the last of a stretch, the least and the most of each, and both sides of its
-  /// first change of contact.
-  static constexpr std::size_t kPerStretch = 4 + 2 * kOutlined;
+  /// The first and the last of a stretch, both sides of its first change of contact, and the least
+  /// and the most of each.
+  static constexpr std::size_t kFixed = 4;
+  static constexpr std::size_t kPerStretch = kFixed + 2 * kOutlined;
 
   struct Row {
     driver::TickRecord tick;
@@ -57,9 +59,8 @@ class OutlineTrace final : public session::TickObserver {
   std::vector<std::int64_t> periods_ns_;
   std::size_t kept_ = 0, touch_rows_ = 0;
   std::uint64_t stretch_ = 1, in_stretch_ = 0, seen_ = 0;
-  std::array<Row, kPerStretch>
-      own_{};  // first, last, before and after a change, then least and most
-  std::array<double, kOutlined> least_{}, most_{};
+  std::array<Row, kFixed> own_{};  // first, last, before and after a change
+  Extremes<kOutlined, Row> extremes_;
   bool changed_ = false;
   bool finished_ = false;
 };

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <queue>
 
+#include "report/extremes.h"
+
 namespace thimble::app {
 namespace {
 
@@ -71,24 +73,10 @@ class KeptTicks {
 
 // Keeps the first of some ticks, and those at which each outlined column is least and most.
 void keep_outline(const PageTicks& ticks, std::span<const std::size_t> some, KeptTicks& kept) {
-  std::array<std::size_t, kPerStretch> own;
-  own.fill(some.front());
-  auto least = outlined(ticks, some.front());
-  auto most = least;
-  for (const std::size_t i : some) {
-    const auto values = outlined(ticks, i);
-    for (std::size_t k = 0; k < kOutlined; ++k) {
-      if (values[k] < least[k]) {
-        least[k] = values[k];
-        own[1 + 2 * k] = i;
-      }
-      if (values[k] > most[k]) {
-        most[k] = values[k];
-        own[2 + 2 * k] = i;
-      }
-    }
-  }
-  for (const std::size_t i : own) kept.keep(i);
+  Extremes<kOutlined> extremes;
+  for (const std::size_t i : some) extremes.take(outlined(ticks, i), i);
+  kept.keep(some.front());
+  for (const std::size_t i : extremes.places()) kept.keep(i);
 }
 
 // Keeps the outline of some of the run's ticks with at most `rows`; all of them if they fit.
@@ -121,25 +109,11 @@ std::size_t round_stretches(std::size_t most) {
 // Keeps the ticks at which anything that is drawn is least and most in the whole run; returns how
 // far each goes, at least a little.
 std::array<double, kDrawn> keep_extremes(const PageTicks& ticks, KeptTicks& kept) {
-  std::array<std::size_t, 2 * kDrawn> own{};
-  auto least = drawn(ticks, 0);
-  auto most = least;
-  for (std::size_t i = 1; i < ticks.ticks.size(); ++i) {
-    const auto values = drawn(ticks, i);
-    for (std::size_t k = 0; k < kDrawn; ++k) {
-      if (values[k] < least[k]) {
-        least[k] = values[k];
-        own[2 * k] = i;
-      }
-      if (values[k] > most[k]) {
-        most[k] = values[k];
-        own[2 * k + 1] = i;
-      }
-    }
-  }
-  for (const std::size_t i : own) kept.keep(i);
+  Extremes<kDrawn> extremes;
+  for (std::size_t i = 0; i < ticks.ticks.size(); ++i) extremes.take(drawn(ticks, i), i);
+  for (const std::size_t i : extremes.places()) kept.keep(i);
   std::array<double, kDrawn> ranges;
-  for (std::size_t k = 0; k < kDrawn; ++k) ranges[k] = std::max(1e-9, most[k] - least[k]);
+  for (std::size_t k = 0; k < kDrawn; ++k) ranges[k] = std::max(1e-9, extremes.range(k));
   return ranges;
 }
 

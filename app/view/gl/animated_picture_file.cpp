@@ -83,13 +83,33 @@ Part difference(const Bytes& before, const Bytes& now, int width, int height) {
   return part;
 }
 
+/// How long a picture is shown, s, as the file has it.
+struct DelayFraction {
+  std::size_t numerator = 1;
+  std::size_t denominator = 1;
+};
+
+/// Returns the delay of picture `i`: exact for a whole number of pictures a second, else rounded so
+/// that the sum of all delays up to each picture is within half a tenth of a millisecond.
+DelayFraction delay_of(double frame_time, std::size_t i) {
+  constexpr double kPerSecond = 10'000;
+  const double pace = 1 / frame_time;
+  if (std::abs(pace - std::round(pace)) < 1e-9 * pace && pace < 65'536) {
+    return {1, static_cast<std::size_t>(std::lround(pace))};
+  }
+  const auto until = [&](std::size_t pictures) {
+    return std::llround(kPerSecond * frame_time * static_cast<double>(pictures));
+  };
+  return {static_cast<std::size_t>(until(i + 1) - until(i)), static_cast<std::size_t>(kPerSecond)};
+}
+
 std::vector<Chunk> chunks_of(const std::vector<Picture>& pictures, double frame_time,
                              const ColourTable& table) {
   std::vector<Chunk> chunks;
   Chunk& animation = chunks.emplace_back("acTL");
   animation.add(pictures.size());
   animation.add(std::size_t{0});  // for ever
-  std::size_t number = 0;
+  std::size_t number = 0, shown = 0;
   Bytes before;
   for (const Picture& picture : pictures) {
     Bytes now = table.numbers(picture);
@@ -100,8 +120,9 @@ std::vector<Chunk> chunks_of(const std::vector<Picture>& pictures, double frame_
     for (const int value : {part.width, part.height, part.x, part.y}) {
       place.add(static_cast<std::size_t>(value));
     }
-    place.add_short(static_cast<std::size_t>(std::lround(frame_time * 1000)));
-    place.add_short(1000);
+    const DelayFraction delay = delay_of(frame_time, shown++);
+    place.add_short(delay.numerator);
+    place.add_short(delay.denominator);
     place.add_byte(0);  // what was drawn stays ...
     place.add_byte(0);  // ... and is covered
     Chunk& pixels = chunks.emplace_back(before.empty() ? "IDAT" : "fdAT");

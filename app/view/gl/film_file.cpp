@@ -111,7 +111,7 @@ std::vector<std::string> words_for(const Picture& first, double frame_time,
   const auto add = [&words](std::initializer_list<const char*> more) {
     words.insert(words.end(), more.begin(), more.end());
   };
-  if (ending_of(file) == ".gif") {
+  if (is_gif(file)) {
     // 256 colours for all pictures, as the animated PNG has.
     add({"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none", "-f",
          "gif"});
@@ -146,6 +146,10 @@ driver::Error missing() {
 bool is_film(const std::filesystem::path& file) {
   const std::string ending = ending_of(file);
   return ending == ".mp4" || ending == ".gif";
+}
+
+bool is_gif(const std::filesystem::path& file) {
+  return ending_of(file) == ".gif";
 }
 
 driver::Result<void> find_ffmpeg() {

@@ -11,6 +11,10 @@ namespace thimble::app::view {
 /// Returns whether a file of this name is a film that ffmpeg writes: .mp4 or .gif.
 bool is_film(const std::filesystem::path& file);
 
+/// Returns whether a file of this name is a GIF. Players show a picture of one for 0.1 s if it asks
+/// for less than 0.02 s.
+bool is_gif(const std::filesystem::path& file);
+
 /// Returns whether ffmpeg can be run; what to do without it, if not.
 driver::Result<void> find_ffmpeg();
 

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "faces/dhd/dhd_test.h"
+#include "support/seed.h"
 
 namespace thimble::faces {
 namespace {
@@ -42,7 +43,7 @@ TEST_F(DhdFace, TellsPositionAndVelocitiesOfTheTip) {
 
 TEST_F(DhdFace, AnglesAndFrameOfTheStylusAgree) {
   begin_and_open({});
-  std::mt19937 random(5);
+  std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(5)));
   std::uniform_real_distribution<double> turned(-3.1, 3.1), tilted(-1.5, 1.5);
   for (int i = 0; i < 200; ++i) {
     const double a = turned(random), b = i % 10 == 0 ? std::numbers::pi / 2 : tilted(random),

@@ -6,6 +6,7 @@
 
 #include "faces/dhd/dhd_test.h"
 #include "faces/dhd/straight_path.h"
+#include "support/seed.h"
 
 namespace thimble::faces {
 namespace {
@@ -25,7 +26,7 @@ void wait_for(double seconds) {
 }
 
 TEST(StraightPath, IsAsQuickAsItsBoundsAllow) {
-  std::mt19937 random(3);
+  std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(3)));
   std::uniform_real_distribution<double> decade(-2, 2);
   for (int i = 0; i < 200; ++i) {
     const dhd::PathBounds bounds{.acceleration = std::pow(10, decade(random)),

@@ -15,6 +15,7 @@
 
 #include "faces/dhd/dhd_test.h"
 #include "faces/dhd/wrong_calls.h"
+#include "support/seed.h"
 
 namespace thimble::faces {
 namespace {
@@ -151,7 +152,7 @@ TEST_F(DhdFace, AnyOrderOfCallsFromAnyThreadEndsWell) {
   begin({.arms = 3, .held = false});
   const std::vector<Call> calls = all_calls();
   const auto caller = [&](unsigned seed) {
-    std::mt19937 random(seed);
+    std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(seed)));
     double p[3] = {0, 0, 0};
     int status[DHD_MAX_STATUS];
     double rows[3][3];

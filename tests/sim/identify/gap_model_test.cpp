@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -57,7 +58,7 @@ using Angles = std::vector<double>;
 
 TEST(GapModel, MovesAlikeAloneBesideOthersAndOnPlainLanes) {
   const ArmMotion motion = shaken();
-  support::Random random(3);
+  support::Random random(std::uint64_t{3});
   support::RunHash hash;
   for (const bool rubs : {false, true}) {
     std::array<Gap::Vector, kGapRunsAtOnce> theta;

@@ -9,6 +9,7 @@
 #include "arms/falcon/falcon_arm.h"
 #include "arms/falcon/falcon_boot.h"
 #include "support/boards/usb_host_line.h"
+#include "support/seed.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 
 namespace thimble::device_sim::usb {
@@ -270,7 +271,7 @@ TEST_F(FalconOnUsbTest, SwitchesTheMotorsOffWhenTheHostIsSilent) {
 TEST(DeltaPlant, ExertsTheForceThatItsTorquesAreWorth) {
   // Checked against the driver's Jacobian, which was found in another way: f = J^-T tau.
   const auto model = driver::falcon::falcon_model();
-  std::mt19937_64 random(11);
+  std::mt19937_64 random(support::seed_of(11));
   std::uniform_real_distribution<double> in_ball(-0.03, 0.03), amperes(-2, 2);
   for (int i = 0; i < 500; ++i) {
     const Eigen::Vector3d p_BT =

@@ -7,6 +7,7 @@
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
 #include "support/boards/usb_host.h"
+#include "support/seed.h"
 #include "thimble/device_sim/usb/arm_shelf.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"
@@ -103,7 +104,7 @@ TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
 }
 
 TEST_P(HidArmTest, FeedsItsMotorsWhatTheMessageSays) {
-  std::mt19937_64 random(2);
+  std::mt19937_64 random(support::seed_of(2));
   for (int i = 0; i < 300; ++i) {
     const auto mA = static_cast<std::int16_t>(static_cast<int>(random() % 5000) - 2500);
     ASSERT_TRUE(exchange(mA).has_value());

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/boards/usb_host.h"
+#include "support/seed.h"
 #include "thimble/device_sim/usb/vhci.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"
@@ -391,7 +392,7 @@ TEST_F(AttachedHost, HangsUpOnAClientThatHoardsTransfers) {
 }
 
 TEST_F(UsbipServerTest, LivesThroughClientsThatTalkNonsense) {
-  std::mt19937_64 random(3);
+  std::mt19937_64 random(support::seed_of(3));
   for (int round = 0; round < 300; ++round) {
     support::UsbHost host(server_);
     if (round % 2 == 0) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "support/long_form.h"
+#include "support/seed.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -59,7 +60,7 @@ TEST(UsbipWire, ReadsTheExampleOfTheKernelsDocumentation) {
 }
 
 TEST(UsbipWire, BringsEveryCommandOverAndTakesItInAnyPieces) {
-  std::mt19937_64 random(1);
+  std::mt19937_64 random(support::seed_of(1));
   for (int i = 0; i < 300; ++i) {
     const UsbipCommand sent = some_command(random);
     const std::vector<std::byte> data(sent.to_host ? 0 : sent.length, std::byte{0x5a});
@@ -121,7 +122,7 @@ TEST(UsbipWire, LaysOutListAndImportAsDocumented) {
 }
 
 TEST(UsbipWire, LivesThroughGarbageAndNeverReadsBeyondIt) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(support::seed_of(7));
   const int rounds = support::long_form() ? 5'000'000 : 200'000;
   int whole = 0;
   for (int i = 0; i < rounds; ++i) {

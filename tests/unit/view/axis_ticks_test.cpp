@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "support/seed.h"
+
 namespace thimble::app::view {
 namespace {
 
@@ -30,7 +32,7 @@ TEST(AxisTicks, AreRoundNumbers) {
 }
 
 TEST(AxisTicks, AreAsManyAsThereIsRoomForAndInTheirRange) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(support::seed_of(7));
   std::uniform_real_distribution<double> size(-6, 4);
   std::uniform_real_distribution<double> place(-3, 3);
   for (int i = 0; i < 2000; ++i) {

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "support/seed.h"
+
 namespace thimble::app::view {
 namespace {
 
@@ -21,7 +23,7 @@ driver::TickRecord tick(double time, double force) {
 
 TEST(Plots, FindTheLeastAndTheMostOfAnyRange) {
   Plots plots;
-  std::mt19937_64 random(3);
+  std::mt19937_64 random(support::seed_of(3));
   std::uniform_real_distribution<double> any(0, 4);
   std::vector<double> forces;
   // More than a minute, so that the first ticks are forgotten and blocks begin anywhere.

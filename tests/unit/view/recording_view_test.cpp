@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -127,6 +128,19 @@ void expect_as_seen(const std::string& scene, const std::vector<double>& times,
 
 TEST(RecordingView, ShowsDentsAsTheyWere) {
   expect_as_seen("water_balloon", {0.4, 0.9, 1.4});
+}
+
+TEST(RecordingView, ShowsDentsBetweenTheirDrawings) {
+  expect_as_seen("water_balloon", {0.407, 0.913, 1.399});
+}
+
+TEST(PlayedScene, LooksAtTheTickOfEachTime) {
+  for (const char* scene : {"water_balloon", "sandpaper"}) {  // with dents and without
+    const Seen seen = see(scene, {0.5 / 3, 0.401, 0.402, 0.4035, 0.407});
+    std::vector<std::uint64_t> ticks;
+    for (const DrawnMoment& moment : seen.moments) ticks.push_back(moment.tick.tick);
+    EXPECT_EQ(ticks, (std::vector<std::uint64_t>{166, 401, 402, 403, 407})) << scene;
+  }
 }
 
 TEST(RecordingView, ShowsBodiesWhereTheyWere) {

@@ -64,8 +64,8 @@ ShotPainter painter_of(const DrawnScene& scene, const ShotChoice& choice) {
 /// Tells at which second a scene is drawn: in touch, where the usual one is not.
 double second_of(const std::string& scene) {
   static const std::map<std::string, double> others = {
-      {"clay", 3.0}, {"clay_tablet", 5.0}, {"tin_can", 4.2},  {"held_block", 2.4},
-      {"box", 2.2},  {"charges", 3.0},     {"two_hands", 3.0}};
+      {"clay", 3.008}, {"clay_tablet", 5.008}, {"tin_can", 4.208},  {"held_block", 2.4},
+      {"box", 2.208},  {"charges", 3.008},     {"two_hands", 3.008}};
   const auto found = others.find(scene);
   return found == others.end() ? 1.6 : found->second;
 }
@@ -155,12 +155,12 @@ TEST(Shots, OfFieldsTrailNormalAndTexturesLookAsTheyDid) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const MarkedShot shots[] = {
-      {"charges_fields", "charges", 3.0,
+      {"charges_fields", "charges", 3.008,
        [](PaintChoice& paint) {
          paint.fields = true;
          paint.theme = Theme::kDark;
        }},
-      {"charges_trail", "charges", 3.0, [](PaintChoice& paint) { paint.trail = true; }},
+      {"charges_trail", "charges", 3.008, [](PaintChoice& paint) { paint.trail = true; }},
       {"sandpaper_surfaces", "sandpaper", 2.0, [](PaintChoice& paint) {
          paint.surfaces = true;
          paint.marks.contact = true;

@@ -39,7 +39,7 @@ TEST(TimeShots, OfARecordingAreThoseOfItsRun) {
         PlayedScene::open(fs::path(THIMBLE_SOURCE_DIR) / "app/scenes/water_balloon.yaml", options);
     ASSERT_TRUE(played) << played.error().message;
     ShotPainter painter((*played)->drawn(), choice, ScenePrograms::make().value());
-    (*played)->play({0.4, 0.9, 1.4}, [&](DrawnMoment& moment, const Plots& plots) {
+    (*played)->play({0.4, 0.907, 1.4}, [&](DrawnMoment& moment, const Plots& plots) {
       seen.emplace_back(moment, painter.paint(moment, plots));
       choice.camera = painter.camera();
     });

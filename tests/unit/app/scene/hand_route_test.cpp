@@ -21,6 +21,7 @@
 #include "hand/surface_probe.h"
 #include "mesh/closest_point.h"
 #include "support/meshes/shapes.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {
@@ -83,7 +84,7 @@ driver::Result<scene::HandRoute> plan_on_sphere(const std::vector<scene::HandWay
 TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
   const render::TriangleMesh mesh = sphere(3);
   scene::SurfaceProbe probe(mesh);
-  std::mt19937_64 random(3);
+  std::mt19937_64 random(support::seed_of(3));
   std::uniform_real_distribution<double> step(-0.002, 0.002);
   Vector3d p(0.01, 0.02, 0.03);
   for (int i = 0; i < 500; ++i) {
@@ -100,7 +101,7 @@ TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
 }
 
 TEST(SphereTree, GivesTheAnswersOfALookAtAllSpheres) {
-  std::mt19937_64 random(5);
+  std::mt19937_64 random(support::seed_of(5));
   std::uniform_real_distribution<double> place(-0.1, 0.1), size(0, 0.01);
   for (const int count : {0, 1, 8, 9, 100, 1000}) {
     std::vector<scene::SphereTree::Sphere> spheres(static_cast<std::size_t>(count));
@@ -269,7 +270,7 @@ TEST(HandRoute, GoesEveryStrokeOverPlainAndShippedMeshes) {
     meshes.emplace_back(name, render::placed(*mesh, 0.08 / box.sizes().maxCoeff(),
                                              Eigen::Matrix3d::Identity(), {0, 0, 0}));
   }
-  std::mt19937_64 bits(41);
+  std::mt19937_64 bits(support::seed_of(41));
   const auto share = [&bits] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
   int strokes = 0, refused = 0;
   for (const auto& entry : meshes) {

@@ -14,6 +14,7 @@
 #include "support/long_form.h"
 #include "support/noise.h"
 #include "support/scratch.h"
+#include "support/seed.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::app {
@@ -127,7 +128,7 @@ TEST(RecordingMutations, AreReadOrRefused) {
 #endif
   // Each file is read in a separate process, which is the time that this test takes.
   const int rounds = support::long_form() ? 2000 : 150;
-  Mutator mutator(7364);
+  Mutator mutator(support::seed_of(7364));
   ASSERT_GT(mutator.table_bytes(), 2000U);
   const auto path = support::scratch_folder() / "mutated.h5";
   int read = 0, refused = 0, broke = 0;

@@ -7,11 +7,13 @@
 #include <random>
 #include <vector>
 
+#include "support/seed.h"
+
 namespace thimble::app {
 namespace {
 
 TEST(Histogram, FindsPercentilesWithinItsBinWidth) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(support::seed_of(7));
   std::uniform_real_distribution<double> exponent(0, std::log(1e10));
   session::Histogram histogram;
   std::vector<std::int64_t> values;
@@ -112,7 +114,7 @@ TEST(RunStatistics, GivesEnergyByTheForceThatActedDuringEachStep) {
 }
 
 TEST(RunStatistics, AgreesWithPlainSumsOverRandomRecords) {
-  std::mt19937_64 random(11);
+  std::mt19937_64 random(support::seed_of(11));
   std::normal_distribution<double> normal;
   session::RunStatistics statistics;
   double force_max = 0, squares = 0, squares_of_all = 0, depth_max = 0, energy = 0;

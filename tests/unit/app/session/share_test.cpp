@@ -28,6 +28,7 @@
 #include "share/shared_run.h"
 #include "support/heap_guard.h"
 #include "support/long_form.h"
+#include "support/seed.h"
 
 namespace thimble::app {
 namespace {
@@ -948,7 +949,7 @@ TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
   const auto reader = session::SharedReader::over(copy.bytes).value();
   read_all(*reader);
   EXPECT_EQ(reader->rejected(), 0U);
-  std::mt19937_64 random(1);
+  std::mt19937_64 random(support::seed_of(1));
   const std::size_t begin = session::kSharedLiveOffset;
   const auto& tables = *reinterpret_cast<const session::SharedHead*>(copy.bytes.data());
   for (int round = 0; round < 200; ++round) {

@@ -18,6 +18,7 @@
 #include "studies/trouble/small_meshes.h"
 #include "studies/trouble/trouble_run.h"
 #include "support/scratch.h"
+#include "support/seed.h"
 #include "text_file.h"
 
 namespace thimble::app {
@@ -235,7 +236,7 @@ TEST(RandomScene, StaysWithinWhatTheLawsAllow) {
   RandomSceneLimits none = limits();
   none.arm.declared.stiffness = 60;  // what an arm declares binds too
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const std::string text = random_scene(seed, none).text;
+    const std::string text = random_scene(support::seed_of(seed), none).text;
     for (std::size_t at = text.find("\n    stiffness: "); at != std::string::npos;
          at = text.find("\n    stiffness: ", at + 1)) {
       EXPECT_LE(std::stod(text.substr(at + 16)), 60) << seed;

@@ -10,6 +10,7 @@
 
 #include "support/explained_rig.h"
 #include "support/random.h"
+#include "support/seed.h"
 
 namespace thimble::driver {
 namespace {
@@ -60,7 +61,7 @@ class RandomPath {
 
 TEST(ExplainedEnergy, AWeightPassesOnAMillionRandomTicks) {
   ExplainedRig rig(explained_limits(), explained_stage());
-  RandomPath path(1);
+  RandomPath path(support::seed_of(1));
   rig.open({0, 0, 0});
   const Vector3d f_W{0, 0, -0.2 * 9.80665};
   int changed = 0;
@@ -75,7 +76,7 @@ TEST(ExplainedEnergy, AFieldPassesOnAMillionRandomTicks) {
   // The stiffest that the damping of arm and hand pays for: K (T / 2 + T) = b.
   const double stiffness = 0.99 * explained_stage().dissipation / (1.5 * kTick);
   ExplainedRig rig(explained_limits(), explained_stage());
-  RandomPath path(2);
+  RandomPath path(support::seed_of(2));
   rig.open({0, 0, 0});
   int changed = 0;
   for (int k = 0; k < 1'000'000; ++k) {

@@ -1,4 +1,5 @@
 #include "links/haply/haply_message.h"
+#include "support/seed.h"
 
 #include <gtest/gtest.h>
 
@@ -60,7 +61,7 @@ TEST(HaplyMessage, RejectsNumbersThatCannotBeAndLeavesTheStateAlone) {
 }
 
 TEST(HaplyMessage, UnderstandsOrRejectsAnyDamage) {
-  std::mt19937 random(7);
+  std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(7)));
   std::uniform_int_distribution<std::size_t> place(0, kState.size() - 1);
   std::uniform_int_distribution<int> byte(0, 255);
   for (int i = 0; i < 20'000; ++i) {

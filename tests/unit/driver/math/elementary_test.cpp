@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
 
 #include "math/rough_arc.h"
@@ -29,7 +30,7 @@ void expect_same(double found, double wanted) {
 TEST(Elementary, GivesTheStoredBitsOnEveryProcessorByEveryCompiler) {
   // Stored where each result was the one of MPFR (elementary_mpfr_test.cpp).
   for (const Trial& trial : trials()) {
-    support::Random random(11);
+    support::Random random(std::uint64_t{11});
     support::RunHash hash;
     for (int i = 0; i < 20'000; ++i) {
       const double x = trial.x(random);
@@ -157,7 +158,7 @@ std::int64_t steps_apart(double found, double wanted) {
 }
 
 TEST(Elementary, SineAndCosineAtOnceAreTheNearestDoubleOrTheNextOne) {
-  support::Random random(3);
+  support::Random random(std::uint64_t{3});
   support::RunHash hash;
   int next = 0;
   for (const auto& draw : {of_size(-40, 24), of_size(-1074, 1024), of_size(-3, 3)}) {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "support/seed.h"
+
 namespace thimble::driver {
 namespace {
 
@@ -42,7 +44,7 @@ TEST(PrintableText, ReplacesLineFeedsOfNamesOnly) {
 }
 
 TEST(PrintableText, IsPrintableAlready) {
-  std::uint32_t state = 1;
+  auto state = static_cast<std::uint32_t>(support::seed_of(1));
   for (int round = 0; round < 2000; ++round) {
     std::string text;
     for (int i = 0; i < 20; ++i) {

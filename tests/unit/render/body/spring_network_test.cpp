@@ -10,6 +10,7 @@
 #include "support/dense_algebra.h"
 #include "support/meshes/body_meshes.h"
 #include "support/meshes/shapes.h"
+#include "support/seed.h"
 #include "thimble/render/body/spring_scheme.h"
 
 namespace thimble::render {
@@ -56,8 +57,10 @@ TEST(SpringNetwork, FindsTheHighestFrequencyOfMeshesAndWildNetworks) {
   expect_bounds_of_the_dense_matrix(join_vertices(support::icosphere(1, 0.03), settings).value());
   expect_bounds_of_the_dense_matrix(support::join_heights(support::icosphere(2, 0.03), settings));
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    expect_bounds_of_the_dense_matrix(support::wild_network<3>(40, 1e5, true, seed));
-    expect_bounds_of_the_dense_matrix(support::wild_network<1>(60, 1e5, false, seed));
+    expect_bounds_of_the_dense_matrix(
+        support::wild_network<3>(40, 1e5, true, support::seed_of(seed)));
+    expect_bounds_of_the_dense_matrix(
+        support::wild_network<1>(60, 1e5, false, support::seed_of(seed)));
   }
 }
 

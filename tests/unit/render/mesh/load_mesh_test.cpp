@@ -9,6 +9,7 @@
 #include <string>
 
 #include "support/scratch.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
@@ -131,7 +132,7 @@ TEST(LoadMesh, RefusesWhatIsNoMeshFile) {
 
 TEST(LoadMesh, AnswersGarbageInEveryFormatWithAnError) {
   std::string garbage;
-  std::uint32_t seed = 7;
+  auto seed = static_cast<std::uint32_t>(support::seed_of(7));
   for (int i = 0; i < 4000; ++i)
     garbage += static_cast<char>((seed = seed * 1664525u + 1013904223u) >> 24);
   for (const char* ending : {"off", "obj", "stl", "ply"}) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "support/scratch.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 
@@ -177,7 +178,7 @@ TEST(MeshFormats, RefuseDaeWithoutAMesh) {
 
 TEST(MeshFormats, AnswerGarbageWithASentence) {
   std::string garbage;
-  std::uint32_t seed = 7;
+  auto seed = static_cast<std::uint32_t>(support::seed_of(7));
   for (int i = 0; i < 4000; ++i) {
     garbage += static_cast<char>((seed = seed * 1664525u + 1013904223u) >> 24);
   }

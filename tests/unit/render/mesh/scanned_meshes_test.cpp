@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/meshes/reference_geometry.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "track/mesh_contact.h"
@@ -60,7 +61,7 @@ TEST(ScannedMeshes, ElephantIsNeverLostWhileTheTipWandersBelowItsSkin) {
   const double scale = 0.1 / (size.box_max - size.box_min).maxCoeff();
   const TriangleMesh mesh = placed(file, scale, Eigen::Matrix3d::Identity(), {0, 0, 0});
   MeshContact contact = MeshContact::build(mesh).value();
-  std::mt19937_64 random(21);
+  std::mt19937_64 random(support::seed_of(21));
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<std::size_t> any_triangle(0, mesh.triangles.size() - 1);
   const auto move = [&contact](const Vector3d& p) -> const ContactState& {

@@ -11,6 +11,7 @@
 
 #include "support/heap_guard.h"
 #include "support/random.h"
+#include "support/seed.h"
 #include "support/slow_surface.h"
 
 namespace thimble::render {
@@ -143,7 +144,7 @@ TEST(ModelTouch, GivesNoEnergyWhateverModelsCome) {
   // together a machine that would give energy for ever, were there no account.
   double most = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    support::Random random(seed);
+    support::Random random(support::seed_of(seed));
     Tip tip({.stiffness_max = 2000, .power = 0, .reserve = 0.001});
     const double a = random.uniform(5, 60), b = random.uniform(5, 60);
     for (int k = 0; k < 5000; ++k) {

@@ -18,6 +18,7 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 #include "support/scratch.h"
+#include "support/seed.h"
 #include "track/memory_contact.h"
 
 namespace thimble::render {
@@ -114,7 +115,7 @@ class Way {
 TEST(PagedContact, FeelsWhatTheContactInMemoryFeels) {
   Hand hand(PagedContact(open({.frames = 24, .reach = 0.003, .horizon = 0.02})));
   MemoryContact reference((PackedSurface(ball())));
-  Way way(1);
+  Way way(support::seed_of(1));
   int touching = 0;
   for (int i = 0; i < 20'000; ++i) {
     // In and out, as the depth sways.
@@ -140,7 +141,7 @@ TEST(PagedContact, FeelsAPlacedMeshAsIfItHadBeenMoved) {
                          .p_WM = {0.02, -0.3, 0.1}};
   Hand placed(PagedContact(open({.frames = 100, .reach = 1, .horizon = 0}), place));
   Hand plain(PagedContact(open({.frames = 100, .reach = 1, .horizon = 0})));
-  Way way(2);
+  Way way(support::seed_of(2));
   for (int i = 0; i < 5'000; ++i) {
     const Vector3d p = way.next(2e-4, 4e-4 + 6e-4 * std::sin(0.01 * i));
     const ContactState& there = placed.move(place.p_WM + place.scale * (place.R_WM * p));
@@ -157,7 +158,7 @@ TEST(PagedContact, FeelsAPlacedMeshAsIfItHadBeenMoved) {
 
 TEST(PagedContact, BringsWhatAPressedTipTouchesHoweverDeepItIs) {
   Hand hand(PagedContact(open({.frames = 8, .reach = 0.002, .horizon = 0.02})));
-  Way way(3);
+  Way way(support::seed_of(3));
   for (int i = 0; i < 4'000; ++i) {
     const double depth = std::min(-0.002 + 2e-5 * i, 0.012);
     hand.move(way.next(1e-4, depth));
@@ -171,7 +172,7 @@ TEST(PagedContact, BringsWhatAPressedTipTouchesHoweverDeepItIs) {
 TEST(PagedContact, HoldsWhileTheLoaderIsStalledAndGoesOnWithoutAJump) {
   for (const double stall : {0.02, 0.1, 0.5}) {
     Hand hand(PagedContact(open({.frames = 80, .reach = 0.002, .horizon = 0.01})));
-    Way way(4);
+    Way way(support::seed_of(4));
     hand.move(way.next(1e-4, -0.002));
     hand.serve();
     for (int i = 0; i < 40; ++i) {
@@ -301,7 +302,7 @@ TEST(PagedContact, NeverJumpsWhileItsPagesComeAndGoAtRandom) {
   support::Random random(11);
   const int ticks = support::long_form() ? 400'000 : 30'000;
   Hand hand(PagedContact(open({.frames = 10, .reach = 0.002, .horizon = 0.004})));
-  Way way(5);
+  Way way(support::seed_of(5));
   int touching = 0, serving = 0;
   for (int i = 0; i < ticks; ++i) {
     const double step = 3e-4 * (1 + std::sin(0.003 * i));
@@ -338,7 +339,7 @@ TEST(PagedContact, HoldsOverAPageThatIsDamaged) {
     }
   }
   Hand hand(PagedContact(open({.frames = 24, .reach = 0.002, .horizon = 0.02}, path)));
-  Way way(6);
+  Way way(support::seed_of(6));
   for (int i = 0; i < 20'000; ++i) {
     const ContactState& felt = hand.move(way.next(2e-4, 4e-4 + 6e-4 * std::sin(0.01 * i)));
     ASSERT_TRUE(std::isfinite(felt.depth) && felt.n_W.allFinite());
@@ -385,7 +386,7 @@ TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
     ASSERT_TRUE(writer->append(records).ok());
     ASSERT_TRUE(writer->finish().ok());
     PagedContact contact(open({.frames = 40, .reach = 0.002, .horizon = 0.02}, path));
-    Way way(7);
+    Way way(support::seed_of(7));
     driver::DeviceState state;
     state.dt = kTick;
     for (int i = 0; i < 2'000; ++i) {
@@ -402,7 +403,7 @@ TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
 
 TEST(PagedContact, LeavesTheHeapAloneInEveryTick) {
   Hand hand(PagedContact(open({.frames = 8, .reach = 0.002, .horizon = 0.004})));
-  Way way(8);
+  Way way(support::seed_of(8));
   std::vector<Vector3d> tips;
   for (int i = 0; i < 3'000; ++i) tips.push_back(way.next(2e-4, 1e-3 * std::sin(0.01 * i)));
   driver::DeviceState state;
@@ -421,7 +422,7 @@ TEST(PagedContact, FindsTheSurfaceAgainHoweverFarItWentUnseen) {
   // More of the ball lies between where it was last known to be free and where it is than fits the
   // frames.
   Hand hand(PagedContact(open({.frames = 5, .reach = 0.002, .horizon = 0.01})));
-  Way way(9);
+  Way way(support::seed_of(9));
   int touching = 0;
   for (int i = 0; i < 20'000; ++i) {
     const ContactState& felt = hand.move(way.next(4e-4, 8e-4 + 1.2e-3 * std::sin(0.007 * i)));
@@ -437,7 +438,7 @@ TEST(PagedContact, NeverJumpsWhileAThreadLoadsForIt) {
   const auto surface = open({.frames = 5, .reach = 0.002, .horizon = 0.01});
   Hand hand((PagedContact(surface)));
   surface->start_loader();
-  Way way(9);
+  Way way(support::seed_of(9));
   std::vector<Vector3d> tips;
   for (int i = 0; i < 20'000; ++i) {
     tips.push_back(way.next(4e-4, 8e-4 + 1.2e-3 * std::sin(0.007 * i)));

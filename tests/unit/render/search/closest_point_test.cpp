@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/meshes/reference_geometry.h"
+#include "support/seed.h"
 
 namespace thimble::render {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(ClosestPoint, EqualsThePlainAnswerInAllSevenRegions) {
-  std::mt19937_64 random(2);
+  std::mt19937_64 random(support::seed_of(2));
   std::normal_distribution<double> normal;
   const auto any = [&] { return Vector3d(normal(random), normal(random), normal(random)); };
   for (int i = 0; i < 100000; ++i) {

@@ -8,6 +8,7 @@
 #include "mesh/segment_crossing.h"
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"
+#include "support/seed.h"
 
 namespace thimble::render {
 namespace {
@@ -17,7 +18,10 @@ using Eigen::Vector3d;
 // A mesh with its search, and the points that a test wants.
 struct Scene {
   explicit Scene(const TriangleMesh& shape, std::uint64_t seed = 5)
-      : mesh(shape), contact(ContactMesh::build(shape).value()), search(contact), random(seed) {}
+      : mesh(shape),
+        contact(ContactMesh::build(shape).value()),
+        search(contact),
+        random(support::seed_of(seed)) {}
 
   Vector3d point(double size) {
     std::uniform_real_distribution<double> uniform(-size, size);

@@ -15,6 +15,7 @@
 #include "support/meshes/dents.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
+#include "support/seed.h"
 #include "track/moving_mesh.h"
 
 // A mesh that has moved, with all that is built over it, is the same as one built anew there.
@@ -89,7 +90,7 @@ TEST(MovingMesh, IsSearchedAsOneBuiltAnew) {
     std::uint64_t seed = 10;
     for (const TriangleMesh& shape : shapes()) {
       MovingMesh surface(ContactMesh::build(shape, {.room = 0.2}).value(), {.search = choice});
-      support::Random random(++seed);
+      support::Random random(support::seed_of(++seed));
       int entries = 0;
       for (int round = 0; round < rounds(); ++round) {
         const auto moves = next_moves(surface.mesh(), shape, round, random);
@@ -113,7 +114,7 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
       constexpr double kCrease = 0.25;
       MovingMesh surface(ContactMesh::build(shape, {.room = 0.2}).value(),
                          {.normals = weights, .crease_angle = kCrease});
-      support::Random random(++seed);
+      support::Random random(support::seed_of(++seed));
       int changed = 0;
       for (int round = 0; round < rounds() / 4; ++round) {
         const SmoothNormals before = *surface.normals();

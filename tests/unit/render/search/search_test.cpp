@@ -19,6 +19,7 @@
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
@@ -80,7 +81,7 @@ template <class Surface>
 void expect_same_on_random_segments(const Surface& surface, const Vector3d& middle, double half,
                                     int count, std::uint64_t seed) {
   Searches<Surface> searches(surface);
-  support::Random random(seed);
+  support::Random random(support::seed_of(seed));
   for (int i = 0; i < count; ++i) {
     const double reach = i % 3 == 0 ? 1.5 * half : i % 3 == 1 ? 0.1 * half : 0.003 * half;
     Vector3d from = middle + random.in_box(1.2 * half);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -37,7 +38,7 @@ TEST(SinePair, IsSineAndCosineOfBothAngles) {
 }
 
 TEST(SinePair, HasTheStoredBitsOnEveryProcessorByEveryCompiler) {
-  support::Random random(18);
+  support::Random random(std::uint64_t{18});
   support::RunHash hash;
   for (int i = 0; i < 20'000; ++i) {
     const SinePair found = sine_pair(Pair{random.uniform(-1e4, 1e4), random.uniform(-3, 3)});

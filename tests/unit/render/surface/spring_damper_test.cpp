@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "support/meshes/shapes.h"
+#include "support/seed.h"
 #include "thimble/render/touch.h"
 #include "track/mesh_contact.h"
 
@@ -25,7 +26,7 @@ ContactState contact_at(double depth, const Vector3d& n_W) {
 }
 
 TEST(SpringDamper, IsKxPlusBvAlongTheNormalAndNeverPulls) {
-  std::mt19937_64 random(1);
+  std::mt19937_64 random(support::seed_of(1));
   std::uniform_real_distribution<double> uniform(-1, 1);
   const SpringDamper spring{1234.5, 6.7};
   int pushed = 0;

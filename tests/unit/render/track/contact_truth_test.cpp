@@ -226,7 +226,7 @@ TEST(ContactTruth, NoContactIsLostInsideScannedMeshesAtAnyDepth) {
 TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
   std::array<Sum, kWays.size()> sums;
   for (int i = 0; i < (support::long_form() ? 400 : 40); ++i) {
-    support::Random random(500 + static_cast<std::uint64_t>(i));
+    support::Random random(500 + i);
     TriangleMesh mesh = support::icosphere(1 + static_cast<int>(random.bits() % 3), 0.05);
     const double rough = random.uniform(0.05, 0.6);
     for (Vector3d& vertex : mesh.vertices) vertex *= 1 - rough * random.uniform(0, 1);

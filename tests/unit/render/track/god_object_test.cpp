@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <numbers>
 
 #include "god_object_shapes.h"
 #include "support/heap_guard.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
@@ -38,7 +40,7 @@ TriangleMesh with_slivers(TriangleMesh mesh) {
 // by the exact test, does standing still change nothing?
 void expect_sound_walk(const TriangleMesh& mesh, std::uint64_t seed) {
   auto contact = GodObjectContact::build(mesh).value();
-  support::RandomTip tip(seed, mesh);
+  support::RandomTip tip(support::seed_of(seed), mesh);
   const double size = tip.size();
   int touched = 0;
   const int ticks = support::length_of_run(100000, 1000000);
@@ -98,7 +100,7 @@ TEST(GodObject, RestsWhereNoPointOfTheSurfaceAroundIsNearer) {
   // the material.
   const TriangleMesh mesh = support::bumpy_sphere(2, 0.05, 0.35, 7);
   auto contact = GodObjectContact::build(mesh).value();
-  support::RandomTip tip(12, mesh);
+  support::RandomTip tip(support::seed_of(12), mesh);
   int asked = 0;
   for (int i = 0; i < 6000; ++i) {
     const Vector3d p_WT = tip.next();
@@ -231,7 +233,8 @@ void expect_same_answers(const TriangleMesh& base, double scale, double offset) 
   auto reference = GodObjectContact::build(base).value();
   auto copy =
       GodObjectContact::build(placed(base, scale, Eigen::Matrix3d::Identity(), shift)).value();
-  support::Random random(9);
+  // No fresh cases: a proxy near an edge may go either way by a rounding of its place.
+  support::Random random(std::uint64_t{9});
   Vector3d p(0.08, 0, 0);
   int touched = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -282,7 +285,7 @@ TEST(GodObject, EndsContactForAPositionThatIsNaN) {
 TEST(GodObject, AsksTheHeapForNothing) {
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.35, 7);
   auto contact = GodObjectContact::build(mesh).value();
-  support::RandomTip tip(40, mesh);
+  support::RandomTip tip(support::seed_of(40), mesh);
   const int calls = support::heap_calls_of([&] {
     for (int i = 0; i < 20000; ++i) move(contact, tip.next());
   });

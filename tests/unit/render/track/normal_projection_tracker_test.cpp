@@ -11,6 +11,7 @@
 #include "support/contact_walk.h"
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"
+#include "support/seed.h"
 #include "track/mesh_contact.h"
 
 namespace thimble::render {
@@ -90,7 +91,7 @@ TEST(NormalProjectionTracker, TouchesWhereTheTipIsJustOnTheSurface) {
 TEST(NormalProjectionTracker, LeavesGapsBelowHollowEdges) {
   const TriangleMesh shape = support::bumpy_sphere(3, 0.05, 0.3, 6);
   const auto gaps_and_losses = [&shape](auto contact) {
-    support::Stroll stroll(contact, shape, 0.002, 0.0005, 7);
+    support::Stroll stroll(contact, shape, 0.002, 0.0005, support::seed_of(7));
     std::uint64_t lost = 0;
     for (int i = 0; i < 20000 && stroll.in_contact(); ++i) {
       if (!stroll.step()) lost += contact.search().inside(stroll.to);

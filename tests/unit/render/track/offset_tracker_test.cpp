@@ -14,6 +14,7 @@
 #include "support/long_form.h"
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"
+#include "support/seed.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "track/blended.h"
@@ -136,7 +137,7 @@ Smoothness stroll_smoothly(const TriangleMesh& shape, double depth, double step,
   const ContactMesh& mesh = contact.mesh();
   const SmoothNormals& normals = *contact.tracker().smooth_normals();
   const double edge_length = check_mesh(shape).edge_mean;
-  support::Stroll stroll(contact, shape, depth, step, 5);
+  support::Stroll stroll(contact, shape, depth, step, support::seed_of(5));
   Smoothness result;
   for (int i = 0; i < ticks; ++i) {
     if (!stroll.step()) {
@@ -257,7 +258,7 @@ TEST(HardCase22, OffsetTrackerCrossesEdgesSlowlyWithoutLossOrJump) {
   for (const TriangleMesh& shape : {support::icosphere(4, 0.05), support::torus(0.05, 0.02, 60, 30),
                                     support::bumpy_sphere(4, 0.05, 0.3, 6)}) {
     Blended<OffsetContact, Phong, CurvedDepth> contact(OffsetContact::build(shape).value());
-    support::Stroll stroll(contact, shape, depth, step, 9);
+    support::Stroll stroll(contact, shape, depth, step, support::seed_of(9));
     int crossings = 0;
     int lost = 0;
     for (int i = 0; crossings < wanted && i < 200 * wanted; ++i) {
@@ -483,7 +484,7 @@ TEST(OffsetTracker, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
     const Vector3d shift(v.offset, -v.offset, v.offset);
     OffsetContact variant =
         OffsetContact::build(placed(base, v.scale, Eigen::Matrix3d::Identity(), shift)).value();
-    support::Stroll stroll(reference, base, 0.001, 0.0003, 12);
+    support::Stroll stroll(reference, base, 0.001, 0.0003, support::seed_of(12));
     bool started = false;
     for (int i = 0; i < 5000; ++i) {
       if (!stroll.step()) break;

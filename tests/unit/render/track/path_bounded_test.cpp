@@ -200,6 +200,7 @@ TEST(PathBounded, ChangesTheForceByNoMoreThanThePathOnEveryScannedMeshAtAnyDepth
   for (const auto& [name, shape] : meshes) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     with_each_contact(shape, [&, &name = name](std::size_t i, auto contact) {
+      // No fresh cases: the controls below count on a path that finds the jumps.
       const Jumps jumps = deep_stroke(std::move(contact), mesh, all ? 20000 : 4000, 21);
       expect_bounded(jumps, name + " " + kContacts[i]);
       sum[i].add(jumps);
