@@ -66,8 +66,10 @@ OpenLoop open_loop(Bare& bare, Rough& rough, const Eigen::Vector3d& outside, con
   double feature = go(way(0.0))[2].x();
   for (int i = 1; i <= steps; ++i) {
     const double to = kRound * i / steps;
-    // As many changes as there are within one step.
-    while (go(way(to))[2].x() != feature) {
+    // As many changes as there are within one step; where what is touched depends on the way there,
+    // a place that was left may not be found again.
+    constexpr int kChangesMax = 20;
+    for (int change = 0; change < kChangesMax && go(way(to))[2].x() != feature; ++change) {
       double before = from, after = to;
       while (after - before > 1e-13) {
         const double middle = (before + after) / 2;
@@ -78,6 +80,7 @@ OpenLoop open_loop(Bare& bare, Rough& rough, const Eigen::Vector3d& outside, con
       feature = go(way(after))[2].x();
     }
     sum_over(from, to);
+    feature = go(way(to))[2].x();
     from = to;
   }
   return {plain / gross, added / gross, felt};
