@@ -16,6 +16,7 @@
 #include "thimble/render/surface/surface_response.h"
 #include "track/hollow_hold.h"
 #include "track/offset_tracker.h"
+#include "track/passed_through.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -67,10 +68,11 @@ class TrackedContact {
   ///
   /// Contact begins when the path since the last tick enters the mesh, however fast, and the
   /// tracker runs in the same tick. A tip that is inside on the first tick touches nothing until it
-  /// has been outside: it would be thrown out otherwise. A position that is NaN or beyond
-  /// `kPositionMax` ends the contact and makes the next tick a first one. In the tick that ends a
-  /// contact no new one begins, unless the tip is inside. Real-time: safe; a few ns in contact and
-  /// far from the mesh, else one question to the search.
+  /// has been outside: it would be thrown out otherwise. A tip that comes out behind a thin part is
+  /// held by the face that it has passed through (passed_through.h), until it is back or beside the
+  /// rim. A position that is NaN or beyond `kPositionMax` ends the contact and makes the next tick
+  /// a first one. In the tick that ends a contact no new one begins, unless the tip is inside.
+  /// Real-time: safe; a few ns in contact and far from the mesh, else one question to the search.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Returns the result of the last `update`. Real-time: safe.
@@ -82,6 +84,7 @@ class TrackedContact {
     free_space_ = {};
     if (swept_over < 0 || state_.touching || !has_before_) return;
     tracker_.start(swept_over);
+    follows_ = true;
     state_.touching = true;
     state_.triangle = swept_over;
     state_.n_W = mesh_->cell(swept_over).face.n;
@@ -141,6 +144,35 @@ class TrackedContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
+  // Shows the mesh to face_above.
+  struct Faces {
+    const ContactMesh& mesh;
+    const Eigen::Vector3d& corner(std::int32_t triangle, std::size_t k) const noexcept {
+      return mesh.position(triangle, k);
+    }
+    const Eigen::Vector3d& normal(std::int32_t triangle) const noexcept {
+      return mesh.cell(triangle).face.n;
+    }
+    std::int32_t neighbour(std::int32_t triangle, std::size_t k) const noexcept {
+      return mesh.cell(triangle).neighbours[k];
+    }
+  };
+
+  // Whether the tracker can go on from a face that does not hold the tip by its own rules.
+  static constexpr bool kHoldsBehind = requires(Tracker & tracker, const Eigen::Vector3d& p) {
+    tracker.hold_by_face(0, p);
+  };
+
+  void report(const Eigen::Vector3d& p_WT, const TrackerStep& step) noexcept;
+  // What seldom happens.
+  [[gnu::noinline, gnu::cold]] const ContactState& lose(const Eigen::Vector3d& p_WT,
+                                                        std::uint16_t hops) noexcept;
+  [[gnu::noinline, gnu::cold]] const ContactState& go_round(const Eigen::Vector3d& p_WT,
+                                                            const TrackerStep& step) noexcept;
+  [[gnu::noinline, gnu::cold]] const ContactState& stay_behind(
+      const Eigen::Vector3d& p_WT) noexcept;
+  bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
+
   // On the heap, so that search and tracker keep pointing at them when the contact moves.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const ContactSearch> search_;
@@ -149,6 +181,8 @@ class TrackedContact {
   FreeSpace free_space_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
+  bool follows_ = false;  // touching, as the tracker says
+  bool behind_ = false;   // touching, held behind a thin part
 };
 
 template <class Tracker>
@@ -156,34 +190,116 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
   const Eigen::Vector3d& p_WT = state.p_WT;
   if (!within_range(p_WT)) {
     state_ = {};
-    has_before_ = false;
+    has_before_ = follows_ = behind_ = false;
     return state_;
   }
-  bool follow = state_.touching;
-  if (!follow && has_before_) {
-    const Entry entry = free_space_.first_entry(*search_, p_WT_before_, p_WT);
-    follow = entry.triangle >= 0;
-    if (follow) tracker_.start(entry.triangle);
+  if (!follows_) {
+    if constexpr (kHoldsBehind) {
+      if (behind_) [[unlikely]]
+        return stay_behind(p_WT);
+    }
+    if (has_before_) {
+      const Entry entry = free_space_.first_entry(*search_, p_WT_before_, p_WT);
+      follows_ = entry.triangle >= 0;
+      if (follows_) {
+        tracker_.start(entry.triangle);
+        state_.triangle = entry.triangle;
+        state_.n_W = mesh_->cell(entry.triangle).face.n;
+      }
+    }
+    if (!follows_) {
+      p_WT_before_ = p_WT;
+      has_before_ = true;
+      state_ = {};
+      return state_;
+    }
   }
   p_WT_before_ = p_WT;
-  has_before_ = true;
-  if (!follow) {
-    state_ = {};
-    return state_;
-  }
   const TrackerStep step = tracker_.follow(p_WT);
-  if (!step.touching) {
-    state_ = {};
-    state_.hops = step.hops;
-    return state_;
+  if (!step.touching) [[unlikely]]
+    return lose(p_WT, step.hops);
+  if constexpr (kHoldsBehind) {
+    if (step.hops > 0 && !(tracker_.normal().dot(state_.n_W) > kBeyondRim)) [[unlikely]]
+      return go_round(p_WT, step);
   }
+  report(p_WT, step);
+  return state_;
+}
+
+template <class Tracker>
+inline void TrackedContact<Tracker>::report(const Eigen::Vector3d& p_WT,
+                                            const TrackerStep& step) noexcept {
   state_.touching = true;
   state_.triangle = tracker_.active();
   state_.depth = step.depth;
   state_.n_W = tracker_.normal();
   state_.p_WP = p_WT + step.depth * state_.n_W;
   state_.hops = step.hops;
+}
+
+// The tracker has lost the tip: it is outside.
+template <class Tracker>
+const ContactState& TrackedContact<Tracker>::lose(const Eigen::Vector3d& p_WT,
+                                                  std::uint16_t hops) noexcept {
+  follows_ = false;
+  if constexpr (kHoldsBehind) {
+    if (hold_behind(p_WT)) return state_;
+  }
+  state_ = {};
+  state_.hops = hops;
   return state_;
+}
+
+// The tracker has gone over a rim in one tick: so did the tip, or it has passed through the part.
+template <class Tracker>
+const ContactState& TrackedContact<Tracker>::go_round(const Eigen::Vector3d& p_WT,
+                                                      const TrackerStep& step) noexcept {
+  if (search_->inside(p_WT) || !hold_behind(p_WT)) report(p_WT, step);
+  return state_;
+}
+
+// A tick that begins behind a thin part.
+template <class Tracker>
+const ContactState& TrackedContact<Tracker>::stay_behind(const Eigen::Vector3d& p_WT) noexcept {
+  p_WT_before_ = p_WT;
+  const std::int32_t last = state_.triangle;
+  if (hold_behind(p_WT)) return state_;
+  behind_ = false;
+  tracker_.start(last);
+  const TrackerStep step = tracker_.follow(p_WT);
+  follows_ = step.touching;
+  state_ = {};
+  state_.hops = step.hops;
+  if (follows_) report(p_WT, step);
+  return state_;
+}
+
+// Holds the tip by the face that it has passed through, if it has passed through one; false if not.
+template <class Tracker>
+bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept {
+  const FaceAbove face = face_above(Faces{*mesh_}, state_.triangle, p_WT);
+  if (face.triangle < 0) return false;
+  const bool inside = search_->inside(p_WT);
+  const double longest = (mesh_->box_max() - mesh_->box_min()).maxCoeff();
+  const auto first_entry = [this](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return search_->first_entry(from, to);
+  };
+  if (inside ? !behind_ : !behind_thin_part(p_WT, face.depth, face.n, longest, first_entry)) {
+    return false;
+  }
+  // Where the tracker itself holds the tip from there, that is what the next tick will feel.
+  tracker_.start(face.triangle);
+  const TrackerStep step = tracker_.follow(p_WT);
+  follows_ =
+      step.touching && tracker_.normal().dot(face.n) > (inside ? kPushesOutBehind : kBeyondRim);
+  behind_ = !follows_;
+  if (follows_) {
+    report(p_WT, step);
+  } else {
+    tracker_.hold_by_face(face.triangle, p_WT);
+    report(p_WT, {.touching = true, .depth = face.depth, .hops = 0});
+  }
+  return true;
 }
 
 /// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.

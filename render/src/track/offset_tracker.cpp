@@ -101,6 +101,14 @@ void OffsetTracker::start(std::int32_t triangle) noexcept {
   foot_ = {};
 }
 
+void OffsetTracker::hold_by_face(std::int32_t triangle, const Vector3d& p_WT) noexcept {
+  start(triangle);
+  foot_.depth = mesh_->depth(triangle, p_WT);
+  held_.triangle = -1;
+  weights_ = within_triangle(projected_weights(*mesh_, triangle, p_WT));
+  n_W_ = mesh_->cell(triangle).face.n;
+}
+
 TrackerCounters OffsetTracker::counters() const noexcept {
   TrackerCounters sum = edge_planes_.counters();
   sum.cycles += counters_.cycles;

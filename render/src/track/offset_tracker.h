@@ -66,6 +66,9 @@ class OffsetTracker {
   /// Makes a triangle active, where the tip has just entered.
   void start(std::int32_t triangle) noexcept;
 
+  /// Makes a triangle active whose face holds the tip at `p_WT` (W, m), though no cell of it does.
+  void hold_by_face(std::int32_t triangle, const Eigen::Vector3d& p_WT) noexcept;
+
   /// Follows the tip to `p_WT` (W, m; finite). Precondition: `start` was called and the last step
   /// was touching.
   TrackerStep follow(const Eigen::Vector3d& p_WT) noexcept;

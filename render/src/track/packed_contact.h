@@ -87,6 +87,21 @@ class PackedContact {
   // The triangles around a corner.
   using Fan = TriangleSet<kPatchMax>;
 
+  // Shows packed triangles to face_above, in steps of the lattice.
+  struct Faces {
+    const Store& store;
+    Eigen::Vector3d corner(std::int32_t triangle, std::size_t k) const noexcept {
+      return store.find(triangle)->corner(k);
+    }
+    Eigen::Vector3d normal(std::int32_t triangle) const noexcept {
+      const Eigen::Vector3d a = corner(triangle, 0);
+      return (corner(triangle, 1) - a).cross(corner(triangle, 2) - a).normalized();
+    }
+    std::int32_t neighbour(std::int32_t triangle, std::size_t k) const noexcept {
+      return store.find(triangle)->neighbours[k];
+    }
+  };
+
   // The tick in three pieces, so that the first, all of most ticks, is short and straight; each is
   // made twice for different processors (wide_lanes). The first two tell whether the tick is done.
   bool stay(const Eigen::Vector3d& p_WT) noexcept;
@@ -124,6 +139,11 @@ class PackedContact {
   void report(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;
   void measure(const Eigen::Vector3d& p_WT, const OffsetResponse& felt) noexcept;
   [[gnu::noinline]] void end() noexcept;
+  [[gnu::noinline, gnu::cold]] bool hold_behind(const Eigen::Vector3d& p_WT,
+                                                std::int32_t from) noexcept;
+  [[gnu::noinline, gnu::cold]] bool passed_by_rim(const Eigen::Vector3d& p_WT,
+                                                  std::int32_t before) noexcept;
+  [[gnu::noinline, gnu::cold]] bool stay_behind(const Eigen::Vector3d& p_WT) noexcept;
 
   static bool absent(const PackedTriangle* packed) noexcept {
     return !Store::kComplete && packed == nullptr;
@@ -134,6 +154,7 @@ class PackedContact {
   bool wide_ = wide_lanes();
   bool steady_ = false;  // in contact, where there is no crease and hops are rare
   bool has_before_ = false;
+  bool behind_ = false;     // in contact, held behind a thin part by the active triangle
   bool path_kept_ = false;  // whether the path began before the last tick
   bool above_ = false;      // free, and known to be above the smooth surface
   int recent_hops_ = 0;     // counts up to 3 with ticks that hop, and down with the others

@@ -10,6 +10,7 @@
 #include "track/packed_find_steps.h"
 #include "track/packed_follow_steps.h"
 #include "track/packed_hollow_steps.h"
+#include "track/passed_through.h"
 
 namespace thimble::render {
 
@@ -136,6 +137,10 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
   [[maybe_unused]] const Eigen::Vector3d from = p_WT_before_;
   if (!state_.touching && !begin(p_WT)) return;
   p_WT_before_ = p_WT;
+  if constexpr (Store::kComplete) {
+    if (behind_ && stay_behind(p_WT)) return;
+  }
+  [[maybe_unused]] const std::int32_t before = active_;
   // Where the tip was out of sight the way from the last triangle says nothing.
   const bool late = !Store::kComplete && path_kept_;
   const bool lost = late || (!Store::kComplete && held_.holding());
@@ -169,6 +174,13 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
     }
     if (held_.fade_out(p_WT, felt_)) return;
   }
+  if constexpr (Store::kComplete) {
+    if (outcome != Outcome::kYes) {
+      if (hold_behind(p_WT, before)) return;
+    } else if (state_.hops > 0 && offset_.creases() != 0) {
+      if (passed_by_rim(p_WT, before)) return;
+    }
+  }
   if (outcome != Outcome::kYes) {
     const std::uint16_t hops = state_.hops;
     end();
@@ -178,9 +190,63 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
   }
 }
 
+// Holds a tip outside by the face that it has passed through, if it has passed through one
+// (passed_through.h); false if not.
+template <PackedStore Store>
+bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT, std::int32_t from) noexcept {
+  const FaceAbove face = face_above(Faces{store_}, from, store_.to_lattice(p_WT));
+  if (face.triangle < 0) return false;
+  const double depth = store_.step() * face.depth;
+  const bool inside = store_.inside(p_WT) == Known::kYes;
+  const double longest = 2 * kLatticeHalf * store_.step();
+  const auto first_entry = [this](const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) {
+    return store_.first_entry(p_from, p_to).entry;
+  };
+  if (inside ? !behind_ : !behind_thin_part(p_WT, depth, face.n, longest, first_entry)) {
+    return false;
+  }
+  // Where an offset triangle holds the tip from there, that is what the next tick will feel.
+  steady_ = false;
+  recent_hops_ = 0;
+  activate(face.triangle);
+  state_.n_W = face.n;
+  behind_ = !(follow(p_WT) == Outcome::kYes &&
+              state_.n_W.dot(face.n) > (inside ? kPushesOutBehind : kBeyondRim));
+  if (behind_) {
+    activate(face.triangle);
+    hollow_ = SurfacePlace::On::kFace;
+    state_ = {.touching = true,
+              .triangle = offset_.source(),
+              .depth = depth,
+              .n_W = face.n,
+              .p_WP = p_WT + depth * face.n};
+  }
+  return true;
+}
+
+// The walk has gone over edges of which one is a crease: where it was a rim, looks whether the tip
+// has gone round it too, or has passed through the part; true if it is held behind it.
+template <PackedStore Store>
+bool PackedContact<Store>::passed_by_rim(const Eigen::Vector3d& p_WT,
+                                         std::int32_t before) noexcept {
+  return !(Faces{store_}.normal(before).dot(state_.n_W) > kBeyondRim) &&
+         store_.inside(p_WT) != Known::kYes && hold_behind(p_WT, before);
+}
+
+// Does a tick that begins behind a thin part; false if the tip is held there by nothing any more.
+template <PackedStore Store>
+bool PackedContact<Store>::stay_behind(const Eigen::Vector3d& p_WT) noexcept {
+  const std::int32_t last = active_;
+  if (hold_behind(p_WT, last)) return true;
+  behind_ = false;
+  activate(last);
+  return false;
+}
+
 template <PackedStore Store>
 void PackedContact<Store>::end() noexcept {
   state_ = {};
+  behind_ = false;
   steady_ = false;
   above_ = false;
   recent_hops_ = 0;

@@ -70,6 +70,9 @@ class SurfaceTracker {
     has_before_ = false;
   }
 
+  /// Makes a triangle active whose face holds the tip, though no cell of it does.
+  void hold_by_face(std::int32_t triangle, const Eigen::Vector3d&) noexcept { start(triangle); }
+
   /// Follows the tip to `p_WT` (W, m; finite). Precondition: `start` was called and the last step
   /// was touching.
   TrackerStep follow(const Eigen::Vector3d& p_WT) noexcept;

@@ -35,15 +35,16 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 ///
 ///   k d n + k (d + h) (g - s) - k d g  =  k (d + h) (g - s) + k d (n - g).
 ///
-/// So whatever the normal n, the texture by itself does no work around a closed way, in depth or
-/// along the surface, with any spring that is linear in the depth, and a damper takes out energy
-/// only. Where n is g (flat faces, shapes, the god-object, what holds a tip in a hollow) the last
-/// part is 0 and the whole force does none; where n is shaded that part is what the contact leaves
-/// open by itself. `kConservative` hands on just that, as a tilted normal and a stretched depth. In
-/// the last part d is at most 2 (d + h), so that the force ends with d + h: less than twice as deep
-/// as a valley a shaded contact leaves open a little less by it. J is the plane's projection on
-/// flat ground, longer by R / (R - d) on a ball, shorter in a hollow. `kDepthOnly` leaves the
-/// normal alone: going up a slope costs less than going down gives back.
+/// So whatever the normal n, the texture by itself does no work around a closed way on which q
+/// moves continuously, in depth or along the surface, with any spring that is linear in the depth,
+/// and a damper takes out energy only. Where n is g (flat faces, shapes, the god-object, what holds
+/// a tip in a hollow) the last part is 0 and the whole force does none; where n is shaded that part
+/// is what the contact leaves open by itself. `kConservative` hands on just that, as a tilted
+/// normal and a stretched depth. In the last part d is at most 2 (d + h), so that the force ends
+/// with d + h: less than twice as deep as a valley a shaded contact leaves open a little less by
+/// it. J is the plane's projection on flat ground, longer by R / (R - d) on a ball, shorter in a
+/// hollow. `kDepthOnly` leaves the normal alone: going up a slope costs less than going down gives
+/// back.
 ///
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.

@@ -33,6 +33,7 @@
 #include "track/god_object.h"
 #include "track/memory_contact.h"
 #include "track/mesh_contact.h"
+#include "unit/render/surface/open_loop.h"
 #include "unit/render/track/god_object_shapes.h"
 
 namespace thimble::render {
@@ -172,68 +173,6 @@ TEST(TexturePlace, DoesNoWorkAroundAClosedWayInABallAtAnyDepth) {
   EXPECT_LT(std::abs(work.net), 1e-9 * work.gross);
 }
 
-/// What a loop leaves open, as shares of what goes in and out of the bare contact.
-struct OpenLoop {
-  double plain = 0;  // without a texture
-  double added = 0;  // by the texture
-};
-
-/// Leads two tips around the same closed way, s from 0 to a turn: one over the bare surface, one
-/// over the textured. Force and its derivatives may jump where the touched feature changes: each
-/// change is found by bisection, and between them the work is summed by Gauss' rule.
-template <class Bare, class Rough, class Way>
-OpenLoop open_loop(Bare& bare, Rough& rough, const Vector3d& outside, const Way& way) {
-  constexpr int kIn = 4000, kSteps = 1500;
-  const auto go = [&](const Vector3d& p) {
-    const auto textured = rough(at(p));
-    const auto plain = bare(at(p));
-    return std::array{plain.f_T_W, textured.f_T_W, Vector3d(plain.touch.feature, 0, 0)};
-  };
-  for (int i = 0; i <= kIn; ++i) go(outside + i * (way(0.0) - outside) / kIn);
-  double plain = 0, added = 0, gross = 0;
-  bool felt = true;
-  const auto sum_over = [&](double from, double to) {
-    // Four places of Gauss' rule: exact up to the seventh power.
-    constexpr std::array<double, 2> kPlace{0.339981043584856, 0.861136311594053};
-    constexpr std::array<double, 2> kWeight{0.652145154862546, 0.347854845137454};
-    for (const int k : {-2, -1, 1, 2}) {
-      const auto m = static_cast<std::size_t>(std::abs(k) - 1);
-      const double s = (from + to) / 2 + (to - from) / 2 * kPlace[m] * (k < 0 ? -1 : 1);
-      const double e = 1e-3;
-      const Vector3d speed =
-          (45 * (way(s + e) - way(s - e)) - 9 * (way(s + 2 * e) - way(s - 2 * e)) +
-           (way(s + 3 * e) - way(s - 3 * e))) /
-          (60 * e);
-      const auto [f_bare, f_rough, feature] = go(way(s));
-      const double weight = kWeight[m] * (to - from) / 2;
-      plain += weight * f_bare.dot(speed);
-      added += weight * (f_rough - f_bare).dot(speed);
-      gross += weight * std::abs(f_bare.dot(speed));
-      felt = felt && f_bare.norm() > 0 && f_rough.norm() > 0;
-    }
-  };
-  double from = 0;
-  double feature = go(way(0.0))[2].x();
-  for (int i = 1; i <= kSteps; ++i) {
-    const double to = kTurn * i / kSteps;
-    // As many changes as there are within one step.
-    while (go(way(to))[2].x() != feature) {
-      double before = from, after = to;
-      while (after - before > 1e-13) {
-        const double middle = (before + after) / 2;
-        (go(way(middle))[2].x() == feature ? before : after) = middle;
-      }
-      sum_over(from, before);
-      from = after;
-      feature = go(way(after))[2].x();
-    }
-    sum_over(from, to);
-    from = to;
-  }
-  EXPECT_TRUE(felt);
-  return {plain / gross, added / gross};
-}
-
 const SurfaceChoice kPlain{.spring = {.stiffness = kStiffness, .damping = 0}, .effects = {}};
 
 OpenLoop open_loop_of_object(const TriangleMesh& mesh, const ContactChoice& choice,
@@ -242,7 +181,9 @@ OpenLoop open_loop_of_object(const TriangleMesh& mesh, const ContactChoice& choi
   auto textured_one = build_object_touch(mesh, choice, textured<Sines>(waves(5e-5))).value();
   const auto bare = [&](const driver::DeviceState& state) { return plain->update(state); };
   const auto rough = [&](const driver::DeviceState& state) { return textured_one->update(state); };
-  return open_loop(bare, rough, outside, way);
+  const OpenLoop open = open_loop(bare, rough, outside, way);
+  EXPECT_TRUE(open.felt);
+  return open;
 }
 
 // Around the top of a ball of 1,280 triangles, 2.4 to 4.4 mm deep.
@@ -336,7 +277,9 @@ TEST(TexturePlace, AddsWorkOverEdgePlanesOnlyWhereTheFeetOfTheTwoSidesLieApart) 
                           std::make_shared<const SmoothNormals>(*mesh));
     Touch bare(contact, spring);
     Touch rough(contact, Sines(waves(5e-5), {}), spring);
-    return open_loop(bare, rough, outside, way);
+    const OpenLoop around = open_loop(bare, rough, outside, way);
+    EXPECT_TRUE(around.felt);
+    return around;
   };
   const TriangleMesh even = support::icosphere(0, 0.05), uneven = support::icosphere(3, 0.05);
   // Over the edges of a corner of 20 equal triangles, 3 to 5 mm below.

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "mesh/triangle_set.h"
+#include "search/contact_search.h"
+
+namespace thimble::render {
+
+/// The face that holds a tip behind a thin part, -1 for none.
+struct FaceAbove {
+  std::int32_t triangle = -1;
+  double depth = 0;            ///< Of the tip below the face's plane.
+  Eigen::Vector3d n{0, 0, 0};  ///< Unit normal of the face.
+};
+
+/// A part is thin if it is less thick than this share of the mesh's longest side: what is thicker
+/// no arm passes in one tick. [chosen]
+inline constexpr double kThinPart = 0.05;
+
+/// Faces that lean by more, as a cosine, are the rim of a part or its back: 84 degrees, so that the
+/// rounding of a right angle does not decide. [chosen]
+inline constexpr double kBeyondRim = 0.1;
+
+/// Faces that lean by more, as a cosine, would push a tip that is inside out at the back (as in
+/// SurfaceTracker).
+inline constexpr double kPushesOutBehind = -0.25;
+
+namespace passed_through_steps {
+
+/// Each looks along the normal of the face that the one before has led to. [chosen: flat parts take
+/// 2, curved ones 3; in a hollow two faces lead to each other]
+constexpr int kRounds = 8;
+
+/// The most triangles that one round walks over.
+constexpr std::size_t kStepsMax = 64;
+
+/// Walks, seen along `n`, over faces that look that way as well, to the one in front of `p`; -1
+/// where the way leads over a rim, or is too long.
+template <class Faces>
+std::int32_t in_front_of(const Faces& faces, std::int32_t from, const Eigen::Vector3d& p,
+                         const Eigen::Vector3d& n) noexcept {
+  TriangleSet<kStepsMax> visited;
+  std::int32_t triangle = from;
+  while (!visited.full()) {
+    visited.add(triangle);
+    const std::array<Eigen::Vector3d, 3> corners{
+        faces.corner(triangle, 0), faces.corner(triangle, 1), faces.corner(triangle, 2)};
+    std::int32_t next = -1;
+    double worst = 0;
+    bool outside = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d side = corners[(k + 1) % 3] - corners[k];
+      const double beside = side.cross(p - corners[k]).dot(n) / side.norm();
+      if (!(beside < 0)) continue;
+      outside = true;
+      const std::int32_t neighbour = faces.neighbour(triangle, k);
+      // Back again only by rounding: the tip is on the edge.
+      if (beside < worst && !visited.has(neighbour)) {
+        worst = beside;
+        next = neighbour;
+      }
+    }
+    if (!outside || next < 0) return triangle;
+    if (!(faces.normal(next).dot(n) > kBeyondRim)) return -1;
+    triangle = next;
+  }
+  return -1;
+}
+
+}  // namespace passed_through_steps
+
+/// Finds the face that has the tip `p` below it, seen along its normal, over faces that look the
+/// same way from `from` on: the triangle that held the tip in the tick before, or was entered in
+/// this one. None where the tip is beside the rim or above the surface. What walks over edges
+/// cannot see it: near a rim such a walk ends at the back of the part.
+///
+/// `faces` shows the surface: corner(t, k), normal(t), neighbour(t, k). One frame and unit.
+/// Real-time: safe; at worst `kRounds` times `kStepsMax` triangles.
+template <class Faces>
+FaceAbove face_above(const Faces& faces, std::int32_t from, const Eigen::Vector3d& p) noexcept {
+  using namespace passed_through_steps;
+  FaceAbove deepest;
+  std::int32_t triangle = from;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Vector3d n = faces.normal(triangle);
+    const FaceAbove face{
+        .triangle = triangle, .depth = n.dot(faces.corner(triangle, 0) - p), .n = n};
+    const std::int32_t next = in_front_of(faces, triangle, p, n);
+    if (next < 0) return {};
+    if (next == triangle) return face.depth > 0 ? face : FaceAbove{};
+    // Between the faces of a hollow: the deepest of those that lead to each other, wherever the
+    // walk begins.
+    if (round >= kRounds / 2 && face.depth > deepest.depth) deepest = face;
+    triangle = next;
+  }
+  return deepest;
+}
+
+/// Returns whether a tip outside the surface, at `p_WT`, has a thin part between itself and the
+/// face that it is below by `depth` (m). `longest` is the mesh's longest side, m;
+/// `first_entry(from, to)` is asked once. Real-time: safe.
+template <class FirstEntry>
+bool behind_thin_part(const Eigen::Vector3d& p_WT, double depth, const Eigen::Vector3d& n_W,
+                      double longest, const FirstEntry& first_entry) noexcept {
+  // The way up to the face enters the part at its back.
+  const Entry back = first_entry(p_WT, Eigen::Vector3d(p_WT + depth * n_W));
+  // Written so that NaN is not behind.
+  return back.triangle >= 0 && (1 - back.parameter) * depth < kThinPart * longest;
+}
+
+}  // namespace thimble::render
