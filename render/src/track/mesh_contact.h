@@ -10,13 +10,13 @@
 #include "mesh/contact_mesh.h"
 #include "search/free_space.h"
 #include "search/make_search.h"
+#include "search/passed_through.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
 #include "track/hollow_hold.h"
 #include "track/offset_tracker.h"
-#include "track/passed_through.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "search/passed_through.h"
 #include "track/packed_contact.h"
 #include "track/packed_find_steps.h"
 #include "track/packed_follow_steps.h"
 #include "track/packed_hollow_steps.h"
-#include "track/passed_through.h"
 
 namespace thimble::render {
 

@@ -79,8 +79,10 @@ TEST_P(PassedThroughBy, PlateThatTurnsFastCatchesEveryTip) {
 }
 
 // The same, for as long as the plate turns: a tip that is free again is on the side that it was
-// free on before, unless it has been beside the plate.
-TEST_P(PassedThroughBy, TipThatWasCaughtNeverLeavesAtTheBack) {
+// free on before, unless it has been beside the plate. Not so where a tick ends within the plate,
+// less than its thickness from the rim: the nearest face pushes the tip out, and that may be the
+// back.
+TEST_P(PassedThroughBy, TipThatWasCaughtLeavesAtTheBackOnlyFromWithinTheRim) {
   support::Random random(11);
   int held_behind = 0, passed = 0;
   for (int round = 0; round < 400; ++round) {
