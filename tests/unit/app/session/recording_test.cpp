@@ -300,8 +300,9 @@ TEST(Recording, GrowsAsItIsWritten) {
 // Recordings are read by a child of this process, which must not wait for a lock of another thread.
 TEST(Recording, IsReadWhileAnotherThreadMakesOne) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  // A child that is forked while another thread holds the sanitizer's allocator hangs in GCC 12; LLVM
-  // lets its allocators be locked at fork since pull requests 75290 and 96600. glibc's always is.
+  // A child that is forked while another thread holds the sanitizer's allocator hangs in GCC 12;
+  // LLVM lets its allocators be locked at fork since pull requests 75290 and 96600. glibc's always
+  // is.
   GTEST_SKIP() << "a sanitizer's allocator may be locked in a forked child";
 #endif
   const auto path = scratch("read.h5");
