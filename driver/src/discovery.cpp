@@ -104,7 +104,7 @@ std::string tty_node(const fs::path& device) {
 }  // namespace
 
 std::string usb_node(const UsbAddress& address) {
-  const auto digits = [](unsigned number) {
+  const auto digits = [](int number) {
     const std::string text = std::to_string(number);
     return std::string(text.size() < 3 ? 3 - text.size() : 0, '0') + text;
   };
