@@ -75,12 +75,14 @@ target_link_libraries(arms PRIVATE thimble::driver)
 END
 cat >driver_only/arms.cpp <<'END'
 #include <cstdio>
+#include <string>
 #include "thimble/driver/discovery.h"
 int main() {
-  std::printf("%zu arms\n", thimble::driver::find_arms().value().size());
+  const auto arms = thimble::driver::find_arms();  // an error on a machine without USB
+  std::printf("arms: %s\n", arms ? std::to_string(arms->size()).c_str() : arms.error().message.c_str());
 }
 END
 quiet consumer cmake -S driver_only -B driver_only/build -D CMAKE_PREFIX_PATH="$work/usr"
 quiet consumer cmake --build driver_only/build
-driver_only/build/arms | grep -q '^[0-9]* arms$' || fail "a program of the driver alone does not run"
+driver_only/build/arms | grep -q '^arms: .' || fail "a program of the driver alone does not run"
 echo "core: passed"
