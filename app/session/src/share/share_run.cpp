@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "share/describe_scene.h"
 
@@ -20,7 +21,9 @@ constexpr int kRunsOfAScene = 100;  // at the same time; chosen
 driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
                                                      const SessionOptions& options,
                                                      SharedRun* before) {
-  SharedScene scene = describe_scene(setup.scene(), setup.objects(), setup.device_name());
+  std::vector<std::string> devices;
+  for (std::size_t i = 0; i < setup.arms(); ++i) devices.push_back(setup.device_name(i));
+  SharedScene scene = describe_scene(setup.scene(), setup.objects(), devices);
   scene.file = setup.scene_path();
   scene.period_ns = setup.period_ns();
   scene.wall_clock = setup.real_time();
@@ -29,11 +32,6 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   scene.paced = setup.paced();
   scene.restarts = options.restarts && !setup.any_real();
   if (setup.arms() == 1) scene.knobs = knobs.described();
-  scene.arms.clear();
-  for (std::size_t i = 0; i < setup.arms(); ++i) {
-    scene.arms.push_back(describe_arm(setup.arm_file(i), setup.device_name(i)));
-    scene.arms.back().in_scene = setup.arm_name(i);
-  }
   const auto ring = std::min(
       static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMost);
   if (before != nullptr) return SharedRun::create_next(*before, scene, ring);
