@@ -5,6 +5,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,6 +53,12 @@ void limit(int what, std::uint64_t value) {
   setrlimit(static_cast<__rlimit_resource>(what), &now);
 }
 
+// Ends the child at once. Unlike _exit, which the thread sanitizer turns into a failure where a
+// thread of the parent was running at the fork: to it, the child's copy of that thread is leaked.
+[[noreturn]] void leave(int code) noexcept {
+  for (;;) syscall(SYS_exit_group, code);
+}
+
 // The work of the child, from its first instruction to its last.
 [[noreturn]] void be_child(const std::function<void(ApartWriter&)>& work, const ApartLimits& limits,
                            std::uint64_t space, int result) {
@@ -71,16 +78,16 @@ void limit(int what, std::uint64_t value) {
   for (int file = 0; nowhere >= 0 && file < 3; ++file) dup2(nowhere, file);
   try {
     ApartWriter writer(result);
-    if (lseek(result, kHead, SEEK_SET) < 0) _exit(1);
+    if (lseek(result, kHead, SEEK_SET) < 0) leave(1);
     work(writer);
     // The size last: a parent that finds it right knows that all is there.
     const std::uint64_t size = writer.size();
-    if (!writer.good()) _exit(2);
-    if (lseek(result, 0, SEEK_SET) != 0 || !write_all(result, &size, sizeof size)) _exit(1);
+    if (!writer.good()) leave(2);
+    if (lseek(result, 0, SEEK_SET) != 0 || !write_all(result, &size, sizeof size)) leave(1);
   } catch (...) {
-    _exit(2);
+    leave(2);
   }
-  _exit(0);
+  leave(0);
 }
 
 std::string how_it_ended(int status, const ApartLimits& limits) {
