@@ -38,7 +38,7 @@ class BuildByCMake(build_ext):
             preset += ["-G", "Ninja"]
         self._run("cmake", "-S", str(SOURCE), "-B", build, *preset, "-D", "THIMBLE_TESTS=OFF",
                   "-D", f"Python_EXECUTABLE={sys.executable}")
-        targets = ["thimble", "thimble_python", "thimble_faces"]
+        targets = ["thimble", "thimble_python", "thimble_compat_libraries"]
         self._run("cmake", "--build", build, "--parallel", str(os.cpu_count() or 1), "--target", *targets)
 
     @staticmethod

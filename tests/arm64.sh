@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 for tool in aarch64-linux-gnu-g++ qemu-aarch64; do
   command -v $tool >/dev/null || {
-    echo "SKIPPED: nothing was tested on 64-bit ARM: $tool is missing (as root: tests/faces/setup.sh)" >&2
+    echo "SKIPPED: nothing was tested on 64-bit ARM: $tool is missing (as root: tests/compat/setup.sh)" >&2
     exit 3
   }
 done

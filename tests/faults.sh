@@ -56,7 +56,7 @@ THIMBLE_FAULTS=$lines "$build/tests/sim/test_identify" --gtest_filter='IdentifyB
 
 Written by `tests/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
 `tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors), `tests/sim/identify/identify_bounds_test.cpp`,
-`tests/unit/driver/links/*_link_test.cpp` (arms behind vendors' libraries and services) and `tests/program/faults_test.sh` (real
+`tests/unit/driver/vendors/*_link_test.cpp` (arms behind vendors' libraries and services) and `tests/program/faults_test.sh` (real
 processes).
 
 A number is the time in ms until no current flowed in the motors of the simulated arm, for good; behind it the cause that

@@ -8,9 +8,9 @@
 #include <system_error>
 
 #include "board_identity.h"
-#include "links/dhd/dhd_library.h"
-#include "links/haply/haply_link.h"
-#include "links/hd/hd_library.h"
+#include "vendors/dhd/dhd_library.h"
+#include "vendors/haply/haply_link.h"
+#include "vendors/hd/hd_library.h"
 
 namespace thimble::app {
 namespace {

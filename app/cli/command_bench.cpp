@@ -10,7 +10,7 @@
 #include "cli/file_options.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "studies/rate_bench.h"
 #include "thimble/scene/shipped_files.h"
 

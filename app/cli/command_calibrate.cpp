@@ -6,20 +6,20 @@
 #include <string>
 #include <thread>
 
+#include "arm/calibration.h"
 #include "arm_table.h"
 #include "bringup/bench_arm.h"
-#include "calibration.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "enter_key.h"
-#include "interrupt.h"
-#include "links/dhd/dhd_link.h"
-#include "links/hd/hd_link.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
+#include "signals.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/real_arm.h"
+#include "vendors/dhd/dhd_link.h"
+#include "vendors/hd/hd_link.h"
 
 namespace thimble::app {
 namespace {

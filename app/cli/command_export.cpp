@@ -10,8 +10,8 @@
 #include "output/output_plan.h"
 #include "recording/bag_export.h"
 #include "thimble/session/recording.h"
-#include "view/felt/touch_sound.h"
-#include "view/felt/wav_file.h"
+#include "view/feedback/touch_sound.h"
+#include "view/feedback/wav_file.h"
 
 namespace thimble::app {
 namespace {

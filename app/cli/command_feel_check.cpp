@@ -5,17 +5,17 @@
 #include <optional>
 #include <string>
 
+#include "arm_policy/feel_check_record.h"
 #include "bringup/feel_check.h"
 #include "bringup/listen.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "cli/terminal/yes_question.h"
+#include "cli/prompts/yes_question.h"
 #include "enter_key.h"
-#include "interrupt.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
-#include "terms/feel_check_record.h"
+#include "signals.h"
 
 namespace thimble::app {
 namespace {

@@ -15,18 +15,18 @@
 #include <utility>
 #include <vector>
 
+#include "arm_policy/feel_check_record.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "cli/terminal/yes_question.h"
+#include "cli/prompts/yes_question.h"
 #include "enter_key.h"
 #include "hil/hil_files.h"
 #include "hil/hil_suite.h"
-#include "interrupt.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
-#include "terms/feel_check_record.h"
+#include "signals.h"
 
 namespace thimble::app {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "disk_paging/page_file.h"
 #include "log/printed_text.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/file/off_text.h"
@@ -17,7 +18,6 @@
 #include "meshes/object_size.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
-#include "page/page_file.h"
 #include "report/pictures.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"

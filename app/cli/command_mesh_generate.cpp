@@ -5,9 +5,9 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "disk_paging/page_file.h"
 #include "log/printed_text.h"
 #include "output/output_file.h"
-#include "page/page_file.h"
 #include "studies/resident_memory.h"
 #include "studies/ring_pages.h"
 

@@ -5,12 +5,12 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "compact_mesh/packed_surface.h"
+#include "disk_paging/page_file.h"
 #include "log/printed_text.h"
 #include "mesh/contact_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
-#include "packed/packed_surface.h"
-#include "page/page_file.h"
 #include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::app {

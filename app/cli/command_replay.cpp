@@ -17,7 +17,7 @@
 #include "recording/replay_bag.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
-#include "report/page/touch_page.h"
+#include "report/html/touch_page.h"
 #include "system/regular_file.h"
 #include "thimble/session/recording.h"
 

@@ -12,13 +12,13 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "interrupt.h"
 #include "log/printed_text.h"
-#include "report/page/page_libraries.h"
+#include "report/html/page_libraries.h"
 #include "share/knob_order.h"
 #include "share/run_attachment.h"
 #include "share/shared_memory.h"
 #include "share/steer/save_knobs.h"
+#include "signals.h"
 #include "thimble/scene/shipped_files.h"
 #include "web/web_server.h"
 

@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "output/output_plan.h"
-#include "view/time/recording_view.h"
+#include "view/playback/recording_view.h"
 #include "view/window.h"
 
 namespace thimble::app {

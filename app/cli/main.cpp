@@ -14,11 +14,11 @@
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
 #include "cli/usage/usage_error.h"
-#include "interrupt.h"
 #include "log/console.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
 #include "output/standard_streams.h"
+#include "signals.h"
 #include "thimble/scene/build_info.h"
 
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "bringup/identify/identify.h"
-#include "bringup/identify/links/place_masses.h"
+#include "bringup/identify/link_inertia/place_masses.h"
 
 namespace thimble::app {
 namespace {

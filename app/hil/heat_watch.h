@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bringup/bench_arm.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/scene/arm_file.h"
 

@@ -9,7 +9,7 @@
 
 #include "bringup/bench_arm.h"
 #include "bringup/feel_check.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 

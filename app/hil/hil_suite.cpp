@@ -10,13 +10,13 @@
 
 #include "bringup/listen.h"
 #include "hil/cable_pull.h"
+#include "hil/check_watchdog.h"
 #include "hil/constants_check.h"
 #include "hil/friction_at_rest.h"
 #include "hil/known_places.h"
 #include "hil/soak.h"
 #include "hil/tied_spring.h"
 #include "hil/wall_check.h"
-#include "hil/watchdog_time.h"
 
 namespace thimble::app {
 namespace {

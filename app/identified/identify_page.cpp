@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/links/place_masses.h"
+#include "bringup/identify/link_inertia/place_masses.h"
 #include "bringup/identify/not_identified.h"
 #include "identified/identify_plots.h"
+#include "report/html/page_block.h"
 #include "report/inline_picture.h"
-#include "report/page/page_block.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 namespace {

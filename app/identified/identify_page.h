@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bringup/identify/identify.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {

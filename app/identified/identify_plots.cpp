@@ -9,9 +9,9 @@
 
 #include "bringup/identify/line_forces.h"
 #include "identified/plot_tables.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "bringup/identify/cables/two_mass_search.h"
 #include "bringup/identify/joint_friction.h"
 #include "bringup/identify/line_forces.h"
-#include "bringup/identify/links/place_masses.h"
+#include "bringup/identify/link_inertia/place_masses.h"
 
 namespace thimble::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "faces/ros2/ros_run.h"
-#include "faces/ros2/ros_words.h"
+#include "ros2/ros_run.h"
+#include "ros2/ros_words.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/scene/shared_meshes.h"

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 namespace {

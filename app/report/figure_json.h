@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 
 namespace thimble::app {
 

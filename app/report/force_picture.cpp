@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "report/extremes.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 namespace {

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "output/output_file.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 
 namespace thimble::app {
 namespace {

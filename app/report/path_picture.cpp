@@ -5,10 +5,10 @@
 
 #include "output/output_file.h"
 #include "report/fault_marks.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "report/gnuplot.h"
 #include "report/mesh_view.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "text_file.h"
 
 namespace thimble::app {

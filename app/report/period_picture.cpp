@@ -3,9 +3,9 @@
 #include <sstream>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 namespace {

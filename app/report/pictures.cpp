@@ -6,7 +6,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 #include "wall_side.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/page/touch_page.h"
+#include "report/html/touch_page.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"

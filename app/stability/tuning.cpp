@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "stability/rest_trial.h"
 #include "stability/rest_warnings.h"
 #include "stability/wall_trial.h"

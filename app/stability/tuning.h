@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "stability/stability_laws.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/scene_file.h"

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <thread>
 
-#include "interrupt.h"
+#include "signals.h"
 
 namespace thimble::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "page/page_file.h"
+#include "disk_paging/page_file.h"
 
 namespace thimble::app {
 namespace {

@@ -3,10 +3,10 @@
 #include <system_error>
 #include <utility>
 
-#include "report/figure.h"
-#include "report/page/page_block.h"
-#include "report/page/page_libraries.h"
-#include "report/page/touch_page.h"
+#include "report/figure_output.h"
+#include "report/html/page_block.h"
+#include "report/html/page_libraries.h"
+#include "report/html/touch_page.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::app {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {

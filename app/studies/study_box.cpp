@@ -8,7 +8,7 @@
 #include "field/entry_face_contact.h"
 #include "field/primitive_contact.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "surface/texture/height_map.h"
 #include "surface/texture/sandpaper.h"
 #include "surface/texture/sines.h"

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 
 namespace thimble::app {
 namespace {

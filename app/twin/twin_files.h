@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/driver/result.h"
 #include "twin/compare_twin.h"
 

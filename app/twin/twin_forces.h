@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/scene/arm_file.h"
 #include "twin/twin_motion.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "stability/drop_trial.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"

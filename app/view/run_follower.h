@@ -7,8 +7,8 @@
 
 #include "share/run_attachment.h"
 #include "view/live_scene.h"
-#include "view/marks/tip_trail.h"
-#include "view/time/moment_ring.h"
+#include "view/overlays/tip_trail.h"
+#include "view/playback/moment_ring.h"
 #include "view/touch_source.h"
 
 namespace thimble::app::view {

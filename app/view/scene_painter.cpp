@@ -8,7 +8,7 @@
 #include "bent_mesh.h"
 #include "view/gl/picture_parts.h"
 #include "view/ground_shadow.h"
-#include "view/marks/force_marks.h"
+#include "view/overlays/force_marks.h"
 #include "view/view_block.h"
 
 namespace thimble::app::view {

@@ -14,7 +14,7 @@
 #include "view/gl/shadow_map.h"
 #include "view/gl/solids.h"
 #include "view/gl/surface_model.h"
-#include "view/marks/pane_model.h"
+#include "view/overlays/pane_model.h"
 #include "view/touch_marks.h"
 
 namespace thimble::app::view {

@@ -9,8 +9,8 @@
 
 #include "setup.h"
 #include "share/shared_run.h"
-#include "view/marks/legend.h"
-#include "view/marks/tip_trail.h"
+#include "view/overlays/legend.h"
+#include "view/overlays/tip_trail.h"
 
 namespace thimble::app::view {
 namespace {

@@ -13,8 +13,8 @@
 #include "thimble/session/session.h"
 #include "view/gl/offscreen_context.h"
 #include "view/live_scene.h"
+#include "view/playback/plots.h"
 #include "view/scene_painter.h"
-#include "view/time/plots.h"
 
 namespace thimble::app::view {
 

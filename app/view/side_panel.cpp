@@ -16,7 +16,7 @@
 #include "view/knob_panel.h"
 #include "view/number_text.h"
 #include "view/panel_flow.h"
-#include "view/time/time_line.h"
+#include "view/playback/time_line.h"
 
 namespace thimble::app::view {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "share/shared_reader.h"
+#include "view/playback/plot_panel.h"
 #include "view/run_buttons.h"
 #include "view/scene_painter.h"
-#include "view/time/plot_panel.h"
 #include "view/touch_source.h"
 
 namespace thimble::app::view {

@@ -5,8 +5,8 @@
 
 #include "share/shared_reader.h"
 #include "view/drawn_scene.h"
-#include "view/time/play_head.h"
-#include "view/time/plots.h"
+#include "view/playback/play_head.h"
+#include "view/playback/plots.h"
 
 namespace thimble::app::view {
 

@@ -18,16 +18,16 @@
 #include <vector>
 
 #include "log/logger.h"
-#include "view/felt/touch_thread.h"
+#include "view/feedback/touch_thread.h"
 #include "view/gl/picture_file.h"
-#include "view/hand/hand_panel.h"
-#include "view/marks/legend.h"
+#include "view/input/hand_panel.h"
+#include "view/overlays/legend.h"
+#include "view/playback/recording_player.h"
+#include "view/playback/time_line.h"
 #include "view/run_follower.h"
 #include "view/scene_mouse.h"
 #include "view/screen.h"
 #include "view/side_panel.h"
-#include "view/time/recording_player.h"
-#include "view/time/time_line.h"
 
 namespace thimble::app::view {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "share/run_attachment.h"
 #include "thimble/driver/result.h"
-#include "view/felt/touch_thread.h"
+#include "view/feedback/touch_thread.h"
 #include "view/gl/palette.h"
-#include "view/hand/hand_input.h"
-#include "view/time/recording_view.h"
+#include "view/input/hand_input.h"
+#include "view/playback/recording_view.h"
 
 namespace thimble::app::view {
 

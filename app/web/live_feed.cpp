@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
-#include "report/page/page.h"
-#include "report/page/page_rows.h"
-#include "report/page/page_scene.h"
+#include "report/html/page.h"
+#include "report/html/page_rows.h"
+#include "report/html/page_scene.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::app {

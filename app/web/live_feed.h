@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "report/page/page_block.h"
-#include "report/page/page_marks.h"
-#include "report/page/shape_steps.h"
+#include "report/html/page_block.h"
+#include "report/html/page_marks.h"
+#include "report/html/shape_steps.h"
 #include "share/shared_reader.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/run_statistics.h"

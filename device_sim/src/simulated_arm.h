@@ -8,9 +8,9 @@
 
 #include "board/firmware.h"
 #include "board/wire_queue.h"
-#include "operator/hand.h"
-#include "operator/hand_path.h"
-#include "operator/tremor.h"
+#include "hand/hand.h"
+#include "hand/hand_path.h"
+#include "hand/tremor.h"
 #include "plant/arm_plant.h"
 #include "plant/axis_dynamics.h"
 #include "plant/drive_train_plant.h"

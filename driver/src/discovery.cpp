@@ -11,8 +11,8 @@
 
 #include "arm_table.h"
 #include "board_identity.h"
-#include "links/linked_arms.h"
 #include "transports/hid_descriptor.h"
+#include "vendors/linked_arms.h"
 
 namespace thimble::driver {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "climbing_link.h"
+#include "link_rotation.h"
 #include "math/elementary.h"
 
 namespace thimble::driver {
@@ -61,7 +61,7 @@ Eigen::Matrix3d LinkageArm::last_link(const Eigen::Vector3d& q,
   const auto [sin_1, cos_1] = math::sin_cos(q[1]);
   const double out = r - length_0 / 2 - length_1 * cos_1;
   const double up = p_BT.z() - length_1 * sin_1;
-  return climbing_link(cos_0, sin_0, out / length_5, up / length_5);
+  return link_rotation(cos_0, sin_0, out / length_5, up / length_5);
 }
 
 std::optional<Eigen::Vector3d> LinkageArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "climbing_link.h"
+#include "link_rotation.h"
 #include "math/elementary.h"
 
 namespace thimble::driver {
@@ -41,7 +41,7 @@ Eigen::Matrix3d SerialArm::last_link(const Eigen::Vector3d& q,
   // Link C climbs by C - 90 degrees.
   const auto [sin_a, cos_a] = math::sin_cos(q[0]);
   const auto [sin_c, cos_c] = math::sin_cos(q[2]);
-  return climbing_link(cos_a, sin_a, sin_c, -cos_c);
+  return link_rotation(cos_a, sin_a, sin_c, -cos_c);
 }
 
 std::optional<Eigen::Vector3d> SerialArm::inverse(const Eigen::Vector3d& p_BT) const noexcept {

@@ -15,10 +15,10 @@
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
-#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
 #include "track/normal_projection_tracker.h"
 #include "track/offset_tracker.h"
+#include "track/packed_contact_in_memory.h"
 
 namespace thimble::render {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "page/paged_contact.h"
+#include "disk_paging/paged_contact.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/object_touch.h"
 

@@ -2,9 +2,9 @@
 
 #include <memory>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
-#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/build_object_touch.h"

@@ -25,7 +25,7 @@ forbid device_sim "thimble/(render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "render, app, graphics, logging or files"
 forbid device_sim 'thimble/driver/(device|safety_gate|servo_loop|velocity_estimator|real_time)\.h' \
   "the host's side of the driver: it meets it at the wire only"
-forbid device_sim 'gate/|transports/(stream_transport|node_lock|ftdi_line)\.h"|links/' \
+forbid device_sim 'gate/|transports/(stream_transport|node_lock|ftdi_line)\.h"|vendors/' \
   "the host's side of the driver: it meets it at the wire only"
 beside=$(find driver/src device_sim/src -mindepth 1 -maxdepth 1 -type d -printf '%f|')
 for module in driver device_sim; do
@@ -35,7 +35,7 @@ forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
 forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\.h|(thimble/driver/)?arms/' \
   "the wire or the arm: a force law knows state and force only"
-forbid render/include '(mesh|packed|search|track|body|page|multirate|field|surface|effect)/|[a-z_]*\.h"' \
+forbid render/include '(mesh|compact_mesh|search|track|body|disk_paging|multirate|field|surface|effect)/|[a-z_]*\.h"' \
   "a header beside the sources: it is not installed"
 
 # The layers of render: LAYER: what it may include. Some headers are no part of the folder they lie
@@ -45,15 +45,15 @@ layers='
   state:
   settings:
   mesh:
-  packed: mesh
-  search: mesh packed
-  track: state mesh packed search
+  compact_mesh: mesh
+  search: mesh compact_mesh
+  track: state mesh compact_mesh search
   touch: state settings
   effect: state settings
   surface: state settings effect
   field: state settings touch mesh
   body: state settings touch mesh
-  page: state mesh packed search track
+  disk_paging: state mesh compact_mesh search track
   multirate: touch
 '
 upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk -v layers="$layers" '
@@ -61,6 +61,7 @@ upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk
     sub(/^render\/include\//, "", path)
     sub(/^(render\/src|thimble\/render)\//, "", path)
     sub(/\.(h|inc)$/, "", path)
+    sub(/^page\//, "disk_paging/", path)
     if (path ~ /^(contact_state|body_patch|body_pose|surface\/surface_response)$/) return "state"
     if (path ~ /^effect\/(effect_context|live_settings|map_settings|settings_reader)$/) return "settings"
     if (path ~ /^(touch|object_touch|scene_touch)$/) return "touch"
@@ -90,22 +91,22 @@ if [ -n "$upward" ]; then
 fi
 
 # The installed headers of app: nothing beside the sources, and no library that a user need not know.
-forbid app/scene/include '(yaml|terms)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
+forbid app/scene/include '(yaml|arm_policy)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
 forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a header beside the sources, or HDF5"
 # Python binds what C++ programs link; of the rest it reads the warnings alone.
-forbid app/python '(yaml|terms|recording|share|observers|report|studies|view|bringup|hil|cli)/|stability/(draw|rest|stability|wall)' \
+forbid app/python '(yaml|arm_policy|recording|share|observers|report|studies|view|bringup|hil|cli)/|stability/(draw|rest|stability|wall)' \
   "what a C++ program that links thimble::session cannot reach"
 
 # The libraries of app, the lowest first: FOLDER: what it must not know.
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
-forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|faces|hil|web|cli)/'
+forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
 # What writes files knows nothing of what is written.
-forbid app/scene/src/output '(log|yaml|files|terms|hand|meshes|quality|arm)/|thimble/(device_sim|render|scene)/' \
+forbid app/scene/src/output '(log|yaml|files|arm_policy|hand|meshes|quality|arm)/|thimble/(device_sim|render|scene)/' \
   "the rest of the scene library"
-forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|faces|hil|web|cli)/'
-forbid_app session '(report|stability|studies|view|bringup|faces|hil|web|cli)/'
+forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
+forbid_app session '(report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
 # What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
 # ticks know nothing of each other: only who registers them knows them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
@@ -121,29 +122,30 @@ for observer in observers/black_box observers/dent_record observers/latest_tick 
     bad=1
   fi
 done
-forbid_app report '(stability|studies|view|bringup|faces|hil|web|cli)/'
-forbid_app stability '(studies|view|bringup|faces|hil|web|cli)/'
-forbid_app studies '(view|bringup|faces|hil|web|cli)/'
-forbid_app view '(report|stability|studies|bringup|faces|hil|web|cli)/'
-forbid_app web '(stability|studies|view|bringup|hil|twin|faces|cli)/'
-forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|faces|hil|web|cli)/'
-forbid_app identified '(session|recording|share|events|stability|studies|view|faces|hil|twin|web|cli)/'
-forbid_app hil '(identified|share|events|view|faces|web|cli)/'
-forbid_app twin '(share|events|studies|view|bringup|hil|faces|web|cli)/'
-forbid_app faces '(report|stability|studies|view|bringup|hil|web|cli)/'
-# What a program of somebody else's loads brings no library of ours with it; and faces know the core alone.
+forbid_app report '(stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
+forbid_app stability '(studies|view|bringup|compat|ros2|hil|web|cli)/'
+forbid_app studies '(view|bringup|compat|ros2|hil|web|cli)/'
+forbid_app view '(report|stability|studies|bringup|compat|ros2|hil|web|cli)/'
+forbid_app web '(stability|studies|view|bringup|hil|twin|compat|ros2|cli)/'
+forbid_app bringup 'thimble/session/|(recording|share|events|report|stability|studies|view|compat|ros2|hil|web|cli)/'
+forbid_app identified '(session|recording|share|events|stability|studies|view|compat|ros2|hil|twin|web|cli)/'
+forbid_app hil '(identified|share|events|view|compat|ros2|web|cli)/'
+forbid_app twin '(share|events|studies|view|bringup|hil|compat|ros2|web|cli)/'
+forbid_app compat '(report|stability|studies|view|bringup|hil|web|cli)/'
+forbid_app ros2 '(report|stability|studies|view|bringup|hil|compat|web|cli)/'
+# What a program of somebody else's loads brings no library of ours with it; and the libraries know the core alone.
 for part in core haply hd hdphantom dhd; do
-  [ -d "app/faces/$part" ] || continue
-  forbid "app/faces/$part" 'faces/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
+  [ -d "app/compat/$part" ] || continue
+  forbid "app/compat/$part" 'compat/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
     "what is in the process of thimble exec"
 done
 for part in core server; do
-  forbid "app/faces/$part" 'faces/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "a face"
+  forbid "app/compat/$part" 'compat/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "one API"
 done
-for folder in bag scene session report web stability studies bringup identified hil twin faces cli python; do
+for folder in bag scene session report web stability studies bringup identified hil twin compat ros2 cli python; do
   forbid "app/$folder" "$graphics" "graphics: they are app/view's"
 done
-for folder in bag scene session report web stability studies bringup identified hil twin view faces python; do
+for folder in bag scene session report web stability studies bringup identified hil twin view compat ros2 python; do
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 
@@ -164,7 +166,7 @@ needs 'inverse()' 'LU|Geometry|Eigenvalues|Dense'
 
 # One rule for all outputs: what a user names is written through app/scene/src/output. Others write the program's own
 # state, drafts that they rename, and files in a folder that they have just made.
-own_writers='app/(examples/|bag/write_bag|scene/src/(output/|calibration|heat_keeper|files/kept_scene|terms/feel_check_record)|session/src/share/steer/save_knobs|faces/server/free_scene)|render/src/mesh/file/save_mesh'
+own_writers='app/(examples/|bag/write_bag|scene/src/(output/|arm/calibration|heat_keeper|files/kept_scene|arm_policy/feel_check_record)|session/src/share/steer/save_knobs|compat/server/free_scene)|render/src/mesh/file/save_mesh'
 written=$(grep -rnE 'std::ofstream|fopen\([^)]*"[wa]' app render driver device_sim --include='*.h' --include='*.cpp' |
   grep -vE "^($own_writers)" || true)
 if [ -n "$written" ]; then

@@ -29,8 +29,8 @@ plant driver/include/thimble/driver/fault.h '<boost/beast.hpp>'
 plant driver/src/fault.cpp '"thimble/render/touch.h"'
 plant device_sim/include/thimble/device_sim/settings.h '"thimble/render/touch.h"'
 plant device_sim/include/thimble/device_sim/settings.h '"thimble/driver/device.h"'
-plant device_sim/src/operator/hand.cpp '"transports/stream_transport.h"'
-plant device_sim/src/operator/hand.cpp '"links/force_box.h"'
+plant device_sim/src/hand/hand.cpp '"transports/stream_transport.h"'
+plant device_sim/src/hand/hand.cpp '"vendors/force_box.h"'
 plant render/include/thimble/render/touch.h '"thimble/driver/transport.h"'
 plant render/include/thimble/render/touch.h '"thimble/driver/arms/hfab/hfab_arm.h"'
 plant render/include/thimble/render/touch.h '"thimble/device_sim/settings.h"'
@@ -45,16 +45,16 @@ plant app/session/include/thimble/session/session.h '"run_loop.h"'
 plant app/session/include/thimble/session/recording.h '<hdf5.h>'
 plant app/python/module.cpp '"recording/recorder.h"'
 plant app/python/module.cpp '"report/report.h"'
-plant app/faces/core/arm_access.cpp '"thimble/session/session.h"'
-plant app/faces/hd/hd_device.cpp '"faces/server/arm_server.h"'
-plant app/faces/server/arm_server.cpp '"faces/hd/hd_device.h"'
-plant app/session/src/session.cpp '"faces/core/arm_data.h"'
+plant app/compat/core/arm_access.cpp '"thimble/session/session.h"'
+plant app/compat/hd/hd_device.cpp '"compat/server/arm_server.h"'
+plant app/compat/server/arm_server.cpp '"compat/hd/hd_device.h"'
+plant app/session/src/session.cpp '"compat/core/arm_data.h"'
 # One forbidden include for each layer of render.
 plant render/include/thimble/render/contact_state.h '"thimble/render/mesh/triangle_mesh.h"'
 plant render/include/thimble/render/contact_state.h '"thimble/render/object_touch.h"'
 plant render/include/thimble/render/effect/live_settings.h '"thimble/render/effect/effect_table.h"'
-plant render/src/mesh/contact_mesh.cpp '"packed/packed_surface.h"'
-plant render/src/packed/packed_surface.cpp '"search/contact_search.h"'
+plant render/src/mesh/contact_mesh.cpp '"compact_mesh/packed_surface.h"'
+plant render/src/compact_mesh/packed_surface.cpp '"search/contact_search.h"'
 plant render/src/search/tree_search.cpp '"track/surface_tracker.h"'
 plant render/src/search/segment_lanes.inc '"track/packed_store.h"'
 plant render/src/track/surface_tracker.cpp '"body/motion/rigid_body.h"'
@@ -65,19 +65,19 @@ plant render/src/surface/friction/bristle.cpp '"field/viscous.h"'
 plant render/src/field/viscous.cpp '"track/god_object.h"'
 plant render/src/body/motion/rigid_body.cpp '"track/god_object.h"'
 plant render/src/body/motion/rigid_body.cpp '"touch_of.h"'
-plant render/src/page/page_file.cpp '"thimble/render/object_touch.h"'
+plant render/src/disk_paging/page_file.cpp '"thimble/render/object_touch.h"'
 plant render/src/multirate/model_slot.cpp '"track/god_object.h"'
-plant render/src/track/packed_contact.h '"page/page_file.h"'
+plant render/src/track/packed_contact.h '"disk_paging/page_file.h"'
 # One forbidden include for each library of app.
 plant app/scene/include/thimble/scene/arm_file.h '"thimble/session/session.h"'
-plant app/scene/src/meshes/place_mesh.cpp '"report/figure.h"'
+plant app/scene/src/meshes/place_mesh.cpp '"report/figure_output.h"'
 plant app/session/src/session.cpp '"report/report.h"'
 plant app/session/src/share/live_control.h '"cli/exit_code.h"'
 plant app/session/include/thimble/session/session.h '"setup.h"'
 plant app/session/include/thimble/session/recording.h '<hdf5.h>'
 plant app/session/src/observers/trace.h '"observers/black_box.h"'
 plant app/session/src/share/run_sharing.cpp '"observers/dent_record.h"'
-plant app/report/figure.cpp '"stability/tuning.h"'
+plant app/report/figure_output.cpp '"stability/tuning.h"'
 plant app/stability/tuning.h '"studies/study.h"'
 plant app/studies/study.h '"view/window.h"'
 plant app/view/window.h '"report/report.h"'
@@ -103,12 +103,12 @@ echo "$(wc -l <"$planted") forbidden includes, each named"
 make_copy
 sed -i '/Eigen.Geometry/d' "$copy/app/stability/rest_warnings.cpp" "$copy/tests/unit/render/search/built_in_halves_test.cpp"
 sed -i '/Eigen.LU/d' "$copy/app/twin/drive_train_twin.cpp"
-echo '// std::ofstream(file) << text;' >>"$copy/app/report/figure.cpp"
+echo '// std::ofstream(file) << text;' >>"$copy/app/report/figure_output.cpp"
 for folder in driver/src device_sim/src/plant render/src/search app/view tests/support; do
   for i in $(seq 41); do touch "$copy/$folder/one_more_$i.h"; done
 done
 bash "$here/layering.sh" "$copy" >"$said" || true
-for line in '  app/report/figure.cpp:' 'app/stability/rest_warnings.cpp calls cross()' 'app/twin/drive_train_twin.cpp calls inverse()' \
+for line in '  app/report/figure_output.cpp:' 'app/stability/rest_warnings.cpp calls cross()' 'app/twin/drive_train_twin.cpp calls inverse()' \
   'tests/unit/render/search/built_in_halves_test.cpp calls cross()' \
   'driver/src: ' 'device_sim/src/plant: ' 'render/search: ' 'app/view: ' 'tests/support: '; do
   grep -qF -- "$line" "$said" || {

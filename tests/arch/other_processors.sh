@@ -4,7 +4,7 @@
 #   other_processors.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
-elsewhere=render/src/packed/sse2_elsewhere.h
+elsewhere=render/src/compact_mesh/sse2_elsewhere.h
 bad=0
 while read -r name; do
   grep -qE "[ (]$name\)?\(" $elsewhere && continue

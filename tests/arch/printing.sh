@@ -15,7 +15,7 @@ prints() {
       app driver render device_sim --include='*.h' --include='*.cpp' |
       grep -vE '^app/examples/|^app/scene/src/log/(console|printed_text)\.(h|cpp):|gnu::format\(printf|//.*printf' |
       # In programs of others: the error of their library, which `thimble exec` made printable.
-      grep -vE '^app/faces/hd/hd_device\.cpp:|^app/faces/include/' || true
+      grep -vE '^app/compat/hd/hd_device\.cpp:|^app/compat/include/' || true
   )
 }
 

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "studies/resident_memory.h"
 #include "support/meshes/bench_meshes.h"
 #include "thimble/render/mesh/mesh_file.h"

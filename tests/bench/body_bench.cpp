@@ -16,7 +16,7 @@
 #include "body/spring/modal_motion.h"
 #include "body/spring/spring_motion.h"
 #include "mesh/surface_weights.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "support/meshes/body_meshes.h"
 #include "support/meshes/shapes.h"
 #include "thimble/render/build_object_touch.h"

@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "bench/peers.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "search/make_search.h"
 #include "support/meshes/bench_meshes.h"
 #include "support/random.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/render/build_object_touch.h"
-#include "track/memory_contact.h"
+#include "track/packed_contact_in_memory.h"
 
 // Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
 // same run. Every time is the least of several rounds in which the contenders take turns, stretch

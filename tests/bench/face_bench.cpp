@@ -12,9 +12,9 @@
 #include <thread>
 #include <utility>
 
-#include "faces/core/arm_access.h"
-#include "faces/core/open_channel.h"
-#include "faces/server/arm_server.h"
+#include "compat/core/arm_access.h"
+#include "compat/core/open_channel.h"
+#include "compat/server/arm_server.h"
 
 namespace thimble::faces {
 namespace {

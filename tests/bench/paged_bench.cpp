@@ -14,12 +14,12 @@
 #include <thread>
 #include <vector>
 
-#include "page/paged_contact.h"
-#include "report/figure.h"
+#include "disk_paging/paged_contact.h"
+#include "report/figure_output.h"
 #include "studies/resident_memory.h"
 #include "studies/ring_pages.h"
 #include "studies/tube_mesh.h"
-#include "track/memory_contact.h"
+#include "track/packed_contact_in_memory.h"
 
 // A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop
 // of 1 kHz that sleeps, a thread loading for it; beside it the same over 10^6 triangles in memory,

@@ -32,7 +32,7 @@ CORES = 2  # that a picture may use: a computer of a lab has two at least
 
 
 def figure(name, value, unit, most=None, note=""):
-    """One entry of figures.json (app/report/figure.cpp); `most`: the goal is to stay below it."""
+    """One entry of figures.json (app/report/figure_output.cpp); `most`: the goal is to stay below it."""
     entry = {"name": name, "value": value, "unit": unit}
     if most is not None:
         entry.update(goal=f"< {most:.4g}", met=value < most)

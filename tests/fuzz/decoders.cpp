@@ -17,7 +17,7 @@
 #include "usb/usb_description.h"
 #include "usb/usbip_session.h"
 #include "usb/usbip_wire.h"
-#include "view/hand/space_mouse_report.h"
+#include "view/input/space_mouse_report.h"
 
 namespace thimble::fuzz {
 namespace {

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "disk_paging/checksum.h"
+#include "disk_paging/page_file.h"
 #include "mesh/repair/touching_parts.h"
-#include "page/checksum.h"
-#include "page/page_file.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"

@@ -60,18 +60,18 @@ bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md
 
 # What the guide tells of peers is what the folders of the source have measured: ticks that are hot and in the loop, and
 # the peer's times of searches.
-compare=$source/app/guide/pages/compare.md packed=$source/render/src/packed/README.md
+compare=$source/app/guide/pages/compare.md packed=$source/render/src/compact_mesh/README.md
 hot() { sed -nE 's/^\| (10\^[0-9])[^|]*\| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \|.*/| \1 | \2 | \3 | \4 | \5 |/p'; }
 in_the_loop() { grep -E '^\| 10\^[0-9] (\| [0-9]+, [0-9]+ ){3}\| [0-9.]+, [0-9.]+ \|$'; }
 peers_of() { grep -E "^\| $1" "$2" | grep -oE '\([0-9]+\)'; } # ROW FILE
 hot <"$packed" >measured
-[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/packed/README.md has no table of peers" >&2 && exit 1; }
+[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/compact_mesh/README.md has no table of peers" >&2 && exit 1; }
 grep -E '^\| 10\^[0-9] (\| [0-9]+ ){4}\|$' "$compare" | diff - measured ||
-  { echo "FAILED: compare.md tells other times of ticks than render/src/packed/README.md" >&2 && exit 1; }
+  { echo "FAILED: compare.md tells other times of ticks than render/src/compact_mesh/README.md" >&2 && exit 1; }
 in_the_loop <"$packed" >measured
-[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/packed/README.md has no table of the loop" >&2 && exit 1; }
+[ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/compact_mesh/README.md has no table of the loop" >&2 && exit 1; }
 in_the_loop <"$compare" | diff - measured ||
-  { echo "FAILED: compare.md tells other times in the loop than render/src/packed/README.md" >&2 && exit 1; }
+  { echo "FAILED: compare.md tells other times in the loop than render/src/compact_mesh/README.md" >&2 && exit 1; }
 for row in 'ball, segment' 'torus, segment' 'ball, nearest point' 'torus, nearest point'; do
   peers_of "$row" "$source/render/src/search/README.md" >measured
   [ "$(wc -l <measured)" = 4 ] || { echo "FAILED: render/src/search/README.md has no row: $row" >&2 && exit 1; }

@@ -67,7 +67,7 @@ scene=$source_dir/tests/data/scenes/two_boxes.yaml
 expect 3 "Several arms answer to 'auto'\. There is: 049D \(Haply Inverse3\), 0A11 \(Haply Inverse3\)\. Name one with --device NAME" \
   "$thimble" run "$scene" --device auto --yes --no-real-time --no-view
 # exec needs the libraries that stand in for others; a build with a sanitizer has none.
-if [ -e "$(dirname "$(readlink -f "$thimble")")/faces/lib/libHD.so" ]; then
+if [ -e "$(dirname "$(readlink -f "$thimble")")/compat/lib/libHD.so" ]; then
   expect 3 'Name one with --device NAME' "$thimble" exec --serve haply --port 0 --device auto --yes --no-real-time true
 fi
 cat >with_falcon.sh <<'END'

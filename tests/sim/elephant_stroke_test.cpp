@@ -17,13 +17,13 @@
 #include "support/meshes/reference_geometry.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/scene_file.h"
-#include "track/felt_anchor.h"
 #include "track/mesh_contact.h"
+#include "track/proxy_filter.h"
 
 // The demo's whole stroke on the virtual clock, checked tick by tick against plain geometry that
 // shares no code with the library: inside or outside by winding number, the cells of the paper's
 // Fig. 4b from the mesh's vertices, force from depth and velocity. What the contact stage found is
-// asked of a bare one on the same path; what is felt is in the rows (felt_anchor.h).
+// asked of a bare one on the same path; what is felt is in the rows (proxy_filter.h).
 
 namespace thimble {
 namespace {
@@ -251,7 +251,7 @@ double excess_over_the_path(std::span<const driver::TickRecord> rows,
     double damped = object.damping * (faster + turned * speed);
     // The damper begins with the contact.
     if (!before.in_contact) damped = object.damping * vector(now.v_WT).norm();
-    const double bound = (1 + render::FeltAnchor::kPathRatio) * object.stiffness * moved + damped;
+    const double bound = (1 + render::ProxyFilter::kPathRatio) * object.stiffness * moved + damped;
     worst = std::max(worst, (vector(now.f_wanted_W) - vector(before.f_wanted_W)).norm() - bound);
   }
   return worst;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "stability/tuning.h"
 #include "stability/wall_trial.h"
 #include "support/hard_case.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "stability/wall_trial.h"
 #include "support/hard_case.h"
 #include "support/wall_rig.h"

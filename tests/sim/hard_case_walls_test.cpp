@@ -14,7 +14,7 @@
 
 #include "arm_table.h"
 #include "board/firmware.h"
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "stability/stability_laws.h"
 #include "support/hard_case.h"
 #include "support/long_form.h"

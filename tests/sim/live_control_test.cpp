@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "operator/hand.h"
+#include "hand/hand.h"
 #include "run_records.h"
 #include "setup.h"
 #include "share/describe_scene.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 
 namespace thimble::support {
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Boots this system's Debian kernel in QEMU and drives every simulated USB arm through it.
 #   virtual_machine.sh THIMBLE USB_CHECK SOURCE_DIR WORK_DIR PROGRAMS_DIR [--long]
-# PROGRAMS_DIR holds the programs in C that were built for others' arms (tests/faces).
+# PROGRAMS_DIR holds the programs in C that were built for others' arms (tests/compat).
 # Ends with 0 if all passed, 1 if not, 77 if this machine lacks what it takes. The whole logs stay in
 # WORK_DIR/console.log and identified.log, the figures in WORK_DIR/figures.json, every fault on every arm that was tried
 # in WORK_DIR/faults.md.
@@ -57,8 +57,8 @@ add "$check" /bin/usb_check
 for program in clients/hello_sphere clients/chai_sphere dhd/dhd_client_sphere; do
   add "$programs/$program" "/bin/$(basename $program)"
 done
-mkdir -p "$root/bin/faces/lib"
-cp -L "$(dirname "$thimble")"/faces/lib/*.so* "$root/bin/faces/lib/"
+mkdir -p "$root/bin/compat/lib"
+cp -L "$(dirname "$thimble")"/compat/lib/*.so* "$root/bin/compat/lib/"
 # systemd-udevd and udevadm are one program that looks at its name.
 add /bin/udevadm /bin/udevadm
 add $udevd $udevd

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "math/elementary.h"
 
 namespace thimble::app {

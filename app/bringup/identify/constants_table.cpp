@@ -10,7 +10,7 @@
 
 #include "math/elementary.h"
 
-#include "bringup/identify/links/place_masses.h"
+#include "bringup/identify/link_inertia/place_masses.h"
 #include "bringup/identify/not_identified.h"
 
 namespace thimble::app {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bringup/identify/cables/backlash/gap_constants.h"
 #include "bringup/identify/cables/behind_cables.h"
-#include "bringup/identify/cables/gap/gap_constants.h"
 #include "bringup/identify/line_forces.h"
-#include "bringup/identify/links/link_constants.h"
-#include "bringup/identify/links/link_equations.h"
+#include "bringup/identify/link_inertia/link_constants.h"
+#include "bringup/identify/link_inertia/link_equations.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/rubbing_joints.h"
 #include "math/elementary.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bringup/identify/identify.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 
 namespace thimble::app {
 namespace {

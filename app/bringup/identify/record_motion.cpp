@@ -9,7 +9,7 @@
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/motor_probe.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "math/elementary.h"
 
 namespace thimble::app {

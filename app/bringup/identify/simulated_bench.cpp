@@ -1,7 +1,7 @@
 #include "bringup/identify/simulated_bench.h"
 
 #include "bringup/identify/arm_constants.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 
 namespace thimble::app {
 

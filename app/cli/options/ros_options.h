@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "faces/ros2/ros_words.h"
+#include "ros2/ros_words.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {

@@ -7,9 +7,9 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
-#include "faces/ros2/ros_module.h"
 #include "hold_key.h"
 #include "log/logger.h"
+#include "ros2/ros_module.h"
 #include "share/shared_layout.h"
 #include "share/viewer_process.h"
 

@@ -7,11 +7,11 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/study/end_study.h"
-#include "interrupt.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
+#include "signals.h"
+#include "studies/fuzz_scenes/study_trouble.h"
 #include "studies/stability/study_stability.h"
-#include "studies/trouble/study_trouble.h"
 
 namespace thimble::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/exit_code.h"
-#include "report/figure.h"
+#include "report/figure_output.h"
 
 namespace thimble::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "worst_direction.h"
 #include "yaml/yaml_settings.h"
 

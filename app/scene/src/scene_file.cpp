@@ -13,12 +13,12 @@
 #include <unordered_set>
 #include <utility>
 
-#include "energy_choice.h"
+#include "disk_paging/page_file.h"
+#include "energy_guard_settings.h"
 #include "files/scene_paths.h"
 #include "hand/read_hand.h"
 #include "hand/scene_arms.h"
 #include "loop_latency.h"
-#include "page/page_file.h"
 #include "read_scene.h"
 #include "scene_body.h"
 #include "scene_effects.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "setup.h"
 
 namespace thimble::session {

@@ -325,7 +325,7 @@ driver::Result<void> Setup::open_arm() {
   // the time of the world.
   if (!clock_ && plan_.real_time) clock_ = std::make_unique<driver::WallClock>();
   if (!clock_ && plan_.paced) {
-    auto clock = std::make_shared<PacedClock>();
+    auto clock = std::make_shared<SpeedClock>();
     pace_ = clock.get();
     clock_ = std::move(clock);
   }

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "heat_keeper.h"
-#include "paced_clock.h"
 #include "recording/run_choices.h"
 #include "sleep_lock.h"
+#include "speed_clock.h"
 #include "start_pose.h"
 #include "terminal.h"
 #include "thimble/driver/clock.h"
@@ -106,7 +106,7 @@ class Setup {
   /// Returns whether simulated time passes at a pace that viewers choose.
   bool paced() const noexcept { return plan_.paced; }
   /// Returns the clock that has that pace; null if there is none. Precondition: the arm is open.
-  PacedClock* pace() const noexcept { return pace_; }
+  SpeedClock* pace() const noexcept { return pace_; }
   /// Returns the simulation of the arm; null if the arm is real.
   scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept {
     return arms_[arm].simulation.get();
@@ -180,7 +180,7 @@ class Setup {
   // What is built from it.
   std::unique_ptr<scene::SceneObjects> objects_;
   std::shared_ptr<driver::Clock> clock_;
-  PacedClock* pace_ = nullptr;  // the same, or null
+  SpeedClock* pace_ = nullptr;  // the same, or null
   std::vector<ArmOfRun> arms_;
 };
 

@@ -1,12 +1,12 @@
 #include "studies/accuracy/accuracy_page.h"
-#include "report/page/page_block.h"
+#include "report/html/page_block.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "report/inline_picture.h"
 #include "studies/accuracy/axis_words.h"
 #include "thimble/scene/build_info.h"

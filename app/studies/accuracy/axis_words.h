@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "studies/accuracy/measure_axis.h"
 
 namespace thimble::app {

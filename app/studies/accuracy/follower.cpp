@@ -7,9 +7,9 @@
 #include "mesh/smooth_normals.h"
 #include "mesh/triangle_set.h"
 #include "track/god_object.h"
-#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
 #include "track/normal_projection_tracker.h"
+#include "track/packed_contact_in_memory.h"
 
 namespace thimble::app {
 namespace {

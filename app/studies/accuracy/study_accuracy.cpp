@@ -9,7 +9,7 @@
 #include "log/logger.h"
 #include "log/printed_text.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "studies/accuracy/accuracy_axis.h"
 #include "studies/accuracy/accuracy_page.h"
 #include "studies/accuracy/axis_picture.h"

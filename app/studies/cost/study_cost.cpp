@@ -17,7 +17,7 @@
 #include "log/logger.h"
 #include "log/printed_text.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "studies/cost/cost_subjects.h"
 #include "studies/cost/instruction_count.h"
 #include "studies/cost/memory_trades.h"

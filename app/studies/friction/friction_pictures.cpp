@@ -6,9 +6,9 @@
 #include <span>
 #include <sstream>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "stability/signal.h"
 
 namespace thimble::app {

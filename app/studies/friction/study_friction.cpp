@@ -9,7 +9,7 @@
 #include "log/logger.h"
 #include "log/printed_text.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "stability/signal.h"
 #include "studies/friction/friction_cases.h"
 #include "studies/friction/friction_pictures.h"

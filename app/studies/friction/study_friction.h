@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::app {

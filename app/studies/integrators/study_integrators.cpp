@@ -15,7 +15,7 @@
 #include "files/scanned_meshes.h"
 #include "log/printed_text.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "studies/integrators/membrane.h"
 #include "studies/integrators/poked_body.h"
 #include "studies/sweep/progress_bar.h"

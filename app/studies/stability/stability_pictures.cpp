@@ -11,7 +11,7 @@
 #include <string>
 
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "stability/stability_laws.h"
 #include "studies/stability/drive_train_walls.h"
 #include "studies/stability/stability_picture_parts.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "stability/stability_laws.h"
 #include "studies/stability/drive_train_walls.h"
 #include "studies/stability/wall_measures.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "studies/stability/stability_plan.h"
 #include "studies/sweep/sweep.h"
 #include "thimble/driver/result.h"

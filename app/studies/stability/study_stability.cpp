@@ -8,7 +8,7 @@
 
 #include "log/logger.h"
 #include "report/gnuplot.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "studies/stability/stability_pictures.h"
 #include "studies/stability/stability_tables.h"
 #include "text_file.h"

@@ -13,7 +13,7 @@
 
 #include "output/output_file.h"
 #include "text_file.h"
-#include "text_sum.h"
+#include "text_hash.h"
 
 namespace thimble::app {
 namespace {
@@ -23,7 +23,7 @@ std::string hex(std::uint64_t value) {
 }
 
 std::string heading_of(const std::string& key, std::size_t cells) {
-  return "thimble-sweep 1 " + std::to_string(cells) + " " + hex(scene::text_sum(key)) + "\n";
+  return "thimble-sweep 1 " + std::to_string(cells) + " " + hex(scene::text_hash(key)) + "\n";
 }
 
 /// Writes a cell as `CELL COUNT NUMBERS... CHECK`, each number as the bits that it is.
@@ -32,7 +32,7 @@ std::string line_of(std::size_t cell, std::span<const double> numbers) {
   for (const double number : numbers) {
     line.append(" ").append(hex(std::bit_cast<std::uint64_t>(number)));
   }
-  const std::string check = hex(scene::text_sum(line));
+  const std::string check = hex(scene::text_hash(line));
   return line.append(" ").append(check).append("\n");
 }
 
@@ -57,7 +57,7 @@ bool read_line(std::string_view line, CellNumbers& numbers) {
   if (last == std::string_view::npos) return false;
   const auto check = whole_number(line.substr(last + 1), 16);
   std::string_view rest = line.substr(0, last);
-  if (!check || *check != scene::text_sum(rest)) return false;
+  if (!check || *check != scene::text_hash(rest)) return false;
   const auto cell = whole_number(next_word(rest), 10);
   const auto count = whole_number(next_word(rest), 10);
   if (!cell || !count || *cell >= numbers.size()) return false;

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "operator/hand.h"
-#include "operator/hand_path.h"
-#include "operator/tremor.h"
+#include "hand/hand.h"
+#include "hand/hand_path.h"
+#include "hand/tremor.h"
 #include "plant/axis_dynamics.h"
 #include "plant/inverse_plant.h"
 #include "plant/loaded_tip.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mesh/adjacency.h"
-#include "mesh/in_halves.h"
+#include "mesh/parallel_split.h"
 #include "mesh/repair/sound_mesh.h"
 
 namespace thimble::render {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "packed/wide_lanes.h"
+#include "compact_mesh/wide_lanes.h"
 #include "search/lanes.h"
 
 namespace thimble::render {

@@ -12,9 +12,9 @@
 #include <cstring>
 #include <span>
 
+#include "compact_mesh/packed_surface.h"
+#include "compact_mesh/sse2.h"
 #include "mesh/contact_mesh.h"
-#include "packed/packed_surface.h"
-#include "packed/sse2.h"
 #include "search/box_node.h"
 #include "search/eight_triangles.h"
 #include "search/near_list.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
-#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 #include "search/search_frame.h"
 

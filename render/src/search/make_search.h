@@ -3,8 +3,8 @@
 #include <memory>
 #include <optional>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
-#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 #include "thimble/render/search/search_choice.h"
 

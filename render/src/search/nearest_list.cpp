@@ -1,6 +1,6 @@
 #include "search/nearest_list.h"
 
-#include "packed/wide_lanes.h"
+#include "compact_mesh/wide_lanes.h"
 #include "search/lanes.h"
 
 namespace thimble::render {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
-#include "packed/packed_surface.h"
 #include "search/nearest_so_far.h"
 #include "search/search_frame.h"
 

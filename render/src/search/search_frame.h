@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
-#include "packed/packed_surface.h"
 
 namespace thimble::render {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "packed/wide_lanes.h"
+#include "compact_mesh/wide_lanes.h"
 #include "search/lanes.h"
 
 namespace thimble::render {

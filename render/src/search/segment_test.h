@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/segment_crossing.h"
-#include "packed/packed_surface.h"
 #include "search/contact_search.h"
 
 namespace thimble::render {

@@ -1,5 +1,5 @@
-#include "mesh/in_halves.h"
-#include "packed/block_order.h"
+#include "compact_mesh/block_order.h"
+#include "mesh/parallel_split.h"
 #include "search/tree_search.h"
 
 namespace thimble::render {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/in_halves.h"
-#include "packed/large_pages.h"
+#include "compact_mesh/large_pages.h"
+#include "mesh/parallel_split.h"
 #include "search/box_node.h"
 
 namespace thimble::render {

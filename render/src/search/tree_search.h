@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "compact_mesh/packed_surface.h"
+#include "compact_mesh/wide_lanes.h"
 #include "mesh/contact_mesh.h"
-#include "packed/packed_surface.h"
-#include "packed/wide_lanes.h"
 #include "search/contact_search.h"
 #include "search/search_frame.h"
 #include "search/tree_nodes.h"

@@ -9,9 +9,9 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
+#include "track/concave_constraint.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
-#include "track/hollow_hold.h"
 
 namespace thimble::render {
 

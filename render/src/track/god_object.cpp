@@ -4,9 +4,9 @@
 #include <limits>
 #include <utility>
 
-#include "track/hollow_hold.h"
+#include "track/concave_constraint.h"
+#include "track/exit_path.h"
 #include "track/surface_descent.h"
-#include "track/way_out.h"
 
 namespace thimble::render {
 using Eigen::Vector3d;
@@ -49,7 +49,7 @@ SurfaceFoot GodObjectContact::foot(const Vector3d&) const noexcept {
 
 void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   Rest rest;
-  WayOut way;
+  ExitPath way;
   bool pressed = false;
   bool through_itself = false;
   double nearest = std::numeric_limits<double>::infinity();

@@ -15,7 +15,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
-#include "track/hollow_hold.h"
+#include "track/concave_constraint.h"
 #include "track/offset_tracker.h"
 #include "track/surface_tracker.h"
 

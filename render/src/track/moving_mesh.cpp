@@ -6,7 +6,7 @@
 
 #include "search/search_answers.h"
 #include "search/search_frame.h"
-#include "track/swept_over.h"
+#include "track/swept_contact.h"
 
 namespace thimble::render {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mesh/triangle_set.h"
-#include "track/hollow_hold.h"
+#include "track/concave_constraint.h"
 
 namespace thimble::render {
 namespace {

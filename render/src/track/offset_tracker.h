@@ -43,7 +43,7 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
 /// that is what edge planes cannot do. The normal is that of the corners, weighted; the proxy is
 /// the point q of the surface, and the depth is the distance from it. Over creases there is one
 /// normal on each side, and the edge plane between the two faces decides [BP 4b]; between the cells
-/// of a crease in a hollow the edge or corner itself holds the tip (hollow_hold.h).
+/// of a crease in a hollow the edge or corner itself holds the tip (concave_constraint.h).
 ///
 /// Where an offset triangle has turned over, the edge planes stand in. A walk that reaches
 /// `kHopsMax`, as around a vertex of hundreds of faces, continues from the nearest triangle, which

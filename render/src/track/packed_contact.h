@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <utility>
 
+#include "compact_mesh/offset_triangle.h"
+#include "compact_mesh/wide_lanes.h"
 #include "mesh/surface_place.h"
 #include "mesh/triangle_set.h"
-#include "packed/offset_triangle.h"
-#include "packed/wide_lanes.h"
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
@@ -28,7 +28,7 @@ namespace thimble::render {
 /// Depth and direction are continuous over edges and vertices, since neighbours share offset edges
 /// to the bit. Over a crease the tip changes sides at the plane that halves the angle, where both
 /// faces measure the same depth [BP 3.1, Fig. 4b], and the direction jumps. Between the two sides
-/// of a crease in a hollow the edge or corner itself holds the tip (hollow_hold.h).
+/// of a crease in a hollow the edge or corner itself holds the tip (concave_constraint.h).
 ///
 /// Contact begins where the smooth surface does. On a bulge that is above the triangles, by up to
 /// L^2 / 6R for edges of length L on a radius R [PHYSICS 3]: there the depth rises from 0, as

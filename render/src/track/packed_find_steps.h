@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <limits>
 
+#include "compact_mesh/beside_offset.h"
 #include "mesh/closest_point.h"
 #include "mesh/triangle_set.h"
-#include "packed/beside_offset.h"
 #include "track/packed_contact.h"
 
 namespace thimble::render {

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "compact_mesh/beside_offset.h"
 #include "mesh/triangle_set.h"
-#include "packed/beside_offset.h"
 #include "track/packed_contact.h"
 #include "track/packed_walk.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // What holds a tip between the packed triangles of a hollow's crease: bodies of PackedContact,
-// included by packed_contact_steps.h alone. The same as hollow_hold.h on packed triangles.
+// included by packed_contact_steps.h alone. The same as concave_constraint.h on packed triangles.
 
 #include <Eigen/Geometry>
 #include <array>

@@ -4,7 +4,7 @@
 #include <concepts>
 #include <cstdint>
 
-#include "packed/packed_surface.h"
+#include "compact_mesh/packed_surface.h"
 #include "search/contact_search.h"
 
 namespace thimble::render {

@@ -6,8 +6,8 @@
 #include <bit>
 #include <cstdint>
 
-#include "packed/packed_surface.h"
-#include "packed/sse2.h"
+#include "compact_mesh/packed_surface.h"
+#include "compact_mesh/sse2.h"
 
 namespace thimble::render {
 

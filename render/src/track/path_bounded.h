@@ -7,7 +7,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
-#include "track/felt_anchor.h"
+#include "track/proxy_filter.h"
 
 namespace thimble::render {
 
@@ -16,8 +16,8 @@ template <class Contact>
 concept CopiesCheaply = Contact::kCopiesCheaply;
 
 /// A `Contact` stage of Touch around another one, of any kind: what is felt changes by no more than
-/// the tip's path implies, at any depth (felt_anchor.h). Depth, normal and proxy are those that are
-/// felt; triangle and hops are those that were found.
+/// the tip's path implies, at any depth (proxy_filter.h). Depth, normal and proxy are those that
+/// are felt; triangle and hops are those that were found.
 ///
 /// Contact begins and ends with the stage inside. It begins without a step of the force, however
 /// deep it is found; where it ends the force is zero at once.
@@ -67,14 +67,14 @@ class PathBounded {
   }
 
   const Contact& contact() const noexcept { return contact_; }
-  const FeltAnchor& anchor() const noexcept { return anchor_; }
+  const ProxyFilter& anchor() const noexcept { return anchor_; }
   decltype(auto) search() const noexcept { return contact_.search(); }
   decltype(auto) mesh() const noexcept requires requires(const Contact& contact) { contact.mesh(); }
   { return contact_.mesh(); }
 
  private:
   Contact contact_;
-  FeltAnchor anchor_;
+  ProxyFilter anchor_;
   bool as_found_ = true;
 };
 

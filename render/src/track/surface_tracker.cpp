@@ -8,7 +8,7 @@
 #include "mesh/closest_point.h"
 #include "mesh/foot_point.h"
 #include "mesh/triangle_set.h"
-#include "track/hollow_hold.h"
+#include "track/concave_constraint.h"
 
 namespace thimble::render {
 namespace {

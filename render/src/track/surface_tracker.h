@@ -53,9 +53,9 @@ struct TrackerStep {
 /// nearest triangle that can be reached over the surface and has the tip below it becomes active,
 /// so contact is never lost inside. Beside a face, over a hollow edge, the face alone would push
 /// the tip across, and the next one back: there two faces hold it, and three or more in a corner,
-/// at the nearest point of edge or corner (hollow_hold.h). Deterministic. All but the constructor
-/// is Real-time: safe; usually one cell per tick, at worst `kHopsMax` cells, twice `kPatchMax`
-/// triangles and two questions to the search.
+/// at the nearest point of edge or corner (concave_constraint.h). Deterministic. All but the
+/// constructor is Real-time: safe; usually one cell per tick, at worst `kHopsMax` cells, twice
+/// `kPatchMax` triangles and two questions to the search.
 class SurfaceTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.

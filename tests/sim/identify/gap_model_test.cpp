@@ -1,4 +1,4 @@
-#include "bringup/identify/cables/gap/gap_model.h"
+#include "bringup/identify/cables/backlash/gap_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bringup/identify/new_file/identified_file.h"
+#include "bringup/identify/output/identified_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bringup/identify/identify.h"
-#include "bringup/identify/new_file/identified_further.h"
+#include "bringup/identify/output/identified_further.h"
 #include "read_scene.h"
 #include "support/refuses.h"
 #include "support/scratch.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "bringup/identify/new_file/identified_further.h"
+#include "bringup/identify/output/identified_further.h"
 #include "bringup/identify/record_motion.h"
 #include "read_scene.h"
 #include "support/identify/identified_arm.h"

@@ -8,7 +8,7 @@
 
 #include "bringup/identify/identify.h"
 #include "bringup/identify/record_motion.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "support/fault_cell.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"

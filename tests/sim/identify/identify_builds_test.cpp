@@ -13,7 +13,7 @@
 
 #include "arm_table.h"
 #include "arms/falcon/falcon_arm.h"
-#include "bringup/identify/new_file/identified_file.h"
+#include "bringup/identify/output/identified_file.h"
 #include "read_scene.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"

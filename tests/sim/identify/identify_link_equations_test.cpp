@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bringup/identify/links/link_equations.h"
+#include "bringup/identify/link_inertia/link_equations.h"
 #include "bringup/identify/smooth_bump.h"
 #include "support/identify/rigid_links.h"
 

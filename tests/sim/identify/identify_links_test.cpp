@@ -11,10 +11,10 @@
 #include <string>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/links/link_constants.h"
-#include "bringup/identify/links/link_equations.h"
-#include "bringup/identify/new_file/identified_file.h"
+#include "bringup/identify/link_inertia/link_constants.h"
+#include "bringup/identify/link_inertia/link_equations.h"
 #include "bringup/identify/not_identified.h"
+#include "bringup/identify/output/identified_file.h"
 #include "bringup/identify/record_motion.h"
 #include "plant/link_mechanics.h"
 #include "read_scene.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bringup/identify/links/link_fit.h"
-#include "bringup/identify/links/look_over_places.h"
+#include "bringup/identify/link_inertia/link_fit.h"
+#include "bringup/identify/link_inertia/look_over_places.h"
 #include "bringup/identify/record_motion.h"
 #include "support/identify/identified_arm.h"
 #include "support/linked_arm.h"

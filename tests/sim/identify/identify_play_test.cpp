@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include "bringup/identify/new_file/identified_file.h"
 #include "bringup/identify/not_identified.h"
+#include "bringup/identify/output/identified_file.h"
 #include "support/identify/identified_arm.h"
 #include "support/identify/recorded_motion.h"
 #include "support/long_form.h"

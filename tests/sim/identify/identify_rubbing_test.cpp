@@ -7,8 +7,8 @@
 #include <string>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/new_file/identified_file.h"
-#include "bringup/identify/new_file/identified_further.h"
+#include "bringup/identify/output/identified_file.h"
+#include "bringup/identify/output/identified_further.h"
 #include "support/identify/identified_arm.h"
 #include "support/identify/recorded_motion.h"
 #include "support/identify/rigid_rubbing_arm.h"

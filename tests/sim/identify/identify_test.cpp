@@ -14,7 +14,7 @@
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"
 #include "support/refuses.h"

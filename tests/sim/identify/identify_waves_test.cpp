@@ -13,8 +13,8 @@
 #include <string>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/new_file/identified_file.h"
 #include "bringup/identify/not_identified.h"
+#include "bringup/identify/output/identified_file.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"
 #include "support/random.h"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bringup/identify/identify.h"
-#include "bringup/identify/new_file/identified_file.h"
-#include "bringup/identify/new_file/identified_further.h"
+#include "bringup/identify/output/identified_file.h"
+#include "bringup/identify/output/identified_further.h"
 #include "bringup/identify/record_motion.h"
 #include "bringup/identify/simulated_bench.h"
 #include "read_scene.h"

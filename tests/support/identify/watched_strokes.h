@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "operator/hand_path.h"
-#include "operator/tremor.h"
+#include "hand/hand_path.h"
+#include "hand/tremor.h"
 #include "plant/axis_dynamics.h"
 #include "support/identify/motion_rig.h"
 #include "support/random.h"

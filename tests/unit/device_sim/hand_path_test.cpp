@@ -1,4 +1,4 @@
-#include "operator/hand_path.h"
+#include "hand/hand_path.h"
 
 #include <gtest/gtest.h>
 

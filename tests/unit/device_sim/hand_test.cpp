@@ -1,4 +1,4 @@
-#include "operator/hand.h"
+#include "hand/hand.h"
 
 #include <cmath>
 #include <limits>

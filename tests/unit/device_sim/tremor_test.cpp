@@ -1,4 +1,4 @@
-#include "operator/tremor.h"
+#include "hand/tremor.h"
 #include "support/refuses.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "view/time/axis_ticks.h"
+#include "view/playback/axis_ticks.h"
 
 #include <gtest/gtest.h>
 

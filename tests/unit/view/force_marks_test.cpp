@@ -1,11 +1,11 @@
-#include "view/marks/force_marks.h"
+#include "view/overlays/force_marks.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "view/marks/legend.h"
-#include "view/marks/tip_trail.h"
+#include "view/overlays/legend.h"
+#include "view/overlays/tip_trail.h"
 
 namespace thimble::app::view {
 namespace {

@@ -1,4 +1,4 @@
-#include "view/hand/hand_input.h"
+#include "view/input/hand_input.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "view/hand/space_mouse.h"
+#include "view/input/space_mouse.h"
 
 namespace thimble::app::view {
 namespace {

@@ -1,4 +1,4 @@
-#include "view/time/moment_ring.h"
+#include "view/playback/moment_ring.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/time/play_head.h"
+#include "view/playback/play_head.h"
 
 #include <gtest/gtest.h>
 

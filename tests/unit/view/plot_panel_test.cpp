@@ -1,4 +1,4 @@
-#include "view/time/plot_panel.h"
+#include "view/playback/plot_panel.h"
 
 #include <cmath>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "view/time/plots.h"
+#include "view/playback/plots.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/time/recording_view.h"
+#include "view/playback/recording_view.h"
 
 #include <gtest/gtest.h>
 

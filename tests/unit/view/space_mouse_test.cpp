@@ -1,4 +1,4 @@
-#include "view/hand/space_mouse.h"
+#include "view/input/space_mouse.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/time/time_line.h"
+#include "view/playback/time_line.h"
 
 #include <epoxy/gl.h>
 // After the above, which brings OpenGL.

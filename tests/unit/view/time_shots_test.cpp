@@ -14,8 +14,8 @@
 #include "picture_difference.h"
 #include "support/scratch.h"
 #include "view/gl/picture_file.h"
+#include "view/playback/recording_view.h"
 #include "view/shot.h"
-#include "view/time/recording_view.h"
 
 namespace thimble::app::view {
 namespace {

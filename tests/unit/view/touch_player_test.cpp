@@ -1,4 +1,4 @@
-#include "view/felt/touch_player.h"
+#include "view/feedback/touch_player.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "share/shared_run.h"
 #include "support/scratch.h"
-#include "view/felt/rumble.h"
+#include "view/feedback/rumble.h"
 
 namespace thimble::app::view {
 namespace {

@@ -1,4 +1,4 @@
-#include "view/felt/touch_sound.h"
+#include "view/feedback/touch_sound.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "support/scratch.h"
-#include "view/felt/wav_file.h"
+#include "view/feedback/wav_file.h"
 
 namespace thimble::app::view {
 namespace {

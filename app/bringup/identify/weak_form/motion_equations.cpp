@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bringup/identify/links/link_equations.h"
+#include "bringup/identify/link_inertia/link_equations.h"
 
 namespace thimble::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "arm/nanoseconds.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "plant/link_mechanics.h"
 
 namespace thimble::scene {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "text_sum.h"
+#include "text_hash.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"
 
@@ -104,7 +104,7 @@ bool make_absolute(YAML::Node map, const char* key, const fs::path& beside) {
 
 driver::Result<fs::path> write_scene(const std::string& text, const std::string& name,
                                      const fs::path& into) {
-  const fs::path file = into / fmt::format("{}-{:016x}.yaml", as_file_name(name), text_sum(text));
+  const fs::path file = into / fmt::format("{}-{:016x}.yaml", as_file_name(name), text_hash(text));
   std::error_code failed;
   if (fs::is_regular_file(file, failed)) return file;
   fs::create_directories(into, failed);

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "page/paged_contact.h"
+#include "disk_paging/paged_contact.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"
 

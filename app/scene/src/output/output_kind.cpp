@@ -79,7 +79,7 @@ bool is_mesh(const path& file) {
   return first_text(file, 16).starts_with("OFF");
 }
 bool is_page_file(const path& file) {
-  return begins(file, "THMBPAGE");  // render/src/page/page_file.cpp
+  return begins(file, "THMBPAGE");  // render/src/disk_paging/page_file.cpp
 }
 bool is_json(const path& file) {
   const std::string text = first_text(file);

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "carry/carried_trust.h"
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/scene/arm_file.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "share/knob_requests.h"
 #include "share/live_knobs.h"
 #include "thimble/driver/device_state.h"

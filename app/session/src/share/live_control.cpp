@@ -19,7 +19,7 @@ void LiveControl::add_simulation(scene::ArmSimulation* simulation) {
 }
 
 void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop,
-                       PacedClock* pace) {
+                       SpeedClock* pace) {
   shared_ = &shared;
   hand_by_mouse_ = hand_by_mouse;
   stop_ = &stop;

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "paced_clock.h"
 #include "share/live_knobs.h"
 #include "share/shared_run.h"
+#include "speed_clock.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/tick_record.h"
@@ -42,7 +42,7 @@ class LiveControl final : public TickObserver {
   /// Joins it to what viewers see. Real-time: never from the servo thread.
   /// `pace`: the clock whose speed viewers choose; null if it has none.
   void join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop,
-            PacedClock* pace = nullptr);
+            SpeedClock* pace = nullptr);
 
   /// Finds the force of the scene, less while it is paused (the servo loop's force law).
   /// Real-time: safe.
@@ -74,7 +74,7 @@ class LiveControl final : public TickObserver {
   LiveKnobs knobs_;
   SharedRun* shared_ = nullptr;
   const std::atomic<bool>* stop_ = nullptr;
-  PacedClock* pace_ = nullptr;
+  SpeedClock* pace_ = nullptr;
   std::uint64_t steps_ = 0;  // of those asked for, that were taken or let be
   bool hand_by_mouse_ = false;
   bool paused_ = false;

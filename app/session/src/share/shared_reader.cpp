@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "share/split_edge.h"
+#include "share/shared_edge_split.h"
 #include "system/printable_text.h"
 
 namespace thimble::session {

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "events/event_words.h"
-#include "interrupt.h"
 #include "log/logger.h"
 #include "output/output_file.h"
 #include "recording/recording_layout.h"
 #include "run_records.h"
 #include "setup.h"
+#include "signals.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::session {

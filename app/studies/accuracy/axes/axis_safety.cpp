@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/guarded_wall.h"
 #include "studies/accuracy/hand_signal.h"

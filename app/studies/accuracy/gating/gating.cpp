@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "studies/accuracy/probed_stroke.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "studies/accuracy/gating/gating_rules.h"
 #include "thimble/driver/result.h"
 

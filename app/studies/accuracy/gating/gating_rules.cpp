@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "scene_effects.h"
 
 namespace thimble::app {

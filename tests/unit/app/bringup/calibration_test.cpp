@@ -1,4 +1,4 @@
-#include "calibration.h"
+#include "arm/calibration.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <type_traits>
 
-#include "link_gravity.h"
+#include "gravity_terms.h"
 #include "support/refuses.h"
 #include "support/scratch.h"
 #include "thimble/scene/arm_file.h"

@@ -1,14 +1,14 @@
 // How much force a real arm gets before and after its feel-check, and how long that record holds.
-#include "terms/feel_check_record.h"
+#include "arm_policy/feel_check_record.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <functional>
 
-#include "calibration.h"
+#include "arm/calibration.h"
+#include "arm_policy/limits_policy.h"
 #include "real_arm_terms_home.h"
-#include "terms/limits_policy.h"
 #include "thimble/scene/scene_file.h"
 #include "user_folders.h"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "arm_policy/feel_check_record.h"
 #include "bringup/doctor.h"
 #include "real_arm_terms_home.h"
 #include "support/mock/mock_haply_service.h"
-#include "terms/feel_check_record.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/device_settings.h"

@@ -5,13 +5,13 @@
 
 #include <functional>
 
+#include "arm/calibration.h"
+#include "arm_policy/limits_policy.h"
 #include "bringup/feel_check.h"
-#include "calibration.h"
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
 #include "real_arm_terms_home.h"
 #include "report/report.h"
 #include "support/boards/line_board.h"
-#include "terms/limits_policy.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/session.h"

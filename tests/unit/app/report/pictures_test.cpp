@@ -13,7 +13,7 @@
 
 #include "report/gnuplot.h"
 #include "report/mesh_view.h"
-#include "report/picture_parts.h"
+#include "report/picture_style.h"
 #include "support/scratch.h"
 
 namespace thimble::app {

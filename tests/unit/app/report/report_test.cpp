@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "support/scratch.h"
 
 namespace thimble::app {

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <string>
 
-#include "energy_choice.h"
+#include "energy_guard_settings.h"
+#include "motion_watch_settings.h"
 #include "support/scratch.h"
-#include "watch_choice.h"
 
 namespace thimble::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "interrupt.h"
+#include "signals.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

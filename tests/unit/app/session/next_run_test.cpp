@@ -9,11 +9,11 @@
 #include <thread>
 #include <utility>
 
-#include "paced_clock.h"
 #include "setup.h"
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
 #include "share/steer/file_watch.h"
+#include "speed_clock.h"
 #include "support/run_hash.h"
 #include "support/scratch.h"
 #include "text_file.h"
@@ -388,7 +388,7 @@ TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
   EXPECT_TRUE(watch.as_at_first());
 }
 
-TEST(PacedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
+TEST(SpeedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
   constexpr double kMillisecond = 1e6;
   EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 1), 101 * kMillisecond);
   EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 4),
@@ -399,7 +399,7 @@ TEST(PacedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
       << "late, and runs after it";
   EXPECT_EQ(paced_due(100 * kMillisecond, 1000 * kMillisecond, kMillisecond, 1), 950 * kMillisecond)
       << "too late for that";
-  PacedClock clock;
+  SpeedClock clock;
   clock.sleep_until_ns(1000);
   EXPECT_EQ(clock.now_ns(), 1000) << "never later than asked: no tick is missed";
   clock.sleep_until_ns(500);

@@ -1,6 +1,6 @@
 // How prints in clay come to a page: the pictures lead from the first mesh to the one that was
 // left.
-#include "report/page/shape_trace.h"
+#include "report/html/shape_trace.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <deque>
 #include <limits>
 
+#include "arm/calibration.h"
 #include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
-#include "calibration.h"
 #include "support/boards/scripted_transport.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/wire_link.h"

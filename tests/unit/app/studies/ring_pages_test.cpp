@@ -10,8 +10,8 @@
 #include <numbers>
 #include <utility>
 
-#include "page/paged_contact.h"
-#include "page/paged_surface.h"
+#include "disk_paging/paged_contact.h"
+#include "disk_paging/paged_surface.h"
 #include "search/tree_search.h"
 #include "studies/resident_memory.h"
 #include "support/contact_walk.h"

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.h"
+#include "report/figure_output.h"
 #include "stability/rest_warnings.h"
 #include "stability/stability_laws.h"
+#include "studies/fuzz_scenes/energy_given.h"
+#include "studies/fuzz_scenes/random_scene.h"
+#include "studies/fuzz_scenes/small_meshes.h"
+#include "studies/fuzz_scenes/trouble_run.h"
 #include "studies/stability/wall_measures.h"
-#include "studies/trouble/energy_given.h"
-#include "studies/trouble/random_scene.h"
-#include "studies/trouble/small_meshes.h"
-#include "studies/trouble/trouble_run.h"
 #include "support/scratch.h"
 #include "support/seed.h"
 #include "text_file.h"

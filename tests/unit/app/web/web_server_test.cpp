@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "live_updates.h"
-#include "report/page/page_libraries.h"
+#include "report/html/page_libraries.h"
 #include "share/shared_run.h"
 #include "web/request_guard.h"
 

@@ -1,4 +1,4 @@
-#include "packed/corner_angles.h"
+#include "compact_mesh/corner_angles.h"
 
 #include <gtest/gtest.h>
 

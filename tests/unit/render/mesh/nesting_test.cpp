@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "compact_mesh/packed_surface.h"
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/smooth_normals.h"
-#include "packed/packed_surface.h"
 #include "support/meshes/shapes.h"
 #include "thimble/render/mesh/check_mesh.h"
 

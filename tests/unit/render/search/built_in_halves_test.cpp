@@ -9,11 +9,11 @@
 #include <tuple>
 #include <vector>
 
+#include "compact_mesh/block_order.h"
+#include "compact_mesh/packed_surface.h"
 #include "math/elementary.h"
-#include "mesh/in_halves.h"
+#include "mesh/parallel_split.h"
 #include "mesh/smooth_normals.h"
-#include "packed/block_order.h"
-#include "packed/packed_surface.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 

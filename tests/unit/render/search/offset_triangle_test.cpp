@@ -1,4 +1,4 @@
-#include "packed/offset_triangle.h"
+#include "compact_mesh/offset_triangle.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "packed/sse2_elsewhere.h"
+#include "compact_mesh/sse2_elsewhere.h"
 
 #include <gtest/gtest.h>
 
-#include "packed/sse2.h"
+#include "compact_mesh/sse2.h"
 #include "support/random.h"
 
 #if defined(__x86_64__)

@@ -31,8 +31,8 @@
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
-#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
+#include "track/packed_contact_in_memory.h"
 #include "unit/render/surface/open_loop.h"
 #include "unit/render/track/god_object_shapes.h"
 

@@ -18,8 +18,8 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 #include "track/god_object.h"
-#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
+#include "track/packed_contact_in_memory.h"
 
 namespace thimble::render {
 namespace {

@@ -30,8 +30,8 @@
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
-#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
+#include "track/packed_contact_in_memory.h"
 #include "track/path_bounded.h"
 #include "truth_paths.h"
 

@@ -1,4 +1,4 @@
-#include "track/memory_contact.h"
+#include "track/packed_contact_in_memory.h"
 
 #include <gtest/gtest.h>
 

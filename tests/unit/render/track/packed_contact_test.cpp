@@ -11,7 +11,7 @@
 #include "search/tree_search.h"
 #include "support/heap_guard.h"
 #include "support/meshes/shapes.h"
-#include "track/memory_contact.h"
+#include "track/packed_contact_in_memory.h"
 #include "track/packed_contact_steps.h"
 
 namespace thimble::render {

@@ -1,4 +1,4 @@
-#include "packed/packed_surface.h"
+#include "compact_mesh/packed_surface.h"
 
 #include <gtest/gtest.h>
 

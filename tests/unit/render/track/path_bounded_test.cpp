@@ -26,11 +26,11 @@
 #include "thimble/render/touch.h"
 #include "track/blended.h"
 #include "track/god_object.h"
-#include "track/memory_contact.h"
 #include "track/mesh_contact.h"
 #include "track/moving_contact.h"
 #include "track/moving_mesh.h"
 #include "track/normal_projection_tracker.h"
+#include "track/packed_contact_in_memory.h"
 
 namespace thimble::render {
 namespace {
@@ -38,10 +38,10 @@ namespace {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
-constexpr double kStiffness = 1000;                    // N/m, the hard feel of [PHYSICS 6]
-constexpr double kTick = 1e-3;                         // s
-constexpr double kSize = 0.1;                          // longest side of every mesh, m
-constexpr double kBound = 1 + FeltAnchor::kPathRatio;  // of |df| / (K |dp|)
+constexpr double kStiffness = 1000;                     // N/m, the hard feel of [PHYSICS 6]
+constexpr double kTick = 1e-3;                          // s
+constexpr double kSize = 0.1;                           // longest side of every mesh, m
+constexpr double kBound = 1 + ProxyFilter::kPathRatio;  // of |df| / (K |dp|)
 constexpr std::array<const char*, 4> kContacts{"edge_planes", "compact", "offset", "god_object"};
 
 // Makes the contact stages as a scene makes them.
@@ -315,7 +315,7 @@ ContactState found(double depth, const Vector3d& n_W) {
 }
 
 TEST(PathBounded, BeginsWithoutAStepHoweverDeepAContactIsFound) {
-  FeltAnchor anchor;
+  ProxyFilter anchor;
   anchor.follow({0, 0, 0.001}, {});
   const ContactState deep = found(0.01, {0, 0, 1});
   EXPECT_FALSE(anchor.follow({0, 0, 0.0009}, deep));
@@ -355,7 +355,7 @@ TEST(PathBounded, FollowsASurfaceThatMovesByItselfUnderAHandThatRests) {
 
 TEST(PathBounded, FeelsNothingOfAPathThatItDoesNotKnow) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  FeltAnchor anchor;
+  ProxyFilter anchor;
   EXPECT_FALSE(anchor.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
   EXPECT_EQ(anchor.felt().depth, 0);
   anchor.follow(Vector3d::Constant(nan), {});
@@ -372,7 +372,7 @@ TEST(PathBounded, GivesNoEnergyThatTheHandHasNotPutInButTheGift) {
   // anchor's steps alone, with no word of the account inside.
   support::Random random(3);
   for (int run = 0; run < (support::long_form() ? 2000 : 200); ++run) {
-    FeltAnchor anchor;
+    ProxyFilter anchor;
     Vector3d p(0, 0, 0), a(0, 0, 0), heading = random.direction();
     ContactState goal;
     anchor.follow(p, goal);
@@ -389,10 +389,10 @@ TEST(PathBounded, GivesNoEnergyThatTheHandHasNotPutInButTheGift) {
       }
       const bool reached = anchor.follow(p, goal);
       const Vector3d next = reached ? Vector3d(p + goal.depth * goal.n_W) : anchor.felt().p_WP;
-      EXPECT_LE((next - a).norm(), FeltAnchor::kPathRatio * moved * (1 + 1e-9) + 1e-12);
+      EXPECT_LE((next - a).norm(), ProxyFilter::kPathRatio * moved * (1 + 1e-9) + 1e-12);
       if (!reached || was_behind) {
         given += 0.5 * ((next - p).squaredNorm() - (a - p).squaredNorm());
-        gift += FeltAnchor::kGift * goal.depth * moved;
+        gift += ProxyFilter::kGift * goal.depth * moved;
         EXPECT_LE(given, gift + 1e-12);
       }
       was_behind = !reached;

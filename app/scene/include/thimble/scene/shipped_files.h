@@ -17,7 +17,7 @@ namespace thimble::scene {
 // or an extension.
 //
 // Two of these folders count as installed: own_arm_folder(), and arms/ of what came with this
-// program. Only arm files there set the limits of a real arm (terms/limits_policy.h).
+// program. Only arm files there set the limits of a real arm (arm_policy/limits_policy.h).
 // Real-time: never from the servo thread.
 
 /// A scene or arm file that is known by name.

@@ -81,11 +81,11 @@ concept FootStage = requires(Stage stage, const SurfaceFoot& foot, const driver:
 ///
 /// Where cells of a surface meet deep inside, the foot jumps, and a height would jump with it. This
 /// place follows it by at most `kPathRatio` times the path of tip and surface, as the felt depth
-/// does (track/felt_anchor.h). While it is behind it does not depend on the tip's place, so its
+/// does (track/proxy_filter.h). While it is behind it does not depend on the tip's place, so its
 /// slope is 0 and nothing pushes aside. All Real-time: safe.
 class FootFollower {
  public:
-  /// Path of the place per path of the tip, as FeltAnchor::kPathRatio. [chosen]
+  /// Path of the place per path of the tip, as ProxyFilter::kPathRatio. [chosen]
   static constexpr double kPathRatio = 4;
 
   /// Returns the foot that is felt with the tip at `p_WT` (m), `depth` (m) below the surface, where
@@ -110,7 +110,7 @@ class FootFollower {
   void leave() noexcept { touching_ = false; }
 
  private:
-  static constexpr double kRounding = 1e-10;  // of the depth, as FeltAnchor
+  static constexpr double kRounding = 1e-10;  // of the depth, as ProxyFilter
 
   bool touching_ = false;
   Eigen::Vector3d p_WT_{0, 0, 0};

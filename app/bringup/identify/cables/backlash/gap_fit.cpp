@@ -1,0 +1,221 @@
+#include "bringup/identify/cables/backlash/gap_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "math/elementary.h"
+
+namespace thimble::app {
+namespace {
+
+using Gap = GapTheta;
+
+/// The normal equations of one piece, its state eliminated.
+struct GapPart {
+  Eigen::Matrix<double, GapState::kCount, Eigen::Dynamic> cross;  // of state and constants
+  GapState::Vector down;                                          // along the state
+  Eigen::LDLT<GapPieces::Normal> solved;
+  Eigen::MatrixXd reduced;
+  Eigen::VectorXd right;
+  double trust = 1;
+};
+
+class GapSearch {
+ public:
+  GapSearch(GapPieces& pieces, const Gap::Vector& from, const GapSought& sought)
+      : pieces_(pieces), theta_(from), friction_(sought.friction), parts_(pieces.pieces().size()) {
+    for (int k = 0; k < Gap::kCount; ++k) {
+      const bool is_play = k >= Gap::kPlay && k < Gap::kRotorViscous;
+      const bool is_free = k < Gap::kPlay || (is_play ? sought.play : sought.friction);
+      if (is_free) free_.push_back(k);
+    }
+  }
+
+  void go(int rounds) {
+    constexpr int kTriesMost = 6, kTrackedAgain = 4;
+    constexpr double kGainedLeast = 2e-4, kAgain = 1e-2;
+    constexpr int kStuckMost = 1;
+    int stuck = 0;
+    pieces_.track(theta_);
+    double damping = 1e-3;
+    for (int round = 0; round < rounds; ++round) {
+      if (round % kTrackedAgain == kTrackedAgain - 1) pieces_.track(theta_);
+      build();
+      const double before = sum();
+      bool better = false;
+      for (int tries = 0; tries < kTriesMost && !better; ++tries) {
+        const std::vector<GapPiece> kept = pieces_.pieces();
+        const Gap::Vector theta = theta_;
+        step(damping);
+        better = sum() < before;
+        if (!better) theta_ = theta, pieces_.pieces() = kept;
+        damping = std::max(1e-7, damping * (better ? 0.2 : 8));
+      }
+      stuck = better && before - sum() > kGainedLeast * before ? 0 : stuck + 1;
+      if (stuck > kStuckMost) break;
+      if (stuck > 0) pieces_.track(theta_), damping = kAgain;
+    }
+    pieces_.settle(theta_, 3);
+  }
+
+  GapFit result() {
+    const double lost_from = pieces_.lost_from();
+    build();
+    GapFit found;
+    found.theta = theta_;
+    std::size_t used = 0;
+    for (const GapPiece& piece : pieces_.pieces()) {
+      if (!(piece.left < lost_from)) continue;
+      found.chi2 += piece.left;
+      ++used;
+    }
+    const auto all = static_cast<double>(pieces_.pieces().size());
+    found.pieces = used;
+    found.lost = 1 - static_cast<double>(used) / all;
+    found.samples = static_cast<double>(pieces_.rows() * used);
+    found.misfit = found.chi2 / (found.samples - static_cast<double>(free_.size()) -
+                                 static_cast<double>(GapState::kCount * used));
+    Eigen::MatrixXd reduced;
+    Eigen::VectorXd right;
+    add_up([lost_from](const GapPiece& piece) { return piece.left < lost_from ? 1.0 : 0.0; },
+           reduced, right);
+    const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    reduced = scale.asDiagonal() * reduced * scale.asDiagonal();
+    reduced.diagonal().array() += 1e-10;
+    const auto count = static_cast<Eigen::Index>(free_.size());
+    const Eigen::MatrixXd inverse = reduced.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+    for (Eigen::Index a = 0; a < count; ++a) {
+      for (Eigen::Index b = 0; b < count; ++b) {
+        const int i = free_[static_cast<std::size_t>(a)], j = free_[static_cast<std::size_t>(b)];
+        found.covariance(i, j) = std::max(1.0, found.misfit) * scale[a] * inverse(a, b) * scale[b] *
+                                 slope_of_constant(theta_, i) * slope_of_constant(theta_, j);
+      }
+    }
+    return found;
+  }
+
+ private:
+  /// Returns what the search makes small: what the pieces leave, as if each had a noise of its own
+  /// beside that of the encoders' steps. A piece in a wrong valley of its state counts little, and
+  /// is tracked anew once the others know the constants better.
+  double sum() const {
+    const auto rows = static_cast<double>(pieces_.rows());
+    double all = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      all += parts_[i].trust * rows * math::log(1 + pieces_.pieces()[i].left / rows);
+    }
+    return all;
+  }
+
+  void build() {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      GapPart& part = parts_[i];
+      pieces_.slopes(theta_, free_, pieces_.pieces()[i], slopes_);
+      GapPieces::Normal normal = slopes_.local.transpose() * slopes_.local;
+      GapPieces::hold(normal);
+      part.solved.compute(normal);
+      part.cross = slopes_.local.transpose() * slopes_.global;
+      part.down = slopes_.local.transpose() * slopes_.rest;
+      const Eigen::MatrixXd by = part.solved.solve(part.cross);
+      part.reduced = slopes_.global.transpose() * slopes_.global - part.cross.transpose() * by;
+      part.right = slopes_.global.transpose() * slopes_.rest - by.transpose() * part.down;
+    }
+    find_trust();
+  }
+
+  /// A motor that rattles may hang on where it began so steeply that slopes hold nowhere: a piece
+  /// that claims to know a constant far better than most do is not believed to.
+  void find_trust() {
+    constexpr double kSteepest = 10;  // times what three of four pieces know [chosen]
+    for (GapPart& part : parts_) part.trust = 1;
+    for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(free_.size()); ++k) {
+      std::vector<double> known;
+      for (const GapPart& part : parts_) known.push_back(part.reduced(k, k));
+      const auto upper = known.begin() + static_cast<std::ptrdiff_t>(3 * known.size() / 4);
+      std::nth_element(known.begin(), upper, known.end());
+      for (GapPart& part : parts_) {
+        if (part.reduced(k, k) * part.trust <= kSteepest * *upper) continue;
+        part.trust = kSteepest * *upper / part.reduced(k, k);
+      }
+    }
+  }
+
+  /// Adds up the pieces, each by its weight.
+  template <class Weight>
+  void add_up(const Weight& weight_of, Eigen::MatrixXd& reduced, Eigen::VectorXd& right) const {
+    const auto count = static_cast<Eigen::Index>(free_.size());
+    reduced = Eigen::MatrixXd::Zero(count, count);
+    right = Eigen::VectorXd::Zero(count);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const double weight = parts_[i].trust * weight_of(pieces_.pieces()[i]);
+      reduced += weight * parts_[i].reduced;
+      right += weight * parts_[i].right;
+    }
+  }
+
+  /// Holds viscous friction at zero where a step would take it below, which motion alone would do:
+  /// that of the tip and those of the motors hardly differ. Returns whether any was.
+  bool pin_viscous(const Eigen::VectorXd& by, const Eigen::VectorXd& scale,
+                   Eigen::MatrixXd& reduced, Eigen::VectorXd& right) const {
+    constexpr double kPin = 1e6;  // of scaled equations, whose diagonal is one
+    bool any = false;
+    for (std::size_t j = 0; j < free_.size(); ++j) {
+      const int k = free_[j];
+      const bool viscous =
+          k == Gap::kViscous || (k >= Gap::kRotorViscous && k < Gap::kRotorCoulomb);
+      const auto at = static_cast<Eigen::Index>(j);
+      if (!viscous || !(theta_[k] + by[at] < 0)) continue;
+      reduced(at, at) += kPin;
+      right[at] += kPin * theta_[k] / scale[at];
+      any = true;
+    }
+    return any;
+  }
+
+  void step(double damping) {
+    constexpr double kLogMost = 0.7;  // in one step
+    Eigen::MatrixXd reduced;
+    Eigen::VectorXd right;
+    const auto rows = static_cast<double>(pieces_.rows());
+    add_up([rows](const GapPiece& piece) { return 1 / (1 + piece.left / rows); }, reduced, right);
+    const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    reduced = scale.asDiagonal() * reduced * scale.asDiagonal();
+    reduced.diagonal().array() += damping;
+    right = scale.asDiagonal() * right;
+    Eigen::VectorXd by = -(scale.asDiagonal() * reduced.ldlt().solve(right));
+    if (friction_ && pin_viscous(by, scale, reduced, right)) {
+      by = -(scale.asDiagonal() * reduced.ldlt().solve(right));
+    }
+    for (std::size_t j = 0; j < free_.size(); ++j) {
+      double& one = by[static_cast<Eigen::Index>(j)];
+      const int k = free_[j];
+      if (k >= Gap::kInertia && k < Gap::kPlay) one = std::clamp(one, -kLogMost, kLogMost);
+      if (k >= Gap::kPlay && k < Gap::kRotorViscous) one = std::max(one, -theta_[k]);
+      if (k < Gap::kDelay) one = std::max(one, -0.5 * theta_[k]);
+      move_constant(theta_, k, one);
+    }
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const GapPart& part = parts_[i];
+      pieces_.offer(theta_, i, part.solved.solve(part.down + part.cross * by));
+    }
+    pieces_.settle(theta_, 1);
+  }
+
+  GapPieces& pieces_;
+  Gap::Vector theta_;
+  bool friction_;  // of the motors is searched for
+  std::vector<int> free_;
+  std::vector<GapPart> parts_;
+  GapSlopes slopes_;
+};
+
+}  // namespace
+
+GapFit fit_gap(GapPieces pieces, const Gap::Vector& from, const GapSought& sought, int rounds) {
+  GapSearch search(pieces, from, sought);
+  search.go(rounds);
+  return search.result();
+}
+
+}  // namespace thimble::app

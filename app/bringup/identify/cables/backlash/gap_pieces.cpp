@@ -1,0 +1,260 @@
+#include "bringup/identify/cables/backlash/gap_pieces.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/elementary.h"
+
+namespace thimble::app {
+namespace {
+
+using Gap = GapTheta;
+
+constexpr int kStates = GapState::kCount;
+// Ticks that are filtered before a piece: twice the slowest oscillation of a link on its cable
+// [chosen]; and that no piece begins or ends in, beside them what smoothing sees.
+constexpr std::size_t kTracked = 120, kLeadTicks = 160, kEndTicks = 40;
+// How many times the median a piece leaves that has lost the track [chosen].
+constexpr double kLost = 5;
+
+bool is_gap_log(int k) {
+  return k >= Gap::kInertia && k < Gap::kPlay;
+}
+
+/// Returns by what a constant is moved to see its slope: small beside what it is known to, large
+/// beside rounding.
+double probe_of_constant(const Gap::Vector& theta, int k) {
+  if (is_gap_log(k)) return 1e-4;
+  if (k < Gap::kDelay) return 1e-4 * theta[k];
+  if (k == Gap::kDelay) return 1e-6;
+  if (k >= Gap::kRotorViscous) return k < Gap::kRotorCoulomb ? 1e-4 : 1e-3;
+  return k >= Gap::kPlay ? 2e-6 : 1e-3;
+}
+
+double probe_of_state(int k) {
+  return k < 3 || (k >= 6 && k < 9) ? 1e-6 : 1e-4;
+}
+
+/// Fits a parabola to what encoders saw within `reach` ticks of one: value and slope.
+void smooth_about(const ArmMotion& motion, std::size_t at, int reach, Eigen::Vector3d& value,
+                  Eigen::Vector3d& slope) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+  for (int i = -reach; i <= reach; ++i) {
+    const double t = static_cast<double>(i) / reach;
+    const Eigen::Vector3d basis(1, t, t * t);
+    const auto tick = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(at) + i);
+    normal += basis * basis.transpose();
+    right += basis * motion.samples[tick].q.transpose();
+  }
+  const Eigen::Matrix3d solved = normal.ldlt().solve(right);
+  value = solved.row(0);
+  slope = solved.row(1) / (reach * motion.dt);
+}
+
+}  // namespace
+
+void move_constant(Gap::Vector& theta, int k, double step) {
+  if (is_gap_log(k)) {
+    theta[k] *= math::exp(step);
+  } else {
+    theta[k] += step;
+  }
+}
+
+double slope_of_constant(const Gap::Vector& theta, int k) {
+  return is_gap_log(k) ? theta[k] : 1;
+}
+
+GapPieces::GapPieces(const ArmMotion& motion, std::size_t pieces, std::size_t ticks)
+    : motion_(motion), ticks_(ticks) {
+  weight_ = std::sqrt(12.0) * motion.step.cwiseInverse();
+  for (const MotionSample& sample : motion.samples) {
+    p_middle_ += sample.p_BT / static_cast<double>(motion.samples.size());
+  }
+  const std::size_t room = motion.samples.size() - kLeadTicks - kEndTicks;
+  const std::size_t most = std::min<std::size_t>(pieces, room / ticks);
+  for (std::size_t i = 0; i < most; ++i) {
+    GapPiece piece;
+    piece.first = kLeadTicks + i * (room - ticks) / std::max<std::size_t>(1, most - 1);
+    piece.left = HUGE_VAL;
+    pieces_.push_back(piece);
+  }
+}
+
+GapState GapPieces::tracked(const Gap::Vector& theta, std::size_t first) const {
+  // What the model is taken to be wrong by in a tick, and the state in the beginning, squared: rad,
+  // rad/s, m, m/s [chosen: a step of an encoder and what smoothing leaves].
+  Normal drift = Normal::Zero(), P = Normal::Zero();
+  drift.diagonal() << Eigen::Vector3d::Constant(1e-12), Eigen::Vector3d::Constant(1e-4),
+      Eigen::Vector3d::Constant(1e-12), Eigen::Vector3d::Constant(1e-6);
+  P.diagonal() << Eigen::Vector3d::Constant(1e-8), Eigen::Vector3d::Constant(1e-2),
+      Eigen::Vector3d::Constant(1e-7), Eigen::Vector3d::Constant(1e-3);
+  std::size_t at = first - kTracked;
+  Eigen::Vector3d q, rate, slow_q, slow_rate;
+  smooth_about(motion_, at, 5, q, rate);
+  smooth_about(motion_, at, 20, slow_q, slow_rate);
+  const Eigen::Matrix3d J = motion_.samples[at].G.inverse();
+  GapState now;
+  now.q() = q;
+  now.rate() = rate;
+  now.p() = motion_.samples[at].p_BT + J * (slow_q - motion_.samples[at].q);
+  now.v() = J * slow_rate;
+  for (; at < first; ++at) {
+    std::array<GapState, kStates + 1> moved;
+    moved.fill(now);
+    for (int k = 0; k < kStates; ++k) moved[static_cast<std::size_t>(k)].x[k] += probe_of_state(k);
+    std::array<GapRun, kStates + 1> runs;
+    for (std::size_t k = 0; k < runs.size(); ++k) runs[k] = {&theta, &moved[k], nullptr};
+    move_all(runs, at, 1);
+    const GapState& next = moved[kStates];
+    Normal F;
+    for (int k = 0; k < kStates; ++k) {
+      F.col(k) = (moved[static_cast<std::size_t>(k)].x - next.x) / probe_of_state(k);
+    }
+    P = F * P * F.transpose() + drift;
+    now = next;
+    const MotionSample& seen = motion_.samples[at + 1];
+    if (!seen.fresh) continue;
+    Eigen::Matrix3d S = P.topLeftCorner<3, 3>();
+    S.diagonal() += weight_.cwiseInverse().cwiseAbs2();
+    const Eigen::Matrix<double, kStates, 3> K = P.leftCols<3>() * S.inverse();
+    now.x += K * (seen.q - now.q());
+    P = (P - K * P.topRows<3>()).eval();
+    P = (0.5 * (P + P.transpose())).eval();
+  }
+  return now;
+}
+
+void GapPieces::hold(Normal& normal) {
+  // rad, rad/s, m, m/s [chosen: far more than a filtered state is off].
+  constexpr double kMost[] = {1e-3, 1, 1e-3, 0.3};
+  for (int k = 0; k < kStates; ++k) normal(k, k) += 1 / (kMost[k / 3] * kMost[k / 3]);
+}
+
+void GapPieces::track(const Gap::Vector& theta) {
+  constexpr int kRounds = 12;
+  for (GapPiece& piece : pieces_) {
+    GapPiece other = piece;
+    other.start = tracked(theta, piece.first);
+    settle(theta, kRounds, other);
+    if (other.left < piece.left) piece = other;
+  }
+}
+
+void GapPieces::settle(const Gap::Vector& theta, int rounds, GapPiece& piece) const {
+  GapSlopes slope;
+  std::vector<double> rest(rows());
+  double damping = 1e-3;
+  for (int round = 0; round < rounds; ++round) {
+    slopes(theta, {}, piece, slope);
+    piece.left = slope.rest.squaredNorm();
+    Normal normal = slope.local.transpose() * slope.local;
+    hold(normal);
+    const GapState::Vector down = slope.local.transpose() * slope.rest;
+    double gained = 0;
+    for (int tries = 0; tries < 6 && gained == 0; ++tries) {
+      Normal damped = normal;
+      damped.diagonal() *= 1 + damping;
+      GapState next = piece.start;
+      next.x -= damped.ldlt().solve(down);
+      const double sum = left(theta, next, piece.first, rest.data());
+      damping *= sum < piece.left ? 0.2 : 8;
+      if (!(sum < piece.left)) continue;
+      gained = piece.left - sum;
+      piece.left = sum;
+      piece.start = next;
+    }
+    if (!(gained > 1e-3 * piece.left)) return;
+  }
+}
+
+void GapPieces::settle(const Gap::Vector& theta, int rounds) {
+  for (GapPiece& piece : pieces_) settle(theta, rounds, piece);
+}
+
+void GapPieces::offer(const Gap::Vector& theta, std::size_t i, const GapState::Vector& step) {
+  std::vector<double> rest(rows());
+  GapPiece& piece = pieces_[i];
+  GapState other = piece.start;
+  other.x -= step;
+  piece.left = left(theta, piece.start, piece.first, rest.data());
+  const double sum = left(theta, other, piece.first, rest.data());
+  if (!(sum < piece.left)) return;
+  piece.left = sum;
+  piece.start = other;
+}
+
+void GapPieces::move_all(std::span<const GapRun> runs, std::size_t first, std::size_t count) const {
+  for (; !runs.empty(); runs = runs.subspan(std::min(kGapRunsAtOnce, runs.size()))) {
+    move_gap_models(motion_, p_middle_, runs.first(std::min(kGapRunsAtOnce, runs.size())), first,
+                    count);
+  }
+}
+
+double GapPieces::rest_of(double* angles, std::size_t first) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < ticks_; ++i) {
+    const MotionSample& seen = motion_.samples[first + i];
+    for (int k = 0; k < 3; ++k) {
+      double& one = angles[3 * i + static_cast<std::size_t>(k)];
+      one = seen.fresh ? (one - seen.q[k]) * weight_[k] : 0;
+      sum += one * one;
+    }
+  }
+  return std::isfinite(sum) ? sum : HUGE_VAL;
+}
+
+double GapPieces::left(const Gap::Vector& theta, const GapState& start, std::size_t first,
+                       double* rest) const {
+  GapState moved = start;
+  const GapRun run{&theta, &moved, rest};
+  move_all({&run, 1}, first, ticks_);
+  return rest_of(rest, first);
+}
+
+double GapPieces::lost_from() const {
+  std::vector<double> all;
+  for (const GapPiece& piece : pieces_) all.push_back(piece.left);
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return kLost * std::max(*middle, static_cast<double>(rows()));
+}
+
+void GapPieces::slopes(const Gap::Vector& theta, const std::vector<int>& free,
+                       const GapPiece& piece, GapSlopes& out) const {
+  const auto count = static_cast<Eigen::Index>(rows());
+  const std::size_t constants = free.size(), all = constants + kStates + 1;
+  out.moved.resize(count, static_cast<Eigen::Index>(all));
+  // The constants, each moved by its probe; the states; and at the end all as it is.
+  std::vector<Gap::Vector> thetas(constants, theta);
+  std::vector<GapState> states(all, piece.start);
+  std::vector<GapRun> runs(all);
+  Eigen::VectorXd probe(static_cast<Eigen::Index>(all - 1));
+  for (std::size_t j = 0; j < all; ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    if (j < constants) {
+      probe[at] = probe_of_constant(theta, free[j]);
+      move_constant(thetas[j], free[j], probe[at]);
+    } else if (j + 1 < all) {
+      const int k = static_cast<int>(j - constants);
+      probe[at] = probe_of_state(k);
+      states[j].x[k] += probe[at];
+    }
+    runs[j] = {j < constants ? &thetas[j] : &theta, &states[j], out.moved.col(at).data()};
+  }
+  move_all(runs, piece.first, ticks_);
+  for (Eigen::Index at = 0; at < out.moved.cols(); ++at)
+    rest_of(out.moved.col(at).data(), piece.first);
+  out.rest = out.moved.rightCols<1>();
+  const auto slope = [&](Eigen::Index at) { return (out.moved.col(at) - out.rest) / probe[at]; };
+  const auto globals = static_cast<Eigen::Index>(constants);
+  out.global.resize(count, globals);
+  out.local.resize(count, kStates);
+  for (Eigen::Index j = 0; j < globals; ++j) out.global.col(j) = slope(j);
+  for (int k = 0; k < kStates; ++k) out.local.col(k) = slope(globals + k);
+}
+
+}  // namespace thimble::app

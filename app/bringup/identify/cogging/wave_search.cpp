@@ -1,0 +1,168 @@
+#include "bringup/identify/cogging/wave_search.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace thimble::app {
+namespace {
+
+// For a first look one bump in two, and of its ticks one in two: bumps overlap fourfold, and at
+// 1 kHz no wave is quick.
+constexpr std::size_t kBumpsInWaves = 2;
+constexpr int kTicksInWaves = 2;
+// How many others the best number is compared with, and how clearly it must be better: one-sided
+// 99.9 % of a normal distribution.
+constexpr std::size_t kNumbersCompared = 8;
+constexpr double kClearlyBetter = 3.09;
+
+/// Some of an arm's motors.
+using Motors = std::array<bool, 3>;
+
+/// Returns which motors turned far enough for waves of a number of periods to be seen.
+Motors turned_enough(const WaveRows& rows, double periods) {
+  const Eigen::Vector3d turned = rows.turned(periods);
+  return {turned[0] >= kPeriodsTurned, turned[1] >= kPeriodsTurned, turned[2] >= kPeriodsTurned};
+}
+
+/// What a fit leaves of one equation in some, with directions that its own constants can take up.
+class UnexplainedRest {
+ public:
+  UnexplainedRest(const FittedMotion& motion, std::size_t stride) : stride_(stride) {
+    const auto step = static_cast<Eigen::Index>(stride);
+    const Eigen::MatrixXd& rows = motion.residual.rows;
+    const Eigen::Index count = (rows.rows() + step - 1) / step;
+    Eigen::MatrixXd some(count, rows.cols());
+    rest_.resize(count);
+    Eigen::Index used = 0;
+    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+      for (Eigen::Index i = 0; i < count; ++i) some(i, used) = rows(i * step, k);
+      const double norm = some.col(used).norm();
+      if (norm > 0) some.col(used++) /= norm;
+    }
+    for (Eigen::Index i = 0; i < count; ++i) rest_[i] = motion.residual.rest[i * step];
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(some.leftCols(used));
+    taken_ = qr.householderQ() * Eigen::MatrixXd::Identity(count, used);
+    rest_ -= taken_ * (taken_.transpose() * rest_);
+  }
+
+  /// Returns what waves of some motors leave of it.
+  Eigen::VectorXd with(const WaveRows& rows, const WaveRows::Phases& phases, const Motors& motors,
+                       int every) const {
+    Eigen::MatrixXd waves = rows.columns(phases, stride_, every);
+    for (int joint = 0; joint < 3; ++joint) {
+      if (motors[static_cast<std::size_t>(joint)]) continue;
+      waves.middleCols<WaveRows::kPerJoint>(WaveRows::kPerJoint * joint).setZero();
+    }
+    waves -= taken_ * (taken_.transpose() * waves);
+    for (Eigen::Index k = 0; k < waves.cols(); ++k) {
+      const double norm = waves.col(k).norm();
+      if (norm > 0) waves.col(k) /= norm;
+    }
+    Eigen::MatrixXd normal = waves.transpose() * waves;
+    for (Eigen::Index k = 0; k < normal.cols(); ++k) normal(k, k) = normal(k, k) > 0 ? 1 : 1e300;
+    return rest_ - waves * normal.ldlt().solve(waves.transpose() * rest_);
+  }
+
+ private:
+  std::size_t stride_;
+  Eigen::MatrixXd taken_;  // an orthonormal base
+  Eigen::VectorXd rest_;
+};
+
+/// How clearly one number explains more than another: the difference of their residuals' squares,
+/// half second by half second, over its deviation [M Vuong 1989].
+double clearer(const Eigen::VectorXd& best, const Eigen::VectorXd& other,
+               const std::vector<int>& clusters) {
+  double sum = 0, square = 0, of_cluster = 0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < best.size(); ++i) {
+    of_cluster += other[i] * other[i] - best[i] * best[i];
+    const auto k = static_cast<std::size_t>(i);
+    if (k + 1 < clusters.size() && clusters[k + 1] == clusters[k]) continue;
+    sum += of_cluster, square += of_cluster * of_cluster;
+    of_cluster = 0;
+    ++count;
+  }
+  const double variance = square - sum * sum / count;
+  return variance > 0 ? sum / std::sqrt(variance) : HUGE_VAL;
+}
+
+/// Compares numbers of periods by what their waves leave of all equations: two by the motors that
+/// turned far enough by either, for with one motor more the wrong number explains more than the
+/// right one.
+class ComparedNumbers {
+ public:
+  ComparedNumbers(const FittedMotion& motion, const WaveRows& rows)
+      : rows_(rows), clusters_(motion.residual.clusters), rest_(motion, 1) {}
+
+  bool better(double one, double other) {
+    const Motors motors = turned_enough(rows_, std::min(one, other));
+    return left(one, motors).squaredNorm() < left(other, motors).squaredNorm();
+  }
+
+  bool clearly_better(double one, double other) {
+    const Motors motors = turned_enough(rows_, std::min(one, other));
+    return clearer(left(one, motors), left(other, motors), clusters_) > kClearlyBetter;
+  }
+
+ private:
+  const Eigen::VectorXd& left(double periods, const Motors& motors) {
+    const auto [known, added] = left_.try_emplace({periods, motors});
+    if (added) known->second = rest_.with(rows_, rows_.phases(periods), motors, 1);
+    return known->second;
+  }
+
+  const WaveRows& rows_;
+  const std::vector<int>& clusters_;
+  UnexplainedRest rest_;
+  std::map<std::pair<double, Motors>, Eigen::VectorXd> left_;
+};
+
+/// Makes the phases of one period more.
+void turn_on(WaveRows::Phases& phases, const WaveRows::Phases& once) {
+  for (std::size_t k = 0; k < phases.size(); ++k) {
+    for (std::size_t joint = 0; joint < 3; ++joint) phases[k][joint] *= once[k][joint];
+  }
+}
+
+}  // namespace
+
+WavePeriods find_periods(const FittedMotion& motion, const WaveRows& rows, double named) {
+  WavePeriods found;
+  const double farthest = rows.turned(1).maxCoeff();
+  const double least = named > 0 ? named : kWavePeriodsLeast;
+  const double most = named > 0 ? named : kWavePeriodsMost;
+  const UnexplainedRest some(motion, kBumpsInWaves);
+  std::vector<std::pair<double, double>> tried;  // what is left, by which number
+  const WaveRows::Phases once = rows.phases(1);
+  WaveRows::Phases phases = rows.phases(least);
+  for (double periods = least; periods <= most; ++periods) {
+    if (periods > least) turn_on(phases, once);
+    if (periods * farthest < kPeriodsTurned) continue;
+    if (found.least == 0) found.least = periods;
+    found.most = periods;
+    tried.emplace_back(
+        some.with(rows, phases, turned_enough(rows, periods), kTicksInWaves).squaredNorm(),
+        periods);
+  }
+  if (tried.empty()) return found;
+  std::sort(tried.begin(), tried.end());
+  if (tried.size() > kNumbersCompared) tried.resize(kNumbersCompared);
+  ComparedNumbers compared(motion, rows);
+  found.best = tried.front().second;
+  for (const auto& [left, periods] : tried) {
+    if (compared.better(periods, found.best)) found.best = periods;
+  }
+  for (const auto& [left, periods] : tried) {
+    if (periods == found.best || compared.clearly_better(found.best, periods)) continue;
+    found.rivals.push_back(periods);
+  }
+  return found;
+}
+
+}  // namespace thimble::app

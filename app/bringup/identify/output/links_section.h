@@ -1,0 +1,23 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include "bringup/identify/arm_constants.h"
+#include "bringup/identify/output/file_lines.h"
+#include "bringup/identify/output/identified_file.h"
+#include "thimble/device_sim/settings.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::app {
+
+/// Puts the links that were seen into the section `links` of `simulation`, or adds it before `tip`.
+/// Where links were sought and none seen, a section that is there says so and names none. Fails if
+/// its form cannot be changed. Real-time: never from the servo thread.
+driver::Result<void> put_links(const YAML::Node& simulation, const ArmConstants& found,
+                               const IdentifiedMark& mark, FileLines& lines);
+
+/// Returns whether a file that was read again names the links that were put. Real-time: never from
+/// the servo thread.
+bool reads_links(const device_sim::LinkSettings& read, const ArmConstants& found);
+
+}  // namespace thimble::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <vector>
+
+#include "bringup/identify/identify.h"
+#include "bringup/identify/output/identified_file.h"
+#include "bringup/identify/output/train_section.h"
+#include "thimble/device_sim/settings.h"
+
+namespace thimble::app {
+
+/// Returns what is written of cogging and ripple of the motors: those that were seen. Where they
+/// were looked for and none was seen, a file whose `train` names some says zero. Real-time: never
+/// from the servo thread.
+std::vector<TrainKey> wave_keys(const YAML::Node& train, const Identified& found,
+                                const IdentifiedMark& mark);
+
+/// Returns whether a file that was read again names what was put. Real-time: never from the servo
+/// thread.
+bool reads_waves(const device_sim::DriveTrainSettings& read, const Identified& found);
+
+}  // namespace thimble::app

@@ -1,0 +1,50 @@
+#include "cli/prompts/key_stop.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include "signals.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr int kLook_ms = 20;  // [chosen: shorter than anybody notices]
+
+}  // namespace
+
+bool has_terminal() {
+  // What runs in the background would be stopped by a look at the terminal's keys.
+  return isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp();
+}
+
+KeyStop::KeyStop() {
+  if (!has_terminal() || tcgetattr(STDIN_FILENO, &before_) != 0) return;
+  termios keys = before_;
+  keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  keys.c_cc[VMIN] = 1;
+  keys.c_cc[VTIME] = 0;
+  // What was typed before it was asked for stops nothing.
+  if (tcsetattr(STDIN_FILENO, TCSAFLUSH, &keys) != 0) return;
+  listener_ = std::thread([this] { listen(); });
+}
+
+KeyStop::~KeyStop() {
+  if (!listens()) return;
+  over_.store(true);
+  listener_.join();
+  if (has_terminal()) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+}
+
+void KeyStop::listen() {
+  while (!over_.load()) {
+    pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (poll(&terminal, 1, kLook_ms) <= 0 || !has_terminal()) continue;
+    char key = 0;
+    // A terminal that is gone stops it as well: nobody is there to do it.
+    pressed_.store(read(STDIN_FILENO, &key, 1) == 1);
+    scene::ask_to_stop();
+    return;
+  }
+}
+
+}  // namespace thimble::app

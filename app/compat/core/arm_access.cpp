@@ -1,0 +1,411 @@
+#include "compat/core/arm_access.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <mutex>
+
+#include "byte_lock.h"
+#include "compat/core/arm_channel.h"
+#include "compat/core/open_channel.h"
+#include "compat/core/shared_wait.h"
+
+namespace thimble::faces::arms {
+namespace {
+
+constexpr std::int64_t kLook_ns = 100'000'000;  // how often a waiter looks after the other side
+constexpr std::int64_t kPeriod_ns = 1'000'000;  // paces a loop whose arm is gone
+constexpr std::int64_t kOpening_ns = 120'000'000'000;  // a person may have to agree to forces
+
+/// What this process knows of an arm that it has open.
+struct OwnArm {
+  std::mutex mutex;                          // of writers: a snapshot has one
+  std::atomic<int> opened{0};                // how often
+  std::uint64_t number = 0;                  // of the force written last
+  std::atomic<const char*> leader{nullptr};  // the thread whose waits alone move time on
+};
+
+// Never destroyed: threads of the program may still ask while it exits.
+std::array<OwnArm, kArmsMost>& own_arms() {
+  static auto& all = *new std::array<OwnArm, kArmsMost>;
+  return all;
+}
+
+OwnArm& own(int arm) noexcept {
+  return own_arms()[static_cast<std::size_t>(arm)];
+}
+
+std::mutex& opening() {
+  static std::mutex& only = *new std::mutex;
+  return only;
+}
+
+/// Returns what no other thread has.
+const char* this_thread() noexcept {
+  static thread_local const char own_byte = 0;
+  return &own_byte;
+}
+
+bool is_number(int arm) noexcept {
+  return arm >= 0 && arm < kArmsMost;
+}
+
+/// Returns the channel of an arm that is open here; null if it is not.
+ArmChannel* channel_of(int arm) noexcept {
+  if (!is_number(arm) || own(arm).opened.load(std::memory_order_acquire) == 0) return nullptr;
+  Channel* channel = open_channel();
+  return channel == nullptr ? nullptr : &channel->arms[static_cast<std::size_t>(arm)];
+}
+
+bool is_server_alive() noexcept {
+  return driver::is_byte_locked(channel_file(), kServerByte);
+}
+
+/// Waits by the wall's time.
+void wait_ns(std::int64_t duration_ns) noexcept {
+  timespec left{duration_ns / 1'000'000'000, duration_ns % 1'000'000'000};
+  while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+  }
+}
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+template <std::size_t N>
+void copy_text(std::array<char, N>& to, const char* from) noexcept {
+  to.fill(0);
+  if (from != nullptr) std::strncpy(to.data(), from, N - 1);
+}
+
+template <std::size_t N>
+std::string text_of(const std::array<char, N>& text) {
+  return {text.data(), strnlen(text.data(), N)};
+}
+
+/// Lets an arm whose ticks wait for the program go on until `ticks` of them are over.
+void permit(ArmChannel& arm, std::uint32_t ticks) noexcept {
+  std::uint32_t permitted = arm.permitted.load();
+  // Counted around: the later one is less than half the numbers ahead.
+  while (static_cast<std::int32_t>(ticks - permitted) > 0) {
+    if (!arm.permitted.compare_exchange_weak(permitted, ticks)) continue;
+    wake_all(arm.permitted);
+    return;
+  }
+}
+
+/// Returns an arm that is open here and whose ticks wait for the program, from `first` on; -1:
+/// none.
+int paced_arm(int first = 0) noexcept {
+  for (int arm = first; arm < kArmsMost; ++arm) {
+    const ArmChannel* channel = channel_of(arm);
+    if (channel != nullptr && channel->paced.load() != 0 &&
+        channel->state.load() == ChannelState::kOpen) {
+      return arm;
+    }
+  }
+  return -1;
+}
+
+/// Waits until a loop has done what `done` looks at. False, after a period of sleep, if the loop
+/// is over or its process gone.
+template <class Done>
+bool wait_until(int number, Done done) noexcept {
+  Channel* channel = open_channel();
+  ArmChannel& arm = channel->arms[static_cast<std::size_t>(number)];
+  const std::atomic<const char*>& leader = own(number).leader;
+  arm.waiting.fetch_add(1);
+  bool reached = false;
+  for (;;) {
+    const std::uint32_t ticks = arm.ticks.load();
+    reached = done();
+    if (reached || arm.state.load() != ChannelState::kOpen) break;
+    if (arm.paced.load() != 0 && (leader.load() == nullptr || leader.load() == this_thread())) {
+      permit(arm, ticks + 1);
+    }
+    wait_while(arm.ticks, ticks, kLook_ns);
+    if (arm.ticks.load() == ticks && !is_server_alive()) break;
+  }
+  arm.waiting.fetch_sub(1);
+  if (!reached) wait_ns(kPeriod_ns);
+  return reached;
+}
+
+/// Makes an arm this program's own, before anything is written of it: of two programs that ask at
+/// once one gets it, and the other one changes nothing.
+bool win(int number, const ArmChannel& arm) noexcept {
+  constexpr std::int64_t kPause_ns = 10'000'000;
+  constexpr int kLooks = 200;  // 2 s: the server closes the arm of a program that has just died
+  for (int look = 0; look < kLooks; ++look) {
+    if (!driver::lock_byte(channel_file(), kFirstOwnerByte + number)) return false;
+    if (arm.state.load() == ChannelState::kClosed) return true;
+    driver::unlock_byte(channel_file(), kFirstOwnerByte + number);
+    if (!is_server_alive()) return false;
+    wait_ns(kPause_ns);
+  }
+  return false;
+}
+
+void give_up(int number) noexcept {
+  driver::unlock_byte(channel_file(), kFirstOwnerByte + number);
+}
+
+/// Asks the server for an arm that this program has won, and waits for its answer: empty, or what
+/// is wrong.
+std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
+  copy_text(arm.face, face);
+  // Settings of an earlier program do not count.
+  arm.enabled.store(0);
+  arm.watchdog_ns.store(0);
+  arm.speed_limit.store(0);
+  arm.force_limit.store(0);
+  arm.state.store(ChannelState::kWanted);
+  channel.requests.fetch_add(1);
+  wake_all(channel.requests);
+  const std::int64_t end_ns = monotonic_ns() + kOpening_ns;
+  for (;;) {
+    const ChannelState state = arm.state.load(std::memory_order_acquire);
+    if (state == ChannelState::kOpen) return {};
+    if (state == ChannelState::kFailed) {
+      std::string trouble = text_of(arm.trouble);
+      arm.state.store(ChannelState::kClosed);
+      return trouble.empty() ? "The arm cannot be opened." : trouble;
+    }
+    if (!is_server_alive()) return "The `thimble exec` that started this program has ended.";
+    if (monotonic_ns() > end_ns) {
+      arm.state.store(ChannelState::kLeaving);
+      return "`thimble exec` did not open the arm within two minutes.";
+    }
+    wait_while(arm.state, state, kLook_ns);
+  }
+}
+
+template <class T>
+bool set(int arm, std::atomic<T> ArmChannel::*member, T value) noexcept {
+  ArmChannel* channel = channel_of(arm);
+  if (channel == nullptr) return false;
+  (channel->*member).store(value);
+  return true;
+}
+
+}  // namespace
+
+int count() noexcept {
+  const Channel* channel = open_channel();
+  return channel == nullptr ? 0 : channel->arm_count;
+}
+
+std::string open(int arm, const char* face) {
+  std::string trouble;
+  Channel* channel = open_channel(&trouble);
+  if (channel == nullptr) return trouble;
+  if (!is_number(arm) || arm >= channel->arm_count) {
+    return "`thimble exec` has fewer arms; name one --arm more.";
+  }
+  const std::lock_guard lock(opening());
+  OwnArm& own_arm = own(arm);
+  if (own_arm.opened.load() > 0) {
+    own_arm.opened.fetch_add(1);
+    return {};
+  }
+  ArmChannel& shared = channel->arms[static_cast<std::size_t>(arm)];
+  if (!win(arm, shared)) {
+    return is_server_alive() ? "Another program that `thimble exec` started has this arm."
+                             : "The `thimble exec` that started this program has ended.";
+  }
+  trouble = ask_for(*channel, shared, face);
+  if (trouble.empty()) {
+    own_arm.number = shared.taken.load();
+    own_arm.opened.store(1, std::memory_order_release);
+  } else {
+    give_up(arm);
+  }
+  return trouble;
+}
+
+bool close(int arm) noexcept {
+  const std::lock_guard lock(opening());
+  ArmChannel* shared = channel_of(arm);
+  if (shared == nullptr) return false;
+  if (own(arm).opened.fetch_sub(1) > 1) return true;
+  shared->enabled.store(0);
+  if (shared->state.exchange(ChannelState::kLeaving) == ChannelState::kEnded) {
+    shared->state.store(ChannelState::kClosed);  // its run is over: nobody need end it
+    give_up(arm);
+    return true;
+  }
+  Channel* channel = open_channel();
+  channel->requests.fetch_add(1);
+  wake_all(channel->requests);
+  // The same arm may be opened again at once; so it waits until it is free.
+  while (shared->state.load() == ChannelState::kLeaving && is_server_alive()) {
+    wait_while(shared->state, ChannelState::kLeaving, kLook_ns);
+  }
+  give_up(arm);
+  return true;
+}
+
+bool is_open(int arm) noexcept {
+  return channel_of(arm) != nullptr;
+}
+
+bool is_running(int arm) noexcept {
+  const ArmChannel* channel = channel_of(arm);
+  return channel != nullptr && channel->state.load() == ChannelState::kOpen && is_server_alive();
+}
+
+const ArmFacts& facts(int arm) noexcept {
+  static const ArmFacts none;
+  const Channel* channel = open_channel();
+  if (channel == nullptr || !is_number(arm) || arm >= channel->arm_count) return none;
+  return channel->arms[static_cast<std::size_t>(arm)].facts;
+}
+
+std::string name(int arm) {
+  const Channel* channel = open_channel();
+  if (channel == nullptr || !is_number(arm) || arm >= channel->arm_count) return {};
+  return text_of(channel->arms[static_cast<std::size_t>(arm)].name);
+}
+
+bool read(int arm, ArmReading& reading) noexcept {
+  const ArmChannel* channel = channel_of(arm);
+  return channel != nullptr && channel->reading.load(reading);
+}
+
+bool wait_for_tick(int arm, std::uint64_t tick) noexcept {
+  ArmChannel* channel = channel_of(arm);
+  if (channel == nullptr) {
+    wait_ns(kPeriod_ns);
+    return false;
+  }
+  return wait_until(arm, [&] {
+    ArmReading reading;
+    return channel->reading.load(reading) && reading.tick > tick;
+  });
+}
+
+bool ask_force(int arm, const ForceAsked& asked) noexcept {
+  ArmChannel* channel = channel_of(arm);
+  if (channel == nullptr) return false;
+  OwnArm& own_arm = own(arm);
+  {
+    const std::lock_guard lock(own_arm.mutex);
+    channel->force.store({.asked = asked, .number = ++own_arm.number});
+  }
+  // Written so that NaN counts.
+  const auto acts = [](double value) { return !(value == 0); };
+  if (std::any_of(asked.torque_W.begin(), asked.torque_W.end(), acts)) {
+    open_channel()->torques_asked.fetch_add(1, std::memory_order_relaxed);
+  }
+  if (acts(asked.gripper)) {
+    open_channel()->grippers_asked.fetch_add(1, std::memory_order_relaxed);
+  }
+  return true;
+}
+
+bool wait_until_taken(int arm) noexcept {
+  ArmChannel* channel = channel_of(arm);
+  if (channel == nullptr) {
+    wait_ns(kPeriod_ns);
+    return false;
+  }
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(own(arm).mutex);
+    number = own(arm).number;
+  }
+  return wait_until(arm, [&] { return channel->taken.load() >= number; });
+}
+
+void lead(int arm, bool leads) noexcept {
+  if (!is_number(arm)) return;
+  const char* leader = this_thread();
+  if (leads) {
+    own(arm).leader.store(leader);
+  } else {
+    own(arm).leader.compare_exchange_strong(leader, nullptr);
+  }
+}
+
+std::int64_t now_ns() noexcept {
+  ArmReading reading;
+  const int arm = paced_arm();
+  return arm >= 0 && read(arm, reading) ? reading.time_ns : monotonic_ns();
+}
+
+void sleep_ns(std::int64_t duration_ns) noexcept {
+  int arm = paced_arm();
+  if (arm < 0) wait_ns(duration_ns);
+  for (; arm >= 0; arm = paced_arm(arm + 1)) {
+    ArmReading reading;
+    if (!read(arm, reading)) continue;
+    const std::int64_t end_ns = reading.time_ns + duration_ns;
+    while (reading.time_ns < end_ns && wait_for_tick(arm, reading.tick) && read(arm, reading)) {
+    }
+  }
+}
+
+bool enable_force(int arm, bool enabled) noexcept {
+  ArmChannel* channel = channel_of(arm);
+  if (channel == nullptr) return false;
+  if (enabled) channel->enablings.fetch_add(1);
+  channel->enabled.store(enabled ? 1 : 0);
+  return true;
+}
+
+bool force_enabled(int arm) noexcept {
+  const ArmChannel* channel = channel_of(arm);
+  return channel != nullptr && channel->enabled.load() != 0;
+}
+
+bool set_watchdog(int arm, std::int64_t watchdog_ns) noexcept {
+  return set(arm, &ArmChannel::watchdog_ns, std::max<std::int64_t>(watchdog_ns, 0));
+}
+
+bool set_speed_limit(int arm, double speed) noexcept {
+  return set(arm, &ArmChannel::speed_limit, speed > 0 ? speed : 0.0);
+}
+
+bool set_force_limit(int arm, double force) noexcept {
+  return set(arm, &ArmChannel::force_limit, force > 0 ? force : 0.0);
+}
+
+bool mark_calibrated(int arm) noexcept {
+  return set(arm, &ArmChannel::calibrated, std::uint32_t{1});
+}
+
+bool is_calibrated(int arm) noexcept {
+  const ArmChannel* channel = channel_of(arm);
+  return channel != nullptr && channel->calibrated.load() != 0;
+}
+
+void wrong_call(const char* function, const char* what) noexcept {
+  Channel* channel = open_channel();
+  if (channel == nullptr) return;
+  static std::mutex& mutex = *new std::mutex;
+  const std::lock_guard lock(mutex);
+  const std::uint32_t used = channel->wrong_calls_used.load();
+  for (std::uint32_t i = 0; i < used && i < Channel::kWrongCallsMost; ++i) {
+    WrongCall& call = channel->wrong_calls[i];
+    if (std::strncmp(call.function.data(), function, call.function.size() - 1) != 0) continue;
+    call.count.fetch_add(1);
+    return;
+  }
+  if (used >= Channel::kWrongCallsMost) return;
+  WrongCall& call = channel->wrong_calls[used];
+  copy_text(call.function, function);
+  copy_text(call.what, what);
+  call.count.store(1);
+  channel->wrong_calls_used.store(used + 1);
+}
+
+}  // namespace thimble::faces::arms

@@ -1,0 +1,263 @@
+// The functions drd...: an arm that is held and led.
+#include <cmath>
+#include <ctime>
+
+#include "compat/dhd/last_error.h"
+#include "compat/dhd/open_arms.h"
+#include "drdc.h"
+
+using namespace thimble::faces;
+using namespace thimble::faces::dhd;
+
+namespace {
+
+// The arm that `id` names, if its regulation runs; else null, and a failed call noted.
+OpenArm* regulated_arm(const char* function, char id) noexcept {
+  OpenArm* arm = open_arm(function, id);
+  if (!arm) return nullptr;
+  if (arm->regulator.running()) return arm;
+  fail(function, DHD_ERROR_NO_REGULATION, "regulation does not run");
+  return nullptr;
+}
+
+// A point that the program names, in the world; false, and a failed call noted, where the arm may
+// not be.
+bool goal_of(const char* function, const OpenArm& arm, const Eigen::Vector3d& p_U,
+             Eigen::Vector3d& p_W) noexcept {
+  if (!p_U.allFinite()) {
+    fail(function, DHD_ERROR_INVALID, "not a finite number");
+    return false;
+  }
+  p_W = user_rotation(arm).transpose() * p_U;
+  const ArmFacts& facts = arms::facts(arm.number);
+  const bool inside = (p_W.array() >= vector_of(facts.workspace_min).array()).all() &&
+                      (p_W.array() <= vector_of(facts.workspace_max).array()).all();
+  if (!inside) fail(function, DHD_ERROR_GEOMETRY, "a point outside of the arm's workspace");
+  return inside;
+}
+
+int move(const char* function, char id, const Eigen::Vector3d& p_U, bool wait) noexcept {
+  OpenArm* arm = regulated_arm(function, id);
+  Eigen::Vector3d p_W;
+  if (!arm || !goal_of(function, *arm, p_U, p_W)) return -1;
+  if (!arm->regulator.regulates()) {
+    return fail(function, DHD_ERROR_NO_REGULATION, "drdRegulatePos is off");
+  }
+  arm->regulator.move_to(p_W);
+  if (!wait) return 0;
+  // Three times what the path takes, and a second: something else holds the arm, or it cannot go
+  // on.
+  const Eigen::Vector3d size = vector_of(arms::facts(arm->number).workspace_max) -
+                               vector_of(arms::facts(arm->number).workspace_min);
+  const double longest =
+      1 + 3 * StraightPath({0, 0, 0}, size, arm->regulator.move_bounds()).duration();
+  ArmReading reading;
+  if (!read_arm(function, *arm, reading)) return -1;
+  const std::int64_t begin_ns = reading.time_ns;
+  while (arm->regulator.moving()) {
+    if (1e-9 * static_cast<double>(reading.time_ns - begin_ns) > longest) {
+      return fail(function, DHD_ERROR_TIMEOUT, "the arm does not arrive");
+    }
+    arms::wait_for_tick(arm->number, reading.tick);
+    if (!read_arm(function, *arm, reading)) return -1;
+  }
+  if (arm->regulator.running()) return 0;
+  return fail(function, DHD_ERROR_NO_REGULATION, "regulation was stopped before the arm arrived");
+}
+
+int follow(const char* function, char id, const Eigen::Vector3d& p_U) noexcept {
+  OpenArm* arm = regulated_arm(function, id);
+  Eigen::Vector3d p_W;
+  if (!arm || !goal_of(function, *arm, p_U, p_W)) return -1;
+  if (!arm->regulator.regulates()) {
+    return fail(function, DHD_ERROR_NO_REGULATION, "drdRegulatePos is off");
+  }
+  arm->regulator.track(p_W);
+  return 0;
+}
+
+int set_bounds(const char* function, char id, void (Regulator::*set)(const PathBounds&) noexcept,
+               const PathBounds& bounds) noexcept {
+  OpenArm* arm = open_arm(function, id);
+  if (!arm) return -1;
+  const auto good = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!good(bounds.acceleration) || !good(bounds.speed) || !good(bounds.jerk)) {
+    return fail(function, DHD_ERROR_INVALID, "a bound that is not above zero");
+  }
+  (arm->regulator.*set)(bounds);
+  return 0;
+}
+
+int get_bounds(const char* function, char id, PathBounds (Regulator::*get)() noexcept,
+               double* acceleration, double* speed, double* jerk) noexcept {
+  OpenArm* arm = open_arm(function, id);
+  if (!arm) return -1;
+  if (!acceleration || !speed || !jerk)
+    return fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  const PathBounds bounds = (arm->regulator.*get)();
+  *acceleration = bounds.acceleration, *speed = bounds.speed, *jerk = bounds.jerk;
+  return 0;
+}
+
+}  // namespace
+
+extern "C" {
+
+bool drdIsSupported(char id) {
+  return open_arm("drdIsSupported", id) != nullptr;
+}
+
+// An arm of ours is calibrated before it can be opened: nothing moves for it.
+bool drdIsInitialized(char id) {
+  return open_arm("drdIsInitialized", id) != nullptr;
+}
+int drdAutoInit(char id) {
+  return open_arm("drdAutoInit", id) ? 0 : -1;
+}
+int drdCheckInit(char id) {
+  return open_arm("drdCheckInit", id) ? 0 : -1;
+}
+int drdPrecisionInit(char id) {
+  return open_arm("drdPrecisionInit", id) ? 0 : -1;
+}
+
+int drdStart(char id) {
+  OpenArm* arm = open_arm("drdStart", id);
+  if (!arm) return -1;
+  if (!switch_on_if_untold(*arm)) {
+    return fail("drdStart", DHD_ERROR_NOT_ENABLED, "the force is switched off");
+  }
+  if (!arm->regulator.start(arm->number))
+    return fail("drdStart", DHD_ERROR, "no thread can be made");
+  return 0;
+}
+
+int drdStop(bool leave_force_on, char id) {
+  OpenArm* arm = open_arm("drdStop", id);
+  if (!arm) return -1;
+  arm->regulator.stop();
+  // What drdStop switched off, drdStart or the next force may switch on.
+  if (!leave_force_on && arm->force == ForceSwitch::kOn) {
+    switch_off(*arm, kOffBySoftware);
+    arm->force = ForceSwitch::kUntold;
+  }
+  return 0;
+}
+
+bool drdIsRunning(char id) {
+  const OpenArm* arm = open_arm("drdIsRunning", id);
+  return arm && arm->regulator.running();
+}
+bool drdIsMoving(char id) {
+  const OpenArm* arm = open_arm("drdIsMoving", id);
+  return arm && arm->regulator.moving();
+}
+bool drdIsFiltering(char id) {
+  const OpenArm* arm = open_arm("drdIsFiltering", id);
+  return arm && arm->regulator.filters();
+}
+
+int drdWaitForTick(char id) {
+  const OpenArm* arm = regulated_arm("drdWaitForTick", id);
+  ArmReading reading;
+  if (!arm || !read_arm("drdWaitForTick", *arm, reading)) return -1;
+  if (arms::wait_for_tick(arm->number, reading.tick)) return 0;
+  return fail("drdWaitForTick", DHD_ERROR_COM, "the run of thimble exec has ended");
+}
+
+double drdGetCtrlFreq(char id) {
+  const OpenArm* arm = open_arm("drdGetCtrlFreq", id);
+  if (!arm) return -1.0;
+  return arm->regulator.running() ? arms::facts(arm->number).rate / 1000 : 0.0;
+}
+
+int drdRegulatePos(bool on, char id) {
+  OpenArm* arm = open_arm("drdRegulatePos", id);
+  if (!arm) return -1;
+  arm->regulator.regulate(on);
+  return 0;
+}
+// No motor of ours turns a wrist or closes a gripper: taken, and nothing comes of it.
+int drdRegulateRot(bool, char id) {
+  return open_arm("drdRegulateRot", id) ? 0 : -1;
+}
+int drdRegulateGrip(bool, char id) {
+  return open_arm("drdRegulateGrip", id) ? 0 : -1;
+}
+
+int drdEnableFilter(bool on, char id) {
+  OpenArm* arm = open_arm("drdEnableFilter", id);
+  if (!arm) return -1;
+  arm->regulator.filter(on);
+  return 0;
+}
+
+int drdSetMotRatioMax(double ratio, char id) {
+  OpenArm* arm = open_arm("drdSetMotRatioMax", id);
+  if (!arm) return -1;
+  if (!(ratio >= 0 && ratio <= 1)) return fail("drdSetMotRatioMax", DHD_ERROR_INVALID, "0 to 1");
+  arm->regulator.set_force_ratio(ratio);
+  return 0;
+}
+double drdGetMotRatioMax(char id) {
+  const OpenArm* arm = open_arm("drdGetMotRatioMax", id);
+  return arm ? arm->regulator.force_ratio() : -1.0;
+}
+
+int drdMoveToPos(double x, double y, double z, bool wait, char id) {
+  return move("drdMoveToPos", id, {x, y, z}, wait);
+}
+int drdMoveTo(double* goal, bool wait, char id) {
+  if (!open_arm("drdMoveTo", id)) return -1;
+  if (!goal) return fail("drdMoveTo", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  return move("drdMoveTo", id, {goal[0], goal[1], goal[2]}, wait);
+}
+int drdTrackPos(double x, double y, double z, char id) {
+  return follow("drdTrackPos", id, {x, y, z});
+}
+int drdTrack(double* goal, char id) {
+  if (!open_arm("drdTrack", id)) return -1;
+  if (!goal) return fail("drdTrack", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  return follow("drdTrack", id, {goal[0], goal[1], goal[2]});
+}
+int drdHold(char id) {
+  OpenArm* arm = regulated_arm("drdHold", id);
+  if (!arm) return -1;
+  arm->regulator.hold();
+  return 0;
+}
+
+int drdSetPosMoveParam(double acceleration, double speed, double jerk, char id) {
+  return set_bounds("drdSetPosMoveParam", id, &Regulator::set_move_bounds,
+                    {acceleration, speed, jerk});
+}
+int drdGetPosMoveParam(double* acceleration, double* speed, double* jerk, char id) {
+  return get_bounds("drdGetPosMoveParam", id, &Regulator::move_bounds, acceleration, speed, jerk);
+}
+int drdSetPosTrackParam(double acceleration, double speed, double jerk, char id) {
+  return set_bounds("drdSetPosTrackParam", id, &Regulator::set_track_bounds,
+                    {acceleration, speed, jerk});
+}
+int drdGetPosTrackParam(double* acceleration, double* speed, double* jerk, char id) {
+  return get_bounds("drdGetPosTrackParam", id, &Regulator::track_bounds, acceleration, speed, jerk);
+}
+
+int drdSetForceAndTorqueAndGripperForce(double* force, char id) {
+  constexpr const char* kFunction = "drdSetForceAndTorqueAndGripperForce";
+  OpenArm* arm = regulated_arm(kFunction, id);
+  if (!arm) return -1;
+  if (!force) return fail(kFunction, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  for (int i = 0; i < 7; ++i) {
+    if (!std::isfinite(force[i])) return fail(kFunction, DHD_ERROR_INVALID, "not a finite number");
+  }
+  const Eigen::Matrix3d R_WU = user_rotation(*arm).transpose();
+  const Eigen::Vector3d f_W = R_WU * Eigen::Vector3d(force[0], force[1], force[2]);
+  const Eigen::Vector3d torque_W = R_WU * Eigen::Vector3d(force[3], force[4], force[5]);
+  arm->regulator.set_free_force({.f_W = {f_W.x(), f_W.y(), f_W.z()},
+                                 .torque_W = {torque_W.x(), torque_W.y(), torque_W.z()},
+                                 .gripper = force[6]});
+  arms::wait_until_taken(arm->number);
+  return 0;
+}
+
+}  // extern "C"

@@ -1,0 +1,162 @@
+// Joints and encoders.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "compat/dhd/forces.h"
+#include "compat/dhd/last_error.h"
+#include "compat/dhd/open_arms.h"
+#include "drdc.h"
+
+using namespace thimble::faces;
+using namespace thimble::faces::dhd;
+
+namespace {
+
+// Below this share of its largest possible value a Jacobian's determinant is that of a pose in
+// which torques make no force [chosen].
+constexpr double kSingular = 1e-6;
+// Angles that differ by less are the arm's own now, rad [chosen: below any encoder's step].
+constexpr double kSameAngle = 1e-4;
+
+// The arm with joints that `id` names, and what it told last; null, and a failed call noted, if
+// there is none, or a pointer is null.
+OpenArm* arm_with_joints(const char* function, char id, bool pointers,
+                         ArmReading& reading) noexcept {
+  OpenArm* arm = open_arm(function, id);
+  if (!arm) return nullptr;
+  if (!pointers) {
+    fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+    return nullptr;
+  }
+  if (!arms::facts(arm->number).has_joints) {
+    fail(function, DHD_ERROR_NOT_AVAILABLE, "the joints of this arm are not known");
+    return nullptr;
+  }
+  return read_arm(function, *arm, reading) ? arm : nullptr;
+}
+
+bool solvable(const Eigen::Matrix3d& J) noexcept {
+  const double most = J.col(0).norm() * J.col(1).norm() * J.col(2).norm();
+  return std::abs(J.determinant()) > kSingular * most;
+}
+
+int not_available(const char* function, char id, const char* what) noexcept {
+  return open_arm(function, id) ? fail(function, DHD_ERROR_NOT_AVAILABLE, what) : -1;
+}
+
+}  // namespace
+
+extern "C" {
+
+int dhdGetEnc(int* counts, unsigned char mask, char id) {
+  ArmReading reading;
+  if (!arm_with_joints("dhdGetEnc", id, counts, reading)) return -1;
+  for (int i = 0; i < DHD_MAX_DOF; ++i) {
+    if ((mask >> i) & 1) counts[i] = i < 3 ? reading.counts[static_cast<std::size_t>(i)] : 0;
+  }
+  return 0;
+}
+
+int dhdGetJointAngles(double* angles, char id) {
+  ArmReading reading;
+  if (!arm_with_joints("dhdGetJointAngles", id, angles, reading)) return -1;
+  std::fill_n(angles, DHD_MAX_DOF, 0.0);
+  std::copy_n(reading.q.begin(), 3, angles);
+  std::copy_n(reading.gimbal.begin(), 3, angles + 3);
+  return 0;
+}
+
+int dhdGetJointVelocities(double* velocities, char id) {
+  ArmReading reading;
+  if (!arm_with_joints("dhdGetJointVelocities", id, velocities, reading)) return -1;
+  const Eigen::Matrix3d J = matrix_of(reading.J_WT);
+  if (!solvable(J)) {
+    return fail("dhdGetJointVelocities", DHD_ERROR_GEOMETRY, "the arm is at the edge of its reach");
+  }
+  const Eigen::Vector3d speeds = J.partialPivLu().solve(vector_of(reading.v_WT));
+  std::fill_n(velocities, DHD_MAX_DOF, 0.0);
+  for (int i = 0; i < 3; ++i) velocities[i] = speeds[i];
+  return 0;
+}
+
+int dhdGetDeltaJacobian(double rows[3][3], char id) {
+  ArmReading reading;
+  const OpenArm* arm = arm_with_joints("dhdGetDeltaJacobian", id, rows, reading);
+  if (!arm) return -1;
+  const Eigen::Matrix3d J = user_rotation(*arm) * matrix_of(reading.J_WT);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rows[i][j] = J(i, j);
+  }
+  return 0;
+}
+
+int dhdSetJointTorques(double* torques, unsigned char mask, char id) {
+  ArmReading reading;
+  OpenArm* arm = arm_with_joints("dhdSetJointTorques", id, torques, reading);
+  if (!arm) return -1;
+  if (!expert_mode()) {
+    return fail("dhdSetJointTorques", DHD_ERROR_EXPERT_MODE_DISABLED, "expert mode is off");
+  }
+  if (arm->regulator.running()) {
+    return fail("dhdSetJointTorques", DHD_ERROR_DEVICE_IN_USE, "the arm is regulated");
+  }
+  const Eigen::Matrix3d J = matrix_of(reading.J_WT);
+  if (!solvable(J)) {
+    return fail("dhdSetJointTorques", DHD_ERROR_GEOMETRY, "the arm is at the edge of its reach");
+  }
+  Eigen::Vector3d tau{0, 0, 0};
+  for (int i = 0; i < 3; ++i) {
+    if ((mask >> i) & 1) tau[i] = torques[i];
+  }
+  // tau = J^T f: the same force at the tip, so that the gate sees all that moves the arm.
+  const Eigen::Vector3d f_W = J.transpose().partialPivLu().solve(tau);
+  return send_force("dhdSetJointTorques", *arm, user_rotation(*arm) * f_W, {0, 0, 0}, 0);
+}
+
+int dhdGetEncVelocities(double*, char id) {
+  return not_available("dhdGetEncVelocities", id, "joint velocities are: dhdGetJointVelocities");
+}
+int dhdGetWristJacobian(double (*)[3], char id) {
+  return not_available("dhdGetWristJacobian", id, "no motor turns the wrist");
+}
+int dhdGetJointAngleRange(double*, double*, char id) {
+  return not_available("dhdGetJointAngleRange", id, "an arm file knows a workspace, and no range");
+}
+
+int dhdJointAnglesToInertiaMatrix(double* angles, double rows[6][6], char id) {
+  constexpr const char* kFunction = "dhdJointAnglesToInertiaMatrix";
+  ArmReading reading;
+  const OpenArm* arm = arm_with_joints(kFunction, id, angles && rows, reading);
+  if (!arm) return -1;
+  const double mass = arm->effector_mass;
+  if (!(mass > 0))
+    return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "only what dhdSetEffectorMass said");
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) rows[i][j] = i == j && i < 3 ? mass : 0;
+  }
+  return 0;
+}
+
+int dhdJointAnglesToGravityJointTorques(double* angles, double* torques, unsigned char mask,
+                                        char id) {
+  constexpr const char* kFunction = "dhdJointAnglesToGravityJointTorques";
+  constexpr double kGravity = 9.80665;  // m/s^2, the standard one
+  ArmReading reading;
+  const OpenArm* arm = arm_with_joints(kFunction, id, angles && torques, reading);
+  if (!arm) return -1;
+  const double mass = arm->effector_mass;
+  for (std::size_t i = 0; mass > 0 && i < 3; ++i) {
+    if (!(std::abs(angles[i] - reading.q[i]) < kSameAngle)) {
+      return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "only at the angles that the arm has now");
+    }
+  }
+  const Eigen::Vector3d tau =
+      matrix_of(reading.J_WT).transpose() * Eigen::Vector3d(0, 0, mass * kGravity);
+  for (int i = 0; i < DHD_MAX_DOF; ++i) {
+    if ((mask >> i) & 1) torques[i] = i < 3 ? tau[i] : 0;
+  }
+  return 0;
+}
+
+}  // extern "C"

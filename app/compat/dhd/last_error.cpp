@@ -1,0 +1,71 @@
+#include "compat/dhd/last_error.h"
+
+#include <array>
+
+#include "compat/core/arm_access.h"
+#include "drdc.h"
+
+namespace thimble::faces::dhd {
+namespace {
+
+thread_local int last = DHD_NO_ERROR;
+
+constexpr std::array<const char*, 23> kTexts{
+    "no error",
+    "the call failed",
+    "the arm's loop does not answer: the run has ended",
+    "the controller is busy",
+    "no driver was found",
+    "no arm was found: start the program by `thimble exec`",
+    "this arm has nothing of the kind",
+    "it took too long",
+    "the arm does not reach there",
+    "expert mode is off: dhdEnableExpertMode",
+    "Thimble does not answer this function",
+    "out of memory",
+    "the arm is not open, or a fault keeps its force off",
+    "the file was not found",
+    "the configuration is wrong",
+    "there is no arm, button or part of this number",
+    "this function is out of use",
+    "a pointer is null",
+    "the redundant encoders disagree",
+    "force is switched off: dhdEnableForce",
+    "the arm is regulated: drdStop, or drdRegulatePos(false)",
+    "a number is not finite or out of bounds",
+    "regulation does not run: drdStart",
+};
+
+}  // namespace
+
+int fail(const char* function, int error, const char* what) noexcept {
+  last = error;
+  arms::wrong_call(function, what);
+  return -1;
+}
+
+int last_error() noexcept {
+  return last;
+}
+
+}  // namespace thimble::faces::dhd
+
+using thimble::faces::dhd::kTexts;
+
+extern "C" {
+
+int dhdErrorGetLast(void) {
+  return thimble::faces::dhd::last_error();
+}
+
+const char* dhdErrorGetLastStr(void) {
+  return dhdErrorGetStr(dhdErrorGetLast());
+}
+
+const char* dhdErrorGetStr(int error) {
+  if (error < 0 || error >= static_cast<int>(kTexts.size()))
+    return "there is no error of this number";
+  return kTexts[static_cast<std::size_t>(error)];
+}
+
+}  // extern "C"

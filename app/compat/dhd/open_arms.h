@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "compat/core/arm_access.h"
+#include "compat/dhd/regulator.h"
+
+namespace thimble::faces::dhd {
+
+/// Who said what about the force of an arm.
+enum class ForceSwitch : std::uint8_t {
+  kUntold,  ///< Nobody did: the first force that is sent switches it on.
+  kOn,      ///< It is on.
+  kOff,     ///< The program switched it off, or its watchdog did: dhdEnableForce switches it on.
+};
+
+/// Numbers of what switched a force off, as dhdGetStatus tells them.
+enum ForceOffCause : int {
+  kForceOn = 0,
+  kOffByVelocity = 2,
+  kOffByWatchdog = 3,
+  kOffBySoftware = 4,
+  kOffByPull = 5,
+};
+
+/// An arm that a program opened, and what it told it. Any thread may read and set its numbers.
+struct OpenArm {
+  int number = 0;                                        ///< Of the arm, as `arms` counts.
+  std::atomic<bool> open{false};                         ///< Between dhdOpen and dhdClose.
+  std::atomic<ForceSwitch> force{ForceSwitch::kUntold};  ///< Who said what.
+  std::atomic<int> off_cause{kOffBySoftware};            ///< While `force` is kOff.
+  std::atomic<bool> force_sent{false};          ///< A force was asked for since it was switched on.
+  std::atomic<bool> gravity{false};             ///< Taken and told; see README.md.
+  std::atomic<bool> brakes{true};               ///< As above.
+  std::atomic<bool> emulate_button{false};      ///< A closed gripper is button 0.
+  std::atomic<double> effector_mass{0};         ///< kg
+  std::atomic<double> device_angle{0};          ///< rad
+  std::atomic<double> base_angle_x{0};          ///< rad
+  std::atomic<double> base_angle_z{0};          ///< rad
+  std::atomic<double> max_force{-1};            ///< N; below zero: the gate's
+  std::atomic<unsigned> velocity_threshold{0};  ///< m/s; 0: the gate's
+  std::atomic<unsigned char> watchdog{0};       ///< 125 us; 0: the gate's
+  std::atomic<double> vibration_frequency{0};   ///< Hz
+  std::atomic<double> vibration_amplitude{0};   ///< N
+  std::atomic<std::uint64_t> forces{0};         ///< Forces that were sent.
+  std::mutex gap_mutex;                         ///< Of the three below.
+  double gap_time = 0, gap = 0, gap_speed = 0;  ///< s, m, m/s: of the gripper.
+  std::uint64_t counted_forces = 0;             ///< At the last dhdGetComFreq.
+  std::int64_t counted_ns = 0;                  ///< When that was.
+  Regulator regulator;                          ///< Of the functions drd...
+};
+
+/// Returns an open arm; null, and a failed call noted, if `id` names none.
+OpenArm* open_arm(const char* function, char id) noexcept;
+/// Opens an arm of `thimble exec`; returns its number or -1.
+int open_number(const char* function, int number) noexcept;
+/// Closes an arm; returns 0 or -1.
+int close_arm(const char* function, char id) noexcept;
+/// Makes an open arm the one that -1 means; returns 0 or -1.
+int choose_arm(const char* function, char id) noexcept;
+/// Returns the number of the arm that -1 means, or -1.
+int chosen_arm() noexcept;
+
+/// Reads the newest tick of an arm; false, and a failed call noted, if there is none.
+bool read_arm(const char* function, const OpenArm& arm, ArmReading& reading) noexcept;
+
+/// Returns the rotation from the world into the frame that the program sees (U): its base angles.
+Eigen::Matrix3d user_rotation(const OpenArm& arm) noexcept;
+/// Returns a vector of a reading.
+inline Eigen::Map<const Eigen::Vector3d> vector_of(const std::array<double, 3>& v) noexcept {
+  return Eigen::Map<const Eigen::Vector3d>(v.data());
+}
+/// Returns a matrix of a reading, which is stored row by row.
+inline Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) noexcept {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
+}
+
+/// Returns whether dhdEnableExpertMode was called.
+bool expert_mode() noexcept;
+
+/// Switches the force of an arm on if nobody said anything about it. False: it stays off.
+bool switch_on_if_untold(OpenArm& arm) noexcept;
+/// Switches the force of an arm off for this cause.
+void switch_off(OpenArm& arm, ForceOffCause cause) noexcept;
+
+}  // namespace thimble::faces::dhd

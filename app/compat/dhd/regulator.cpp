@@ -1,0 +1,170 @@
+#include "compat/dhd/regulator.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "compat/core/arm_access.h"
+
+namespace thimble::faces::dhd {
+namespace {
+
+// A tracked point counts as reached within this, m, and at less than this speed, m/s [chosen].
+constexpr double kThere = 1e-5, kAtRest = 1e-3;
+// The same of the tip behind the point, m [chosen: what friction keeps a spring of 400 N/m from].
+constexpr double kTipThere = 2e-3;
+
+Eigen::Vector3d vector_of(const std::array<double, 3>& v) noexcept {
+  return {v[0], v[1], v[2]};
+}
+
+// Half of what the maker declares [chosen: room for the hand]. A spring that is felt late gives
+// energy, which the damper takes as long as b > K (T/2 + delay) [PHYSICS 1]; the delay beside the
+// arm's own is two ticks: one until the program reads, one until its force is taken.
+struct Gains {
+  double stiffness, damping;
+};
+Gains gains_of(const ArmFacts& facts) noexcept {
+  const double damping = facts.damping_max > 0 ? facts.damping_max / 2 : 0.5;
+  const double most = damping * facts.rate / 2.5;
+  return {std::min(facts.stiffness_max / 2, most), damping};
+}
+
+}  // namespace
+
+bool Regulator::start(int arm) {
+  const std::lock_guard starting(starting_);
+  if (running_) return true;
+  if (thread_.joinable()) thread_.join();
+  hold();
+  stop_ = false;
+  running_ = true;
+  try {
+    thread_ = std::thread([this, arm] { run(arm); });
+  } catch (const std::system_error&) {
+    running_ = false;
+  }
+  return running_;
+}
+
+void Regulator::stop() noexcept {
+  const std::lock_guard starting(starting_);
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void Regulator::set_free_force(const ForceAsked& asked) noexcept {
+  const std::lock_guard lock(mutex_);
+  free_ = asked;
+}
+
+void Regulator::move_to(const Eigen::Vector3d& goal_W) noexcept {
+  const std::lock_guard lock(mutex_);
+  goal_W_ = goal_W;
+  path_ = StraightPath(point_W_, goal_W, move_bounds_);
+  path_time_ = 0;
+  speed_W_.setZero();
+  mode_ = Mode::kMove;
+  moving_ = true;
+}
+
+void Regulator::track(const Eigen::Vector3d& goal_W) noexcept {
+  const std::lock_guard lock(mutex_);
+  goal_W_ = goal_W;
+  mode_ = Mode::kTrack;
+  moving_ = true;
+}
+
+void Regulator::hold() noexcept {
+  const std::lock_guard lock(mutex_);
+  mode_ = Mode::kHold;
+  hold_here_ = true;
+  speed_W_.setZero();
+  moving_ = false;
+}
+
+void Regulator::set_move_bounds(const PathBounds& bounds) noexcept {
+  const std::lock_guard lock(mutex_);
+  move_bounds_ = bounds;
+}
+
+PathBounds Regulator::move_bounds() noexcept {
+  const std::lock_guard lock(mutex_);
+  return move_bounds_;
+}
+
+void Regulator::set_track_bounds(const PathBounds& bounds) noexcept {
+  const std::lock_guard lock(mutex_);
+  track_bounds_ = bounds;
+}
+
+PathBounds Regulator::track_bounds() noexcept {
+  const std::lock_guard lock(mutex_);
+  return track_bounds_;
+}
+
+void Regulator::advance(double dt) noexcept {
+  if (mode_ == Mode::kMove) {
+    path_time_ += dt;
+    point_W_ = path_.at(path_time_);
+    return;
+  }
+  if (mode_ != Mode::kTrack) return;
+  const Eigen::Vector3d left = goal_W_ - point_W_;
+  const double distance = left.norm();
+  if (!filters_ || (distance < kThere && speed_W_.norm() < kAtRest)) {
+    point_W_ = goal_W_;
+    speed_W_.setZero();
+    return;
+  }
+  // As fast as it can still be stopped from, and no faster than the bounds say.
+  const double speed =
+      std::min(track_bounds_.speed, std::sqrt(2 * track_bounds_.acceleration * distance));
+  Eigen::Vector3d change = -speed_W_;
+  if (distance > 0) change += std::min(speed, distance / dt) / distance * left;
+  const double most = track_bounds_.acceleration * dt;
+  if (change.norm() > most) change *= most / change.norm();
+  speed_W_ += change;
+  point_W_ += speed_W_ * dt;
+}
+
+ForceAsked Regulator::force(const ArmFacts& facts, const ArmReading& reading, double dt) noexcept {
+  const Eigen::Vector3d p_W = vector_of(reading.p_WT), v_W = vector_of(reading.v_WT);
+  const std::lock_guard lock(mutex_);
+  if (hold_here_ || !regulates_) {
+    point_W_ = p_W;
+    hold_here_ = false;
+  }
+  if (!regulates_) {
+    moving_ = false;
+    mode_ = Mode::kHold;
+    return free_;
+  }
+  if (dt > 0) advance(dt);
+  if (mode_ != Mode::kHold && point_W_ == goal_W_ && (p_W - goal_W_).norm() < kTipThere) {
+    moving_ = false;
+  }
+  const Gains gains = gains_of(facts);
+  Eigen::Vector3d f_W = gains.stiffness * (point_W_ - p_W) - gains.damping * v_W;
+  const double most = force_ratio_ * facts.force_max;
+  if (f_W.norm() > most) f_W *= most / f_W.norm();
+  return {.f_W = {f_W.x(), f_W.y(), f_W.z()}};
+}
+
+void Regulator::run(int arm) noexcept {
+  ArmReading reading;
+  std::int64_t time_ns = 0;
+  arms::lead(arm, true);
+  while (!stop_ && arms::is_running(arm) && arms::read(arm, reading)) {
+    const double dt = time_ns == 0 ? 0 : 1e-9 * static_cast<double>(reading.time_ns - time_ns);
+    time_ns = reading.time_ns;
+    arms::ask_force(arm, force(arms::facts(arm), reading, std::clamp(dt, 0.0, 0.02)));
+    ticks_.fetch_add(1, std::memory_order_relaxed);
+    arms::wait_until_taken(arm);
+  }
+  arms::ask_force(arm, {});
+  arms::lead(arm, false);
+  moving_ = false;
+  running_ = false;
+}
+
+}  // namespace thimble::faces::dhd

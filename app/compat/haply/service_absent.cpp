@@ -1,0 +1,37 @@
+#include <utility>
+
+#include "compat/haply/haply_service.h"
+
+// In place of the other sources of this folder in a build without Boost.Beast or nlohmann's JSON.
+
+namespace thimble::faces::haply {
+
+class Service::Listener {};
+
+Service::Service(std::unique_ptr<Listener> listener) : listener_(std::move(listener)) {}
+Service::~Service() = default;
+
+driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t, Report) {
+  return driver::Error{
+      "This build serves no programs of the Inverse3: install libboost-dev and nlohmann-json3-dev, "
+      "and build it anew."};
+}
+
+std::uint16_t Service::port() const noexcept {
+  return 0;
+}
+bool Service::ready() const noexcept {
+  return true;
+}
+int Service::programs() const noexcept {
+  return 0;
+}
+int Service::refused() const noexcept {
+  return 0;
+}
+void Service::leave() {}
+bool Service::ended() const noexcept {
+  return true;
+}
+
+}  // namespace thimble::faces::haply

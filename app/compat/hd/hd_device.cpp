@@ -1,0 +1,307 @@
+#include "compat/hd/hd_device.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include "compat/core/arm_access.h"
+#include "compat/hd/hd_errors.h"
+#include "compat/hd/hd_parameters.h"
+
+namespace thimble::faces::hd {
+namespace {
+
+thread_local std::optional<HHD> chosen;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string text_of(const std::array<char, 64>& text) {
+  return {text.data()};
+}
+
+/// Returns the arm that a name means: none, "Default Device", one of ours, or a number behind
+/// "PHANToM" as other drivers name theirs; -1 if none.
+int arm_named(const char* name) {
+  const std::string wanted = lower(name == nullptr ? "" : name);
+  if (wanted.empty() || wanted == "default device" || wanted == "default phantom") return 0;
+  for (int arm = 0; arm < arms::count(); ++arm) {
+    if (wanted == lower(arms::name(arm)) || wanted == lower(text_of(arms::facts(arm).name))) {
+      return arm;
+    }
+  }
+  if (wanted == "left device") return 0;
+  if (wanted == "right device") return 1;
+  const std::string family = "phantom";
+  if (!wanted.starts_with(family)) return -1;
+  const std::string number =
+      wanted.substr(wanted.find_first_not_of(' ', family.size()) == std::string::npos
+                        ? wanted.size()
+                        : wanted.find_first_not_of(' ', family.size()));
+  if (number.empty()) return 0;
+  if (number.size() > 2 || !std::all_of(number.begin(), number.end(), ::isdigit)) return -1;
+  return std::atoi(number.c_str()) - 1;
+}
+
+/// Returns the program what became of its force, as errors.
+void look_at_forces(HHD handle, Device& device) noexcept {
+  const ArmReading& now = device.frame.now;
+  if (now.fault != device.fault_told) {
+    device.fault_told = now.fault;
+    switch (now.fault) {
+      case driver::Fault::kNone:
+        break;
+      case driver::Fault::kOverSpeed:
+        keep_error(HD_EXCEEDED_MAX_VELOCITY, handle, static_cast<int>(now.fault));
+        break;
+      case driver::Fault::kTransportLost:
+      case driver::Fault::kNoReports:
+      case driver::Fault::kRefused:
+        keep_error(HD_COMM_ERROR, handle, static_cast<int>(now.fault));
+        break;
+      default:
+        keep_error(HD_DEVICE_FAULT, handle, static_cast<int>(now.fault));
+    }
+  }
+  if (now.link != device.link_reported) {
+    device.link_reported = now.link;
+    // An arm can be pulled because of, or after, another fault.
+    const bool named_by_fault =
+        now.fault == driver::Fault::kTransportLost || now.fault == driver::Fault::kNoReports;
+    if (now.link == driver::LinkState::kLost && !named_by_fault) {
+      keep_error(HD_COMM_ERROR, handle, static_cast<int>(driver::Fault::kTransportLost));
+    }
+  }
+  if (now.tick == device.frame.last.tick) return;
+  if (now.cuts.limited && !device.force_clamping) keep_error(HD_EXCEEDED_MAX_FORCE, handle);
+  if (now.cuts.rise_limited) keep_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
+  constexpr double kWarm = 0.8;  // of what the winding bears; the gate's own warning
+  const bool warm = *std::max_element(now.heat.begin(), now.heat.end()) >= kWarm;
+  if (warm && !device.warm_told) keep_error(HD_WARM_MOTORS, handle);
+  device.warm_told = warm;
+}
+
+/// Asks for a device's force, with what HDAPI's own switches make of it.
+void send(HHD handle, Device& device) noexcept {
+  ForceAsked asked{.f_W = device.frame.f_asked_W, .torque_W = device.frame.torque_asked_W};
+  const double length = std::hypot(asked.f_W[0], asked.f_W[1], asked.f_W[2]);
+  double most = length;
+  if (device.force_clamping) most = std::min(most, arms::facts(static_cast<int>(handle)).force_max);
+  if (device.force_ramping) {
+    const double since = 1e-9 * static_cast<double>(device.frame.now.time_ns - device.enabled_ns);
+    most = std::min(most, device.ramping_rate * std::max(since, 0.0));
+  }
+  // Written so that what is no number goes to the gate as it is.
+  if (most < length) {
+    for (double& f : asked.f_W) f *= most / length;
+  }
+  arms::ask_force(static_cast<int>(handle), asked);
+}
+
+void end_frame(HHD handle, Device& device) noexcept {
+  device.frame.open = false;
+  if (scheduler_stopped()) device.frame.f_asked_W = {};
+  if (device.force_output) send(handle, device);
+}
+
+}  // namespace
+
+Devices& devices() noexcept {
+  static Devices& only = *new Devices;
+  return only;
+}
+
+HHD current_device() noexcept {
+  return chosen.value_or(devices().current.load());
+}
+
+void set_current_device(HHD device) noexcept {
+  chosen = device;
+  devices().current.store(device);
+}
+
+bool is_open(HHD device) noexcept {
+  return device < kArmsMost && devices().all[device].open;
+}
+
+Device* current_open(const char* function) noexcept {
+  const HHD current = current_device();
+  if (is_open(current)) return &devices().all[current];
+  keep_wrong_call(HD_BAD_HANDLE, function, "no arm is open and current");
+  return nullptr;
+}
+
+ArmReading seen(HHD device) noexcept {
+  const Frame& frame = devices().all[device].frame;
+  if (frame.open && frame.owner == std::this_thread::get_id()) return frame.now;
+  ArmReading newest = frame.now;
+  arms::read(static_cast<int>(device), newest);
+  return newest;
+}
+
+void end_forgotten_frames() noexcept {
+  const std::lock_guard lock(devices().mutex);
+  for (HHD handle = 0; handle < kArmsMost; ++handle) {
+    Device& device = devices().all[handle];
+    if (!device.frame.open || device.frame.owner != std::this_thread::get_id()) continue;
+    keep_error(HD_FRAME_ERROR, handle);
+    arms::wrong_call("hdBeginFrame", "the frame was left open when the tick's callbacks were over");
+    end_frame(handle, device);
+  }
+}
+
+}  // namespace thimble::faces::hd
+
+using namespace thimble::faces;
+using namespace thimble::faces::hd;
+
+extern "C" {
+
+HHD hdInitDevice(HDstring name) {
+  const int arm = arm_named(name);
+  if (arm < 0 || arm >= kArmsMost || (arms::count() > 0 && arm >= arms::count())) {
+    keep_wrong_call(HD_COMM_CONFIG_ERROR, __func__, "no arm has this name");
+    return HD_INVALID_HANDLE;
+  }
+  const HHD handle = static_cast<HHD>(arm);
+  {
+    const std::lock_guard lock(devices().mutex);
+    if (is_open(handle)) {
+      keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is open already");
+      return HD_INVALID_HANDLE;
+    }
+  }
+  const std::string trouble = arms::open(arm, "HDAPI");
+  if (!trouble.empty()) {
+    // The program says "failed to initialise" and no more.
+    std::fprintf(stderr, "thimble: hdInitDevice: %s\n", trouble.c_str());
+    keep_wrong_call(HD_COMM_ERROR, __func__, trouble.c_str());
+    return HD_INVALID_HANDLE;
+  }
+  std::unique_lock lock(devices().mutex);
+  if (is_open(handle)) {  // by another thread, meanwhile: one opening is one too many
+    lock.unlock();
+    arms::close(arm);
+    keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is open already");
+    return HD_INVALID_HANDLE;
+  }
+  Device& device = devices().all[handle];
+  device = Device{};
+  device.open = true;
+  arms::read(arm, device.frame.now);
+  device.frame.last = device.frame.now;
+  set_current_device(handle);
+  return handle;
+}
+
+void hdDisableDevice(HHD handle) {
+  {
+    const std::lock_guard lock(devices().mutex);
+    if (!is_open(handle)) {
+      keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+      return;
+    }
+    devices().all[handle] = Device{};
+  }
+  arms::close(static_cast<int>(handle));
+}
+
+void hdMakeCurrentDevice(HHD handle) {
+  const std::lock_guard lock(devices().mutex);
+  if (is_open(handle)) {
+    set_current_device(handle);
+  } else {
+    keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+  }
+}
+
+HHD hdGetCurrentDevice(void) {
+  const std::lock_guard lock(devices().mutex);
+  return current_device();
+}
+
+void hdBeginFrame(HHD handle) {
+  const std::lock_guard lock(devices().mutex);
+  if (!is_open(handle)) {
+    keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+    return;
+  }
+  set_current_device(handle);
+  Device& device = devices().all[handle];
+  Frame& frame = device.frame;
+  if (frame.open) {
+    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "a frame was begun inside of a frame");
+    return;
+  }
+  ArmReading newest;
+  if (!arms::read(static_cast<int>(handle), newest)) newest = frame.now;
+  if (device.one_frame_limit && device.framed_tick == newest.tick + 1) {
+    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "a second frame in one tick");
+    return;
+  }
+  device.framed_tick = newest.tick + 1;
+  // Two frames in one tick show the same: the frame before stays the one of the tick before.
+  if (newest.tick != frame.now.tick) frame.last = frame.now;
+  frame.now = newest;
+  frame.open = true;
+  frame.owner = std::this_thread::get_id();
+  look_at_forces(handle, device);
+}
+
+void hdEndFrame(HHD handle) {
+  const std::lock_guard lock(devices().mutex);
+  if (!is_open(handle)) {
+    keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+    return;
+  }
+  Device& device = devices().all[handle];
+  if (!device.frame.open) {
+    keep_wrong_call(HD_ILLEGAL_END, __func__, "a frame was ended that was not begun");
+    return;
+  }
+  end_frame(handle, device);
+}
+
+HDenum hdCheckCalibration(void) {
+  const std::lock_guard lock(devices().mutex);
+  const Device* device = current_open(__func__);
+  if (device == nullptr) return HD_CALIBRATION_NEEDS_UPDATE;
+  return arms::is_calibrated(static_cast<int>(current_device())) ? HD_CALIBRATION_OK
+                                                                 : HD_CALIBRATION_NEEDS_UPDATE;
+}
+
+HDenum hdCheckCalibrationStyle(void) {
+  return HD_CALIBRATION_AUTO;
+}
+
+void hdUpdateCalibration(HDenum style) {
+  const std::lock_guard lock(devices().mutex);
+  if (current_open(__func__) == nullptr) return;
+  constexpr HDenum kStyles =
+      HD_CALIBRATION_ENCODER_RESET | HD_CALIBRATION_AUTO | HD_CALIBRATION_INKWELL;
+  if (style == 0 || (style & ~kStyles) != 0) {
+    keep_wrong_call(HD_INVALID_VALUE, __func__, "no style of calibration has this number");
+    return;
+  }
+  // Our arms know where they are when they are opened (thimble calibrate).
+  arms::mark_calibrated(static_cast<int>(current_device()));
+}
+
+void hdUpdateCalibrationMessage(HDenum style) {
+  hdUpdateCalibration(style);
+}
+
+HDboolean hdDeploymentLicense(const char* vendor, const char* application, const char* password) {
+  if (vendor != nullptr && application != nullptr && password != nullptr) return HD_TRUE;
+  keep_wrong_call(HD_INVALID_LICENSE, __func__, "a text is null");
+  return HD_FALSE;
+}
+
+}  // extern "C"

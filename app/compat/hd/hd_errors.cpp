@@ -1,0 +1,104 @@
+#include "compat/hd/hd_errors.h"
+
+#include <deque>
+#include <mutex>
+
+#include "compat/core/arm_access.h"
+#include "compat/hd/hd_device.h"
+
+namespace thimble::faces::hd {
+namespace {
+
+constexpr std::size_t kErrorsMost = 64;  // chosen: a program that asks now and then loses none
+
+struct Errors {
+  std::mutex mutex;
+  std::deque<HDErrorInfo> all;  // the newest last
+};
+
+Errors& errors() {
+  static Errors& only = *new Errors;
+  return only;
+}
+
+}  // namespace
+
+void keep_error(HDerror error, HHD device, int internal) noexcept {
+  Errors& kept = errors();
+  const std::lock_guard lock(kept.mutex);
+  if (kept.all.size() >= kErrorsMost) kept.all.pop_front();
+  kept.all.push_back({error, internal, device});
+}
+
+void keep_wrong_call(HDerror error, const char* function, const char* what) noexcept {
+  arms::wrong_call(function, what);
+  keep_error(error, current_device());
+}
+
+}  // namespace thimble::faces::hd
+
+using namespace thimble::faces;
+
+extern "C" {
+
+HDErrorInfo hdGetError(void) {
+  hd::Errors& kept = hd::errors();
+  const std::lock_guard lock(kept.mutex);
+  if (kept.all.empty()) return {HD_SUCCESS, 0, HD_INVALID_HANDLE};
+  const HDErrorInfo newest = kept.all.back();
+  kept.all.pop_back();
+  return newest;
+}
+
+HDstring hdGetErrorString(HDerror error) {
+  switch (error) {
+    case HD_SUCCESS:
+      return "no error";
+    case HD_INVALID_ENUM:
+      return "no parameter or capability has this number";
+    case HD_INVALID_VALUE:
+      return "a value that is not allowed here";
+    case HD_INVALID_OPERATION:
+      return "a call that is not allowed here";
+    case HD_INVALID_INPUT_TYPE:
+      return "the parameter has no values of this type";
+    case HD_BAD_HANDLE:
+      return "no open arm has this handle";
+    case HD_WARM_MOTORS:
+      return "a motor is hot; the force is lowered";
+    case HD_EXCEEDED_MAX_FORCE:
+      return "the force was cut to what the arm may give";
+    case HD_EXCEEDED_MAX_FORCE_IMPULSE:
+      return "the force grew too fast and was held back";
+    case HD_EXCEEDED_MAX_VELOCITY:
+      return "the tip moved too fast: the force is off until it is enabled anew";
+    case HD_FORCE_ERROR:
+      return "the force cannot be given";
+    case HD_DEVICE_FAULT:
+      return "the arm is in fault: the force is off until it is enabled anew";
+    case HD_DEVICE_ALREADY_INITIATED:
+      return "the arm is open already";
+    case HD_COMM_ERROR:
+      return "the arm cannot be reached: start the program by `thimble exec`, which says why";
+    case HD_COMM_CONFIG_ERROR:
+      return "no arm has this name";
+    case HD_TIMER_ERROR:
+      return "the scheduler cannot run";
+    case HD_ILLEGAL_BEGIN:
+      return "a frame was begun inside of a frame";
+    case HD_ILLEGAL_END:
+      return "a frame was ended that was not begun";
+    case HD_FRAME_ERROR:
+      return "this belongs into a frame, or a frame was left open";
+    case HD_INVALID_PRIORITY:
+      return "no callback can have this priority";
+    case HD_SCHEDULER_FULL:
+      return "the scheduler has no room for a callback more";
+    case HD_INVALID_LICENSE:
+      return "the licence is not valid";
+    default:
+      return "an error of a number that is not known";
+  }
+}
+
+}  // extern "C"

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "compat/core/arm_channel.h"
+#include "compat/server/client_force.h"
+#include "compat/server/exec_options.h"
+#include "compat/server/free_scene.h"
+#include "compat/server/lockstep_clock.h"
+#include "compat/server/reading_publisher.h"
+#include "replug_watch.h"
+#include "ros2/ros_run.h"
+#include "run_attendance.h"
+#include "share/viewer_request_handler.h"
+#include "thimble/driver/result.h"
+#include "thimble/session/servo_thread.h"
+#include "thimble/session/session.h"
+
+namespace thimble::faces {
+
+/// One arm while a program has it: a session of its own, on a thread of its own, with the program's
+/// force in it. Real-time: never from the servo thread, all of it.
+class ArmRun {
+ public:
+  /// Opens arm `index` of the options and begins to run it. `number`: how many runs there were of
+  /// it, for the name of the recording. The error says what to do. `stop`: leaves while a person is
+  /// asked.
+  static driver::Result<std::unique_ptr<ArmRun>> open(const ExecOptions& options, std::size_t index,
+                                                      int number, ArmChannel& channel,
+                                                      const std::atomic<bool>& stop);
+  /// Ends it, with zero force at the arm.
+  ~ArmRun();
+  ArmRun(const ArmRun&) = delete;
+  ArmRun& operator=(const ArmRun&) = delete;
+
+  /// Looks after it; call it about ten times a second. Tells of a program that hangs.
+  void attend(const std::string& program);
+  /// Returns whether a viewer has ended the run.
+  bool ended_by_viewer() const noexcept { return desk_ && desk_->ended(); }
+  /// Ends the run with zero force, and returns what there is to say of it: what the gate did, and
+  /// the rest of the usual report.
+  std::string end();
+
+  /// Returns the fault in which it was left; after `end`.
+  driver::Fault fault() const noexcept { return session_->device().fault(); }
+  /// Returns its session, for tests.
+  session::Session& session() noexcept { return *session_; }
+
+ private:
+  ArmRun(const ExecOptions& options, std::size_t index, ArmChannel& channel)
+      : options_(options), index_(index), channel_(channel) {}
+  driver::Result<void> prepare(int number);
+  driver::Result<void> start(const std::atomic<bool>& stop);
+  driver::Result<void> open_topics();
+  std::string own_report() const;
+
+  const ExecOptions& options_;
+  std::size_t index_;
+  ArmChannel& channel_;
+  std::unique_ptr<FreeScene> free_scene_;
+  std::shared_ptr<LockstepClock> paced_;
+  std::unique_ptr<session::Session> session_;
+  std::unique_ptr<session::ViewerRequestHandler> desk_;
+  std::unique_ptr<session::ServoThread> servo_;
+  std::unique_ptr<ClientForce> client_;
+  std::unique_ptr<ReadingPublisher> publisher_;
+  std::unique_ptr<RosRun> topics_;  // null: nobody asked
+  std::optional<session::ReplugWatches> watch_;
+  std::optional<session::RunAttendance> attendance_;
+  std::atomic<bool> stop_{false};
+  std::uint64_t stalls_told_ = 0;
+  bool fault_told_ = false;
+  bool begun_ = false, over_ = false;
+};
+
+}  // namespace thimble::faces

@@ -1,0 +1,19 @@
+#include "compat/server/library_folder.h"
+
+#include <system_error>
+
+namespace thimble::faces {
+
+driver::Result<std::filesystem::path> face_folder() {
+  std::error_code status;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", status);
+  for (const char* place : {"compat/lib", THIMBLE_COMPAT_INSTALLED}) {
+    std::filesystem::path folder = (program.parent_path() / place).lexically_normal();
+    if (std::filesystem::exists(folder / "libHD.so", status)) return folder;
+  }
+  return driver::Error{
+      "The libraries that stand in for other makers' are not there (lib/thimble/compat); install "
+      "the package thimble anew, or build the target thimble_compat_libraries."};
+}
+
+}  // namespace thimble::faces

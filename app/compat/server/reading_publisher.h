@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "compat/core/arm_channel.h"
+#include "compat/server/client_force.h"
+#include "thimble/driver/device.h"
+#include "thimble/driver/safety_gate.h"
+#include "thimble/scene/arm_file.h"
+#include "thimble/session/tick_observer.h"
+
+namespace thimble::faces {
+
+/// An observer that shows each tick to a program that was written for another arm, and wakes what
+/// waits for it there.
+class ReadingPublisher final : public session::TickObserver {
+ public:
+  /// Takes what it tells of, all of which must outlive it. Real-time: never from the servo thread.
+  ReadingPublisher(ArmChannel& channel, const ClientForce& client, const driver::Device& device,
+                   const scene::ArmFile& arm) noexcept;
+
+  /// Takes one tick. Real-time: safe; a system call that does not wait, if somebody waits.
+  void take(const driver::TickRecord& record) noexcept override;
+
+ private:
+  void turn(const driver::TickRecord& record) noexcept;
+  void find_jacobian(const driver::TickRecord& record) noexcept;
+  void look_at_gate() noexcept;
+
+  ArmChannel& channel_;
+  const ClientForce& client_;
+  const driver::Device& device_;
+  const scene::ArmFile& arm_;
+  ArmReading reading_;
+  driver::GateCounters counters_;
+  Eigen::Matrix3d R_WT_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d w_WT_{0, 0, 0};
+  std::int64_t time_ns_ = 0;
+};
+
+}  // namespace thimble::faces

@@ -1,0 +1,76 @@
+#include "hil/check_watchdog.h"
+
+#include <fmt/format.h>
+
+#include "bringup/watchdog_time.h"
+
+namespace thimble::app {
+namespace {
+
+constexpr const char* kName = "watchdog";
+
+}  // namespace
+
+HilResult check_watchdog_time(const HilRig& rig) {
+  const auto& wire = rig.file.simulated.wire;
+  const WatchdogOrder order{
+      .named = static_cast<double>(rig.file.limits.watchdog_ns) * 1e-9,
+      .mass = rig.file.simulated.plant.mass,
+      .coulomb = rig.file.simulated.plant.coulomb,
+      .delay = static_cast<double>(wire.delay_in_ns + wire.delay_out_ns) * 1e-9,
+      .workspace = rig.file.workspace};
+  auto opened = open_active(rig, TipHold::kFree);
+  if (!opened) return broken_off(kName, opened.error().message, nullptr);
+  BenchArm& bench = **opened;
+  const WatchdogSeen seen = see_watchdog(bench, order, 1, rig.stop);
+  switch (seen.end) {
+    case WatchdogEnd::kStopped:
+      break;
+    case WatchdogEnd::kTooLong:
+      return skipped(kName, fmt::format("A watchdog of {:.0f} ms cannot be seen on a free tip "
+                                        "within {:.0f} mm. The feel check measures it on a hand "
+                                        "(--attended).",
+                                        1e3 * order.named, 1e3 * kWatchdogWayMost));
+    case WatchdogEnd::kNoRoom:
+      return skipped(kName,
+                     fmt::format("The tip is too near to a side of the workspace to be pushed for "
+                                 "{:.0f} mm; put it into the middle.",
+                                 1e3 * kWatchdogWayMost));
+    case WatchdogEnd::kTooMuch:
+      return skipped(kName,
+                     fmt::format("The file's dry friction needs a push of {:.2f} N, which is "
+                                 "more than is allowed.",
+                                 seen.force));
+    case WatchdogEnd::kAnswersOnly:
+      return skipped(kName,
+                     "The arm speaks only when spoken to, so its watchdog's time cannot be seen.");
+    case WatchdogEnd::kHeld:
+      return judged(kName,
+                    fmt::format("The tip went {:.2f} mm under {:.2f} N: it is held, or its "
+                                "friction is higher than the arm file says.",
+                                1e3 * seen.way, seen.force),
+                    {{"watchdog_way", 1e3 * seen.way, "mm", "> 0.5", ""}});
+    case WatchdogEnd::kLetGo:
+      return skipped(kName, fmt::format("The tip went {:.0f} mm in {:.0f} ms and was let go before "
+                                        "the watchdog's time was over: it rubs less than the arm "
+                                        "file says.",
+                                        1e3 * seen.way, 1e3 * seen.time));
+    case WatchdogEnd::kStillOn:
+      return judged(kName,
+                    fmt::format("The motors were still on {:.0f} ms after the last message, when "
+                                "the tip had gone {:.0f} mm and was let go. The arm file says "
+                                "{:.0f} ms.",
+                                1e3 * seen.time, 1e3 * seen.way, 1e3 * order.named),
+                    {{"watchdog_seen", 0, "", "== 1", ""}});
+    case WatchdogEnd::kSeen:
+      return judged(
+          kName,
+          fmt::format("The motors went off {:.0f} ms after the last message; the arm file says "
+                      "{:.0f} ms.",
+                      1e3 * seen.time, 1e3 * order.named),
+          {{"watchdog_time", 1e3 * seen.time, "ms", fmt::format("< {:g}", 2e3 * order.named), ""}});
+  }
+  return broken_off(kName, "", &bench);
+}
+
+}  // namespace thimble::app

@@ -1,0 +1,107 @@
+#include "ros2/ros_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "ros2/ros_module.h"
+#include "ros2/ros_scene.h"
+#include "run_records.h"
+#include "setup.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/scene_file.h"
+
+namespace thimble::faces {
+RosOptions options_of_arm(const session::Session& session, const RosOptions& options,
+                          std::size_t arm) {
+  RosOptions own = options;
+  if (session.arms() == 1) return own;
+  const std::string word = frame_word(session.arm_name(arm));
+  own.arm_space = "/" + word;
+  own.tip_frame = word + "_" + own.tip_frame;
+  return own;
+}
+
+driver::Result<std::unique_ptr<RosRun>> RosRun::open(session::Session& session,
+                                                     const RosOptions& options, std::size_t arm,
+                                                     SteppedClock* clock) {
+  std::unique_ptr<RosRun> run(new RosRun(session));
+  const driver::Device& device = session.device(arm);
+  run->options_ = options_of_arm(session, options, arm);
+  run->channel_.clock = &session.setup().clock();
+  run->channel_.tick = &session.newest(arm);
+  run->channel_.arm = arm;
+  if (clock != nullptr) {
+    run->channel_.steps = &clock->steps();
+    if (arm == 0) clock->steps().expect(session.arms());
+  }
+  run->options_.stepped = clock != nullptr;
+  run->options_.moves_time = arm == 0;
+  run->ends_tick_ = arm + 1 == session.arms();
+  if (arm == 0) run->poses_ = session.records().poses.get();
+  if (options.force != RosForce::kNone) {
+    run->law_ = std::make_unique<WrenchLaw>(run->channel_, session.own_law(), options,
+                                            device.gate().limits());
+  }
+  // The peer first: where there is no module, the session stays as it was.
+  auto peer = open_ros_peer(run->options_, ros_scene(session, run->options_, arm), run->channel_);
+  if (!peer) return peer.error();
+  run->peer_ = std::move(peer).value();
+  if (run->law_) {
+    if (auto set = session.set_servo_law(driver::ForceLaw(*run->law_)); !set) return set.error();
+  }
+  if (!run->watches_ticks()) return run;
+  if (auto added = session.add_observer(*run, arm); !added) return added.error();
+  return run;
+}
+
+bool RosRun::watches_ticks() const noexcept {
+  return poses_ != nullptr || options_.lead_hand || options_.stepped;
+}
+
+void RosRun::take(const driver::TickRecord& record) noexcept {
+  // Often enough for eyes: 60 times a second at 1 kHz.
+  constexpr std::uint64_t kTicksPerPose = 16;
+  if (poses_ != nullptr && (options_.stepped || record.tick % kTicksPerPose == 0)) {
+    channel_.poses.store(poses_->now());
+  }
+  if (options_.lead_hand) {
+    RosHandPlace place;
+    constexpr int kAttempts = 4;  // a writer that was stopped must not hold a tick up
+    if (channel_.hand.load(place, kAttempts) && place.number != places_taken_) {
+      places_taken_ = place.number;
+      if (!session_.lead_hand({place.p_W[0], place.p_W[1], place.p_W[2]})) ++places_refused_;
+    }
+  }
+  if (options_.stepped && ends_tick_) channel_.steps->done(record.tick + 1);
+}
+
+std::string RosRun::report() const {
+  const RosCounts& counts = channel_.counts;
+  std::string s = fmt::format("ROS 2     {} ticks published", counts.published.load());
+  if (law_)
+    s += fmt::format("; {} forces taken, {} cut to the limit", counts.taken.load(), law_->cut());
+  if (options_.lead_hand) s += fmt::format("; {} places of the hand taken", counts.places.load());
+  s += ".\n";
+  const auto tell = [&s](std::uint64_t number, const char* what) {
+    if (number > 0) s += fmt::format("ROS 2     {} {}\n", number, what);
+  };
+  tell(counts.skipped.load(), "messages skipped: newer ones stood behind them.");
+  tell(counts.not_finite.load(), "messages refused: they were not finite.");
+  tell(counts.wrong_frame.load(), "messages refused: they were not in the world's frame.");
+  tell(places_refused_, "places of the hand were beyond the arm's reach: it stayed.");
+  tell(counts.with_torque.load(), "forces had a torque, for which the arm has no motor.");
+  if (!law_) return s;
+  tell(law_->stalls(), "times a force was not renewed within its time, and was zero until it was.");
+  if (const session::Histogram& ages = law_->ages(); ages.count() > 0) {
+    s += fmt::format(
+        "ROS 2     forces answered positions that were {:.2f} ms old (median), {:.2f} ms (99 %)\n",
+        1e-6 * ages.percentile(0.5), 1e-6 * ages.percentile(0.99));
+  }
+  return s;
+}
+
+}  // namespace thimble::faces

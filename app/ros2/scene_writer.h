@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dds/dds.h"
+#include "ros2/ros_peer.h"
+#include "ros_messages.h"
+#include "scene_poses.h"
+
+namespace thimble::faces {
+
+/// Tells what is touched: the objects of a scene as markers, once and to all who come later, each
+/// in a frame that moves with it. Not thread-safe.
+class SceneWriter {
+ public:
+  /// Makes the writer and tells of the objects. The options and the scene must outlive it.
+  SceneWriter(dds_entity_t participant, const RosOptions& options, const RosScene& scene);
+  /// Returns the first error of DDS; 0: none.
+  dds_return_t error() const noexcept { return error_; }
+
+  /// Returns where the frames of the objects that move are, for /tf; they refer to this and to
+  /// `header`.
+  std::vector<geometry_msgs_msg_dds__TransformStamped_> frames(
+      const session::ScenePoses& poses, const std_msgs_msg_dds__Header_& header) const;
+
+ private:
+  void tell_objects(dds_entity_t writer);
+
+  const RosOptions& options_;
+  const RosScene& scene_;
+  std::vector<std::string> frames_;  // of each object; the world's where it stands still
+  dds_return_t error_ = 0;
+};
+
+}  // namespace thimble::faces

@@ -1,0 +1,71 @@
+#include "ros2/wrench_law.h"
+
+#include <algorithm>
+
+namespace thimble::faces {
+namespace {
+
+/// A writer that was stopped in the middle of writing must not hold a tick up.
+constexpr int kAttempts = 4;
+
+void count(std::atomic<std::uint64_t>& counter) noexcept {
+  counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+WrenchLaw::WrenchLaw(const RosChannel& channel, driver::ForceLaw scene, const RosOptions& options,
+                     const driver::GateLimits& limits) noexcept
+    : channel_(channel),
+      scene_(scene),
+      limits_(limits),
+      replace_(options.force == RosForce::kReplace),
+      force_limit_(options.force_limit > 0 ? std::min(options.force_limit, limits.force_max)
+                                           : limits.force_max),
+      stale_ns_(options.stale_ns) {}
+
+driver::ForceCommand WrenchLaw::operator()(const driver::DeviceState& state) noexcept {
+  driver::ForceCommand command = scene_(state);
+  take(state.time_ns);
+  if (!stale_) {
+    opened_ = opening_ > 0 ? std::min(1.0, opened_ + state.dt / opening_) : 1.0;
+  }
+  // Without the scene's force its springs are not pressed either, for the gate's account of energy.
+  if (replace_) command = {};
+  if (!stale_) {
+    const Eigen::Vector3d f_W = opened_ * f_asked_W_;
+    command.f_T_W += f_W;
+    command.f_program_W += f_W;
+  }
+  return command;
+}
+
+void WrenchLaw::take(std::int64_t time_ns) noexcept {
+  RosWrench newest;
+  if (channel_.wrench.load(newest, kAttempts) && newest.number != taken_ &&
+      !(time_ns - newest.time_ns > stale_ns_)) {
+    if (stale_) {
+      const bool long_ago = taken_ == 0 || time_ns - taken_ns_ > limits_.watchdog_ns;
+      opening_ = long_ago ? limits_.soft_start : limits_.reopen;
+      opened_ = 0;
+      stale_ = false;
+    }
+    taken_ = newest.number;
+    // A stamp from before the run or ahead of it is of another clock.
+    if (newest.answers_ns > 0 && newest.answers_ns <= time_ns) {
+      ages_.add(time_ns - newest.answers_ns);
+    }
+    taken_ns_ = std::min(time_ns, newest.time_ns);
+    f_asked_W_ = Eigen::Map<const Eigen::Vector3d>(newest.f_W.data());
+    // stableNorm: the square of a huge force is no number any more.
+    if (const double length = f_asked_W_.stableNorm(); length > force_limit_) {
+      f_asked_W_ *= force_limit_ / length;
+      count(cut_);
+    }
+  } else if (!stale_ && time_ns - taken_ns_ > stale_ns_) {
+    stale_ = true;
+    count(stalls_);
+  }
+}
+
+}  // namespace thimble::faces

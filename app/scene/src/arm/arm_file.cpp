@@ -1,0 +1,338 @@
+#include "thimble/scene/arm_file.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "arm_table.h"
+#include "energy_guard_settings.h"
+#include "gravity_terms.h"
+#include "nanoseconds.h"
+#include "read_scene.h"
+#include "simulation_section.h"
+#include "thimble/scene/shipped_files.h"
+#include "yaml/yaml_reader.h"
+
+namespace thimble::scene {
+namespace {
+
+// The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
+// [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
+constexpr std::int64_t kCountsMax = 1'000'000;
+
+driver::SerialArm read_geometry(YamlMap map) {
+  driver::SerialArm geometry;
+  geometry.height = map.require_number("height", "m", -1, 1);
+  geometry.length_b = map.require_number("length_b", "m", 0.01, 1);
+  geometry.length_c = map.require_number("length_c", "m", 0.01, 1);
+  map.finish();
+  return geometry;
+}
+
+/// Reads what the motors carry for long: both keys or none.
+driver::HeatSettings read_heat(YamlMap& map) {
+  driver::HeatSettings heat;
+  const bool current = map.has("continuous_current"), time = map.has("thermal_time_constant");
+  if (!current && !time) return heat;
+  if (!current) map.refuse("thermal_time_constant", "expected continuous_current beside it");
+  if (!time) map.refuse("continuous_current", "expected thermal_time_constant beside it");
+  if (!current || !time) return heat;
+  const Eigen::Vector3d amperes = map.require_vector3("continuous_current", "A", 0.01, 32);
+  const Eigen::Vector3d seconds = map.require_vector3("thermal_time_constant", "s", 1, 1e5);
+  for (std::size_t i = 0; i < 3; ++i) {
+    heat.continuous_current[i] = amperes[static_cast<Eigen::Index>(i)];
+    heat.time_constant[i] = seconds[static_cast<Eigen::Index>(i)];
+  }
+  return heat;
+}
+
+/// Reads what may differ between two arms of a build whose geometry, drives and encoders are code.
+void read_built_in_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
+  Eigen::Vector3d torque;
+  for (std::size_t i = 0; i < 3; ++i) {
+    torque[static_cast<Eigen::Index>(i)] = model.drives[i].torque_constant;
+  }
+  torque = map.optional_vector3("torque_constant", torque, "N m/A", 1e-4, 10);
+  for (std::size_t i = 0; i < 3; ++i) {
+    model.drives[i].torque_constant = torque[static_cast<Eigen::Index>(i)];
+  }
+  heat = read_heat(map);
+  map.finish();
+}
+
+void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
+  const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
+  const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
+  const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
+  const auto counts = map.require_three_whole("counts_per_motor_turn", "counts", 1, kCountsMax);
+  const auto home = map.require_three_whole("home_counts", "counts", -kCountsMax, kCountsMax);
+  const auto motor_sign = map.require_signs("motor_sign");
+  const auto encoder_sign = map.require_signs("encoder_sign");
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    model.drives[i] = {static_cast<double>(motor_sign[i]), ratio[k], torque[k], current[k]};
+    model.encoders[i] = {static_cast<double>(encoder_sign[i]), static_cast<double>(counts[i]),
+                         home[i]};
+  }
+  heat = read_heat(map);
+  map.finish();
+}
+
+/// Reads the gimbal that is mounted on this arm.
+driver::Gimbal read_gimbal(YamlMap map) {
+  driver::Gimbal gimbal;
+  const auto counts = map.require_three_whole("counts_per_turn", "counts", 4, kCountsMax);
+  const auto home =
+      map.optional_three_whole("home_counts", {0, 0, 0}, "counts", -kCountsMax, kCountsMax);
+  const auto sign = map.require_signs("sign");
+  const auto axes = map.optional_choices("axes", {0, 1, 0}, {"x", "y", "z"});
+  if (axes.size() == 3) {
+    if (axes[0] == axes[1] || axes[1] == axes[2]) {
+      map.refuse("axes", "expected no two neighbours to be the same axis");
+    }
+  } else if (!axes.empty()) {  // what cannot be read at all has been told
+    map.refuse("axes", "expected three axes, from the link to the stylus");
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (axes.size() == 3) gimbal.axes[i] = static_cast<driver::FrameAxis>(axes[i]);
+    gimbal.sign[i] = static_cast<double>(sign[i]);
+    gimbal.counts_per_turn[i] = static_cast<double>(counts[i]);
+    gimbal.home_counts[i] = static_cast<std::int32_t>(home[i]);
+  }
+  map.finish();
+  return gimbal;
+}
+
+std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::string_view unit,
+                                      double least, double most) {
+  if (!map.has(key)) return {};
+  return map.require_number(key, unit, least, most);
+}
+
+/// Mean power on the hand where a file names none, W, and the time of that mean, s [chosen: 1 W
+/// moves a pinched grip of 3 N s/m (PHYSICS 0) at 0.6 m/s for ever; within 2 s it is the work of 5
+/// N over 0.4 m, so that no constant force within an arm's workspace is lowered].
+constexpr double kPowerMost = 1, kPowerTime = 2;
+
+driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
+  driver::GateLimits limits;
+  limits.force_max = map.require_number("force_max", "N", 0.01, 100);
+  limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, driver::GateLimits::kRiseMost);
+  limits.soft_start =
+      map.require_number("soft_start", "s", driver::GateLimits::kSoftStartLeast, 10);
+  limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
+  limits.watchdog_ns = to_ns(
+      map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMost_ns));
+  limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
+  limits.power_max = map.optional_number("power_max", kPowerMost, "W", 0.01, 20);
+  limits.power_time = map.optional_number("power_time", kPowerTime, "s", 0.1, 10);
+  if (limits.force_max > arm.declared.force) {
+    map.reject("force_max",
+               fmt::format("expected at most what the arm declares, {:g} N, found {:g}",
+                           arm.declared.force, limits.force_max));
+  }
+  // A mistake in either has been told, and left its least value.
+  if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {
+    map.reject("stall", "expected a shorter time than that of watchdog");
+  }
+  EnergyChoice& energy = arm.energy;
+  if (map.has("energy")) {
+    energy.stage =
+        static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
+  }
+  arm.hold_unchanged = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
+  energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
+  energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
+  energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
+  energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
+  for (const char* key :
+       {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
+        "power_max", "power_time", "tip_mass", "energy_allowance", "energy_reservoir",
+        "energy_slope", "hold_unchanged"}) {
+    arm.gate_lines[key] = map.key_line(key);
+  }
+  map.finish();
+  return limits;
+}
+
+WorkspaceBox read_workspace(YamlMap map) {
+  const Eigen::Vector3d min_W = map.require_vector3("min", "m", -2, 2);
+  const Eigen::Vector3d max_W = map.require_vector3("max", "m", -2, 2);
+  if (!(min_W.array() <= max_W.array()).all()) {
+    map.reject("max", "expected no coordinate below that of min");
+  }
+  map.finish();
+  return {min_W, max_W};
+}
+
+DeclaredLimits read_declared(YamlMap map) {
+  DeclaredLimits declared;
+  declared.force = map.require_number("force", "N", 0.01, 100);
+  declared.stiffness = map.require_number("stiffness", "N/m", 1, 1e5);
+  declared.damping = map.require_number("damping", "N s/m", 0, 1000);
+  declared.continuous_force = map.optional_number("continuous_force", 0, "N", 0, 100);
+  if (declared.continuous_force > declared.force) {
+    map.reject("continuous_force", "expected at most the declared force");
+  }
+  map.finish();
+  return declared;
+}
+
+/// Returns the most that the motors carry over the workspace, N.
+double most_carried(const ArmFile& arm) {
+  if (arm.carried_moments.isZero(0)) return arm.carried_weight;
+  constexpr int kPlaces = 5;  // along each side of the workspace
+  const LinkGravity links = link_gravity(arm);
+  const Eigen::Vector3d side = (arm.workspace.max_W - arm.workspace.min_W) / (kPlaces - 1);
+  double most = 0;
+  for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
+    const Eigen::Vector3d at(i % kPlaces, i / kPlaces % kPlaces, i / (kPlaces * kPlaces));
+    const Eigen::Vector3d p_WT = arm.workspace.min_W + side.cwiseProduct(at);
+    const auto q = links.arm.inverse(arm.R_WB.transpose() * (p_WT - arm.p_WB));
+    if (!q) continue;
+    most = std::max(most, (links.carried(*q) + Eigen::Vector3d(0, 0, arm.carried_weight)).norm());
+  }
+  return most;
+}
+
+/// Reads what of the arm's weight its motors carry: at most a third of the force that the gate lets
+/// through [chosen: so that most of it is left for the scene]. Of links that weigh more in some
+/// poses that third is given there.
+void read_carried(YamlMap map, ArmFile& arm) {
+  const double third = arm.limits.force_max / 3;
+  arm.carried_weight = map.optional_number("weight", 0, "N", 0, 10);
+  if (arm.carried_weight > third) {
+    map.reject("weight",
+               fmt::format("expected at most a third of the gate's force_max, {:.3g} N", third));
+  }
+  if (arm.is<driver::SerialArm>()) {
+    arm.carried_moments = {map.optional_number("moment_b", 0, "kg m", -1, 1),
+                           map.optional_number("moment_c", 0, "kg m", -1, 1)};
+  }
+  if (!arm.carried_moments.isZero(0)) {
+    LinkGravity links = link_gravity(arm);
+    links.most = HUGE_VAL;
+    const auto q = links.arm.inverse(arm.R_WB.transpose() * (arm.workspace.middle() - arm.p_WB));
+    const double weight = q ? links.carried(*q).norm() + arm.carried_weight : 0;
+    if (weight > third) {
+      map.reject("", fmt::format("expected at most a third of the gate's force_max, {:.3g} N, to "
+                                 "be carried in the middle of the workspace, and it is {:.3g} N",
+                                 third, weight));
+    }
+  }
+  map.finish();
+  arm.carried_most = most_carried(arm);
+}
+
+std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& row) {
+  const std::span<const driver::BoardKind> fitting(row.boards.data(), row.board_count);
+  std::vector<driver::BoardKind> boards;
+  for (const std::size_t index :
+       root.optional_choices("board", {static_cast<std::size_t>(fitting.front())},
+                             {driver::kBoardNames.begin(), driver::kBoardNames.end()})) {
+    const auto board = static_cast<driver::BoardKind>(index);
+    if (std::find(fitting.begin(), fitting.end(), board) == fitting.end()) {
+      root.reject("board", "the board " + std::string(name(board)) + " does not speak " +
+                               std::string(row.protocol));
+    }
+    boards.push_back(board);
+  }
+  if (boards.empty()) boards.push_back(fitting.front());  // a mistake that is told
+  return boards;
+}
+
+/// Returns the build of the arms that tell where their tip is.
+const driver::ShapeRow& told_shape() {
+  const auto shapes = driver::arm_shapes();
+  return *std::find_if(shapes.begin(), shapes.end(), [](const driver::ShapeRow& row) {
+    return row.built_in != nullptr &&
+           std::holds_alternative<driver::ToldArm>(row.built_in().geometry);
+  });
+}
+
+/// Reads what the arm speaks and how it is built, by the names of the table of arms.
+void read_kind(YamlMap& root, ArmFile& arm) {
+  std::vector<std::string_view> protocols, shapes;
+  for (const driver::ArmRow& row : driver::arm_table()) protocols.push_back(row.protocol);
+  for (const driver::ShapeRow& row : driver::arm_shapes()) shapes.push_back(row.name);
+  const driver::ArmRow& row = driver::arm_table()[root.require_choice("protocol", protocols)];
+  arm.protocol = row.kind;
+  arm.boards = read_boards(root, row);
+  if (row.has_own_link()) {
+    // Its vendor's software knows its joints and motors; a file that names them is told so.
+    arm.model = told_shape().built_in();
+    return;
+  }
+  const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
+  arm.board_model = static_cast<int>(root.optional_whole("board_model", 0, "", 0, 1000));
+  if (shape.built_in != nullptr) {
+    arm.model = shape.built_in();
+    if (root.has("joints")) {
+      read_built_in_joints(root.require_map("joints"), arm.model, arm.heat);
+    }
+  } else {
+    arm.model.geometry = read_geometry(root.require_map("geometry"));
+    read_joints(root.require_map("joints"), arm.model, arm.heat);
+  }
+  if ((row.kind == driver::ArmKind::kFalcon) != arm.is<driver::DeltaArm>()) {
+    root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
+  }
+  if (arm.is<driver::ToldArm>()) {
+    root.reject("shape", "the shape told is that of arms behind a vendor's service or library");
+  }
+  if (!root.has("gimbal")) return;
+  if (!row.carries_gimbal) {
+    root.reject("gimbal",
+                "the reports of " + std::string(row.protocol) + " carry no encoders of a gimbal");
+  }
+  arm.model.gimbal = read_gimbal(root.require_map("gimbal"));
+}
+
+}  // namespace
+
+driver::Result<ArmFile> load_arm(const std::filesystem::path& meant) {
+  const auto file = find_arm_file(meant.string());
+  if (!file) return file.error();
+  driver::Result<YamlFile> yaml = YamlFile::load(*file);
+  if (!yaml) return yaml.error();
+  return read_arm(*yaml);
+}
+
+driver::Result<ArmFile> read_arm(YamlFile& yaml) {
+  YamlMap& root = yaml.root();
+  ArmFile arm;
+  arm.name = root.require_string("name");
+  arm.description = root.optional_string("description", "");
+  read_kind(root, arm);
+  YamlMap base = root.require_map("base");
+  arm.p_WB = base.require_vector3("position", "m", -2, 2);
+  arm.R_WB = base.optional_rotation("rotate_degrees");
+  base.finish();
+  arm.workspace = read_workspace(root.require_map("workspace"));
+  arm.declared = read_declared(root.require_map("declared"));
+  arm.limits = read_gate(root.require_map("gate"), arm);
+  if (root.has("gravity_compensation")) {
+    read_carried(root.require_map("gravity_compensation"), arm);
+  }
+  arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
+  if (arm.is<driver::ToldArm>() && root.has("simulation")) {
+    root.refuse("simulation", "an arm behind a vendor's service or library cannot be simulated");
+  }
+  if (arm.is<driver::SerialArm>() || root.has("simulation")) {
+    arm.simulated = read_simulation(root.require_map("simulation"), arm);
+    arm.can_simulate = true;
+  }
+  root.finish();
+  if (auto done = yaml.finish(); !done) return done.error();
+  return arm;
+}
+
+}  // namespace thimble::scene

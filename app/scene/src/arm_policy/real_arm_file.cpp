@@ -1,0 +1,173 @@
+#include "thimble/scene/real_arm_file.h"
+
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "arm/calibration.h"
+#include "arm_policy/board_model.h"
+#include "arm_policy/limits_policy.h"
+#include "arm_table.h"
+#include "thimble/scene/real_arm.h"
+#include "thimble/scene/shipped_files.h"
+#include "user_folders.h"
+
+namespace thimble::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using driver::ArmKind;
+using driver::Error;
+using driver::FoundArm;
+using driver::Result;
+
+/// An installed file and why it is the one.
+struct Choice {
+  fs::path path;
+  std::string why;
+};
+
+/// Lists the installed arm files that may be used with an arm, for a sentence.
+std::string fitting_names(const FoundArm& arm) {
+  std::string names;
+  for (const ShippedFile& installed : installed_arms()) {
+    const auto file = load_arm(installed.path);
+    if (file && check_fits(*file, arm)) names += (names.empty() ? "" : ", ") + installed.name;
+  }
+  return names.empty() ? "none is installed that fits it" : "installed are: " + names;
+}
+
+Error say_which(const FoundArm& arm, const std::string& because) {
+  return Error{because + " Say which arm it is: thimble calibrate --device " + arm.name() +
+               " --arm NAME keeps it for all runs to come, --arm NAME holds for one (" +
+               fitting_names(arm) + ")."};
+}
+
+/// Of an arm behind a library nothing is calibrated here, so that its file is named in each run.
+Error say_by_arm(const FoundArm& arm) {
+  return Error{"The library of " + arm.arm + " " + arm.name() +
+               " drives several arms. Say which one it is in each run: --arm NAME (" +
+               fitting_names(arm) + ")."};
+}
+
+Result<Choice> installed_named(const std::string& name, const std::string& why) {
+  for (const ShippedFile& installed : installed_arms()) {
+    if (installed.name == name) return Choice{installed.path, why};
+  }
+  return Error{"No installed arm file is called " + name + ", which is meant here (" + why +
+               "). Put it into " + own_arm_folder().string() + ", or name another by --arm."};
+}
+
+Result<Choice> installed_for_model(const FoundArm& arm, int model) {
+  const std::string number = std::to_string(model);
+  std::optional<Choice> found;
+  for (const ShippedFile& installed : installed_arms()) {
+    const auto file = load_arm(installed.path);
+    if (!file || file->board_model != model || !check_fits(*file, arm)) continue;
+    if (found) {
+      return say_which(arm, "The board " + arm.name() + " answers as model " + number +
+                                ", for which several arm files are installed.");
+    }
+    found = Choice{installed.path, "its board answers as model " + number};
+  }
+  if (found) return *found;
+  return say_which(arm, "The board " + arm.name() + " answers as model " + number +
+                            ", for which no arm file is installed.");
+}
+
+/// Finds the installed file of an arm of which the user named none.
+Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration,
+                             const RealArmSearch& search) {
+  if (calibration != nullptr && !calibration->arm_file.empty()) {
+    return installed_named(calibration->arm_file,
+                           "kept with its calibration in " + calibration_file(arm.name()).string());
+  }
+  const driver::ArmRow* row = driver::row_of(arm.kind);
+  if (row != nullptr && !row->own_file.empty()) {
+    return installed_named(std::string(row->own_file), "the arm is a " + arm.arm);
+  }
+  if (row != nullptr && row->has_own_link()) {
+    return say_by_arm(arm);
+  }
+  if (arm.kind != ArmKind::kHfabLine) {
+    return say_which(arm, "The arm " + arm.name() + " does not tell its model over USB.");
+  }
+  const auto model = search.ask_model ? search.ask_model(arm) : ask_board_model(arm);
+  if (!model) return say_which(arm, model.error().message);
+  return installed_for_model(arm, *model);
+}
+
+/// Finds the installed file that limits what a file from elsewhere may do: the one of an arm of the
+/// same name, else the arm's own.
+Result<Choice> choose_for(const ArmFile& other, const FoundArm& arm, const Calibration* calibration,
+                          const RealArmSearch& search) {
+  for (const ShippedFile& installed : installed_arms()) {
+    const auto file = load_arm(installed.path);
+    if (file && file->name == other.name) {
+      return Choice{installed.path, "the installed one of the arm that --arm describes"};
+    }
+  }
+  auto own = choose_by_arm(arm, calibration, search);
+  if (own) return own;
+  const std::string folder = own_arm_folder().string();
+  return Error{search.arm_file.string() +
+               ": a real arm gets its limits from an installed arm file, and none is for an arm "
+               "called " +
+               other.name + ". If you have checked this file for this very arm: mkdir -p " +
+               folder + " && cp " + search.arm_file.string() + " " + folder + "/"};
+}
+
+Error differs(const fs::path& file, const char* section, const fs::path& installed) {
+  const std::string folder = own_arm_folder().string();
+  return Error{
+      file.string() + ": its section \"" + section + "\" is not that of " + installed.string() +
+      ". What a real arm is made of stands in an installed arm file; a file from elsewhere "
+      "may only tighten its limits. If you have checked it for this very arm: mkdir -p " +
+      folder + " && cp " + file.string() + " " + folder + "/"};
+}
+
+}  // namespace
+
+Result<RealArmFile> find_real_arm_file(const FoundArm& arm, const RealArmSearch& search) {
+  auto calibration = load_calibration(arm.name());
+  if (!calibration && !search.for_calibration) return calibration.error();
+  const Calibration* known = calibration && *calibration ? &**calibration : nullptr;
+
+  const bool named = !search.arm_file.empty();
+  const bool from_elsewhere = named && !is_installed_arm(search.arm_file);
+  std::optional<ArmFile> other;
+  if (from_elsewhere) {
+    auto read = load_arm(search.arm_file);
+    if (!read) return read.error();
+    other = std::move(read).value();
+  }
+  auto choice = from_elsewhere ? choose_for(*other, arm, known, search)
+                : named        ? Result<Choice>(Choice{search.arm_file, "named by --arm"})
+                               : choose_by_arm(arm, known, search);
+  if (!choice) return choice.error();
+
+  auto file = load_arm(choice->path);
+  if (!file) return file.error();
+  RealArmFile found{
+      .path = choice->path, .file = std::move(file).value(), .why = choice->why, .told = {}};
+  if (auto fits = check_fits(found.file, arm); !fits) return fits.error();
+  if (other) {
+    if (const char* section = differing_section(found.file, *other)) {
+      return differs(search.arm_file, section, found.path);
+    }
+    found.told = tighten(found.file, found.path, *other, search.arm_file);
+  }
+  if (known == nullptr || search.for_calibration) return found;
+  const std::string name = found.path.stem().string();
+  if (!known->arm_file.empty() && known->arm_file != name) {
+    return Error{"The calibration of " + arm.name() + " (" + calibration_file(arm.name()).string() +
+                 ") was found with the arm file " + known->arm_file + ", not with " + name +
+                 ". Calibrate it anew: thimble calibrate "
+                 "--device " +
+                 arm.name() + " --arm " + name};
+  }
+  apply(*known, found.file);
+  return found;
+}
+
+}  // namespace thimble::scene

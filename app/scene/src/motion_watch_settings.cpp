@@ -1,0 +1,22 @@
+#include "motion_watch_settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "energy_guard_settings.h"
+
+namespace thimble::scene {
+
+driver::MotionWatchSettings motion_settings(const ArmFile& arm, double rate) {
+  // Desk-top arms have 45 to 150 g [DEVICES 3]; the watch bears a factor of 1.4 each way and more.
+  constexpr double kUsualMass = 0.1;  // kg
+  constexpr double kDelayMost = 10;   // ticks; a later force is not compared with the motion
+  driver::MotionWatchSettings settings;
+  const double simulated = arm.can_simulate ? arm.simulated.plant.mass : kUsualMass;
+  settings.mass = arm.energy.mass.value_or(simulated);
+  settings.delay_ticks = static_cast<int>(std::min(std::round(loop_delay(arm) * rate), kDelayMost));
+  settings.hold_most = arm.hold_unchanged.value_or(settings.hold_most);
+  return settings;
+}
+
+}  // namespace thimble::scene

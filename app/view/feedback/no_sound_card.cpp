@@ -1,0 +1,11 @@
+#include "view/feedback/sound_card.h"
+
+namespace thimble::app::view {
+
+driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
+  return driver::Error{
+      "No sound: this thimble was built without ALSA. Install libasound2-dev and build it again; "
+      "`thimble export REC.h5 --sound FILE.wav` works without."};
+}
+
+}  // namespace thimble::app::view

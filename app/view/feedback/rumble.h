@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "thimble/driver/result.h"
+#include "view/feedback/feedback_outputs.h"
+
+namespace thimble::app::view {
+
+/// Opens the first gamepad that can rumble, by the kernel's force feedback (evdev, FF_RUMBLE).
+/// `folder`: where its event files are. The kernel itself stops the motors kRumbleMost after they
+/// were told last, and when this goes or its process dies. The error says what to do. Real-time:
+/// never from the servo thread.
+driver::Result<std::unique_ptr<RumbleOutput>> open_rumble(
+    const std::filesystem::path& folder = "/dev/input");
+
+}  // namespace thimble::app::view

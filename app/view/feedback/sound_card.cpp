@@ -1,0 +1,72 @@
+#include "view/feedback/sound_card.h"
+
+#include <alsa/asoundlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "view/feedback/touch_sound.h"
+#include "view/feedback/wav_file.h"
+
+namespace thimble::app::view {
+namespace {
+
+constexpr unsigned kLatency =
+    80'000;  // us of what the card holds; chosen: four turns of the player
+// Silence that goes ahead, samples: what the card plays while the next turn comes late. Chosen.
+constexpr std::size_t kAhead = TouchSound::kRate / 1000 * 40;
+
+/// A card that is open.
+class AlsaCard final : public SoundOutput {
+ public:
+  explicit AlsaCard(snd_pcm_t* card) : card_(card) { begin(); }
+  AlsaCard(const AlsaCard&) = delete;
+  AlsaCard& operator=(const AlsaCard&) = delete;
+  ~AlsaCard() override { snd_pcm_close(card_); }
+
+  void play(std::span<const float> samples) override {
+    const std::vector<std::int16_t> whole = sixteen_bits(samples);
+    if (write(whole) != -EPIPE) return;
+    // It has played all that it had. It goes on with silence ahead of what is new.
+    begin();
+    write(whole);
+  }
+
+ private:
+  void begin() {
+    snd_pcm_prepare(card_);
+    write(std::vector<std::int16_t>(kAhead, 0));
+  }
+  /// Writes what there is room for; the rest is dropped.
+  int write(const std::vector<std::int16_t>& samples) {
+    return static_cast<int>(snd_pcm_writei(card_, samples.data(), samples.size()));
+  }
+
+  snd_pcm_t* card_;
+};
+
+/// What ALSA would write to the terminal by itself.
+void say_nothing(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
+                 const char* /*format*/, ...) {}
+
+}  // namespace
+
+driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
+  snd_lib_error_set_handler(say_nothing);
+  snd_pcm_t* card = nullptr;
+  int status = snd_pcm_open(&card, "default", SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK);
+  if (status >= 0) {
+    status = snd_pcm_set_params(card, SND_PCM_FORMAT_S16, SND_PCM_ACCESS_RW_INTERLEAVED, 1,
+                                TouchSound::kRate, 1, kLatency);
+    if (status < 0) snd_pcm_close(card);
+  }
+  if (status < 0) {
+    return driver::Error{std::string("No sound: ALSA's device \"default\" cannot be opened (") +
+                         snd_strerror(status) + "); `speaker-test` (alsa-utils) tries the same."};
+  }
+  return std::unique_ptr<SoundOutput>(std::make_unique<AlsaCard>(card));
+}
+
+}  // namespace thimble::app::view

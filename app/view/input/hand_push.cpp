@@ -1,0 +1,52 @@
+#include "view/input/hand_push.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thimble::app::view {
+namespace {
+
+/// Takes a dead zone off a vector, by its length; what is not a number pushes nothing.
+template <class Vector>
+Vector without_dead_zone(const Vector& v, double zone) {
+  const double length = v.norm();
+  if (!(length > zone)) return Vector::Zero();
+  return v / length * std::min(1.0, (length - zone) / (1 - zone));
+}
+
+double one_if(bool held) {
+  return held ? 1 : 0;
+}
+
+/// Returns the share of its way that a trigger is pulled, from -1 to 1 as GLFW tells.
+double pulled(double trigger) {
+  const double share = (trigger + 1) / 2;
+  if (!(share > kTriggerDeadZone)) return 0;
+  return std::min(1.0, (share - kTriggerDeadZone) / (1 - kTriggerDeadZone));
+}
+
+}  // namespace
+
+HandPush push_of(const HandKeys& keys) {
+  return {{one_if(keys.right) - one_if(keys.left), one_if(keys.up) - one_if(keys.down),
+           one_if(keys.nearer) - one_if(keys.farther)},
+          keys.slow,
+          keys.let_go};
+}
+
+HandPush push_of(const GamepadState& pad) {
+  const Eigen::Vector2d stick = without_dead_zone(pad.left, kStickDeadZone);
+  return {{stick.x(), -stick.y(), pulled(pad.left_trigger) - pulled(pad.right_trigger)},
+          pad.slow,
+          pad.let_go};
+}
+
+HandPush push_of(const SpaceMouseState& mouse) {
+  const auto& counts = mouse.translation;
+  // Right, down, towards the person, to right, up and towards the eye.
+  const Eigen::Vector3d cap = Eigen::Vector3d(counts[0], -counts[2], counts[1]) / kSpaceMouseFull;
+  return {without_dead_zone(cap, kCapDeadZone), (mouse.buttons & 1U) != 0,
+          (mouse.buttons & 2U) != 0};
+}
+
+}  // namespace thimble::app::view

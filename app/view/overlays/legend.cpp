@@ -1,0 +1,77 @@
+#include "view/overlays/legend.h"
+
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "view/number_text.h"
+#include "view/overlays/force_marks.h"
+
+namespace thimble::app::view {
+namespace {
+
+ImU32 screen_colour(const Colour& colour) {
+  return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], 1});
+}
+
+}  // namespace
+
+Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice) {
+  Legend legend;
+  if (choice.fields || choice.trail) legend.strongest = strongest_force(scene, moment);
+  if (choice.fields && scene.field.empty()) {  // they push nothing that rests: viscous ones
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+      if (!scene.objects[i].field) continue;
+      legend.lines.push_back(
+          {object_colour(i), scene.objects[i].name + ": no force at rest, so no arrows"});
+    }
+  }
+  if (choice.marks.contact && moment.tick.in_contact) {
+    legend.lines.push_back({kNormalColour, "contact normal"});
+    legend.lines.push_back({kFrictionColour, "force along the surface"});
+  }
+  if (choice.surfaces) {
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+      const DrawnObject& object = scene.objects[i];
+      std::string feel;
+      if (!object.texture.empty()) feel = "texture " + object.texture + " (dots)";
+      if (!object.friction.empty()) {
+        feel += (feel.empty() ? "friction " : ", friction ") + object.friction + " (lines)";
+      }
+      if (!feel.empty()) legend.lines.push_back({object_colour(i), object.name + ": " + feel});
+    }
+  }
+  return legend;
+}
+
+void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float size = ImGui::GetFontSize();
+  const float left = part.x + 0.7F * size;
+  float y = part.y + 0.7F * size;
+  if (legend.strongest > 0) {
+    const float width = std::min(9 * size, 0.4F * part.width);
+    constexpr int kSteps = 24;
+    for (int k = 0; k < kSteps; ++k) {
+      const auto at = static_cast<float>(k) / kSteps;
+      const auto end = static_cast<float>(k + 1) / kSteps;
+      list.AddRectFilled({left + at * width, y}, {left + end * width, y + 0.7F * size},
+                         screen_colour(force_colour(static_cast<double>(at) + 0.5 / kSteps)));
+    }
+    write_rimmed({left, y + 0.8F * size}, theme, colours_of(theme).text, "0");
+    const std::string end = plain_force(legend.strongest);
+    write_rimmed({left + width - ImGui::CalcTextSize(end.c_str()).x, y + 0.8F * size}, theme,
+                 colours_of(theme).text, end);
+    y += 2.3F * size;
+  }
+  for (const Legend::Line& line : legend.lines) {
+    list.AddRectFilled({left, y + 0.15F * size}, {left + 0.8F * size, y + 0.95F * size},
+                       screen_colour(line.colour));
+    write_rimmed({left + 1.2F * size, y}, theme, colours_of(theme).text, line.text);
+    y += 1.35F * size;
+  }
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,42 @@
+#include "view/overlays/tip_trail.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace thimble::app::view {
+namespace {
+
+constexpr double kStep = 3e-4;                      // m: a pixel of a usual picture
+constexpr std::int64_t kLeastTime_ns = 10'000'000;  // so that there are 400 points at most
+
+}  // namespace
+
+void TipTrail::add(const driver::TickRecord& tick) {
+  if (!kept_.empty() && tick.time_ns < kept_.back().time_ns) kept_.clear();
+  while (!kept_.empty() &&
+         static_cast<double>(tick.time_ns - kept_.front().time_ns) > kSeconds * 1e9) {
+    kept_.pop_front();
+  }
+  // On the surface, where it can be seen, while the tip is in it.
+  const Eigen::Map<const Eigen::Vector3d> p_WT(tick.in_contact ? tick.p_WP.data()
+                                                               : tick.p_WT.data());
+  const double force = Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm();
+  if (!p_WT.allFinite() || !(force >= 0)) return;
+  if (!kept_.empty()) {
+    Kept& last = kept_.back();
+    const bool moved = (p_WT - last.point.p_WT).norm() >= kStep;
+    // Between two points the strongest counts, or a short blow would not be seen.
+    if (!moved || tick.time_ns - last.time_ns < kLeastTime_ns) {
+      last.point.force = std::max(last.point.force, force);
+      return;
+    }
+  }
+  kept_.push_back({tick.time_ns, {p_WT, force}});
+}
+
+void TipTrail::give(std::vector<TrailPoint>& trail) const {
+  trail.clear();
+  for (const Kept& kept : kept_) trail.push_back(kept.point);
+}
+
+}  // namespace thimble::app::view

@@ -1,0 +1,238 @@
+#include "view/playback/time_line.h"
+
+#include <epoxy/gl.h>
+// After the above, which brings OpenGL.
+#include <GLFW/glfw3.h>
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace thimble::app::view {
+namespace {
+
+constexpr float kOneRow = 34;     // in heights of the font: so wide must a part be for one row
+constexpr double kBigStep = 1.0;  // s, with shift; chosen
+
+ImU32 packed(const Colour& colour, float cover = 1) {
+  return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
+}
+
+// What a button shows: drawn, since the font has no such letters.
+enum class Sign { kStart, kBack, kPlay, kStop, kForward, kEnd };
+
+void draw_sign(ImDrawList& list, Sign sign, const ImVec2& middle, float r) {
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  const auto arrow = [&](float at, float way) {
+    list.AddTriangleFilled({middle.x + at - 0.5F * way * r, middle.y - r},
+                           {middle.x + at - 0.5F * way * r, middle.y + r},
+                           {middle.x + at + way * r, middle.y}, ink);
+  };
+  const auto bar = [&](float at, float half) {
+    list.AddRectFilled({middle.x + at - half, middle.y - r}, {middle.x + at + half, middle.y + r},
+                       ink);
+  };
+  switch (sign) {
+    case Sign::kStart:
+      bar(-0.8F * r, 0.16F * r);
+      arrow(0.35F * r, -1);
+      break;
+    case Sign::kBack:
+      arrow(-0.1F * r, -0.75F);
+      bar(0.7F * r, 0.16F * r);
+      break;
+    case Sign::kPlay:
+      arrow(-0.1F * r, 1);
+      break;
+    case Sign::kStop:
+      bar(-0.45F * r, 0.26F * r);
+      bar(0.45F * r, 0.26F * r);
+      break;
+    case Sign::kForward:
+      bar(-0.7F * r, 0.16F * r);
+      arrow(0.1F * r, 0.75F);
+      break;
+    case Sign::kEnd:
+      arrow(-0.35F * r, 1);
+      bar(0.8F * r, 0.16F * r);
+      break;
+  }
+}
+
+bool sign_button(const char* id, Sign sign, const char* about) {
+  const float side = ImGui::GetFrameHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const bool pressed = ImGui::Button(id, {1.15F * side, side});
+  draw_sign(*ImGui::GetWindowDrawList(), sign, {at.x + 0.575F * side, at.y + 0.5F * side},
+            0.26F * side);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", about);
+  ImGui::SameLine(0, 0.25F * ImGui::GetFontSize());
+  return pressed;
+}
+
+void draw_buttons(TouchSource& source) {
+  PlayHead& head = source.head();
+  const bool run = head.of_a_run();
+  if (sign_button("##start", Sign::kStart, run ? "oldest moment kept (Home)" : "begin (Home)")) {
+    head.to_start();
+  }
+  if (sign_button("##back", Sign::kBack, run ? "a picture back (left)" : "a tick back (left)")) {
+    head.stand_at(source.beside(-1));
+  }
+  const Sign sign = head.plays() || head.live() ? Sign::kStop : Sign::kPlay;
+  const char* about = head.live() ? "hold this moment; the run goes on"
+                      : run       ? "play"
+                                  : "play (space)";
+  if (sign_button("##play", sign, sign == Sign::kStop && !head.live() ? "stand still" : about)) {
+    head.toggle();
+  }
+  if (sign_button("##on", Sign::kForward, run ? "a picture on (right)" : "a tick on (right)")) {
+    head.stand_at(source.beside(1));
+  }
+  if (sign_button("##end", Sign::kEnd, run ? "now (End)" : "end (End)")) head.to_end();
+}
+
+void draw_speed(PlayHead& head) {
+  static constexpr std::array kSpeeds = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0};
+  ImGui::SetNextItemWidth(4.6F * ImGui::GetFontSize());
+  const std::string now = fmt::format("{:g} x", head.speed());
+  if (!ImGui::BeginCombo("##speed", now.c_str())) return;
+  for (const double speed : kSpeeds) {
+    const std::string text = fmt::format("{:g} x", speed);
+    if (ImGui::Selectable(text.c_str(), speed == head.speed())) head.set_speed(speed);
+  }
+  ImGui::EndCombo();
+}
+
+bool one_row(float width) {
+  return width >= kOneRow * ImGui::GetFontSize();
+}
+
+void draw_bar(const ScreenPart& bar, TouchSource& source) {
+  PlayHead& head = source.head();
+  const Plots& plots = source.plots();
+  const std::string kept = source.kept();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::SetCursorScreenPos({bar.x, bar.y});
+  ImGui::InvisibleButton("bar", {bar.width, bar.height});
+  const double span = head.end() - head.begin();
+  if (ImGui::IsItemActive() && span > 0) {
+    const double share = static_cast<double>((ImGui::GetIO().MousePos.x - bar.x) / bar.width);
+    head.go(head.begin() + span * std::clamp(share, 0.0, 1.0));
+  }
+  if (ImGui::IsItemHovered() && !ImGui::IsItemActive() && !kept.empty()) {
+    ImGui::SetTooltip("%s", kept.c_str());
+  }
+  const float middle = bar.y + 0.5F * bar.height;
+  const float half = 0.2F * bar.height;
+  const float round = half;
+  list.AddRectFilled({bar.x, middle - half}, {bar.x + bar.width, middle + half},
+                     packed(kGridColour, 0.35F), round);
+  if (!(span > 0)) return;
+  // Where something is touched.
+  const auto columns = static_cast<int>(bar.width);
+  for (int i = 0; i < columns; ++i) {
+    const double width = span / columns;
+    const double begin = head.begin() + width * i;
+    const Plots::Extent depth = plots.extent(Channel::kDepth, {begin, begin + width});
+    if (depth.empty() || !(depth.most > 0)) continue;
+    const float x = bar.x + static_cast<float>(i);
+    list.AddRectFilled({x, middle - half}, {x + 1, middle + half}, packed(kDepthColour, 0.45F));
+  }
+  const auto share = static_cast<float>((head.time() - head.begin()) / span);
+  const float x = bar.x + share * bar.width;
+  list.AddLine({x, bar.y + 0.12F * bar.height}, {x, bar.y + 0.88F * bar.height},
+               ImGui::GetColorU32(ImGuiCol_Text), 2);
+  list.AddCircleFilled({x, middle}, 0.3F * bar.height,
+                       packed(head.live() ? kEdgePlaneColour : kProxyColour));
+  list.AddCircle({x, middle}, 0.3F * bar.height, ImGui::GetColorU32(ImGuiCol_Text), 0, 1.5F);
+}
+
+}  // namespace
+
+std::string words_of(const PlayHead& head) {
+  if (!head.of_a_run())
+    return fmt::format("{:.3f} of {:.3f} s", head.time() - head.begin(), head.end() - head.begin());
+  return head.live() ? "now" : fmt::format("{:.1f} s behind", head.behind());
+}
+
+float TimeLine::height(float width) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float row = ImGui::GetFrameHeight();
+  const float pad = 0.5F * style.WindowPadding.y;
+  return 2 * pad + (one_row(width) ? row : 2 * row + style.ItemSpacing.y);
+}
+
+bool TimeLine::take_key(int key, TouchSource& source, bool arrows) {
+  if (!arrows && (key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT)) return false;
+  PlayHead& head = source.head();
+  const auto go = [&](int steps) {
+    head.stand_at(ImGui::GetIO().KeyShift ? head.time() + steps * kBigStep : source.beside(steps));
+  };
+  switch (key) {
+    case GLFW_KEY_LEFT:
+      go(-1);
+      return true;
+    case GLFW_KEY_RIGHT:
+      go(1);
+      return true;
+    case GLFW_KEY_HOME:
+      head.to_start();
+      return true;
+    case GLFW_KEY_END:
+      head.to_end();
+      return true;
+    case GLFW_KEY_SPACE:
+      if (head.of_a_run()) return false;
+      head.toggle();
+      return true;
+    case GLFW_KEY_COMMA:
+      head.set_speed(head.speed() / 2);
+      return true;
+    case GLFW_KEY_PERIOD:
+      head.set_speed(head.speed() * 2);
+      return true;
+    default:
+      return false;
+  }
+}
+
+void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
+  PlayHead& head = source.head();
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const ImVec2 pad{style.WindowPadding.x, 0.5F * style.WindowPadding.y};
+  ImGui::SetNextWindowPos({part.x, part.y});
+  ImGui::SetNextWindowSize({part.width, part.height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pad);
+  ImGui::Begin("time line", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PopStyleVar();
+  draw_buttons(source);
+  draw_speed(head);
+  const bool narrow = !one_row(part.width);
+  const float row = ImGui::GetFrameHeight();
+  const std::string words = words_of(head);
+  // As wide as the longest, so that the bar stays where it is.
+  const float words_width =
+      std::max(ImGui::CalcTextSize("60.0 s behind").x, ImGui::CalcTextSize(words.c_str()).x);
+  const float right = part.x + part.width - pad.x;
+  ImGui::SameLine(0, ImGui::GetFontSize());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float words_x = right - words_width;
+  const float words_y = narrow ? at.y + row + style.ItemSpacing.y : at.y;
+  const ScreenPart bar =
+      narrow ? ScreenPart{part.x + pad.x + 0.3F * row, at.y + row + style.ItemSpacing.y,
+                          words_x - part.x - pad.x - 0.6F * row, row}
+             : ScreenPart{at.x, at.y, std::max(1.0F, words_x - at.x - ImGui::GetFontSize()), row};
+  const ImU32 ink =
+      head.of_a_run() && !head.live() ? packed(kForceColour) : ImGui::GetColorU32(ImGuiCol_Text);
+  ImGui::GetWindowDrawList()->AddText({words_x, words_y + style.FramePadding.y}, ink,
+                                      words.c_str());
+  draw_bar(bar, source);
+  ImGui::End();
+}
+
+}  // namespace thimble::app::view

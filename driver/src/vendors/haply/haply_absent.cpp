@@ -1,0 +1,28 @@
+#include "vendors/haply/haply_link.h"
+
+// In place of the other sources of this folder in a build without Boost.Beast or nlohmann's JSON.
+
+namespace thimble::driver::haply {
+namespace {
+
+Error absent() {
+  return {
+      "This build knows no Inverse3: install libboost-dev and nlohmann-json3-dev, and build it "
+      "anew."};
+}
+
+}  // namespace
+
+std::uint16_t port_of_user() {
+  return kPort;
+}
+
+Result<std::vector<FoundInverse3>> find_arms(std::uint16_t, std::int64_t) {
+  return absent();
+}
+
+Result<std::unique_ptr<ArmLink>> open_link(const std::string&, std::uint16_t, Clock&) {
+  return absent();
+}
+
+}  // namespace thimble::driver::haply

@@ -1,0 +1,178 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "compact_mesh/large_pages.h"
+#include "compact_mesh/packed_surface.h"
+#include "disk_paging/page_file.h"
+#include "disk_paging/page_tree.h"
+#include "search/contact_search.h"
+#include "thimble/driver/result.h"
+#include "thimble/driver/snapshot.h"
+#include "thimble/render/page/paging_counters.h"
+#include "track/packed_store.h"
+
+namespace thimble::render {
+
+class PageSegment;
+
+/// Sets how much of a paged surface is kept in memory around the tip.
+struct PagingSettings {
+  std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
+  double reach = 0.001;       ///< Everything this near to the tip is wanted, m.
+  double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
+};
+
+/// A surface of which only the volumes around the tip are in memory [BP 4.1]. A loader brings
+/// what lies ahead of the tip and gives up what it left behind; the servo never waits for it.
+///
+/// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick; a
+/// frame is reused only when a tick that could have seen its page is over.
+class PagedSurface {
+ public:
+  /// Opens a page file; nothing is in memory yet. Fails as PageFile::open does.
+  /// Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<PagedSurface>> open(const std::filesystem::path& file,
+                                                            const PagingSettings& settings = {});
+
+  PagedSurface(const PagedSurface&) = delete;
+  PagedSurface& operator=(const PagedSurface&) = delete;
+  /// Ends the loader.
+  ~PagedSurface();
+
+  // The servo's side: one thread. Real-time: safe.
+
+  /// Begins a tick that will ask about places near the straight way from `p_tip` to `p_place` (W,
+  /// m), which move with `v_W` (m/s): the place that is touched, or for a free tip the begin of a
+  /// path that has not been examined.
+  void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& p_place,
+                  const Eigen::Vector3d& v_W) noexcept;
+  /// The same for a tip that is at the place.
+  void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& v_W) noexcept {
+    begin_tick(p_tip, p_tip, v_W);
+  }
+  /// Ends a tick: packed triangles found in it may go.
+  void end_tick() noexcept;
+  /// Notes how many ticks up to now needed a page that was absent, for `counters`.
+  void note_misses(std::uint64_t misses) noexcept {
+    misses_.store(misses, std::memory_order_relaxed);
+  }
+
+  /// Finds a packed triangle, or nullptr if its page is not in memory. Good until `end_tick`.
+  const PackedTriangle* find(std::int32_t triangle) const noexcept {
+    const Frame* const frame = frame_of(triangle / kPageTriangles);
+    return frame == nullptr
+               ? nullptr
+               : &frame->triangles[static_cast<std::size_t>(triangle % kPageTriangles)];
+  }
+
+  /// Asks the processor to bring the packed triangles around one near, all at once: a walk to them
+  /// would wait for each in turn. Nothing happens if its page is absent.
+  void announce(std::int32_t triangle) const noexcept {
+    const Frame* const frame = frame_of(triangle / kPageTriangles);
+    if (frame == nullptr) return;
+    const std::int32_t first = triangle % kPageTriangles / kGroup * kGroup;
+    for (std::int32_t i = first; i < first + kGroup; ++i) {
+      __builtin_prefetch(&frame->triangles[static_cast<std::size_t>(i)]);
+    }
+  }
+  /// How many packed triangles stand together: numbers that differ by less are likely near.
+  static constexpr std::int32_t kGroup = 16;
+
+  // Answers of the following are about the packed triangles in memory; `complete` tells whether
+  // they are those about the whole surface.
+
+  /// Finds the first packed triangle that the segment (W, m) crosses from outside to inside.
+  FoundEntry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
+
+  /// Finds the packed triangle nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
+  std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;
+
+  /// Returns whether a point (W, m) is inside; false if not `complete`. Needs the pages between the
+  /// point and the surface nearest to it.
+  bool inside(const Eigen::Vector3d& p_W, bool& complete) const noexcept;
+
+  const PagingSettings& settings() const noexcept { return settings_; }
+  const PageFile& file() const noexcept { return file_; }  ///< Shows the file.
+  std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
+  const Lattice& lattice() const noexcept { return file_.lattice(); }  ///< Returns the lattice.
+
+  // The loader's side: one thread. Real-time: never from the servo thread.
+
+  /// Starts a thread that calls `serve` again and again.
+  void start_loader();
+
+  /// Brings what is wanted for the tip's last known place and way; returns how many pages it read.
+  /// Waits for the end of a tick before it reuses a frame. For whoever has no loader thread.
+  std::size_t serve();
+
+  /// Returns whether a point (W, m) is inside, by the parity of crossings on the way out; reads the
+  /// pages on that way. False if a coordinate is NaN or beyond `kPositionMax`, or the disk fails.
+  bool inside_by_reading(const Eigen::Vector3d& p_W) const;
+
+  PagingCounters counters() const noexcept;
+  /// Counts the bytes held in memory.
+  std::size_t bytes() const noexcept;
+
+ private:
+  static constexpr std::int32_t kAbsent = -1;
+  static constexpr std::int32_t kDamaged = -2;  // could not be read; is not asked for again
+  static constexpr std::int32_t kGroups = kPageTriangles / kGroup;
+
+  struct Frame {
+    std::array<PackedTriangle, kPageTriangles> triangles;
+    std::array<PageBox, kGroups> boxes;  // of each group, in steps
+    std::int32_t count = 0;
+  };
+  const Frame* frame_of(std::int32_t page) const noexcept {
+    const std::int32_t frame =
+        table_[static_cast<std::size_t>(page)].load(std::memory_order_seq_cst);
+    return frame < 0 ? nullptr : &frames_[static_cast<std::size_t>(frame)];
+  }
+  template <class Visit>
+  bool visit_crossings(const PageSegment& segment, Visit visit) const noexcept;
+
+  struct Cursor {
+    std::array<double, 3> p_tip{};
+    std::array<double, 3> p_place{};
+    std::array<double, 3> v_W{};
+  };
+
+  PagedSurface(PageFile file, const PagingSettings& settings);
+  void want(const Cursor& cursor);
+  void want_along(const Eigen::Vector3d& p, const Eigen::Vector3d& way);
+  std::int32_t free_frame();
+  bool load(std::int32_t page, std::int32_t frame);
+  void wait_for_ticks_end() const;
+
+  PageFile file_;
+  PagingSettings settings_;
+  PageTree tree_;
+  std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, or one of the two below
+  std::vector<Frame, LargePages<Frame>> frames_;
+
+  driver::Snapshot<Cursor> cursor_;
+  std::atomic<std::uint64_t> tick_{0};  // odd within a tick
+
+  // The loader's own.
+  std::vector<std::int32_t> page_in_frame_;  // -1 if empty
+  std::vector<std::uint64_t> wanted_at_;     // round in which a frame's page was last wanted
+  std::vector<std::uint64_t> wanted_in_;     // round in which a page was last wanted
+  std::vector<std::pair<double, std::int32_t>> wanted_;
+  std::vector<PackedTriangle> incoming_;
+  std::uint64_t round_ = 0;
+  std::atomic<std::uint64_t> loads_{0}, evictions_{0}, failures_{0}, short_of_frames_{0};
+  std::atomic<std::uint64_t> misses_{0};
+  std::atomic<bool> stop_{false};
+  std::thread loader_;
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,169 @@
+// The thread of PagedSurface that brings the pages around the tip and along its path.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "disk_paging/paged_surface.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+
+// How long the loader rests when there is nothing to bring: at 0.5 m/s the tip moves 0.1 mm, a
+// tenth of the default reach.
+constexpr std::chrono::microseconds kRest{200};
+
+// The loader works little and must not wait: before all programs, after what is real-time.
+constexpr int kLoaderNice = -15;
+
+// Into so many pieces at most a path is cut to find the pages beside it.
+constexpr int kPiecesMax = 64;
+
+}  // namespace
+
+void PagedSurface::start_loader() {
+  loader_ = std::thread([this] {
+    // On a busy machine the pages would come late; where this is refused it goes on as it is.
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLoaderNice);
+    while (!stop_.load(std::memory_order_relaxed)) {
+      if (serve() == 0) std::this_thread::sleep_for(kRest);
+    }
+  });
+}
+
+void PagedSurface::want(const Cursor& cursor) {
+  const Lattice& lattice = file_.lattice();
+  const auto in_steps = [&lattice](const std::array<double, 3>& p) -> Vector3d {
+    return (Eigen::Map<const Vector3d>(p.data()) - lattice.origin) / lattice.step;
+  };
+  const Vector3d tip = in_steps(cursor.p_tip), place = in_steps(cursor.p_place);
+  const Vector3d ahead =
+      settings_.horizon / lattice.step * Eigen::Map<const Vector3d>(cursor.v_W.data());
+  wanted_.clear();
+  want_along(place, ahead);
+  if (tip != place) {
+    want_along(tip, place - tip);
+    want_along(tip, ahead);
+  }
+  // What is reached later may come later.
+  std::sort(wanted_.begin(), wanted_.end());
+}
+
+// Adds the pages within reach of a straight way, each with how far along it and beside it they lie.
+void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
+  const double reach = settings_.reach / file_.lattice().step;
+  const double length = way.norm();
+  const Vector3d along = length > 0 ? Vector3d(way / length) : Vector3d::Zero();
+  // Pieces no longer than the reach, so that the boxes around them hold little else.
+  const double asked = std::ceil(length / (2 * reach));  // a way that is no number asks for none
+  const int pieces = asked > 1 ? static_cast<int>(std::min(asked, double{kPiecesMax})) : 1;
+  for (int piece = 0; piece < pieces; ++piece) {
+    const Vector3d from = p + way * piece / pieces, to = p + way * (piece + 1) / pieces;
+    const Vector3d low = from.cwiseMin(to) - Vector3d::Constant(reach);
+    const Vector3d high = from.cwiseMax(to) + Vector3d::Constant(reach);
+    tree_.visit_reached(low, high, [&](std::int32_t page) {
+      if (wanted_in_[static_cast<std::size_t>(page)] == round_) return true;
+      const PageBox& box = file_.boxes()[static_cast<std::size_t>(page)];
+      const Vector3d middle(0.5 * (double{box.min[0]} + double{box.max[0]}),
+                            0.5 * (double{box.min[1]} + double{box.max[1]}),
+                            0.5 * (double{box.min[2]} + double{box.max[2]}));
+      const Vector3d half =
+          Vector3d(double{box.max[0]}, double{box.max[1]}, double{box.max[2]}) - middle;
+      // No part of the box is nearer than the place on the way nearest to its middle tells.
+      const double ahead = std::clamp(along.dot(middle - p), 0.0, length);
+      const double beside = std::sqrt(distance_squared(box, p + ahead * along));
+      if (beside > reach + half.norm()) return true;
+      wanted_in_[static_cast<std::size_t>(page)] = round_;
+      wanted_.emplace_back(std::max(ahead - half.norm(), 0.0) + beside, page);
+      return true;
+    });
+  }
+}
+
+std::size_t PagedSurface::serve() {
+  Cursor cursor;
+  if (!cursor_.load(cursor)) return 0;
+  ++round_;
+  want(cursor);
+  if (wanted_.size() > frames_.size()) {
+    wanted_.resize(frames_.size());
+    short_of_frames_.fetch_add(1, std::memory_order_relaxed);
+  }
+  for (const auto& [distance, page] : wanted_) {
+    const std::int32_t frame = table_[static_cast<std::size_t>(page)].load();
+    if (frame >= 0) wanted_at_[static_cast<std::size_t>(frame)] = round_;
+  }
+  // A few pages at a time, then a new look at where the tip is.
+  constexpr std::size_t kAtOnce = 16;
+  std::size_t announced = 0;
+  for (const auto& [distance, page] : wanted_) {
+    if (announced == kAtOnce) break;
+    if (table_[static_cast<std::size_t>(page)].load(std::memory_order_relaxed) != kAbsent) continue;
+    file_.announce_page(page);
+    ++announced;
+  }
+  std::size_t read = 0;
+  for (const auto& [distance, page] : wanted_) {
+    if (read == kAtOnce || stop_.load(std::memory_order_relaxed)) break;
+    if (table_[static_cast<std::size_t>(page)].load() != kAbsent) continue;
+    const std::int32_t frame = free_frame();
+    if (frame < 0 || !load(page, frame)) continue;
+    ++read;
+  }
+  return read;
+}
+
+std::int32_t PagedSurface::free_frame() {
+  const auto oldest = std::min_element(wanted_at_.begin(), wanted_at_.end());
+  if (*oldest == round_) return -1;
+  const auto number = static_cast<std::int32_t>(oldest - wanted_at_.begin());
+  std::int32_t& page = page_in_frame_[static_cast<std::size_t>(number)];
+  if (page >= 0) {
+    table_[static_cast<std::size_t>(page)].store(kAbsent, std::memory_order_seq_cst);
+    page = -1;
+    evictions_.fetch_add(1, std::memory_order_relaxed);
+    wait_for_ticks_end();
+  }
+  return number;
+}
+
+void PagedSurface::wait_for_ticks_end() const {
+  const std::uint64_t tick = tick_.load(std::memory_order_seq_cst);
+  if (tick % 2 == 0) return;
+  while (tick_.load(std::memory_order_seq_cst) == tick && !stop_.load(std::memory_order_relaxed)) {
+    std::this_thread::yield();
+  }
+}
+
+bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
+  Frame& frame = frames_[static_cast<std::size_t>(frame_number)];
+  const std::int32_t count = file_.read_page(page, incoming_);
+  if (count == 0 || stop_.load(std::memory_order_relaxed)) {
+    if (count == 0) {
+      // It would fail again, and keep the loader from what it can bring.
+      table_[static_cast<std::size_t>(page)].store(kDamaged, std::memory_order_relaxed);
+      failures_.fetch_add(1, std::memory_order_relaxed);
+    }
+    return false;
+  }
+  std::copy_n(incoming_.begin(), count, frame.triangles.begin());
+  frame.count = count;
+  for (std::int32_t begin = 0; begin < count; begin += kGroup) {
+    const auto size = static_cast<std::size_t>(std::min(kGroup, count - begin));
+    frame.boxes[static_cast<std::size_t>(begin / kGroup)] =
+        box_of({frame.triangles.data() + begin, size});
+  }
+  page_in_frame_[static_cast<std::size_t>(frame_number)] = page;
+  wanted_at_[static_cast<std::size_t>(frame_number)] = round_;
+  loads_.fetch_add(1, std::memory_order_relaxed);
+  table_[static_cast<std::size_t>(page)].store(frame_number, std::memory_order_seq_cst);
+  return true;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "compact_mesh/packed_surface.h"
+#include "search/free_space.h"
+#include "search/make_search.h"
+#include "thimble/driver/result.h"
+#include "track/packed_contact.h"
+
+namespace thimble::render {
+
+/// A store that has all packed triangles in memory and a search over them: no question costs
+/// more than its answer. Asked by one thread at a time: it remembers the free space around the last
+/// path.
+class MemoryStore {
+ public:
+  static constexpr bool kComplete = true;
+
+  /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
+  /// the servo thread.
+  explicit MemoryStore(PackedSurface surface, std::optional<SearchChoice> search = {});
+  /// Takes a surface and a search over it that others share. Real-time: never from the servo
+  /// thread.
+  MemoryStore(std::shared_ptr<const PackedSurface> surface,
+              std::shared_ptr<const ContactSearch> search);
+
+  // As PackedStore says. Real-time: safe.
+
+  const PackedTriangle* find(std::int32_t triangle) const noexcept { return triangles_ + triangle; }
+  Eigen::Vector3d to_lattice(const Eigen::Vector3d& p_W) const noexcept {
+    return (p_W - origin_) * per_step_;  // as the surface does, from this line of the cache
+  }
+  double step() const noexcept { return step_; }
+  double reach() const noexcept { return std::numeric_limits<double>::infinity(); }
+  /// Returns how far the surface rises above its triangles, m (PackedSurface::rise).
+  double rise() const noexcept { return surface_->rise(); }
+  FoundEntry first_entry(const Eigen::Vector3d& p_from,
+                         const Eigen::Vector3d& p_to) const noexcept {
+    return {.entry = free_space_.first_entry(*search_, p_from, p_to)};
+  }
+  Known inside(const Eigen::Vector3d& p_W) const noexcept {
+    return search_->inside(p_W) ? Known::kYes : Known::kNo;
+  }
+  FoundTriangle closest(const Eigen::Vector3d& p_W, double radius) const noexcept {
+    return {.triangle = search_->closest(p_W, radius).triangle};
+  }
+
+  const PackedSurface& surface() const noexcept { return *surface_; }
+  const ContactSearch& search() const noexcept { return *search_; }
+
+ private:
+  // What each tick needs comes first.
+  const PackedTriangle* triangles_;
+  Eigen::Vector3d origin_;
+  double per_step_, step_;
+  // On the heap, so that the search keeps pointing at the surface when the contact moves.
+  std::shared_ptr<const PackedSurface> surface_;
+  std::shared_ptr<const ContactSearch> search_;
+  mutable FreeSpace free_space_;  // changes what a question costs, never its answer
+};
+
+extern template class PackedContact<MemoryStore>;
+
+/// Finds what the tip touches on a smooth surface of any size that fits into memory. The `Contact`
+/// stage of Touch; the place of MeshContact where meshes are large or curved. How it follows and
+/// what it measures: packed_contact.h.
+class MemoryContact : public PackedContact<MemoryStore> {
+ public:
+  /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
+  /// the servo thread.
+  explicit MemoryContact(PackedSurface surface, std::optional<SearchChoice> search = {});
+  /// Takes a surface and a search over it that others share. Real-time: never from the servo
+  /// thread.
+  MemoryContact(std::shared_ptr<const PackedSurface> surface,
+                std::shared_ptr<const ContactSearch> search);
+
+  /// Prepares a mesh (W, m); the error is that of PackedSurface::build.
+  /// Real-time: never from the servo thread.
+  static driver::Result<MemoryContact> build(const TriangleMesh& mesh,
+                                             const PackedSurfaceOptions& options = {});
+
+  /// A copy shares mesh and search, and takes nothing from the heap.
+  static constexpr bool kCopiesCheaply = true;
+
+  const PackedSurface& surface() const noexcept { return store().surface(); }
+  const ContactSearch& search() const noexcept { return store().search(); }
+};
+
+}  // namespace thimble::render

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Small programs in C, written as public examples are, under `thimble exec`: each checks itself that the
+# forces it asked for are those that the arm got. In virtual time, so that a busy machine changes nothing.
+#   exec_test.sh THIMBLE SOURCE_DIR WORK_DIR CLIENT_FOLDER LIBRARY
+source "$(dirname "$0")/../../program/expect.sh" "$1" "$2" "$3"
+clients=$4
+library=$5
+
+hand=$source_dir/tests/compat/dhd/late_hand.txt
+expect 0 'hello force: PASSED' "$thimble" exec --clock virtual "$clients/dhd_client_hello_force"
+expect 0 'spring to centre: PASSED' "$thimble" exec --clock virtual --hand "$hand" "$clients/dhd_client_spring_to_centre"
+expect 0 'gripper: PASSED' "$thimble" exec --clock virtual --arm polhem "$clients/dhd_client_gripper"
+expect 0 'Gripper   a force asked for' "$thimble" exec --clock virtual --arm polhem "$clients/dhd_client_gripper"
+expect 0 'two devices: PASSED' "$thimble" exec --clock virtual --arm vintage_phantom --arm falcon "$clients/dhd_client_two_devices"
+expect 0 'watchdog trip: PASSED' "$thimble" exec --clock virtual "$clients/dhd_client_watchdog_trip"
+expect 0 'hold and move: PASSED' "$thimble" exec --clock virtual "$clients/dhd_client_hold_and_move"
+# In virtual time the arm waits for the program: two runs are the same in every bit of every tick.
+for run in first second; do
+  expect 0 'PASSED' "$thimble" exec --clock virtual --hand "$hand" --record $run.h5 "$clients/dhd_client_spring_to_centre"
+  expect 0 'ticks' "$thimble" export $run.h5 --csv $run.csv
+done
+expect 0 '^same$' sh -c '[ "$(wc -l <first.csv)" -gt 2500 ] && cmp first.csv second.csv && echo same'
+expect 2 'without --view' "$thimble" exec --clock virtual --view "$clients/dhd_client_hello_force"
+expect 2 'with simulated arms only; auto' "$thimble" exec --clock virtual --device auto "$clients/dhd_client_hello_force"
+# What a program did wrong stands in the report, with the function's name.
+expect 0 'Wrong     drdMoveToPos 1 time: regulation does not run' "$thimble" exec --clock virtual "$clients/dhd_client_hold_and_move"
+# Without `thimble exec` there is no arm, and the reason is told.
+expect 1 'start the program by `thimble exec`' \
+  env LD_LIBRARY_PATH="$(dirname "$library")" "$clients/dhd_client_watchdog_trip"
+finish
