@@ -8,9 +8,10 @@
 #include <cmath>
 #include <limits>
 
+#include "math/least_squares.h"
 #include "twin/twin_motors.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 using Eigen::Vector3d;
@@ -193,13 +194,8 @@ class HandFit {
   }
   TwinHand hand() const {
     if (!(square_ > 0)) return {};
-    // In units in which all have the same weight.
-    const Eigen::Matrix<double, 6, 1> scale =
-        normal_.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-    const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * normal_ * scale.asDiagonal();
     const Eigen::Matrix<double, 6, 1> best =
-        scale.asDiagonal() *
-        scaled.ldlt().solve(Eigen::Matrix<double, 6, 1>(scale.asDiagonal() * right_));
+        math::ScaledNormal<Eigen::Matrix<double, 6, 6>>(normal_).solve(right_);
     return {.mass = best[0],
             .stiffness = best[2],
             .damping = best[1],
@@ -300,8 +296,8 @@ TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
   return found;
 }
 
-std::vector<Figure> force_figures(const TwinForces& forces) {
-  std::vector<Figure> figures;
+std::vector<session::Figure> force_figures(const TwinForces& forces) {
+  std::vector<session::Figure> figures;
   for (const TwinForceAxis& axis : forces.axes) {
     figures.push_back(
         {fmt::format("force_of_motors_{}", axis.name), axis.motors_rms, "N", "", "RMS"});
@@ -352,4 +348,4 @@ std::string force_table(const TwinForces& forces) {
   return text;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

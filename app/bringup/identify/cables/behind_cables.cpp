@@ -8,7 +8,7 @@
 #include "bringup/identify/line_forces.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // What a motion behind cables costs beyond its statistics [chosen likewise, with soft arms 1 to 20,
@@ -140,4 +140,4 @@ PerMass with_method(const PerMass& fit) {
   return wider;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -2,7 +2,7 @@
 
 #include "bringup/identify/identify.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Fits the links behind cables that stretch, and with `refine` the cables again by what the slow
 /// part of their motion says. Returns the motion of the links. Real-time: never from the servo
@@ -17,4 +17,4 @@ void put_cables(Identified& found);
 /// motions of one arm differ by.
 PerMass with_method(const PerMass& fit);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

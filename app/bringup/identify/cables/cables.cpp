@@ -7,7 +7,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Complex = std::complex<double>;
@@ -194,4 +194,4 @@ driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFi
   return seen;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Returns motors and cables out of what the lines show, with the gain of each motor: true torque
 /// over that of the arm file.
@@ -22,4 +22,4 @@ inline constexpr int kHeldBack = 3;
 driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFit& fit,
                                           const scene::ArmFile& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

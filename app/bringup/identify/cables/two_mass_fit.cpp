@@ -8,7 +8,7 @@
 #include "bringup/identify/line_forces.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -167,4 +167,4 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

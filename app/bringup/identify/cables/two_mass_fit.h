@@ -5,7 +5,7 @@
 #include "bringup/identify/line_spectrum.h"
 #include "bringup/identify/motion_fit.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Constants of an arm's joints per moved mass, as its lines show them: motors on whose other side,
 /// behind cables, the links are. For motor i with the joint torque tau_i,
@@ -72,4 +72,4 @@ void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart
 /// Bayesian information. Real-time: never from the servo thread.
 CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,8 +7,9 @@
 #include <vector>
 
 #include "bringup/identify/cables/two_mass_fit.h"
+#include "math/least_squares.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 // The search for the constants of two_mass_fit.cpp.
 
@@ -92,33 +92,11 @@ class TwoMassSearch {
     }
   }
 
-  /// Goes down from `x` by Levenberg's and Marquardt's steps. Returns chi^2.
+  /// Searches for the constants from `x`. Returns chi^2.
   double go(TwoMassTheta& x, bool elastic, int rounds) const {
     const int count = elastic ? TwoMass::kCount : TwoMass::kRigidCount;
-    double best = look(x, elastic, nullptr), damping = 1e-2;
-    Eigen::MatrixXd slope;
-    Eigen::VectorXd rest;
-    for (int round = 0; round < rounds && damping < 1e6; ++round) {
-      slopes(x, elastic, count, slope, rest);
-      const Eigen::MatrixXd normal = slope.transpose() * slope;
-      const Eigen::VectorXd down = slope.transpose() * rest;
-      bool better = false;
-      double gained = 0;
-      for (int tries = 0; tries < 8 && !better && damping < 1e6; ++tries) {
-        Eigen::MatrixXd damped = normal;
-        damped.diagonal() *= 1 + damping;
-        damped.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-        TwoMassTheta next = x;
-        next.head(count) -=
-            damped.ldlt().solve(down).cwiseMax(-bound(count)).cwiseMin(bound(count));
-        const double sum = look(next, elastic, nullptr);
-        better = sum < best;
-        if (better) gained = best - sum, best = sum, x = next;
-        damping *= better ? 0.2 : 5;
-      }
-      if (!better || gained < 1e-6 * best) break;
-    }
-    return best;
+    return math::levenberg_marquardt<Eigen::MatrixXd>(Problem{*this, elastic, count}, x,
+                                                      {.rounds = rounds, .ridge = 1e-12});
   }
 
   Eigen::MatrixXd covariance(const TwoMassTheta& x, bool elastic) const {
@@ -126,12 +104,7 @@ class TwoMassSearch {
     Eigen::MatrixXd slope;
     Eigen::VectorXd rest;
     slopes(x, elastic, count, slope, rest);
-    Eigen::MatrixXd normal = slope.transpose() * slope;
-    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    normal.diagonal().array() += 1e-10;
-    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-    return scale.asDiagonal() * inverse * scale.asDiagonal();
+    return math::ScaledNormal<Eigen::MatrixXd>(slope.transpose() * slope, kRidge).inverse();
   }
 
   /// What is known of compliances about a rigid arm: their values and deviations.
@@ -148,20 +121,15 @@ class TwoMassSearch {
       residuals(soft, true, other);
       all.col(TwoMass::kRigidCount + i) = (other - rest) / soft[TwoMass::kCompliance + i];
     }
-    Eigen::MatrixXd normal = all.transpose() * all;
-    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    normal.diagonal().array() += 1e-10;
-    const Eigen::MatrixXd inverse =
-        normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.rows()));
-    const Eigen::VectorXd step =
-        scale.asDiagonal() * (inverse * (scale.asDiagonal() * (all.transpose() * rest)));
+    const math::ScaledNormal<Eigen::MatrixXd> normal(all.transpose() * all, kRidge);
+    const Eigen::VectorXd step = normal.solve(all.transpose() * rest);
+    const Eigen::MatrixXd inverse = normal.inverse();
     const double spread =
         std::max(1.0, rest.squaredNorm() / static_cast<double>(rows() - TwoMass::kRigidCount));
     for (int i = 0; i < 3; ++i) {
       const int k = TwoMass::kRigidCount + i;
       give[i] = -step[k];
-      error[i] = scale[k] * std::sqrt(spread * inverse(k, k));
+      error[i] = std::sqrt(spread * inverse(k, k));
     }
   }
 
@@ -175,12 +143,30 @@ class TwoMassSearch {
   const std::vector<Eigen::Vector3d>& sigma() const { return sigma_; }
 
  private:
-  static Eigen::VectorXd bound(int count) {
-    Eigen::VectorXd most = Eigen::VectorXd::Constant(count, 1e9);
-    most.segment<3>(TwoMass::kInertia).setConstant(1);
-    if (count == TwoMass::kCount) most.tail<6>().setConstant(1);
-    return most;
-  }
+  static constexpr double kRidge = 1e-10;  // of a scaled diagonal
+
+  /// The search as math::levenberg_marquardt takes it.
+  struct Problem {
+    const TwoMassSearch& search;
+    bool elastic;
+    int count;  // constants that are searched for: the first ones
+
+    double linearize(const TwoMassTheta& x, Eigen::MatrixXd& normal,
+                     Eigen::VectorXd& gradient) const {
+      Eigen::MatrixXd slope;
+      Eigen::VectorXd rest;
+      search.slopes(x, elastic, count, slope, rest);
+      normal = slope.transpose() * slope;
+      gradient = slope.transpose() * rest;
+      return search.look(x, elastic, nullptr);
+    }
+    /// Bounds a step to a factor of e where the search is by the logarithm.
+    TwoMassTheta stepped(TwoMassTheta x, const Eigen::VectorXd& by) const {
+      for (int k = 0; k < count; ++k) x[k] += is_log(k) ? std::clamp(by[k], -1.0, 1.0) : by[k];
+      return x;
+    }
+    double sum(const TwoMassTheta& x) const { return search.look(x, elastic, nullptr); }
+  };
 
   void residuals(const TwoMassTheta& theta, bool elastic, Eigen::VectorXd& rest) const {
     for (std::size_t i = 0; i < spectrum_.lines.size(); ++i) {
@@ -250,4 +236,4 @@ class TwoMassSearch {
   std::vector<Eigen::Vector3d> sigma_;  // RMS of the noise of a line, rad
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 #include "bringup/identify/cables/backlash/gap_constants.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Gap = GapTheta;
@@ -285,4 +285,4 @@ GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMa
   return fit_gap(GapPieces(motion, kLongPieces, kLong), close.theta, sought, 20);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

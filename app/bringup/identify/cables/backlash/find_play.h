@@ -8,7 +8,7 @@
 #include "bringup/identify/cables/two_mass_fit.h"
 #include "bringup/identify/motion_fit.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Friction of the motors' side, which turns its sign with the motors and not with the tip, joint
 /// by joint. Its torques are those of the arm file's torque constants, at the joints; one that is
@@ -55,4 +55,4 @@ PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit&
 GapFit fit_play_again(const ArmMotion& motion, const PerMass& rigid, const PerMass& rigid_bare,
                       const PlayFit& bare);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

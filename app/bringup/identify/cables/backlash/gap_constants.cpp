@@ -6,7 +6,7 @@
 
 #include "bringup/identify/arm_constants.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 GapTheta::Vector gap_constants(const PerMass& rigid, const CableFit& lines) {
   const Eigen::Matrix<double, TwoMass::kCount, 1>& seen = lines.elastic.theta;
@@ -91,4 +91,4 @@ TwoMass two_mass_of(const GapFit& fit, const TwoMass& before) {
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

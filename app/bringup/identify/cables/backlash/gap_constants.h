@@ -4,7 +4,7 @@
 #include "bringup/identify/cables/two_mass_fit.h"
 #include "bringup/identify/motion_fit.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 // Constants with play and friction of motors, from those that the other fits know, and back.
 
@@ -20,4 +20,4 @@ PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion);
 /// Returns what it says of motors and cables, in place of the lines' `before`.
 TwoMass two_mass_of(const GapFit& fit, const TwoMass& before);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "math/elementary.h"
+#include "math/least_squares.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Gap = GapTheta;
@@ -80,15 +81,12 @@ class GapSearch {
     Eigen::VectorXd right;
     add_up([lost_from](const GapPiece& piece) { return piece.left < lost_from ? 1.0 : 0.0; },
            reduced, right);
-    const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    reduced = scale.asDiagonal() * reduced * scale.asDiagonal();
-    reduced.diagonal().array() += 1e-10;
     const auto count = static_cast<Eigen::Index>(free_.size());
-    const Eigen::MatrixXd inverse = reduced.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+    const Eigen::MatrixXd inverse = math::ScaledNormal<Eigen::MatrixXd>(reduced, 1e-10).inverse();
     for (Eigen::Index a = 0; a < count; ++a) {
       for (Eigen::Index b = 0; b < count; ++b) {
         const int i = free_[static_cast<std::size_t>(a)], j = free_[static_cast<std::size_t>(b)];
-        found.covariance(i, j) = std::max(1.0, found.misfit) * scale[a] * inverse(a, b) * scale[b] *
+        found.covariance(i, j) = std::max(1.0, found.misfit) * inverse(a, b) *
                                  slope_of_constant(theta_, i) * slope_of_constant(theta_, j);
       }
     }
@@ -156,8 +154,8 @@ class GapSearch {
 
   /// Holds viscous friction at zero where a step would take it below, which motion alone would do:
   /// that of the tip and those of the motors hardly differ. Returns whether any was.
-  bool pin_viscous(const Eigen::VectorXd& by, const Eigen::VectorXd& scale,
-                   Eigen::MatrixXd& reduced, Eigen::VectorXd& right) const {
+  bool pin_viscous(const Eigen::VectorXd& by, math::ScaledNormal<Eigen::MatrixXd>& normal,
+                   Eigen::VectorXd& right) const {
     constexpr double kPin = 1e6;  // of scaled equations, whose diagonal is one
     bool any = false;
     for (std::size_t j = 0; j < free_.size(); ++j) {
@@ -166,8 +164,7 @@ class GapSearch {
           k == Gap::kViscous || (k >= Gap::kRotorViscous && k < Gap::kRotorCoulomb);
       const auto at = static_cast<Eigen::Index>(j);
       if (!viscous || !(theta_[k] + by[at] < 0)) continue;
-      reduced(at, at) += kPin;
-      right[at] += kPin * theta_[k] / scale[at];
+      normal.hold(at, theta_[k], kPin, right);
       any = true;
     }
     return any;
@@ -179,14 +176,9 @@ class GapSearch {
     Eigen::VectorXd right;
     const auto rows = static_cast<double>(pieces_.rows());
     add_up([rows](const GapPiece& piece) { return 1 / (1 + piece.left / rows); }, reduced, right);
-    const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    reduced = scale.asDiagonal() * reduced * scale.asDiagonal();
-    reduced.diagonal().array() += damping;
-    right = scale.asDiagonal() * right;
-    Eigen::VectorXd by = -(scale.asDiagonal() * reduced.ldlt().solve(right));
-    if (friction_ && pin_viscous(by, scale, reduced, right)) {
-      by = -(scale.asDiagonal() * reduced.ldlt().solve(right));
-    }
+    math::ScaledNormal<Eigen::MatrixXd> normal(reduced, damping);
+    Eigen::VectorXd by = -normal.solve(right);
+    if (friction_ && pin_viscous(by, normal, right)) by = -normal.solve(right);
     for (std::size_t j = 0; j < free_.size(); ++j) {
       double& one = by[static_cast<Eigen::Index>(j)];
       const int k = free_[j];
@@ -218,4 +210,4 @@ GapFit fit_gap(GapPieces pieces, const Gap::Vector& from, const GapSought& sough
   return search.result();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

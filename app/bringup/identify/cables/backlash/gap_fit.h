@@ -6,7 +6,7 @@
 
 #include "bringup/identify/cables/backlash/gap_pieces.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What is searched for beside gains, delay, tip, motors and cables.
 struct GapSought {
@@ -34,4 +34,4 @@ struct GapFit {
 /// `sought` stay as they are in `from`. Real-time: never from the servo thread.
 GapFit fit_gap(GapPieces pieces, const GapTheta::Vector& from, const GapSought& sought, int rounds);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

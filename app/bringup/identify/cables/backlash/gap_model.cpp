@@ -13,7 +13,7 @@
 #endif
 #define THIMBLE_GAP_INLINE [[gnu::always_inline]] inline
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Gap = GapTheta;
@@ -218,4 +218,4 @@ void move_gap_models(const ArmMotion& motion, const Eigen::Vector3d& p_middle,
   }
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 
 #include "bringup/identify/arm_motion.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Constants of motors, cables with play, and what is behind them, per moved mass:
 ///
@@ -65,4 +65,4 @@ inline constexpr std::size_t kGapRunsAtOnce = 4;
 void move_gap_models(const ArmMotion& motion, const Eigen::Vector3d& p_middle,
                      std::span<const GapRun> runs, std::size_t first, std::size_t count);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,8 +7,9 @@
 #include <cmath>
 
 #include "math/elementary.h"
+#include "math/least_squares.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Gap = GapTheta;
@@ -145,30 +146,38 @@ void GapPieces::track(const Gap::Vector& theta) {
 }
 
 void GapPieces::settle(const Gap::Vector& theta, int rounds, GapPiece& piece) const {
+  // The state that the piece begins with, as math::levenberg_marquardt searches for it.
+  struct Problem {
+    const GapPieces& pieces;
+    const Gap::Vector& theta;
+    const GapPiece& piece;
+    GapSlopes& slope;
+    std::vector<double>& rest;
+
+    double linearize(const GapState& start, Normal& normal, GapState::Vector& gradient) const {
+      GapPiece at = piece;
+      at.start = start;
+      pieces.slopes(theta, {}, at, slope);
+      normal = slope.local.transpose() * slope.local;
+      hold(normal);
+      gradient = slope.local.transpose() * slope.rest;
+      return slope.rest.squaredNorm();
+    }
+    GapState stepped(GapState start, const GapState::Vector& by) const {
+      start.x += by;
+      return start;
+    }
+    double sum(const GapState& start) const {
+      return pieces.left(theta, start, piece.first, rest.data());
+    }
+  };
   GapSlopes slope;
   std::vector<double> rest(rows());
-  double damping = 1e-3;
-  for (int round = 0; round < rounds; ++round) {
-    slopes(theta, {}, piece, slope);
-    piece.left = slope.rest.squaredNorm();
-    Normal normal = slope.local.transpose() * slope.local;
-    hold(normal);
-    const GapState::Vector down = slope.local.transpose() * slope.rest;
-    double gained = 0;
-    for (int tries = 0; tries < 6 && gained == 0; ++tries) {
-      Normal damped = normal;
-      damped.diagonal() *= 1 + damping;
-      GapState next = piece.start;
-      next.x -= damped.ldlt().solve(down);
-      const double sum = left(theta, next, piece.first, rest.data());
-      damping *= sum < piece.left ? 0.2 : 8;
-      if (!(sum < piece.left)) continue;
-      gained = piece.left - sum;
-      piece.left = sum;
-      piece.start = next;
-    }
-    if (!(gained > 1e-3 * piece.left)) return;
-  }
+  GapState start = piece.start;
+  piece.left = math::levenberg_marquardt<Normal>(
+      Problem{*this, theta, piece, slope, rest}, start,
+      {.rounds = rounds, .tries = 6, .least_gain = 1e-3, .damping = 1e-3, .raised = 8});
+  piece.start = start;
 }
 
 void GapPieces::settle(const Gap::Vector& theta, int rounds) {
@@ -257,4 +266,4 @@ void GapPieces::slopes(const Gap::Vector& theta, const std::vector<int>& free,
   for (int k = 0; k < kStates; ++k) out.local.col(k) = slope(globals + k);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 
 #include "bringup/identify/cables/backlash/gap_model.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// One short piece of a motion over which the model moves from a state of its own.
 struct GapPiece {
@@ -76,4 +76,4 @@ void move_constant(GapTheta::Vector& theta, int k, double step);
 /// Returns the derivative of a constant by a step of the search.
 double slope_of_constant(const GapTheta::Vector& theta, int k);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup
