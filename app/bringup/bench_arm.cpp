@@ -9,7 +9,7 @@
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
@@ -208,4 +208,4 @@ bool BenchArm::hold(const std::function<bool()>& done, const std::atomic<bool>& 
   return true;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

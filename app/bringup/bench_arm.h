@@ -18,7 +18,7 @@
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// One arm on the bench, real or simulated: for commands that try an arm out rather than touch
 /// a scene with it. A simulated one runs on the virtual clock, with a hand that follows a path.
@@ -115,4 +115,4 @@ class BenchArm {
   std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // of a real arm whose file names its heat
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using driver::BoardKind;
@@ -62,4 +62,4 @@ std::string udev_line(const FoundArm& board) {
          (tty ? ", ENV{ID_MM_DEVICE_IGNORE}=\"1\"" : "");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

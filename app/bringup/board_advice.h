@@ -4,7 +4,7 @@
 
 #include "thimble/driver/discovery.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 // What a person is told of a board that may be an arm or anything else. Real-time: never from the
 // servo thread.
@@ -21,4 +21,4 @@ std::string how_to_use(const driver::FoundArm& board);
 /// serial number if that names it, else by its socket.
 std::string udev_line(const driver::FoundArm& board);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -18,7 +18,7 @@
 #include "thimble/driver/discovery.h"
 #include "transports/node_lock.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 namespace fs = std::filesystem;
@@ -309,4 +309,4 @@ std::vector<Finding> examine(const SystemInfo& system) {
   return Examination(system).run();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// How bad a finding is.
 enum class Health {
@@ -39,4 +39,4 @@ SystemInfo this_machine();
 /// changes nothing. Real-time: never from the servo thread.
 std::vector<Finding> examine(const SystemInfo& system);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

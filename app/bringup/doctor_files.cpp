@@ -4,7 +4,7 @@
 #include <string>
 #include <system_error>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,4 +59,4 @@ Finding examine_scans(const scene::ScanPlaces& places) {
           "them: thimble run water_balloon"};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/doctor.h"
 #include "files/scanned_meshes.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Returns in which folders scenes and arms are looked for by name, in that order; advice if none
 /// of them is there. Changes nothing. Real-time: never from the servo thread.
@@ -16,4 +16,4 @@ Finding examine_names(const std::vector<std::filesystem::path>& folders);
 /// looked for. Unpacks nothing. Real-time: never from the servo thread.
 Finding examine_scans(const scene::ScanPlaces& places);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -12,7 +12,7 @@
 #include "vendors/haply/haply_link.h"
 #include "vendors/hd/hd_library.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using driver::BoardKind;
@@ -171,4 +171,4 @@ std::vector<Finding> examine_touch(const std::vector<FoundArm>& arms,
   return findings;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "bringup/doctor.h"
 #include "thimble/driver/discovery.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 // What the doctor finds of arms that are reached by their vendors' services. Opens and changes
 // nothing. Real-time: never from the servo thread.
@@ -32,4 +32,4 @@ std::vector<Finding> examine_services(const std::vector<driver::FoundArm>& arms)
 std::vector<Finding> examine_touch(const std::vector<driver::FoundArm>& arms,
                                    const std::filesystem::path& root);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -10,7 +10,7 @@
 
 #include "thimble/driver/discovery.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ std::vector<Finding> examine_timing(const SystemInfo& system, bool arm) {
   return findings;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

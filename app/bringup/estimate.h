@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Half-width of the 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double kNormal95 = 1.96;
@@ -16,4 +16,4 @@ struct Estimate {
   bool holds(double truth) const { return std::abs(truth - value) <= plus_minus; }
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

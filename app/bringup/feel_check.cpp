@@ -13,7 +13,7 @@
 #include "hand/place_text.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr double kEncoders_s = 4, kDirection_s = 2, kSettle_s = 0.5, kPush_s = 1;
@@ -402,4 +402,4 @@ std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vec
   return way;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -11,7 +11,7 @@
 #include "bringup/bench_arm.h"
 #include "thimble/scene/real_arm_terms.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Number of results of a check in which all steps passed: encoders, three directions, three
 /// forces, watchdog.
@@ -46,4 +46,4 @@ std::vector<CheckResult> feel_check(BenchArm& bench, const scene::ArmFile& file,
 /// (seconds and points in the world, m). `p_WT` is where it begins.
 std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// A weak spring and damper that keep a free tip about a place of the world, so that nobody has to
 /// hold the arm. All functions are Real-time: safe.
@@ -42,4 +42,4 @@ class HoldPlace {
   Eigen::Vector3d v_slow_{0, 0, 0};  // without the noise of the encoders' steps, m/s
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

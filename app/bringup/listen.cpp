@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 std::string Listened::text() const {
   return fmt::format(
@@ -25,4 +25,4 @@ Listened listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop) 
           .whole = whole};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 
 #include "bringup/bench_arm.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// How well an arm's reports arrived while nothing was asked of it.
 struct Listened {
@@ -28,4 +28,4 @@ struct Listened {
 /// Reads an idle arm for `seconds` with zero force. Real-time: never from the servo thread.
 Listened listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

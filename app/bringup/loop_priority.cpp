@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 LoopPriority::LoopPriority(bool wanted) noexcept {
   constexpr int kPriority = 80;  // as driver::enter_real_time
@@ -36,4 +36,4 @@ void LateTicks::add(const LateTicks& other) noexcept {
   worst = std::max(worst, other.worst);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

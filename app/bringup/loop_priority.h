@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Runs the calling thread before all others (SCHED_FIFO, as the servo thread of a run) from its
 /// construction to its destruction. Refusal is no error here: the command asks before it opens an
@@ -36,4 +36,4 @@ struct LateTicks {
   bool many() const noexcept { return late * 1000 > ticks; }
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

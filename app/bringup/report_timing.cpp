@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // s, of one time: clocks tell nanoseconds.
@@ -69,4 +69,4 @@ ReportTiming time_reports(BenchArm& bench, double seconds, const std::atomic<boo
   return timing_of(times);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

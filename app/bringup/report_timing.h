@@ -7,7 +7,7 @@
 #include "bringup/bench_arm.h"
 #include "bringup/estimate.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// How regularly an arm's reports come, as the host sees it: what the arm's clock, the bus and the
 /// host's own waking up make together.
@@ -29,4 +29,4 @@ ReportTiming timing_of(const std::vector<double>& times);
 /// so that one that speaks only when spoken to goes on. Real-time: never from the servo thread.
 ReportTiming time_reports(BenchArm& bench, double seconds, const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Eigen::Vector3d;
@@ -157,4 +157,4 @@ WatchdogTime watchdog_time(BenchArm& bench, const WatchdogOrder& order, double s
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/estimate.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What is known of an arm whose watchdog is to be seen.
 struct WatchdogOrder {
@@ -65,4 +65,4 @@ struct WatchdogTime {
 WatchdogTime watchdog_time(BenchArm& bench, const WatchdogOrder& order, double soft_start,
                            const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 Eigen::Matrix3d WiringGuess::matrix(const Eigen::Vector3d& scale) const {
   Eigen::Matrix3d wiring = Eigen::Matrix3d::Zero();
@@ -76,4 +76,4 @@ std::string describe_wiring(const WiringGuess& guess, const std::string& what,
   return text;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Which wire sits where: joint i has what belongs to joint `source[i]`.
 struct WiringGuess {
@@ -34,4 +34,4 @@ WiringGuess guess_wiring(const Eigen::Matrix3d& seen,
 std::string describe_wiring(const WiringGuess& guess, const std::string& what,
                             const std::string& backwards, const std::string& dead);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -11,7 +11,7 @@
 #include "thimble/scene/real_arm_file.h"
 #include "thimble/session/servo_thread.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void ArmChoice::add_options(CLI::App& command) {
   command
@@ -110,4 +110,4 @@ void SimulatedNote::print() const {
   std::fflush(stdout);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

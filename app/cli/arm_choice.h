@@ -10,7 +10,7 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Which arm a command is about, as the user said it.
 struct ArmChoice {
@@ -65,4 +65,4 @@ class SimulatedNote {
   std::string line_;  // empty: the arm is real
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -14,7 +14,7 @@
 #include "studies/rate_bench.h"
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct BenchOptions {
@@ -33,25 +33,27 @@ int run_bench(const BenchOptions& options) {
   if (!scene) return complain(scene.error(), kExitBadInput);
   const scene::Quality quality =
       scene::quality_named(options.quality).value_or(scene::Quality::kNormal);
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   std::string advice;
   for (const double rate : options.rates) {
-    const auto bench = bench_rate(*scene, rate, options.seconds, quality);
+    const auto bench = studies::bench_rate(*scene, rate, options.seconds, quality);
     if (!bench) return complain(bench.error(), kExitBadInput);
-    const RateVerdict verdict = verdict_of(*bench);
+    const studies::RateVerdict verdict = studies::verdict_of(*bench);
     scene::print_format("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
     std::fflush(stdout);
-    for (Figure& figure : figures_of(*bench, verdict)) figures.push_back(std::move(figure));
+    for (session::Figure& figure : studies::figures_of(*bench, verdict))
+      figures.push_back(std::move(figure));
     advice = bench->advice;
   }
   if (!advice.empty()) scene::print_format("%s\n", advice.c_str());
   scene::print_format(
       "The simulated arm is in these times; a real one has its wire in its place.\n\n%s",
-      figure_table(figures).c_str());
+      report::figure_table(figures).c_str());
   if (options.out.empty()) return kExitDone;
   std::error_code status;
   std::filesystem::create_directories(options.out, status);
-  const auto written = write_figures(figures, std::filesystem::path(options.out) / "figures.json");
+  const auto written =
+      report::write_figures(figures, std::filesystem::path(options.out) / "figures.json");
   return written ? kExitDone : complain(written.error(), kExitTrouble);
 }
 
@@ -75,4 +77,4 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_bench(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -21,7 +21,7 @@
 #include "vendors/dhd/dhd_link.h"
 #include "vendors/hd/hd_link.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Where the simulated hand goes: each pose is reached after a second and held for a second.
@@ -113,7 +113,7 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
   // Zero force throughout: the limit is only what the device asks for.
-  auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
+  auto bench = bringup::BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
   if (!bench) return complain(bench.error(), kExitNoDevice);
 
   constexpr std::array<const char*, 4> kAsks = {
@@ -171,4 +171,4 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
   command->callback([choice, dry_run, &exit_code] { exit_code = calibrate(*choice, *dry_run); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

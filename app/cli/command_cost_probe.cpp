@@ -12,7 +12,7 @@
 #include "studies/cost/cost_subjects.h"
 #include "studies/cost/instruction_count.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct ProbeOptions {
@@ -27,20 +27,20 @@ constexpr std::string_view kGating = "gating/";
 
 int probe(const ProbeOptions& options) {
   if (options.subject.compare(0, kAccuracy.size(), kAccuracy) == 0 &&
-      probe_strokes(options.subject.substr(kAccuracy.size())) > 0) {
+      studies::probe_strokes(options.subject.substr(kAccuracy.size())) > 0) {
     return kExitDone;
   }
   if (options.subject.compare(0, kGating.size(), kGating) == 0 &&
-      probe_gating(options.subject.substr(kGating.size()))) {
+      studies::probe_gating(options.subject.substr(kGating.size()))) {
     return kExitDone;
   }
-  for (const CostSubject& subject : cost_subjects()) {
+  for (const studies::CostSubject& subject : studies::cost_subjects()) {
     if (subject.name != options.subject) continue;
     const auto touch = subject.build();
     if (!touch) {
       return complain(touch.error(), kExitBadInput);
     }
-    const auto states = ring_stroke(kCostRing, kStrokeTicks, 0.001);
+    const auto states = studies::ring_stroke(studies::kCostRing, studies::kStrokeTicks, 0.001);
     double sum = 0;
     for (int i = 0; i < options.strokes; ++i) {
       for (const auto& state : states) sum += (*touch)->update(state).f_T_W.x();
@@ -62,4 +62,4 @@ void add_cost_probe_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = probe(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -9,7 +9,7 @@
 #include "thimble/driver/discovery.h"
 #include "transports/node_lock.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 std::string state_of(const driver::FoundArm& arm, const std::string& root) {
@@ -57,4 +57,4 @@ void add_devices_command(CLI::App& app, int& exit_code) {
   command->callback([root, &exit_code] { exit_code = list_devices(*root); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

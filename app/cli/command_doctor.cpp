@@ -12,21 +12,21 @@
 #include "log/logger.h"
 #include "log/printed_text.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 int show_findings(const std::string& root) {
-  SystemInfo system = this_machine();
+  bringup::SystemInfo system = bringup::this_machine();
   system.root = root;
   int problems = 0;
-  std::vector<Finding> findings = examine(system);
-  findings.push_back(examine_names(scene::data_folders()));
-  findings.push_back(examine_scans(scene::scan_places()));
-  findings.push_back(examine_log(scene::default_log_file()));
-  for (const Finding& finding : findings) {
+  std::vector<bringup::Finding> findings = bringup::examine(system);
+  findings.push_back(bringup::examine_names(scene::data_folders()));
+  findings.push_back(bringup::examine_scans(scene::scan_places()));
+  findings.push_back(bringup::examine_log(scene::default_log_file()));
+  for (const bringup::Finding& finding : findings) {
     const char* mark = "ok      ";
-    if (finding.health == Health::kAdvice) mark = "advice  ";
-    if (finding.health == Health::kProblem) {
+    if (finding.health == bringup::Health::kAdvice) mark = "advice  ";
+    if (finding.health == bringup::Health::kProblem) {
       mark = "PROBLEM ";
       ++problems;
     }
@@ -50,4 +50,4 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->callback([root, &exit_code] { exit_code = show_findings(*root); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

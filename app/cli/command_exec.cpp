@@ -34,33 +34,33 @@
 #include "signals.h"
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 struct Asked {
-  faces::ExecOptions options;
+  compat::ExecOptions options;
   std::vector<std::string> arms, devices;
   std::string clock = "wall";
   std::string serve;  // "haply", or nothing
-  std::uint16_t port = faces::haply::kPort;
+  std::uint16_t port = compat::haply::kPort;
   RosArguments ros;
   std::string hold_to_run;
 };
 
 /// Reads the options of the topics, if there are to be any.
-driver::Result<void> take_topics(RosArguments ros, faces::ExecOptions& options) {
+driver::Result<void> take_topics(RosArguments ros, compat::ExecOptions& options) {
   if (!ros.asked) return {};
   if (auto fits = check_ros_arguments(ros); !fits) return fits;
-  if (ros.options.force != faces::RosForce::kNone) {
+  if (ros.options.force != ros2::RosForce::kNone) {
     return driver::Error{"--ros-force: the program asks for the forces; leave it away."};
   }
   if (options.paced) {
     return driver::Error{"--ros2 tells of a run in real time: leave --clock virtual away."};
   }
-  if (auto there = faces::check_ros_module(); !there) return there;
+  if (auto there = ros2::check_ros_module(); !there) return there;
   options.topics = ros.options;
   return {};
 }
@@ -69,8 +69,8 @@ driver::Result<void> take_topics(RosArguments ros, faces::ExecOptions& options) 
 constexpr const char* kPortVariable = "THIMBLE_HAPLY_PORT";
 
 /// Joins the lists of --arm and --device: the first of each is the program's first arm.
-std::vector<faces::ExecArm> arms_of(const Asked& asked) {
-  std::vector<faces::ExecArm> arms(
+std::vector<compat::ExecArm> arms_of(const Asked& asked) {
+  std::vector<compat::ExecArm> arms(
       std::max<std::size_t>({1, asked.arms.size(), asked.devices.size()}));
   for (std::size_t i = 0; i < asked.arms.size(); ++i) arms[i].arm_file = asked.arms[i];
   for (std::size_t i = 0; i < asked.devices.size(); ++i) arms[i].device = asked.devices[i];
@@ -80,7 +80,7 @@ std::vector<faces::ExecArm> arms_of(const Asked& asked) {
 /// Returns the environment of the program: ours, with our libraries in front, the arms' address,
 /// and the port of the service, if there is one.
 std::vector<std::string> environment(const fs::path& libraries, const std::string& address,
-                                     const faces::haply::Service* service) {
+                                     const compat::haply::Service* service) {
   std::vector<std::string> variables;
   std::string search = "LD_LIBRARY_PATH=" + libraries.string();
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -88,13 +88,13 @@ std::vector<std::string> environment(const fs::path& libraries, const std::strin
     if (text.starts_with("LD_LIBRARY_PATH=")) {
       const std::string before = text.substr(text.find('=') + 1);
       if (!before.empty()) search += ":" + before;
-    } else if (!text.starts_with(std::string(faces::kChannelVariable) + "=") &&
+    } else if (!text.starts_with(std::string(compat::kChannelVariable) + "=") &&
                !(service != nullptr && text.starts_with(std::string(kPortVariable) + "="))) {
       variables.push_back(text);
     }
   }
   variables.push_back(search);
-  variables.push_back(std::string(faces::kChannelVariable) + "=" + address);
+  variables.push_back(std::string(compat::kChannelVariable) + "=" + address);
   if (service != nullptr) {
     variables.push_back(std::string(kPortVariable) + "=" + std::to_string(service->port()));
   }
@@ -129,7 +129,7 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
 
 /// Serves the program until it ends, and returns how it did (waitpid). Who interrupts us ends the
 /// forces first, then the program.
-int serve(faces::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
+int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
   constexpr std::int64_t kLook_ns = 20'000'000;
   constexpr auto kPatience = std::chrono::milliseconds(500);
   constexpr auto kLongest = std::chrono::seconds(5);
@@ -150,20 +150,20 @@ int serve(faces::ArmServer& server, pid_t child, const std::atomic<bool>& stop) 
 }
 
 /// Serves programs that come by themselves, until the user or a viewer ends it.
-void serve_all(faces::ArmServer& server, const std::atomic<bool>& stop) {
+void serve_all(compat::ArmServer& server, const std::atomic<bool>& stop) {
   constexpr std::int64_t kLook_ns = 20'000'000;
   while (!stop.load() && !server.ended_by_viewer()) server.step(kLook_ns);
   server.end();
 }
 
 /// Ends the service: who waits there for an arm gets its answer first.
-void end(faces::haply::Service& service, faces::ArmServer& server) {
+void end(compat::haply::Service& service, compat::ArmServer& server) {
   constexpr std::int64_t kLook_ns = 1'000'000;
   service.leave();
   while (!service.ended()) server.step(kLook_ns);
 }
 
-int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
+int exit_code_of(const compat::ArmServer& server, int status, bool stopped) {
   if (WIFSIGNALED(status)) {
     if (stopped) return kExitInterrupted;
     scene::logger().error("The program was ended by signal {} ({}).", WTERMSIG(status),
@@ -176,12 +176,12 @@ int exit_code_of(const faces::ArmServer& server, int status, bool stopped) {
 }
 
 /// Makes the service and opens its arms; `code`: of the error.
-driver::Result<std::unique_ptr<faces::haply::Service>> make_service(const Asked& asked,
-                                                                    faces::ArmServer& server,
-                                                                    ExitCode& code) {
-  faces::use_channel(&server.channel(), server.address());
+driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked& asked,
+                                                                     compat::ArmServer& server,
+                                                                     ExitCode& code) {
+  compat::use_channel(&server.channel(), server.address());
   code = kExitBadInput;
-  auto service = faces::haply::Service::listen(
+  auto service = compat::haply::Service::listen(
       asked.port, [](const std::string& sentence) { scene::logger().warn("{}", sentence); });
   if (!service) return service;
   constexpr std::int64_t kLook_ns = 1'000'000;
@@ -222,9 +222,9 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   plan.read(asked.options.firmware);
   plan.write("--record", asked.options.record, session::kRecordingOutput, asked.options.overwrite);
   if (const auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto libraries = faces::face_folder();
+  const auto libraries = compat::face_folder();
   if (!libraries) return complain(libraries.error(), kExitTrouble);
-  faces::ExecOptions options = asked.options;
+  compat::ExecOptions options = asked.options;
   options.program = command.empty() ? asked.serve : fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
@@ -233,14 +233,14 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
     return complain(taken.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  for (const faces::ExecArm& arm : options.arms) {
+  for (const compat::ExecArm& arm : options.arms) {
     if (arm.device != "sim") scene::leave_rather_than_stop();
   }
-  auto made = faces::ArmServer::make(options, stop);
+  auto made = compat::ArmServer::make(options, stop);
   if (!made) return complain(made.error(), kExitBadInput);
-  faces::ArmServer& server = **made;
+  compat::ArmServer& server = **made;
   const scene::LeavingGuard guard;
-  std::unique_ptr<faces::haply::Service> service;
+  std::unique_ptr<compat::haply::Service> service;
   if (serves) {
     ExitCode code = kExitDone;
     auto serving = make_service(asked, server, code);
@@ -282,7 +282,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       "exec",
       "Run a program that was written for another maker's arm (HDAPI, DHD, CHAI3D, Inverse3)");
   auto asked = std::make_shared<Asked>();
-  faces::ExecOptions& options = asked->options;
+  compat::ExecOptions& options = asked->options;
   command->prefix_command();
   command->footer(
       "Options stand before PROGRAM; what follows it is its own.\n"
@@ -349,4 +349,4 @@ void add_exec_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -13,7 +13,7 @@
 #include "view/feedback/touch_sound.h"
 #include "view/feedback/wav_file.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct ExportOptions {
@@ -78,4 +78,4 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = export_recording(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -17,12 +17,12 @@
 #include "log/printed_text.h"
 #include "signals.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Reads the arm with zero force, and tells how well its reports arrive.
-int listen_to(BenchArm& bench, double duration, const std::atomic<bool>& stop) {
-  const Listened heard = listen(bench, duration, stop);
+int listen_to(bringup::BenchArm& bench, double duration, const std::atomic<bool>& stop) {
+  const bringup::Listened heard = bringup::listen(bench, duration, stop);
   scene::print_format("%s\n", heard.text().c_str());
   if (!heard.whole && !stop.load()) {
     scene::print_format("%s\n", std::string(driver::describe(bench.device().fault())).c_str());
@@ -58,8 +58,9 @@ int check_arm(const ArmChoice& choice, double listen) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
-  auto bench = BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
-                              feel_check_hand({0, 0, 0}), scene::kFeelCheckForceMax);
+  auto bench =
+      bringup::BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
+                              bringup::feel_check_hand({0, 0, 0}), scene::kFeelCheckForceMax);
   if (!bench) {
     return complain(bench.error(), kExitNoDevice);
   }
@@ -70,7 +71,7 @@ int check_arm(const ArmChoice& choice, double listen) {
         "No force above %.1f N. Keep the arm's switch at hand; Ctrl-C ends the check.\n",
         scene::kFeelCheckForceMax);
   }
-  const Prompt prompt = [&](const std::string& what) {
+  const bringup::Prompt prompt = [&](const std::string& what) {
     scene::print_format("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
     std::fflush(stdout);
     if (!person) return true;
@@ -81,7 +82,7 @@ int check_arm(const ArmChoice& choice, double listen) {
     return (*bench)->hold(done, stop) && key == session::EnterKey::kPressed;
   };
   // A simulated hand feels what is true.
-  const Question question = [&](const std::string& what) -> std::optional<bool> {
+  const bringup::Question question = [&](const std::string& what) -> std::optional<bool> {
     if (person) return says_yes(what, stop);
     constexpr double kFelt = 0.1;  // N
     const bool stopped = (*bench)->true_force() < kFelt;
@@ -89,14 +90,14 @@ int check_arm(const ArmChoice& choice, double listen) {
     return stopped;
   };
   bool all = true;
-  const auto results = feel_check(**bench, chosen->file, prompt, stop, question);
-  for (const CheckResult& result : results) {
+  const auto results = bringup::feel_check(**bench, chosen->file, prompt, stop, question);
+  for (const bringup::CheckResult& result : results) {
     scene::print_format("%-7s %-12s %s\n", result.passed ? "ok" : "FAILED", result.name.c_str(),
                         result.text.c_str());
     all = all && result.passed;
   }
   if (stop.load()) return kExitInterrupted;
-  const bool passed = all && results.size() == kFeelChecks;
+  const bool passed = all && results.size() == bringup::kFeelChecks;
   scene::logger().info("The feel check of {} was {}.", chosen->name,
                        passed ? "passed"
                        : all  ? "left"
@@ -108,8 +109,9 @@ int check_arm(const ArmChoice& choice, double listen) {
     }
   }
   if (passed) return kExitDone;
-  const bool fault = std::any_of(results.begin(), results.end(),
-                                 [](const CheckResult& result) { return result.name == "fault"; });
+  const bool fault =
+      std::any_of(results.begin(), results.end(),
+                  [](const bringup::CheckResult& result) { return result.name == "fault"; });
   return fault ? kExitFault : kExitUnmet;
 }
 
@@ -127,4 +129,4 @@ void add_feel_check_command(CLI::App& app, int& exit_code) {
   command->callback([choice, listen, &exit_code] { exit_code = check_arm(*choice, *listen); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -10,7 +10,7 @@
 #include "log/printed_text.h"
 #include "scene_keys.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct HelpOptions {
@@ -56,4 +56,4 @@ void add_help_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = print_keys(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -28,12 +28,12 @@
 #include "output/output_plan.h"
 #include "signals.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct HilCommand {
   ArmChoice choice;
-  HilOptions options;
+  hil::HilOptions options;
   std::string suite = "quick";
   std::string json;
   std::string junit;
@@ -50,10 +50,10 @@ std::string now_utc() {
   return text;
 }
 
-void print(const HilResult& result) {
-  scene::print_format("%-7s %-16s %s\n", words_of(result.outcome).on_terminal, result.name.c_str(),
-                      result.text.c_str());
-  for (const Figure& figure : result.figures) {
+void print(const hil::HilResult& result) {
+  scene::print_format("%-7s %-16s %s\n", hil::words_of(result.outcome).on_terminal,
+                      result.name.c_str(), result.text.c_str());
+  for (const session::Figure& figure : result.figures) {
     if (figure.met()) continue;
     scene::print_format("        %-16s %s = %.4g %s, not %s%s\n", "", figure.name.c_str(),
                         figure.value, figure.unit.c_str(), figure.goal.c_str(),
@@ -63,7 +63,7 @@ void print(const HilResult& result) {
 }
 
 /// Returns the prompt of a person, or of a simulated hand, which does what is asked.
-Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
+bringup::Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
   return [person, &stop](const std::string& what) {
     scene::print_format("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
     std::fflush(stdout);
@@ -144,20 +144,20 @@ class SuiteClock {
 /// was written to it: it gets the last text alone.
 class HilFiles {
  public:
-  HilFiles(const HilCommand& command, HilRecord record)
+  HilFiles(const HilCommand& command, hil::HilRecord record)
       : command_(command), record_(std::move(record)) {}
 
-  HilRecord& record() { return record_; }
+  hil::HilRecord& record() { return record_; }
 
   /// Writes the results until now; each check beyond them did not run, and `why`. `last`: no other
   /// text follows.
-  driver::Result<void> write(const std::vector<HilResult>& results, const std::string& why,
+  driver::Result<void> write(const std::vector<hil::HilResult>& results, const std::string& why,
                              bool last) const {
-    const auto all = with_not_run(results, command_.options, why);
+    const auto all = hil::with_not_run(results, command_.options, why);
     if (is_due(command_.json, last)) {
-      if (auto done = write_hil_json(record_, all, command_.json); !done) return done;
+      if (auto done = hil::write_hil_json(record_, all, command_.json); !done) return done;
     }
-    return is_due(command_.junit, last) ? write_hil_junit(record_, all, command_.junit)
+    return is_due(command_.junit, last) ? hil::write_hil_junit(record_, all, command_.junit)
                                         : driver::Result<void>();
   }
 
@@ -180,29 +180,30 @@ class HilFiles {
   }
 
   const HilCommand& command_;
-  HilRecord record_;
+  hil::HilRecord record_;
 };
 
-ExitCode code_of(const std::vector<HilResult>& results) {
+ExitCode code_of(const std::vector<hil::HilResult>& results) {
   const auto any = [&](auto&& is) { return std::any_of(results.begin(), results.end(), is); };
-  if (any([](const HilResult& one) { return one.fault; })) return kExitFault;
-  return any([](const HilResult& one) {
-    return one.outcome == HilOutcome::kFailed || one.outcome == HilOutcome::kNotRun;
+  if (any([](const hil::HilResult& one) { return one.fault; })) return kExitFault;
+  return any([](const hil::HilResult& one) {
+    return one.outcome == hil::HilOutcome::kFailed || one.outcome == hil::HilOutcome::kNotRun;
   })
              ? kExitUnmet
              : kExitDone;
 }
 
-void print_summary(const std::vector<HilResult>& results) {
-  const auto count = [&](HilOutcome outcome) {
+void print_summary(const std::vector<hil::HilResult>& results) {
+  const auto count = [&](hil::HilOutcome outcome) {
     return std::count_if(results.begin(), results.end(),
-                         [&](const HilResult& one) { return one.outcome == outcome; });
+                         [&](const hil::HilResult& one) { return one.outcome == outcome; });
   };
-  const auto not_run = count(HilOutcome::kNotRun);
+  const auto not_run = count(hil::HilOutcome::kNotRun);
   const std::string rest = not_run > 0 ? fmt::format(", {} did not run", not_run) : "";
   scene::print_format("%zu check%s: %td passed, %td failed, %td skipped%s.\n", results.size(),
-                      results.size() == 1 ? "" : "s", count(HilOutcome::kPassed),
-                      count(HilOutcome::kFailed), count(HilOutcome::kSkipped), rest.c_str());
+                      results.size() == 1 ? "" : "s", count(hil::HilOutcome::kPassed),
+                      count(hil::HilOutcome::kFailed), count(hil::HilOutcome::kSkipped),
+                      rest.c_str());
 }
 
 int run_hil(HilCommand command) {
@@ -212,7 +213,7 @@ int run_hil(HilCommand command) {
   plan.write("--json", command.json, output::kJson);
   plan.write("--junit", command.junit, output::kXml);
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  HilOptions& options = command.options;
+  hil::HilOptions& options = command.options;
   options.full = command.suite == "full";
   HilFiles files(command, {.arm = command.choice.device,
                            .arm_file = command.choice.arm_file,
@@ -250,50 +251,52 @@ int run_hil(HilCommand command) {
     scene::print_format(
         "The arm will move by itself, with at most %g N. Put its tip into the middle of the "
         "workspace, with nothing within 5 cm of it. Keep its switch at hand; Ctrl-C ends it.\n",
-        kHilForceMax);
+        hil::kHilForceMax);
   }
-  const HilRig rig{
+  const hil::HilRig rig{
       .file = chosen->file,
       .open =
-          [&](TipHold hold) {
-            return chosen->real_arm ? BenchArm::open(chosen->file, chosen->real_arm,
-                                                     command.choice.firmware, {}, kHilForceMax)
-                                    : open_simulated(chosen->file, options, hold);
+          [&](hil::TipHold hold) {
+            return chosen->real_arm
+                       ? bringup::BenchArm::open(chosen->file, chosen->real_arm,
+                                                 command.choice.firmware, {}, hil::kHilForceMax)
+                       : hil::open_simulated(chosen->file, options, hold);
           },
       .stop = stop,
       .prompt = prompt_of(chosen->real_arm.has_value(), stop),
-      .question = chosen->real_arm
-                      ? Question([&stop](const std::string& what) { return says_yes(what, stop); })
-                      : Question(),
+      .question = chosen->real_arm ? bringup::Question([&stop](const std::string& what) {
+        return says_yes(what, stop);
+      })
+                                   : bringup::Question(),
       .attended = options.attended || !chosen->real_arm};
-  if (auto bench = rig.open(TipHold::kFree); !bench) {
+  if (auto bench = rig.open(hil::TipHold::kFree); !bench) {
     return files.end_early(bench.error(), kExitNoDevice);
   }
   // Nobody pulls the cable of a simulated arm.
   if (!chosen->real_arm) options.replug = false;
   driver::Result<void> written;
-  HilListener listener;
+  hil::HilListener listener;
   listener.begun = [&](const std::string& name, std::size_t number, std::size_t count) {
     scene::print_format("[%zu/%zu] %s\n", number, count, name.c_str());
     std::fflush(stdout);
     clock.begin(name);
   };
-  listener.ended = [&](const std::vector<HilResult>& results) {
+  listener.ended = [&](const std::vector<hil::HilResult>& results) {
     print(results.back());
     if (auto done = files.write(results, "The suite ended before this check did.", false); !done) {
       written = done;
     }
   };
-  const auto results = run_hil_suite(rig, options, listener);
-  for (const HilResult& result : results) {
-    if (stop.load() && result.outcome == HilOutcome::kNotRun) print(result);
+  const auto results = hil::run_hil_suite(rig, options, listener);
+  for (const hil::HilResult& result : results) {
+    if (stop.load() && result.outcome == hil::HilOutcome::kNotRun) print(result);
   }
   ExitCode code = interrupted.load() ? kExitInterrupted : code_of(results);
   files.record().end = interrupted.load()  ? "interrupted"
                        : clock.timed_out() ? "timeout"
                                            : "completed";
   files.record().exit_code = code;
-  files.record().not_tested = not_tested(chosen->file, options, results);
+  files.record().not_tested = hil::not_tested(chosen->file, options, results);
   if (auto done = files.write(results, "", true); !done) written = done;
   for (const std::string& sentence : files.record().not_tested) {
     scene::print_format("Not tested: %s\n", sentence.c_str());
@@ -343,7 +346,7 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   sub->add_option("--check", command->options.only,
                   "Only run this check; may be given several times. One that pushes brings the "
                   "feel check with it")
-      ->check(CLI::IsMember(hil_checks()));
+      ->check(CLI::IsMember(hil::hil_checks()));
   sub->add_flag("--require-device", command->require_device,
                 "Exit with 3 unless a real arm is there, whatever --device says");
   sub->add_option("--timeout", command->timeout,
@@ -355,4 +358,4 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   sub->callback([command, &exit_code] { exit_code = run_hil(*command); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

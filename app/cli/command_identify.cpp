@@ -31,12 +31,12 @@
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/recording.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct IdentifyCommand {
   ArmChoice choice;
-  IdentifyOptions options;
+  bringup::IdentifyOptions options;
   std::string output;
   std::string record;
   bool force = false;
@@ -64,7 +64,7 @@ const char* how_to_stop(bool terminal) {
 }
 
 /// Says that the tip goes about.
-std::string led_text(const IdentifyOptions& options) {
+std::string led_text(const bringup::IdentifyOptions& options) {
   if (options.places == 0) return "";
   return fmt::format(
       ", and then go slowly to {} places of its workspace and shake there for {:g} s each",
@@ -72,11 +72,12 @@ std::string led_text(const IdentifyOptions& options) {
 }
 
 /// Opens a real arm and asks for what the motion needs; the arm is idle meanwhile.
-driver::Result<std::unique_ptr<BenchArm>> open_real(const ChosenArm& chosen,
-                                                    const IdentifyCommand& command, bool loaded,
-                                                    const std::atomic<bool>& stop) {
-  auto bench = BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {},
-                              command.options.force_most);
+driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& chosen,
+                                                             const IdentifyCommand& command,
+                                                             bool loaded,
+                                                             const std::atomic<bool>& stop) {
+  auto bench = bringup::BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {},
+                                       command.options.force_most);
   if (!bench) return bench;
   if (loaded) {
     scene::print_format(
@@ -128,7 +129,7 @@ driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& pa
 
 /// Writes what was found into the new file, if the user says so. A bad fit is kept only if that was
 /// asked for by name.
-int keep(const IdentifyCommand& command, const ChosenArm& chosen, const Identified& found,
+int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup::Identified& found,
          bool writes, const std::atomic<bool>& stop) {
   const bool bad = !found.against.empty();
   const int done = bad ? kExitUnmet : kExitDone;
@@ -148,8 +149,8 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const Identifi
   }
   const auto file = scene::find_arm_file(chosen.path.string());
   if (!file) return complain(file.error(), kExitBadInput);
-  const auto written =
-      write_identified(*file, command.output, found, {.date = today(), .arm = chosen.name});
+  const auto written = bringup::write_identified(*file, command.output, found,
+                                                 {.date = today(), .arm = chosen.name});
   if (!written) return complain(written.error(), kExitTrouble);
   scene::print_format("Written to %s%s.\n", command.output.c_str(),
                       bad ? ", each mark with BAD FIT" : "");
@@ -169,13 +170,13 @@ int identify_arm(IdentifyCommand command) {
                      "not passed its feel check. Run `thimble feel-check` first."},
                     kExitBadInput);
   }
-  if (auto right = check_forces(chosen->file, command.options); !right) {
+  if (auto right = bringup::check_forces(chosen->file, command.options); !right) {
     return complain(right.error(), kExitBadInput);
   }
   // Who names the file, or answers, says that it is to be written.
   const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
-  if (auto free = check_new_file(command.output); writes && !free) {
+  if (auto free = bringup::check_new_file(command.output); writes && !free) {
     return complain(free.error(), kExitBadInput);
   }
   output::OutputPlan plan;
@@ -194,12 +195,12 @@ int identify_arm(IdentifyCommand command) {
   command.options.place_seconds =
       std::max(kPlaceSecondsLeast, command.options.seconds / kPlaceShare);
   std::optional<KeyStop> keys;
-  const OpenBench open = [&](bool loaded) {
+  const bringup::OpenBench open = [&](bool loaded) {
     keys.reset();  // Enter begins, and is no key that stops
-    auto bench = chosen->real_arm
-                     ? open_real(*chosen, command, loaded, stop)
-                     : simulated_bench(chosen->file, loaded ? command.options.known_mass : 0, false,
-                                       command.options.force_most);
+    auto bench = chosen->real_arm ? open_real(*chosen, command, loaded, stop)
+                                  : bringup::simulated_bench(
+                                        chosen->file, loaded ? command.options.known_mass : 0,
+                                        false, command.options.force_most);
     if (!bench) return bench;
     keys.emplace();
     scene::print_format("The tip %s; %s.\n",
@@ -214,7 +215,7 @@ int identify_arm(IdentifyCommand command) {
     ticks.reserve(static_cast<std::size_t>(1000 * (command.options.seconds + 10)));
     command.options.watch = [&ticks](const driver::TickRecord& tick) { ticks.push_back(tick); };
   }
-  const auto found = identify(open, chosen->file, command.options, stop);
+  const auto found = bringup::identify(open, chosen->file, command.options, stop);
   const bool by_key = keys && keys->pressed();
   keys.reset();
   if (stop.load()) {
@@ -228,19 +229,20 @@ int identify_arm(IdentifyCommand command) {
     scene::print_format("The motion was recorded in %s.\n", command.record.c_str());
   }
   if (!found) return complain(found.error(), kExitFault);
-  scene::print_format("%s", constants_table(*found, chosen->file).c_str());
+  scene::print_format("%s", bringup::constants_table(*found, chosen->file).c_str());
   if (!command.report.empty()) {
-    const auto written = write_identify_page(*found, chosen->file,
-                                             {.arm = chosen->file.name,
-                                              .device = chosen->name,
-                                              .simulated = !chosen->real_arm,
-                                              .date = today(),
-                                              .program = scene::program_name(),
-                                              .seconds = command.options.seconds,
-                                              .force_most = command.options.force_most,
-                                              .bad_fit_is_written = command.write_bad_fit,
-                                              .known_mass = command.options.known_mass},
-                                             command.report);
+    const auto written =
+        identified::write_identify_page(*found, chosen->file,
+                                        {.arm = chosen->file.name,
+                                         .device = chosen->name,
+                                         .simulated = !chosen->real_arm,
+                                         .date = today(),
+                                         .program = scene::program_name(),
+                                         .seconds = command.options.seconds,
+                                         .force_most = command.options.force_most,
+                                         .bad_fit_is_written = command.write_bad_fit,
+                                         .known_mass = command.options.known_mass},
+                                        command.report);
     if (!written) return complain(written.error(), kExitTrouble);
     scene::print_format("Report in %s/index.html.\n", command.report.c_str());
   }
@@ -293,4 +295,4 @@ void add_identify_command(CLI::App& app, int& exit_code) {
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -8,7 +8,7 @@
 #include "log/printed_text.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Makes text safe for roff: dashes that stay dashes, no line that begins as a request, and lists
@@ -76,4 +76,4 @@ void add_manual_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

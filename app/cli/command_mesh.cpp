@@ -24,7 +24,7 @@
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct MeshOptions {
@@ -222,7 +222,8 @@ int tell_mesh(const MeshOptions& options) {
   print_touching(*mesh);
   if (!options.picture.empty()) {
     const std::string title = std::filesystem::path(options.file).filename().string();
-    if (const auto drawn = draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
+    if (const auto drawn =
+            report::draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
         !drawn) {
       return complain(drawn.error(), kExitTrouble);
     }
@@ -270,4 +271,4 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

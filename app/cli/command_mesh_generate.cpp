@@ -11,7 +11,7 @@
 #include "studies/resident_memory.h"
 #include "studies/ring_pages.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct GenerateOptions {
@@ -21,21 +21,22 @@ struct GenerateOptions {
 };
 
 int generate_mesh(const GenerateOptions& options) {
-  BumpyRing ring;
+  studies::BumpyRing ring;
   const double scale = options.size / (2 * ring.half_size());
   ring.ring_radius *= scale;
   ring.tube_radius *= scale;
-  const RingGrid grid = ring_grid(ring, static_cast<std::int64_t>(options.triangles));
+  const studies::RingGrid grid =
+      studies::ring_grid(ring, static_cast<std::int64_t>(options.triangles));
   auto file = output::OutputFile::open(options.out, output::kPageFile);
   if (!file) return complain(file.error(), kExitBadInput);
-  if (const auto written = write_ring(ring, grid, file->part()); !written) {
+  if (const auto written = studies::write_ring(ring, grid, file->part()); !written) {
     return complain(file->named(written.error()), kExitTrouble);
   }
   if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
   scene::print_format("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
                       options.out.c_str(), grid.triangle_count(),
                       grid.triangle_count() / render::kPageTriangles,
-                      static_cast<double>(resident_memory().most) / (1 << 20));
+                      static_cast<double>(studies::resident_memory().most) / (1 << 20));
   return kExitDone;
 }
 
@@ -57,4 +58,4 @@ void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = generate_mesh(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

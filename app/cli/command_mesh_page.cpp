@@ -13,7 +13,7 @@
 #include "output/output_plan.h"
 #include "thimble/render/mesh/mesh_file.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct PageOptions {
@@ -54,4 +54,4 @@ void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = page_mesh(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -30,7 +30,7 @@
 #include "thimble/device_sim/usb/vhci.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 namespace usb = device_sim::usb;
@@ -301,4 +301,4 @@ void add_plug_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = plug(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -21,7 +21,7 @@
 #include "system/regular_file.h"
 #include "thimble/session/recording.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct ReplayOptions {
@@ -186,7 +186,7 @@ int replay_recordings(const ReplayOptions& options) {
                session::kRecordingOutput, options.force);
   }
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  ReplayPage page;
+  report::ReplayPage page;
   auto replays =
       session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);
   if (!replays) return complain(replays.error(), kExitBadInput);
@@ -267,4 +267,4 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = replay_recordings(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -48,7 +48,7 @@
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Prints on standard output, unless the user wants errors only.
@@ -78,10 +78,10 @@ ExitCode end_recording(session::Session& session, const std::string& asked) {
 /// Writes the files that were asked for of a run that is over.
 driver::Result<void> write_files(const session::Session& session,
                                  const driver::RealTimeGrant& grant, const RunOptions& options,
-                                 RunPage* page, int object) {
+                                 report::RunPage* page, int object) {
   if (page != nullptr) page->finish();
   if (!options.report.empty()) {
-    auto written = write_run_files(session, grant, options.report, page);
+    auto written = report::write_run_files(session, grant, options.report, page);
     if (!written) return written;
     report("Report and pictures: {}\n", options.report);
   }
@@ -105,16 +105,16 @@ driver::Result<void> write_files(const session::Session& session,
 
 /// What stands beside a run, and is asked for its part after it. It ends before the session does.
 struct RunSides {
-  std::shared_ptr<faces::SteppedClock> clock;          // of a run that is stepped, or null
-  std::vector<std::unique_ptr<faces::RosRun>> topics;  // of each arm
-  std::unique_ptr<RunPage> page;
+  std::shared_ptr<ros2::SteppedClock> clock;          // of a run that is stepped, or null
+  std::vector<std::unique_ptr<ros2::RosRun>> topics;  // of each arm
+  std::unique_ptr<report::RunPage> page;
 };
 
 /// Puts the topics of all arms onto the wire.
-driver::Result<void> open_topics(session::Session& session, const faces::RosOptions& options,
+driver::Result<void> open_topics(session::Session& session, const ros2::RosOptions& options,
                                  RunSides& sides) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
-    auto opened = faces::RosRun::open(session, options, arm, sides.clock.get());
+    auto opened = ros2::RosRun::open(session, options, arm, sides.clock.get());
     if (!opened) return opened.error();
     sides.topics.push_back(std::move(opened).value());
   }
@@ -140,7 +140,7 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
       return complain(opened.error(), kExitBadInput);
     }
   }
-  if (!options.report.empty()) sides.page = std::make_unique<RunPage>(session);
+  if (!options.report.empty()) sides.page = std::make_unique<report::RunPage>(session);
   std::optional<session::HoldKey> key;
   if (session.setup().hold().by_caller) {
     scene::terminal().info(
@@ -178,8 +178,8 @@ struct RunCourse {
   const session::RunArms& arms;
   const std::atomic<bool>& stop;
   session::SessionOptions asked;
-  std::shared_ptr<faces::SteppedClock> clock;  // of a run that is stepped, or null
-  std::optional<session::NextRun> next;        // what comes after it, where anything may
+  std::shared_ptr<ros2::SteppedClock> clock;  // of a run that is stepped, or null
+  std::optional<session::NextRun> next;       // what comes after it, where anything may
   std::unique_ptr<session::ViewerProcess> viewer;
   int number = 1;         // of the run
   std::string recording;  // of this one
@@ -238,7 +238,7 @@ ExitCode run_one(RunCourse& course, session::Session& session,
     report("{}: {}\n", options.quality, choice);
   }
   tell(session.told());
-  for (const std::string& warning : stability_warnings(session.scene())) {
+  for (const std::string& warning : stability::stability_warnings(session.scene())) {
     scene::logger().warn("{} See thimble tune.", warning);
   }
   const auto object = find_saved(session, options);
@@ -298,7 +298,7 @@ void plan_outputs(const RunOptions& options, output::OutputPlan& plan) {
   plan.read(options.firmware);
   plan.check("--record", options.record, session::kRecordingOutput, options.force);
   plan.write("--save-mesh", options.save_mesh, output::kMesh);
-  plan.write_folder("--report", options.report, run_file_names());
+  plan.write_folder("--report", options.report, report::run_file_names());
 }
 
 int run_scene(RunOptions& options) {
@@ -322,7 +322,7 @@ int run_scene(RunOptions& options) {
   RunCourse course{options, *arms, stop,          session_options(options, *arms), {}, {},
                    {},      1,     options.record};
   if (options.stepped()) {
-    course.asked.own_clock = course.clock = std::make_shared<faces::SteppedClock>(stop);
+    course.asked.own_clock = course.clock = std::make_shared<ros2::SteppedClock>(stop);
   }
   if (course.asked.restarts) {
     course.next.emplace([&course](const auto& scene) { return prepare_next(course, scene); },
@@ -377,4 +377,4 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -23,7 +23,7 @@
 #include "view/gl/picture_file.h"
 #include "view/shot.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct ShotOptions {
@@ -256,4 +256,4 @@ void add_shot_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = take_shot(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

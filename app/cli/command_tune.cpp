@@ -18,7 +18,7 @@
 #include "thimble/scene/scene_objects.h"
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct TuneCommand {
@@ -67,7 +67,7 @@ int tune_scene(const TuneCommand& command) {
   if (!objects) return complain(objects.error(), kExitBadInput);
   for (const std::string& note : (*objects)->notes())
     scene::print_format("Note      %s\n", note.c_str());
-  TuneOptions options{.period_spread = 1e-6 * command.spread_us};
+  stability::TuneOptions options{.period_spread = 1e-6 * command.spread_us};
   if (command.measure > 0) {
     options.period_spread = measured_spread(scene->rate, command.measure);
     scene::print_format(
@@ -77,24 +77,24 @@ int tune_scene(const TuneCommand& command) {
   if (command.topics) {
     constexpr double kDuration = 5;  // s [chosen]
     const auto ages =
-        faces::measure_ros_latency(command.scene, command.arm_file, command.domain, kDuration);
+        ros2::measure_ros_latency(command.scene, command.arm_file, command.domain, kDuration);
     if (!ages) return complain(ages.error(), kExitTrouble);
-    options.topics =
-        AnswerAges{.median = 1e-9 * ages->percentile(0.5), .most = 1e-9 * ages->percentile(0.99)};
+    options.topics = stability::AnswerAges{.median = 1e-9 * ages->percentile(0.5),
+                                           .most = 1e-9 * ages->percentile(0.99)};
   }
-  const auto tuned = tune(*scene, options);
+  const auto tuned = stability::tune(*scene, options);
   if (!tuned) return complain(tuned.error(), kExitBadInput);
-  scene::print_format("%s\n%s", tuned->text.c_str(), figure_table(tuned->figures).c_str());
+  scene::print_format("%s\n%s", tuned->text.c_str(), report::figure_table(tuned->figures).c_str());
   if (!command.folder.empty()) {
     std::error_code status;
     std::filesystem::create_directories(command.folder, status);
     const std::filesystem::path file = std::filesystem::path(command.folder) / "figures.json";
-    if (const auto written = write_figures(tuned->figures, file); !written) {
+    if (const auto written = report::write_figures(tuned->figures, file); !written) {
       return complain(written.error(), kExitTrouble);
     }
     scene::print_format("Written to %s.\n", file.c_str());
   }
-  const std::string unmet = unmet_line(tuned->figures);
+  const std::string unmet = report::unmet_line(tuned->figures);
   if (unmet.empty()) return kExitDone;
   scene::print_format("%s\n", unmet.c_str());
   return kExitUnmet;
@@ -130,4 +130,4 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = tune_scene(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -17,14 +17,14 @@
 #include "twin/twin_prediction.h"
 #include "twin/unseen_constants.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct TwinCommand {
   std::string recording;
   std::string arm_file;
   std::string output;
-  TwinOptions options;
+  twin::TwinOptions options;
   double fit_least = 0;
 };
 
@@ -38,35 +38,37 @@ int compare(const TwinCommand& command) {
   if (!recording) return complain(recording.error(), kExitBadInput);
   const auto file = scene::load_arm(command.arm_file);
   if (!file) return complain(file.error(), kExitBadInput);
-  const auto result = compare_twin(*recording, *file, command.options);
+  const auto result = twin::compare_twin(*recording, *file, command.options);
   if (!result) return complain(result.error(), kExitBadInput);
   scene::print_format("Recording: %s, of the arm %s (%s). Twin: the simulated arm of %s.\n",
                       command.recording.c_str(), recording->info.arm.c_str(),
                       recording->info.device.c_str(), command.arm_file.c_str());
   for (const std::string& sentence : result->comparison.told)
     scene::print_format("%s\n", sentence.c_str());
-  scene::print_format("%s", twin_table(result->comparison).c_str());
-  for (const std::string& sentence : never_seen()) {
+  scene::print_format("%s", twin::twin_table(result->comparison).c_str());
+  for (const std::string& sentence : twin::never_seen()) {
     scene::print_format("Not tested by motion: %s.\n", sentence.c_str());
   }
-  auto figures = twin_figures(result->comparison, command.fit_least);
+  auto figures = twin::twin_figures(result->comparison, command.fit_least);
   scene::print_format("\nForces, RMS over pieces of 60 ms:\n%s",
-                      force_table(result->forces).c_str());
-  for (Figure& figure : force_figures(result->forces)) figures.push_back(std::move(figure));
-  if (const auto foretold = twin_prediction(*file)) {
+                      twin::force_table(result->forces).c_str());
+  for (session::Figure& figure : twin::force_figures(result->forces))
+    figures.push_back(std::move(figure));
+  if (const auto foretold = twin::twin_prediction(*file)) {
     scene::print_format("\nWhat the twin foretells of its arm:\n%s",
-                        prediction_text(*foretold).c_str());
-    for (Figure& figure : prediction_figures(*foretold)) figures.push_back(std::move(figure));
+                        twin::prediction_text(*foretold).c_str());
+    for (session::Figure& figure : twin::prediction_figures(*foretold))
+      figures.push_back(std::move(figure));
   } else {
     scene::print_format("\nNo wall and no bounce is foretold: %s\n",
                         foretold.error().message.c_str());
   }
   if (!command.output.empty()) {
-    const auto written = write_twin(*result, figures, file->name, command.output);
+    const auto written = twin::write_twin(*result, figures, file->name, command.output);
     if (!written) return complain(written.error(), kExitTrouble);
     scene::print_format("Figures and pictures are in %s.\n", command.output.c_str());
   }
-  const std::string unmet = unmet_line(figures);
+  const std::string unmet = report::unmet_line(figures);
   if (unmet.empty()) return kExitDone;
   scene::print_format("%s\n", unmet.c_str());
   return kExitUnmet;
@@ -102,4 +104,4 @@ void add_twin_command(CLI::App& app, int& exit_code) {
   sub->callback([command, &exit_code] { exit_code = compare(*command); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

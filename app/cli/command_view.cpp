@@ -22,7 +22,7 @@
 #include "thimble/scene/shipped_files.h"
 #include "web/web_server.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 // How long the run that takes the place of one that ends is waited for: it is prepared by then, and
@@ -202,13 +202,13 @@ int tell(const ViewOptions& options) {
 
 /// Shows a run in browsers on this computer.
 int serve(const ViewOptions& options) {
-  if (auto libraries = read_page_libraries(); !libraries) {
+  if (auto libraries = report::read_page_libraries(); !libraries) {
     return complain(libraries.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
   const session::SharedReader* watched = nullptr;
-  auto server = WebServer::listen(runs, options.port);
+  auto server = web::WebServer::listen(runs, options.port);
   if (!server) return complain(server.error(), kExitBadInput);
   scene::print_format("Open %s\n", (*server)->address().c_str());
   std::string told;
@@ -346,4 +346,4 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
       [options, show_window, &exit_code] { exit_code = show(*options, show_window); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -9,7 +9,7 @@
 #include "view/playback/recording_view.h"
 #include "view/window.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void add_window_command(CLI::App& app, int& exit_code) {
   auto choice = std::make_shared<view::WindowChoice>();
@@ -80,4 +80,4 @@ bool has_window() {
   return true;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -13,7 +13,7 @@ namespace thimble::session {
 class RunAttachment;
 }
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Opens windows until they are closed, or for so many seconds if they are above 0, and gives the
 /// exit code; empty where there are none.
@@ -90,4 +90,4 @@ void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code);
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
                         const std::string& about, const std::string& part = {});
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

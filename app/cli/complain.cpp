@@ -2,11 +2,11 @@
 
 #include "log/logger.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 ExitCode complain(const driver::Error& error, ExitCode exit_code) {
   scene::logger().error("{}", error.message);
   return exit_code;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

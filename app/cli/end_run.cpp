@@ -6,7 +6,7 @@
 #include "print.h"
 #include "thimble/session/run_figures.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 bool zero_assured(const session::Session& session) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
@@ -32,4 +32,4 @@ ExitCode end_of(const session::Session& session, bool by_viewer) {
   return code;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

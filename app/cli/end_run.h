@@ -4,7 +4,7 @@
 #include "thimble/driver/real_time.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Returns whether every arm of a run took its last zero force.
 bool zero_assured(const session::Session& session);
@@ -17,4 +17,4 @@ void print_summaries(const session::Session& session, const driver::RealTimeGran
 /// `by_viewer`: whether a viewer ended it.
 ExitCode end_of(const session::Session& session, bool by_viewer);
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -3,7 +3,7 @@
 #include "thimble/driver/fault.h"
 #include "thimble/driver/servo_loop.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// How the program ended, for scripts; `thimble --help` lists them.
 enum ExitCode : int {
@@ -33,4 +33,4 @@ constexpr ExitCode exit_code_of(driver::ServoEnd end, driver::Fault fault,
   return kExitTrouble;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -6,7 +6,7 @@
 #include "thimble/scene/quality.h"
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Makes the file of a name: what `find` finds, or its error.
@@ -50,4 +50,4 @@ CLI::Option* add_quality_option(CLI::App& command, std::string& quality, const s
       ->capture_default_str();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

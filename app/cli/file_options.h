@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Adds the scene that a command is about: a file, or a name that `thimble run --list` knows,
 /// of which `scene` becomes the file. Real-time: never from the servo thread.
@@ -21,4 +21,4 @@ CLI::Option* add_arm_option(CLI::App& command, std::filesystem::path& arm_file,
 /// Adds --quality: a name of scene::Quality. Real-time: never from the servo thread.
 CLI::Option* add_quality_option(CLI::App& command, std::string& quality, const std::string& about);
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

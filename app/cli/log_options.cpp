@@ -5,7 +5,7 @@
 #include "log/logger.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct LogOptions {
@@ -47,4 +47,4 @@ void add_log_options(CLI::App& program, const std::string& command_line) {
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -38,52 +38,52 @@ int run(int argc, char** argv) {
                                         std::string(build.compiler) + ")");
   app.require_subcommand(1);
   app.footer(kFooter);
-  int exit_code = thimble::app::kExitDone;
-  thimble::app::add_run_command(app, exit_code);
-  thimble::app::add_shot_command(app, exit_code);
-  thimble::app::add_window_command(app, exit_code);
-  thimble::app::add_devices_command(app, exit_code);
-  thimble::app::add_doctor_command(app, exit_code);
-  thimble::app::add_calibrate_command(app, exit_code);
-  thimble::app::add_feel_check_command(app, exit_code);
-  thimble::app::add_identify_command(app, exit_code);
-  thimble::app::add_twin_command(app, exit_code);
-  thimble::app::add_hil_command(app, exit_code);
-  thimble::app::add_exec_command(app, exit_code);
-  thimble::app::add_export_command(app, exit_code);
-  thimble::app::add_replay_command(app, exit_code);
-  thimble::app::add_mesh_command(app, exit_code);
-  thimble::app::add_study_command(app, exit_code);
-  thimble::app::add_tune_command(app, exit_code);
-  thimble::app::add_bench_command(app, exit_code);
-  thimble::app::add_help_command(app, exit_code);
-  thimble::app::add_cost_probe_command(app, exit_code);
-  thimble::app::add_plug_command(app, exit_code);
-  thimble::app::add_manual_command(app, exit_code);
+  int exit_code = thimble::cli::kExitDone;
+  thimble::cli::add_run_command(app, exit_code);
+  thimble::cli::add_shot_command(app, exit_code);
+  thimble::cli::add_window_command(app, exit_code);
+  thimble::cli::add_devices_command(app, exit_code);
+  thimble::cli::add_doctor_command(app, exit_code);
+  thimble::cli::add_calibrate_command(app, exit_code);
+  thimble::cli::add_feel_check_command(app, exit_code);
+  thimble::cli::add_identify_command(app, exit_code);
+  thimble::cli::add_twin_command(app, exit_code);
+  thimble::cli::add_hil_command(app, exit_code);
+  thimble::cli::add_exec_command(app, exit_code);
+  thimble::cli::add_export_command(app, exit_code);
+  thimble::cli::add_replay_command(app, exit_code);
+  thimble::cli::add_mesh_command(app, exit_code);
+  thimble::cli::add_study_command(app, exit_code);
+  thimble::cli::add_tune_command(app, exit_code);
+  thimble::cli::add_bench_command(app, exit_code);
+  thimble::cli::add_help_command(app, exit_code);
+  thimble::cli::add_cost_probe_command(app, exit_code);
+  thimble::cli::add_plug_command(app, exit_code);
+  thimble::cli::add_manual_command(app, exit_code);
   std::string command_line;
   for (int i = 1; i < argc; ++i) command_line.append(i == 1 ? "" : " ").append(argv[i]);
-  thimble::app::add_log_options(app, command_line);
+  thimble::cli::add_log_options(app, command_line);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", app.version());
   }
-  thimble::app::check_numbers(app);
-  thimble::app::check_texts(app);
+  thimble::cli::check_numbers(app);
+  thimble::cli::check_texts(app);
   if (argc <= 1) {
     thimble::scene::print_format("%s", app.help().c_str());
-    return thimble::app::kExitDone;
+    return thimble::cli::kExitDone;
   }
   try {
-    auto words = thimble::app::without_separator(app, {argv + 1, argv + argc});
+    auto words = thimble::cli::without_separator(app, {argv + 1, argv + argc});
     std::reverse(words.begin(), words.end());  // as the library takes them
     app.parse(std::move(words));
   } catch (const CLI::Success& stop) {  // --help, --version, --list
     std::ostringstream out, wrong;
     app.exit(stop, out, wrong);
     thimble::scene::write_text(stdout, out.str());
-    return thimble::app::kExitDone;
+    return thimble::cli::kExitDone;
   } catch (const CLI::ParseError& error) {
-    return thimble::app::complain({thimble::app::usage_error(app, error)},
-                                  thimble::app::kExitBadInput);
+    return thimble::cli::complain({thimble::cli::usage_error(app, error)},
+                                  thimble::cli::kExitBadInput);
   }
   return exit_code;
 }
@@ -97,13 +97,13 @@ int with_output(int exit_code) {
   if (!lost || closed || S_ISFIFO(output.st_mode) || S_ISSOCK(output.st_mode)) return exit_code;
   thimble::scene::logger().error(
       "What was to be printed could not be written: is the disk full that it goes to?");
-  return exit_code == thimble::app::kExitDone ? thimble::app::kExitTrouble : exit_code;
+  return exit_code == thimble::cli::kExitDone ? thimble::cli::kExitTrouble : exit_code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (!thimble::output::open_standard_streams()) return thimble::app::kExitTrouble;
+  if (!thimble::output::open_standard_streams()) return thimble::cli::kExitTrouble;
   thimble::scene::outlive_trouble_with_files();
   // Every exception ends here, so that destructors run and the arm is left with zero force.
   try {
@@ -113,5 +113,5 @@ int main(int argc, char** argv) {
   } catch (...) {
     thimble::scene::logger().critical("unexpected trouble.");
   }
-  return thimble::app::kExitTrouble;
+  return thimble::cli::kExitTrouble;
 }

@@ -11,7 +11,7 @@
 #include "log/logger.h"
 #include "system/regular_file.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Carries out what the hand is told: `off`, `on`, or how far it goes from where it began.
@@ -122,4 +122,4 @@ void OrderPipe::poll(Plugged& plugged) {
   }
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -7,7 +7,7 @@
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "thimble/device_sim/usb/usb_fault.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// A plugged arm as a script orders it about: faults of the plug, what the hand on it does, and
 /// what is fixed to its tip.
@@ -46,4 +46,4 @@ class OrderPipe {
   int file_ = -1;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

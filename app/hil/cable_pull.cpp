@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
@@ -30,7 +30,7 @@ HilResult check_cable_pull(const HilRig& rig, bool wanted) {
   {
     auto opened = open_active(rig, TipHold::kHand);
     if (!opened) return broken_off(kName, opened.error().message, nullptr);
-    BenchArm& bench = **opened;
+    bringup::BenchArm& bench = **opened;
     const double from = bench.device().state().p_WT.y();
     const auto law = [&](const driver::DeviceState& state) -> Vector3d {
       const bool far = !(std::abs(state.p_WT.y() - from) < kFar);
@@ -62,4 +62,4 @@ HilResult check_cable_pull(const HilRig& rig, bool wanted) {
                 {{"loss_named", 1, "", "== 1", ""}, {"found_again", 0, "", "== 1", ""}});
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

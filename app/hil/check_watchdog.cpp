@@ -4,7 +4,7 @@
 
 #include "bringup/watchdog_time.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 constexpr const char* kName = "watchdog";
@@ -13,7 +13,7 @@ constexpr const char* kName = "watchdog";
 
 HilResult check_watchdog_time(const HilRig& rig) {
   const auto& wire = rig.file.simulated.wire;
-  const WatchdogOrder order{
+  const bringup::WatchdogOrder order{
       .named = static_cast<double>(rig.file.limits.watchdog_ns) * 1e-9,
       .mass = rig.file.simulated.plant.mass,
       .coulomb = rig.file.simulated.plant.coulomb,
@@ -21,48 +21,48 @@ HilResult check_watchdog_time(const HilRig& rig) {
       .workspace = rig.file.workspace};
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
-  BenchArm& bench = **opened;
-  const WatchdogSeen seen = see_watchdog(bench, order, 1, rig.stop);
+  bringup::BenchArm& bench = **opened;
+  const bringup::WatchdogSeen seen = bringup::see_watchdog(bench, order, 1, rig.stop);
   switch (seen.end) {
-    case WatchdogEnd::kStopped:
+    case bringup::WatchdogEnd::kStopped:
       break;
-    case WatchdogEnd::kTooLong:
+    case bringup::WatchdogEnd::kTooLong:
       return skipped(kName, fmt::format("A watchdog of {:.0f} ms cannot be seen on a free tip "
                                         "within {:.0f} mm. The feel check measures it on a hand "
                                         "(--attended).",
-                                        1e3 * order.named, 1e3 * kWatchdogWayMost));
-    case WatchdogEnd::kNoRoom:
+                                        1e3 * order.named, 1e3 * bringup::kWatchdogWayMost));
+    case bringup::WatchdogEnd::kNoRoom:
       return skipped(kName,
                      fmt::format("The tip is too near to a side of the workspace to be pushed for "
                                  "{:.0f} mm; put it into the middle.",
-                                 1e3 * kWatchdogWayMost));
-    case WatchdogEnd::kTooMuch:
+                                 1e3 * bringup::kWatchdogWayMost));
+    case bringup::WatchdogEnd::kTooMuch:
       return skipped(kName,
                      fmt::format("The file's dry friction needs a push of {:.2f} N, which is "
                                  "more than is allowed.",
                                  seen.force));
-    case WatchdogEnd::kAnswersOnly:
+    case bringup::WatchdogEnd::kAnswersOnly:
       return skipped(kName,
                      "The arm speaks only when spoken to, so its watchdog's time cannot be seen.");
-    case WatchdogEnd::kHeld:
+    case bringup::WatchdogEnd::kHeld:
       return judged(kName,
                     fmt::format("The tip went {:.2f} mm under {:.2f} N: it is held, or its "
                                 "friction is higher than the arm file says.",
                                 1e3 * seen.way, seen.force),
                     {{"watchdog_way", 1e3 * seen.way, "mm", "> 0.5", ""}});
-    case WatchdogEnd::kLetGo:
+    case bringup::WatchdogEnd::kLetGo:
       return skipped(kName, fmt::format("The tip went {:.0f} mm in {:.0f} ms and was let go before "
                                         "the watchdog's time was over: it rubs less than the arm "
                                         "file says.",
                                         1e3 * seen.way, 1e3 * seen.time));
-    case WatchdogEnd::kStillOn:
+    case bringup::WatchdogEnd::kStillOn:
       return judged(kName,
                     fmt::format("The motors were still on {:.0f} ms after the last message, when "
                                 "the tip had gone {:.0f} mm and was let go. The arm file says "
                                 "{:.0f} ms.",
                                 1e3 * seen.time, 1e3 * seen.way, 1e3 * order.named),
                     {{"watchdog_seen", 0, "", "== 1", ""}});
-    case WatchdogEnd::kSeen:
+    case bringup::WatchdogEnd::kSeen:
       return judged(
           kName,
           fmt::format("The motors went off {:.0f} ms after the last message; the arm file says "
@@ -73,4 +73,4 @@ HilResult check_watchdog_time(const HilRig& rig) {
   return broken_off(kName, "", &bench);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

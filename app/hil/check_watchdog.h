@@ -2,7 +2,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Measures the time after which the arm's own watchdog switches its motors off: a free tip is
 /// pushed a little above its dry friction, then nothing is sent any more, and the tip's speed is
@@ -11,4 +11,4 @@ namespace thimble::app {
 /// speaks only when spoken to.
 HilResult check_watchdog_time(const HilRig& rig);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -12,7 +12,7 @@
 #include "bringup/identify/identify.h"
 #include "bringup/identify/link_inertia/place_masses.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 constexpr const char* kName = "constants";
@@ -24,7 +24,8 @@ constexpr double kWeight = 0.005;  // N [chosen: half a gram]
 constexpr double kTilt = 3;        // degrees [chosen: a table that stands level by eye]
 
 /// How far a constant is from the file, in units of what is allowed; its interval is forgiven.
-Figure difference(const char* name, const Estimate& found, double named, double allowed) {
+session::Figure difference(const char* name, const bringup::Estimate& found, double named,
+                           double allowed) {
   const double beyond = std::max(0.0, std::abs(found.value - named) - found.plus_minus);
   return {std::string(name) + "_difference", beyond / allowed, "of what is allowed", "<= 1",
           fmt::format("found {:.5g} +- {:.2g}, file {:.5g}", found.value, found.plus_minus, named)};
@@ -32,12 +33,12 @@ Figure difference(const char* name, const Estimate& found, double named, double 
 
 /// Puts in by how much gravity pulls aslant on the tip, where something hangs on it: the known
 /// mass, or a weight of its own of at least kWeightSeen. Returns a sentence, or nothing.
-std::string add_tilt(const Identified& found, double known_mass, const Eigen::Vector3d& down_B,
-                     std::vector<Figure>& figures) {
+std::string add_tilt(const bringup::Identified& found, double known_mass,
+                     const Eigen::Vector3d& down_B, std::vector<session::Figure>& figures) {
   constexpr double kWeightSeen = 0.02;  // N
   const double mass = found.constants.mass.value;
-  const auto pull = [&](const PerMass& fit, double moved) -> Eigen::Vector3d {
-    return moved * fit.theta.segment<3>(PerMass::kWeight);
+  const auto pull = [&](const bringup::PerMass& fit, double moved) -> Eigen::Vector3d {
+    return moved * fit.theta.segment<3>(bringup::PerMass::kWeight);
   };
   Eigen::Vector3d weight_B = pull(found.bare, mass);
   if (found.loaded) weight_B = pull(*found.loaded, mass + known_mass) - weight_B;
@@ -52,12 +53,12 @@ std::string add_tilt(const Identified& found, double known_mass, const Eigen::Ve
 
 /// Puts in how far the mass along each axis of the base is from the file's, in the middle of the
 /// workspace, and says it: that of an arm whose file names links hangs on the pose.
-std::string add_masses(const LinkFit& found, const scene::ArmFile& file,
-                       std::vector<Figure>& figures) {
+std::string add_masses(const bringup::LinkFit& found, const scene::ArmFile& file,
+                       std::vector<session::Figure>& figures) {
   const auto q = found.arm.inverse(file.R_WB.transpose() * (file.workspace.middle() - file.p_WB))
                      .value_or(Eigen::Vector3d::Zero());
-  const std::array<Estimate, 3> is = found.apparent_mass(q);
-  const std::array<double, 3> named = named_masses(file, q);
+  const std::array<bringup::Estimate, 3> is = found.apparent_mass(q);
+  const std::array<double, 3> named = bringup::named_masses(file, q);
   constexpr std::array kNames = {"mass_x", "mass_y", "mass_z"};
   for (std::size_t i = 0; i < 3; ++i) {
     figures.push_back(difference(kNames[i], is[i], named[i], kTenth * named[i]));
@@ -77,7 +78,8 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   if (suite.known_mass > 0 && !rig.attended) {
     return skipped(kName, "A known mass needs a person who fixes it to the tip (--attended).");
   }
-  const OpenBench open = [&](bool loaded) -> driver::Result<std::unique_ptr<BenchArm>> {
+  const bringup::OpenBench open =
+      [&](bool loaded) -> driver::Result<std::unique_ptr<bringup::BenchArm>> {
     if (loaded &&
         !rig.prompt(fmt::format("Fix {:g} kg to the tip so that it cannot swing, and hold "
                                 "it from below; let go once you feel that it is carried.",
@@ -86,7 +88,7 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
     }
     return rig.open(loaded ? TipHold::kMass : TipHold::kFree);
   };
-  IdentifyOptions options;
+  bringup::IdentifyOptions options;
   options.seconds = suite.full ? 60 : 15;
   options.known_mass = suite.known_mass;
   // A person needs time to let go of the mass.
@@ -95,21 +97,21 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   if (rig.file.simulated.links.named()) options.places = 5, options.place_seconds = 2;
   driver::Fault fault = driver::Fault::kNone;
   options.watch = [&fault](const driver::TickRecord& tick) { fault = tick.fault; };
-  const auto found = identify(open, rig.file, options, rig.stop);
+  const auto found = bringup::identify(open, rig.file, options, rig.stop);
   // What moves otherwise than it is asked to is not pushed further.
   if (!found) {
     HilResult result = broken_off(kName, found.error().message, nullptr);
     result.fault = fault != driver::Fault::kNone;
     return result;
   }
-  const ArmConstants& is = found->constants;
+  const bringup::ArmConstants& is = found->constants;
   const auto& plant = rig.file.simulated.plant;
   const auto& wire = rig.file.simulated.wire;
   const Eigen::Vector3d down_B = rig.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
   // In the mean: a report and a message wait for half of the jitter each.
   const double delay =
       static_cast<double>(wire.delay_in_ns + wire.delay_out_ns + wire.jitter_ns) * 1e-9;
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   std::string masses =
       fmt::format("Mass {:.1f} g (file {:.1f})", 1e3 * is.mass.value, 1e3 * plant.mass);
   if (options.places > 0 && found->over.fit) {
@@ -145,4 +147,4 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   return result;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -2,7 +2,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Identifies the arm and compares mass, frictions, weight, the motors' gains and the delay with
 /// its file: each may differ by a tenth (dry friction by a third, viscous friction by as much again
@@ -11,4 +11,4 @@ namespace thimble::app {
 /// cannot be identified. Real-time: never from the servo thread.
 HilResult check_constants(const HilRig& rig, const HilOptions& options);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -9,7 +9,7 @@
 #include "stability/tuning.h"
 #include "worst_direction.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
@@ -119,7 +119,7 @@ class Trial {
   double mass_, stiffness_;
   double kick_force_ = 0;                       // N
   double kick_ = 0, window_ = 0, watched_ = 0;  // s
-  HoldPlace hold_;
+  bringup::HoldPlace hold_;
   bool walled_ = false, over_ = false, grew_ = false;
   double place_ = 0;          // of the wall along the axis, m
   double given_ = 0;          // J
@@ -128,7 +128,7 @@ class Trial {
   Vector3d p_last_W_{0, 0, 0};
 };
 
-driver::Error ended(const BenchArm& bench) {
+driver::Error ended(const bringup::BenchArm& bench) {
   const driver::Fault fault = bench.fault();
   if (fault == driver::Fault::kNone) return {"It was stopped."};
   return {std::string(driver::describe(fault)) + " The motors are off."};
@@ -137,7 +137,7 @@ driver::Error ended(const BenchArm& bench) {
 /// Tries walls one after the other, each from the place where the first began.
 class Search {
  public:
-  Search(BenchArm& bench, const scene::ArmFile& file, const EdgeSearch& search,
+  Search(bringup::BenchArm& bench, const scene::ArmFile& file, const EdgeSearch& search,
          const std::atomic<bool>& stop)
       : bench_(bench),
         search_(search),
@@ -216,7 +216,7 @@ class Search {
     return trial.grew(step_);
   }
 
-  BenchArm& bench_;
+  bringup::BenchArm& bench_;
   const EdgeSearch& search_;
   const std::atomic<bool>& stop_;
   double mass_;  // kg
@@ -227,7 +227,7 @@ class Search {
 
 }  // namespace
 
-driver::Result<EdgeOfWall> find_edge_of_wall(BenchArm& bench, const scene::ArmFile& file,
+driver::Result<EdgeOfWall> find_edge_of_wall(bringup::BenchArm& bench, const scene::ArmFile& file,
                                              const EdgeSearch& search,
                                              const std::atomic<bool>& stop) {
   const auto rest = [](const driver::DeviceState&) { return Vector3d(0, 0, 0); };
@@ -241,9 +241,9 @@ driver::Result<EdgeOfWall> find_edge_of_wall(BenchArm& bench, const scene::ArmFi
 }
 
 double edge_by_law(const scene::ArmFile& file, double speed) {
-  const double latency = scene::latency_of(loop_times(file, 1 / kTick));
+  const double latency = scene::latency_of(stability::loop_times(file, 1 / kTick));
   const auto& plant = file.simulated.plant;
   return (plant.viscous + 4 * plant.coulomb / (std::numbers::pi * speed)) / latency;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -8,7 +8,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// How the stiffest wall that a free arm carries is looked for.
 struct EdgeSearch {
@@ -47,7 +47,7 @@ struct EdgeOfWall {
 /// goes more than 6 mm away ends the search likewise. The other axes are held weakly. No force
 /// above 0.95 N. The device is idle before and after. Fails on a fault, where the tip does not
 /// stay, or where even the first wall grows. Real-time: never from the servo thread.
-driver::Result<EdgeOfWall> find_edge_of_wall(BenchArm& bench, const scene::ArmFile& file,
+driver::Result<EdgeOfWall> find_edge_of_wall(bringup::BenchArm& bench, const scene::ArmFile& file,
                                              const EdgeSearch& search,
                                              const std::atomic<bool>& stop);
 
@@ -57,4 +57,4 @@ driver::Result<EdgeOfWall> find_edge_of_wall(BenchArm& bench, const scene::ArmFi
 /// part of the kick's speed before so soft a wall turns the tip round.
 double edge_by_law(const scene::ArmFile& file, double speed);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -14,7 +14,7 @@
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/effect/map_settings.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
@@ -44,11 +44,11 @@ std::unique_ptr<render::AnyStage> default_friction(const scene::ArmFile& file) {
 HilResult check_friction_at_rest(const HilRig& rig) {
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
-  BenchArm& bench = **opened;
+  bringup::BenchArm& bench = **opened;
   const auto friction = default_friction(rig.file);
-  EvenSurface surface(*friction, kLoad, kDepth);
+  stability::EvenSurface surface(*friction, kLoad, kDepth);
   const Vector3d p_start_W = bench.device().state().p_WT;
-  HoldPlace lead(p_start_W);
+  bringup::HoldPlace lead(p_start_W);
   const double begin = bench.now();
   std::vector<double> sent, x;
   double slid = 0;
@@ -69,18 +69,19 @@ HilResult check_friction_at_rest(const HilRig& rig) {
   }
   bench.device().deactivate();
   const auto listened = static_cast<std::size_t>(kListened * kRate);
-  const std::vector<double> fast = high_passed(sent, kRate, kCorner);
-  const double loud = root_mean_square(std::span(fast).last(listened));
+  const std::vector<double> fast = stability::high_passed(sent, kRate, kCorner);
+  const double loud = stability::root_mean_square(std::span(fast).last(listened));
   const auto [least, most] = std::minmax_element(x.end() - static_cast<long>(listened), x.end());
   const double moved = *most - *least;
   return judged(
       kName,
       fmt::format("After rubbing over {:.1f} mm and a stop the force above {:g} Hz is "
                   "{:.2f} mN RMS ({:g} mN are felt), and the tip moves by {:.0f} um.",
-                  1e3 * slid, kCorner, 1e3 * loud, 1e3 * kRestFelt, 1e6 * moved),
+                  1e3 * slid, kCorner, 1e3 * loud, 1e3 * stability::kRestFelt, 1e6 * moved),
       {{"rubbed_way", 1e3 * slid, "mm", "> 1", ""},
-       {"force_above_50_hz", 1e3 * loud, "mN RMS", fmt::format("< {:g}", 1e3 * kRestFelt), ""},
+       {"force_above_50_hz", 1e3 * loud, "mN RMS",
+        fmt::format("< {:g}", 1e3 * stability::kRestFelt), ""},
        {"tip_at_rest", 1e6 * moved, "um", "< 200", ""}});
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -2,7 +2,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Rubs a free tip over an even surface with the default friction, stops, and listens: what is sent
 /// above 50 Hz must stay below what a hand feels (kRestFelt), and the tip must stand still. The
@@ -10,4 +10,4 @@ namespace thimble::app {
 /// servo thread.
 HilResult check_friction_at_rest(const HilRig& rig);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using driver::HeatGuard;
@@ -22,7 +22,7 @@ constexpr double kRatioMost = 1.02;
 
 }  // namespace
 
-HeatWatch::HeatWatch(const scene::ArmFile& file, const BenchArm& bench)
+HeatWatch::HeatWatch(const scene::ArmFile& file, const bringup::BenchArm& bench)
     : file_(file),
       bench_(bench),
       named_(bench.device().heat().named()),
@@ -100,9 +100,9 @@ void HeatWatch::compare_windings(const Array& thought) {
   }
 }
 
-std::vector<Figure> HeatWatch::figures() const {
+std::vector<session::Figure> HeatWatch::figures() const {
   if (!named_) return {};
-  std::vector<Figure> figures{
+  std::vector<session::Figure> figures{
       {"motor_heat", hottest_, "of the limit", "<= 1", "by the driver's model"},
       {"heat_from_model", apart_, "of the limit", fmt::format("<= {:g}", kApartMost),
        "how far the driver's heat was from that of the arm file's model"},
@@ -160,4 +160,4 @@ std::string HeatWatch::text() const {
                     winding_motor_, 100 * winding_there_, 100 * thought_there_);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

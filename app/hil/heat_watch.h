@@ -10,7 +10,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// What the heat of an arm's motors did during a check, by up to three accounts: what the driver
 /// thinks (driver::HeatGuard), the arm file's model of first order fed by the forces that were
@@ -20,14 +20,14 @@ namespace thimble::app {
 class HeatWatch {
  public:
   /// Begins with the heat that the driver has now. Both must outlive it.
-  HeatWatch(const scene::ArmFile& file, const BenchArm& bench);
+  HeatWatch(const scene::ArmFile& file, const bringup::BenchArm& bench);
 
   /// Takes a tick: once in each, between its read and its write.
   void tick(const driver::DeviceState& state);
 
   /// Returns what is judged, and what is worth to know beside it; empty if the arm file does not
   /// say what its motors carry.
-  std::vector<Figure> figures() const;
+  std::vector<session::Figure> figures() const;
   /// Returns what was found, and what cannot be known here. Sentences that follow another.
   std::string text() const;
 
@@ -40,7 +40,7 @@ class HeatWatch {
   void compare_windings(const Array& thought);
 
   const scene::ArmFile& file_;
-  const BenchArm& bench_;
+  const bringup::BenchArm& bench_;
   bool named_;
   Array continuous_{0, 0, 0}, peak_{0, 0, 0}, time_constant_{1, 1, 1};  // A, A, s
   Eigen::Matrix3d J_BT_ = Eigen::Matrix3d::Zero();                      // of the tick before, m/rad
@@ -57,4 +57,4 @@ class HeatWatch {
   int winding_motor_ = 0;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

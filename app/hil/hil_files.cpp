@@ -10,7 +10,7 @@
 #include "report/figure_json.h"
 #include "text/utf8.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -61,7 +61,7 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
                           {"outcome", words_of(result.outcome).in_files},
                           {"text", result.text},
                           {"seconds", result.seconds},
-                          {"figures", figures_json(result.figures)}});
+                          {"figures", report::figures_json(result.figures)}});
   }
   const Json whole{{"arm", record.arm},
                    {"arm_file", record.arm_file},
@@ -96,7 +96,7 @@ driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<
                         in_xml(record.arm + " " + record.arm_file), in_xml(result.name),
                         result.seconds);
     if (!result.figures.empty()) text += "    <properties>\n";
-    for (const Figure& figure : result.figures) {
+    for (const session::Figure& figure : result.figures) {
       text +=
           fmt::format("      <property name=\"{}\" value=\"{:.6g}{}{}\"/>\n", in_xml(figure.name),
                       figure.value, figure.unit.empty() ? "" : " ", in_xml(figure.unit));
@@ -116,4 +116,4 @@ driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<
   return output::write_file(file, output::kXml, text + "</testsuite>\n");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

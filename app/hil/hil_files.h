@@ -7,7 +7,7 @@
 #include "hil/hil_rig.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// What the files of a suite say of it.
 struct HilRecord {
@@ -34,4 +34,4 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
 driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<HilResult>& results,
                                      const std::filesystem::path& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

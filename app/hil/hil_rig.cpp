@@ -6,10 +6,11 @@
 #include "bringup/identify/simulated_bench.h"
 #include "hil/known_places.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
-driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file,
-                                                         const HilOptions& options, TipHold hold) {
+driver::Result<std::unique_ptr<bringup::BenchArm>> open_simulated(const scene::ArmFile& file,
+                                                                  const HilOptions& options,
+                                                                  TipHold hold) {
   if (file.is<driver::DeltaArm>()) {
     return driver::Error{
         "The simulated " + file.name +
@@ -18,28 +19,29 @@ driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& f
         "serial arm or a linkage: --arm vintage_phantom, polhem or woodenhaptics."};
   }
   if (hold == TipHold::kHand) {
-    return BenchArm::open(file, {}, {}, feel_check_hand({0, 0, 0}), kHilForceMax);
+    return bringup::BenchArm::open(file, {}, {}, bringup::feel_check_hand({0, 0, 0}), kHilForceMax);
   }
-  if (hold == TipHold::kFree) return simulated_bench(file, 0);
-  if (hold == TipHold::kMass) return simulated_bench(file, options.known_mass);
+  if (hold == TipHold::kFree) return bringup::simulated_bench(file, 0);
+  if (hold == TipHold::kMass) return bringup::simulated_bench(file, options.known_mass);
   if (hold == TipHold::kHome || hold == TipHold::kLength) {
     scene::ArmFile firm = file;
     firm.simulated.hand = firm_hand();
-    return BenchArm::open(firm, {}, {},
-                          hold == TipHold::kHome ? home_pose_hand(file)
-                                                 : known_length_hand(file, options.known_length),
-                          kHilForceMax);
+    return bringup::BenchArm::open(firm, {}, {},
+                                   hold == TipHold::kHome
+                                       ? home_pose_hand(file)
+                                       : known_length_hand(file, options.known_length),
+                                   kHilForceMax);
   }
   scene::ArmFile tied = file;
   tied.simulated.hand = {};
   tied.simulated.hand.stiffness = options.spring;
-  return simulated_bench(tied, 0, true);
+  return bringup::simulated_bench(tied, 0, true);
 }
 
-driver::Result<std::unique_ptr<BenchArm>> open_active(const HilRig& rig, TipHold hold) {
+driver::Result<std::unique_ptr<bringup::BenchArm>> open_active(const HilRig& rig, TipHold hold) {
   auto opened = rig.open(hold);
   if (!opened) return opened;
-  BenchArm& bench = **opened;
+  bringup::BenchArm& bench = **opened;
   if (auto active = bench.device().activate(); !active) return active.error();
   const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
   if (!bench.run(rig.file.limits.soft_start + 0.05, rest, rig.stop)) {
@@ -82,7 +84,7 @@ std::vector<std::string> not_tested(const scene::ArmFile& file, const HilOptions
   return all;
 }
 
-HilResult broken_off(std::string name, const std::string& why, const BenchArm* bench) {
+HilResult broken_off(std::string name, const std::string& why, const bringup::BenchArm* bench) {
   HilResult result{std::move(name), HilOutcome::kFailed, why, {}, 0, true, false};
   if (bench != nullptr && bench->fault() != driver::Fault::kNone) {
     result.fault = true;
@@ -91,9 +93,9 @@ HilResult broken_off(std::string name, const std::string& why, const BenchArm* b
   return result;
 }
 
-HilResult judged(std::string name, std::string text, std::vector<Figure> figures) {
+HilResult judged(std::string name, std::string text, std::vector<session::Figure> figures) {
   const bool met = std::all_of(figures.begin(), figures.end(),
-                               [](const Figure& figure) { return figure.met(); });
+                               [](const session::Figure& figure) { return figure.met(); });
   return {std::move(name),
           met ? HilOutcome::kPassed : HilOutcome::kFailed,
           std::move(text),
@@ -103,4 +105,4 @@ HilResult judged(std::string name, std::string text, std::vector<Figure> figures
           false};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -13,7 +13,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// The most that any check asks an arm for, N; the gate cuts what is above.
 inline constexpr double kHilForceMax = 1.0;
@@ -47,23 +47,24 @@ struct HilOptions {
 
 /// What a check works with: the arm, opened anew for each of them.
 struct HilRig {
-  using Open = std::function<driver::Result<std::unique_ptr<BenchArm>>(TipHold hold)>;
+  using Open = std::function<driver::Result<std::unique_ptr<bringup::BenchArm>>(TipHold hold)>;
 
   const scene::ArmFile& file;
   Open open;
   const std::atomic<bool>& stop;
-  Prompt prompt;          ///< Tells a person what to do; answers false to leave the check.
-  Question question{};    ///< Asks a person yes or no; empty: the simulated hand is asked.
-  bool attended = false;  ///< A person is there to do it, or a simulated hand.
+  bringup::Prompt prompt;        ///< Tells a person what to do; answers false to leave the check.
+  bringup::Question question{};  ///< Asks a person yes or no; empty: the simulated hand is asked.
+  bool attended = false;         ///< A person is there to do it, or a simulated hand.
 };
 
 /// Opens the simulated arm of a file as a check needs it: free, tied to a spring (N/m), or held by
 /// a hand that does what a check asks. Real-time: never from the servo thread.
-driver::Result<std::unique_ptr<BenchArm>> open_simulated(const scene::ArmFile& file,
-                                                         const HilOptions& options, TipHold hold);
+driver::Result<std::unique_ptr<bringup::BenchArm>> open_simulated(const scene::ArmFile& file,
+                                                                  const HilOptions& options,
+                                                                  TipHold hold);
 
 /// Opens the arm for a check, activates it, and waits with zero force until the soft start is over.
-driver::Result<std::unique_ptr<BenchArm>> open_active(const HilRig& rig, TipHold hold);
+driver::Result<std::unique_ptr<bringup::BenchArm>> open_active(const HilRig& rig, TipHold hold);
 
 /// How a check ended.
 enum class HilOutcome {
@@ -101,7 +102,7 @@ struct HilResult {
   std::string name;  ///< In lower_snake_case.
   HilOutcome outcome = HilOutcome::kSkipped;
   std::string text;  ///< One or more sentences.
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   double seconds = 0;  ///< Wall time that it took.
   /// It was broken off: by a fault of the device, or by a motor that pulls the wrong way. Nothing
   /// may push after it.
@@ -126,9 +127,9 @@ inline HilResult not_run(std::string name, std::string why) {
 
 /// Returns a check that ended before it found anything: its error, and the device's fault if that
 /// was the reason.
-HilResult broken_off(std::string name, const std::string& why, const BenchArm* bench);
+HilResult broken_off(std::string name, const std::string& why, const bringup::BenchArm* bench);
 
 /// Returns a check that passed if all its figures meet their goals.
-HilResult judged(std::string name, std::string text, std::vector<Figure> figures);
+HilResult judged(std::string name, std::string text, std::vector<session::Figure> figures);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

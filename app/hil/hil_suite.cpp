@@ -18,7 +18,7 @@
 #include "hil/tied_spring.h"
 #include "hil/wall_check.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 constexpr double kHourOfFull = 60, kMinutesOfQuick = 0.5;
@@ -27,11 +27,11 @@ constexpr int kOpened = 3;  // a wire that is not closed properly shows when it 
 HilResult check_reports(const HilRig& rig, double seconds) {
   constexpr const char* kName = "reports";
   std::string text;
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   for (int i = 1; i <= kOpened; ++i) {
     auto bench = rig.open(TipHold::kFree);
     if (!bench) return broken_off(kName, bench.error().message, nullptr);
-    const Listened heard = listen(**bench, seconds, rig.stop);
+    const bringup::Listened heard = bringup::listen(**bench, seconds, rig.stop);
     if (!heard.whole) return broken_off(kName, heard.text(), bench->get());
     text += (text.empty() ? "" : " ") + heard.text();
     figures.push_back({fmt::format("reports_are_good_{}", i), heard.good() ? 1.0 : 0.0, "", "== 1",
@@ -53,19 +53,20 @@ HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   auto bench = rig.open(TipHold::kHand);
   if (!bench) return broken_off(kName, bench.error().message, nullptr);
   constexpr double kFelt = 0.1;  // N
-  const Question hand = [&](const std::string&) { return (*bench)->true_force() < kFelt; };
-  const auto results = feel_check(**bench, rig.file, rig.prompt, rig.stop,
-                                  rig.question || !(*bench)->simulated() ? rig.question : hand);
+  const bringup::Question hand = [&](const std::string&) { return (*bench)->true_force() < kFelt; };
+  const auto results =
+      bringup::feel_check(**bench, rig.file, rig.prompt, rig.stop,
+                          rig.question || !(*bench)->simulated() ? rig.question : hand);
   std::string text;
   std::size_t passed = 0;
-  for (const CheckResult& one : results) {
+  for (const bringup::CheckResult& one : results) {
     passed += one.passed ? 1 : 0;
     if (!one.passed) text += (text.empty() ? "" : " ") + one.name + ": " + one.text;
   }
-  if (text.empty()) text = fmt::format("{} of {} steps passed.", passed, kFeelChecks);
-  HilResult result = judged(
-      kName, text,
-      {{"steps_passed", static_cast<double>(passed), "", fmt::format("== {}", kFeelChecks), ""}});
+  if (text.empty()) text = fmt::format("{} of {} steps passed.", passed, bringup::kFeelChecks);
+  HilResult result = judged(kName, text,
+                            {{"steps_passed", static_cast<double>(passed), "",
+                              fmt::format("== {}", bringup::kFeelChecks), ""}});
   return result;
 }
 
@@ -172,4 +173,4 @@ std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& option
   return with_not_run(std::move(results), options, "It was stopped before this check ended.");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

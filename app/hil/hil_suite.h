@@ -7,7 +7,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Follows a suite.
 struct HilListener {
@@ -36,4 +36,4 @@ std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& option
 std::vector<HilResult> with_not_run(std::vector<HilResult> results, const HilOptions& options,
                                     const std::string& why);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -9,7 +9,7 @@
 #include <optional>
 #include <variant>
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
@@ -31,7 +31,8 @@ Vector3d home_of(const scene::ArmFile& file) {
 }
 
 /// Reads the tip with zero force after a while in which it is held; nothing if that was left.
-std::optional<Vector3d> tip_after(BenchArm& bench, double seconds, const std::atomic<bool>& stop) {
+std::optional<Vector3d> tip_after(bringup::BenchArm& bench, double seconds,
+                                  const std::atomic<bool>& stop) {
   constexpr int kMeans = 100;  // ticks
   Vector3d sum(0, 0, 0);
   int count = 0;
@@ -58,7 +59,7 @@ HilResult check_home_pose(const HilRig& rig) {
   }
   auto opened = rig.open(TipHold::kHome);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
-  BenchArm& bench = **opened;
+  bringup::BenchArm& bench = **opened;
   std::vector<Vector3d> found;
   for (const char* side : {"left and from below", "right and from above"}) {
     if (!rig.prompt(fmt::format("Bring the arm exactly into its home pose, coming from the {}, and "
@@ -96,9 +97,9 @@ HilResult check_known_length(const HilRig& rig, double length) {
   if (!rig.attended) return skipped(kName, "It needs a person who moves the tip (--attended).");
   auto opened = rig.open(TipHold::kLength);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
-  BenchArm& bench = **opened;
+  bringup::BenchArm& bench = **opened;
   constexpr std::array kAlong = {"x (towards you)", "y (to your right)", "z (up)"};
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   std::string text;
   bool begun = false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -162,4 +163,4 @@ std::vector<std::pair<double, Vector3d>> known_length_hand(const scene::ArmFile&
   return way;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

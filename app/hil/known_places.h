@@ -5,7 +5,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Checks by zero force that the arm counts where its file says: a person brings it into its home
 /// pose from two sides. An arm that got power elsewhere is seen by that, and so are cables that
@@ -28,4 +28,4 @@ std::vector<std::pair<double, Eigen::Vector3d>> home_pose_hand(const scene::ArmF
 std::vector<std::pair<double, Eigen::Vector3d>> known_length_hand(const scene::ArmFile& file,
                                                                   double length);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 constexpr double kOutside = 0.025;  // on either side
@@ -35,4 +35,4 @@ MedianInterval median_interval(std::vector<double> values) {
           .high = values[count - 1 - rank]};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

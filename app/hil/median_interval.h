@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// The median of what was measured, and where the true one lies.
 struct MedianInterval {
@@ -21,4 +21,4 @@ inline constexpr int kMedianLeast = 6;
 /// Of no values all are 0.
 MedianInterval median_interval(std::vector<double> values);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -7,7 +7,7 @@
 #include "bringup/identify/excitation.h"
 #include "hil/heat_watch.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
@@ -21,8 +21,8 @@ constexpr double kMissingMost = 0.05;  // of the ticks: what a loop without prio
 HilResult check_soak(const HilRig& rig, double minutes) {
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
-  BenchArm& bench = **opened;
-  Excitation excitation(bench.device().state().p_WT, 1);
+  bringup::BenchArm& bench = **opened;
+  bringup::Excitation excitation(bench.device().state().p_WT, 1);
   const driver::WireCounters before = bench.device().wire_counters();
   const double begin = bench.now();
   double ticks = 0, moved = 0;
@@ -43,14 +43,14 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   const double done = (bench.now() - begin) / 60;
   if (!whole) return broken_off(kName, fmt::format("It ended after {:.1f} minutes.", done), &bench);
   const double missing = static_cast<double>(after.missing - before.missing) / ticks;
-  std::vector<Figure> figures{
+  std::vector<session::Figure> figures{
       {"soak_minutes", done, "min", "", ""},
       {"tip_moved", 1e3 * moved, "mm", "> 1", "less: the tip is held, or no motor pulls"},
       {"ticks_without_report", 100 * missing, "%", fmt::format("<= {:g}", 100 * kMissingMost), ""},
       {"reports_rejected", static_cast<double>(after.rejected - before.rejected), "", "== 0", ""},
       {"messages_refused", static_cast<double>(after.refused - before.refused), "", "== 0", ""},
       {"tip_left_its_place", left ? 1.0 : 0.0, "", "== 0", ""}};
-  for (Figure& figure : heat.figures()) figures.push_back(std::move(figure));
+  for (session::Figure& figure : heat.figures()) figures.push_back(std::move(figure));
   return judged(
       kName,
       fmt::format("For {:.1f} minutes it was pushed with up to {:g} N{}; {:.3f} % of the ticks had "
@@ -61,4 +61,4 @@ HilResult check_soak(const HilRig& rig, double minutes) {
       std::move(figures));
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

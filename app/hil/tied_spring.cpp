@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
@@ -50,7 +50,7 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
   }
   auto opened = open_active(rig, TipHold::kSpring);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
-  BenchArm& bench = **opened;
+  bringup::BenchArm& bench = **opened;
   const double from = bench.device().state().p_WT[kAxis];
   std::vector<Vector3d> rows;  // asked force, and whether it was on the way up or down
   std::vector<double> way;     // m
@@ -103,4 +103,4 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
                  {"force_ratio_above", ratio, "", "<= 1.05", "the same, from above"}});
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

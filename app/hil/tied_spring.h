@@ -2,7 +2,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Pulls at a spring of known stiffness that the user tied to the tip, along y, in steps up and
 /// down, and compares how far it gives with what the spring says: the true force over the one that
@@ -10,4 +10,4 @@ namespace thimble::app {
 /// mean of both is taken. Skipped without a spring. Real-time: never from the servo thread.
 HilResult check_tied_spring(const HilRig& rig, double stiffness);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -9,7 +9,7 @@
 #include "bringup/identify/simulated_bench.h"
 #include "hil/edge_of_wall.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 constexpr const char* kName = "stiffest_wall";
@@ -35,7 +35,7 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
   EdgeSearch search{.starts = full ? kStartsOfFull : kStartsOfQuick};
   const double law = edge_by_law(rig.file, search.speed);
   search.first = std::max(20.0, 0.25 * law);
-  auto twin_bench = simulated_bench(rig.file, 0);
+  auto twin_bench = bringup::simulated_bench(rig.file, 0);
   if (!twin_bench) return broken_off(kName, twin_bench.error().message, nullptr);
   const auto twin = find_edge_of_wall(**twin_bench, rig.file, search, rig.stop);
   if (!twin) {
@@ -72,4 +72,4 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
        {"force_most", found->force_most, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -2,7 +2,7 @@
 
 #include "hil/hil_rig.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 
 /// Looks for the stiffest wall that the free arm carries, and for that of the simulated arm of the
 /// file by the same search from the same starts. It differs where the median over the starts of
@@ -10,4 +10,4 @@ namespace thimble::app {
 /// Real-time: never from the servo thread.
 HilResult check_stiffest_wall(const HilRig& rig, bool full);
 
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -12,7 +12,7 @@
 #include "report/inline_picture.h"
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::identified {
 namespace {
 
 constexpr const char* kStyle = R"(
@@ -34,7 +34,7 @@ ul{max-width:48rem;padding-left:1.2rem}li{margin:.35rem 0}
 
 std::string paragraph(const std::string& text, const char* kind = nullptr) {
   return fmt::format("<p{}>{}</p>\n", kind == nullptr ? "" : fmt::format(" class=\"{}\"", kind),
-                     html_text(text));
+                     report::html_text(text));
 }
 
 /// A value to the digit that its interval leaves.
@@ -44,7 +44,7 @@ std::string rounded(double value, double plus_minus) {
   return fmt::format("{:.{}f}", value, std::min(digits, 6));
 }
 
-std::string verdict(const Identified& found, bool bad_fit_is_written) {
+std::string verdict(const bringup::Identified& found, bool bad_fit_is_written) {
   if (found.against.empty()) {
     return "<div class=\"verdict\">" +
            paragraph("The fit is good: what it leaves is what an arm of this kind leaves.") +
@@ -60,37 +60,37 @@ std::string verdict(const Identified& found, bool bad_fit_is_written) {
   return text + "</div>\n";
 }
 
-std::string table(const Identified& found, const scene::ArmFile& file) {
+std::string table(const bringup::Identified& found, const scene::ArmFile& file) {
   std::string text =
       "<div class=\"scroll\"><table><tr><th>constant</th><th>found</th><th>± 95 %</th><th>arm "
       "file</th><th>unit</th></tr>\n";
-  for (const ConstantRow& row : constant_rows(found, file)) {
+  for (const bringup::ConstantRow& row : bringup::constant_rows(found, file)) {
     text += fmt::format("<tr><td>{}</td><td>{}</td><td>{:.2g}</td><td>{}</td><td>{}</td></tr>\n",
-                        html_text(row.name), rounded(row.found.value, row.found.plus_minus),
+                        report::html_text(row.name), rounded(row.found.value, row.found.plus_minus),
                         row.found.plus_minus, row.named ? fmt::format("{:.5g}", *row.named) : "",
-                        html_text(row.unit));
+                        report::html_text(row.unit));
   }
   return text + "</table></div>\n";
 }
 
 /// The masses where the tip was moved, and their range.
-std::string masses_text(const LinkFit& fit, const scene::ArmFile& file) {
+std::string masses_text(const bringup::LinkFit& fit, const scene::ArmFile& file) {
   std::string text =
       "<div class=\"scroll\"><table><tr><th>place, mm (world)</th><th>along x, g</th><th>along "
       "y</th><th>along z</th></tr>\n";
-  for (const PlaceMass& place : masses_at_places(fit, file)) {
+  for (const bringup::PlaceMass& place : bringup::masses_at_places(fit, file)) {
     text += fmt::format("<tr><td>{:.0f}, {:.0f}, {:.0f}</td>", 1e3 * place.p_W.x(),
                         1e3 * place.p_W.y(), 1e3 * place.p_W.z());
-    for (const Estimate& mass : place.mass) {
+    for (const bringup::Estimate& mass : place.mass) {
       text += fmt::format("<td>{} ± {:.2g}</td>", rounded(1e3 * mass.value, 1e3 * mass.plus_minus),
                           1e3 * mass.plus_minus);
     }
     text += "</tr>\n";
   }
-  return text + "</table></div>\n" + paragraph(range_text(fit, file), "small");
+  return text + "</table></div>\n" + paragraph(bringup::range_text(fit, file), "small");
 }
 
-std::string page_text(const Identified& found, const scene::ArmFile& file,
+std::string page_text(const bringup::Identified& found, const scene::ArmFile& file,
                       const IdentifyHeading& heading, const std::vector<IdentifyPlot>& plots,
                       const std::filesystem::path& folder) {
   const std::string title = "What " + heading.arm + " is like";
@@ -98,7 +98,7 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>{} - Thimble</title>\n<link rel=\"icon\" "
       "href=\"data:,\">\n<style>{}</style></head><body>\n<h1>{}</h1>\n",
-      html_text(title), kStyle, html_text(title));
+      report::html_text(title), kStyle, report::html_text(title));
   page += paragraph(
       fmt::format(
           "{}, {}; {:g} s of motion under at most {:g} N{}.",
@@ -110,10 +110,12 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
               : ""),
       "small");
   page += verdict(found, heading.bad_fit_is_written);
-  page += "<h2>Constants</h2>\n" + table(found, file) + paragraph(fit_text(found), "small");
+  page +=
+      "<h2>Constants</h2>\n" + table(found, file) + paragraph(bringup::fit_text(found), "small");
   for (const IdentifyPlot& plot : plots) {
-    page += fmt::format("<h2>{}</h2>\n", html_text(plot.title)) + paragraph(plot.caption, "small") +
-            inline_picture(folder / (plot.name + ".svg"), plot.name + "-") + "\n";
+    page += fmt::format("<h2>{}</h2>\n", report::html_text(plot.title)) +
+            paragraph(plot.caption, "small") +
+            report::inline_picture(folder / (plot.name + ".svg"), plot.name + "-") + "\n";
     if (plot.name == "identify_masses") page += masses_text(*found.over.fit, file);
   }
   if (plots.empty()) {
@@ -123,10 +125,11 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
                 "gnuplot-nox) and identify again. The numbers are in data/.");
   }
   page += "<h2>What was not identified</h2>\n<ul>\n";
-  for (const std::string& sentence : not_identified(found)) {
+  for (const std::string& sentence : bringup::not_identified(found)) {
     const std::size_t colon = sentence.find(':');
-    page += fmt::format("<li><b>{}</b>{}</li>\n", html_text(sentence.substr(0, colon)),
-                        html_text(colon == std::string::npos ? "" : sentence.substr(colon)));
+    page +=
+        fmt::format("<li><b>{}</b>{}</li>\n", report::html_text(sentence.substr(0, colon)),
+                    report::html_text(colon == std::string::npos ? "" : sentence.substr(colon)));
   }
   page += "</ul>\n" + paragraph(heading.program, "small") + "</body></html>\n";
   return page;
@@ -134,9 +137,10 @@ std::string page_text(const Identified& found, const scene::ArmFile& file,
 
 }  // namespace
 
-std::vector<Figure> identify_figures(const Identified& identified, const scene::ArmFile& file) {
-  std::vector<Figure> figures;
-  for (const ConstantRow& row : constant_rows(identified, file)) {
+std::vector<session::Figure> identify_figures(const bringup::Identified& identified,
+                                              const scene::ArmFile& file) {
+  std::vector<session::Figure> figures;
+  for (const bringup::ConstantRow& row : bringup::constant_rows(identified, file)) {
     figures.push_back({row.name, row.found.value, row.unit, "",
                        fmt::format("+- {:.2g} (95 %){}", row.found.plus_minus,
                                    row.named ? fmt::format("; file {:.5g}", *row.named) : "")});
@@ -147,17 +151,19 @@ std::vector<Figure> identify_figures(const Identified& identified, const scene::
   return figures;
 }
 
-driver::Result<void> write_identify_page(const Identified& identified, const scene::ArmFile& file,
-                                         const IdentifyHeading& heading,
+driver::Result<void> write_identify_page(const bringup::Identified& identified,
+                                         const scene::ArmFile& file, const IdentifyHeading& heading,
                                          const std::filesystem::path& folder) {
-  if (auto made = make_picture_folder(folder); !made) return made;
-  if (auto done = write_figures(identify_figures(identified, file), folder / "figures.json");
+  if (auto made = report::make_picture_folder(folder); !made) return made;
+  if (auto done =
+          report::write_figures(identify_figures(identified, file), folder / "figures.json");
       !done) {
     return done;
   }
   const auto plots = draw_identified(identified, file, folder);
   if (!plots) return plots.error();
-  return write_text(page_text(identified, file, heading, *plots, folder), folder / "index.html");
+  return report::write_text(page_text(identified, file, heading, *plots, folder),
+                            folder / "index.html");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::identified

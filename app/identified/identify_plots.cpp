@@ -13,7 +13,7 @@
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::identified {
 namespace {
 
 constexpr const char* kSeenInk = "#9aa5b1";
@@ -22,7 +22,7 @@ constexpr const char* kMarkInk = "#d55e00";
 constexpr int kWidth = 1200;  // pixels
 
 std::string quiet(const char* more) {
-  return quiet_style() + "set key off\nset tics font ',14'\n" + more;
+  return report::quiet_style() + "set key off\nset tics font ',14'\n" + more;
 }
 
 /// Three panels one below the other, a title at each one's left.
@@ -87,7 +87,7 @@ std::string friction_plot() {
         "1:(1e3*$2):(1e3*$3):(1e3*$4) with yerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{1}', "
         "'data/identify_friction_medians.dat' index {0} using 1:(1e3*$5) with lines lw 2.5 lc rgb "
         "'{2}'",
-        i, kInk, kFitInk);
+        i, report::kInk, kFitInk);
   }
   return beside("set yzeroaxis lw 1 lc rgb '#b8c2cc'\nset xzeroaxis lw 1 lc rgb '#b8c2cc'\n",
                 "speed of the joint [rad/s]", "torque of friction [mN m]", plots);
@@ -100,22 +100,22 @@ std::string masses_plot() {
         "plot 'data/identify_masses.dat' index {0} using (1e3*$1):(1e3*$1) with lines lw 2 lc rgb "
         "'{1}', 'data/identify_masses.dat' index {0} using (1e3*$1):(1e3*$2):(1e3*$3) with "
         "yerrorbars pt 7 ps 0.8 lw 1.5 lc rgb '{2}'",
-        i, kFitInk, kInk);
+        i, kFitInk, report::kInk);
   }
   return beside("", "by the constants [g]", "seen [g]", plots, {"along x", "along y", "along z"});
 }
 
-std::string lines_plot(const Identified& identified) {
+std::string lines_plot(const bringup::Identified& identified) {
   std::array<std::string, 3> plots;
   for (std::size_t i = 0; i < 3; ++i) {
     std::string marks = "unset arrow\nunset label\n";
     if (identified.constants.cables) {
-      const CableConstants& cable = (*identified.constants.cables)[i];
+      const bringup::CableConstants& cable = (*identified.constants.cables)[i];
       // A dip has room above it, a peak below.
       for (const auto& [at, name, place] :
            {std::tuple{cable.antiresonance.value, "antiresonance", "0.97 right"},
             std::tuple{cable.resonance.value, "resonance", "0.03 left"}}) {
-        if (at < LineForces::kLowest || at > LineForces::kHighest) continue;
+        if (at < bringup::LineForces::kLowest || at > bringup::LineForces::kHighest) continue;
         marks += fmt::format(
             "set arrow from {0:.5g}, graph 0 to {0:.5g}, graph 1 nohead dt 2 lw "
             "1.5 lc rgb '{1}'\nset label '{2} {0:.0f} Hz' at {0:.5g}, graph {3} "
@@ -127,7 +127,7 @@ std::string lines_plot(const Identified& identified) {
                            "plot 'data/identify_resonance.dat' index {0} using 1:2 with lines lw 2 "
                            "lc rgb '{1}', 'data/identify_lines.dat' index {0} using 1:2:3 with "
                            "yerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{2}'",
-                           i, kFitInk, kInk);
+                           i, kFitInk, report::kInk);
   }
   return beside("set logscale xy\nset xrange [14:400]\nset xtics (15, 30, 60, 120, 240)\n",
                 "frequency [Hz]", "motion over that of stiff cables", plots);
@@ -135,10 +135,10 @@ std::string lines_plot(const Identified& identified) {
 
 }  // namespace
 
-driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& identified,
+driver::Result<std::vector<IdentifyPlot>> draw_identified(const bringup::Identified& identified,
                                                           const scene::ArmFile& file,
                                                           const std::filesystem::path& folder) {
-  const FittedMotion motion = identified.fitted();
+  const bringup::FittedMotion motion = identified.fitted();
   const double dt = identified.moved.dt;
   const bool lines = !identified.lines.noise.empty();
   std::vector<std::pair<const char*, std::string>> tables{
@@ -153,7 +153,8 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
   const bool links = identified.constants.links.has_value();
   if (links) tables.emplace_back("identify_masses", masses_table(identified, file));
   for (const auto& [name, text] : tables) {
-    if (auto done = write_text(text, folder / "data" / (std::string(name) + ".dat")); !done) {
+    if (auto done = report::write_text(text, folder / "data" / (std::string(name) + ".dat"));
+        !done) {
       return done.error();
     }
   }
@@ -190,12 +191,12 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& iden
          "and links. The nearer to the line the better."});
     commands.push_back(masses_plot());
   }
-  if (!has_gnuplot()) return std::vector<IdentifyPlot>{};
+  if (!report::has_gnuplot()) return std::vector<IdentifyPlot>{};
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const Plot plot{shown[i].name, kWidth, i < 2 ? 720 : 480, commands[i]};
-    if (auto drawn = draw_plot(plot, folder); !drawn) return drawn.error();
+    const report::Plot plot{shown[i].name, kWidth, i < 2 ? 720 : 480, commands[i]};
+    if (auto drawn = report::draw_plot(plot, folder); !drawn) return drawn.error();
   }
   return shown;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::identified

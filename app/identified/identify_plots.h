@@ -7,7 +7,7 @@
 #include "bringup/identify/identify.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::identified {
 
 /// A plot of the page, and what it shows.
 struct IdentifyPlot {
@@ -21,8 +21,8 @@ struct IdentifyPlot {
 /// each joint, and, if cables were looked for, the lines' answer with its resonances, and, if links
 /// were seen, the mass at each place over that by the constants. Fails if a file cannot be written
 /// or gnuplot refuses. Real-time: never from the servo thread.
-driver::Result<std::vector<IdentifyPlot>> draw_identified(const Identified& identified,
+driver::Result<std::vector<IdentifyPlot>> draw_identified(const bringup::Identified& identified,
                                                           const scene::ArmFile& file,
                                                           const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::identified

@@ -13,7 +13,7 @@
 #include "bringup/identify/line_forces.h"
 #include "bringup/identify/link_inertia/place_masses.h"
 
-namespace thimble::app {
+namespace thimble::identified {
 namespace {
 
 constexpr double kExcerpt = 2;  // s
@@ -25,7 +25,8 @@ constexpr int kFrequencies = 400;
 
 /// Writes a block for each axis: `line(number of the equation, time)`.
 template <class Line>
-std::string by_axis(const FittedMotion& motion, double from, double until, const Line& line) {
+std::string by_axis(const bringup::FittedMotion& motion, double from, double until,
+                    const Line& line) {
   std::string text;
   const auto& equations = motion.equations.equations();
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,15 +53,15 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// The constants of an arm like this whose cables do not stretch.
-TwoMassTheta stiff_of(const CableFit& lines) {
-  TwoMassTheta stiff = lines.stretches ? lines.elastic.theta : lines.rigid.theta;
+bringup::TwoMassTheta stiff_of(const bringup::CableFit& lines) {
+  bringup::TwoMassTheta stiff = lines.stretches ? lines.elastic.theta : lines.rigid.theta;
   stiff.tail<6>().setZero();
   return stiff;
 }
 
 }  // namespace
 
-std::string fit_table(const FittedMotion& motion) {
+std::string fit_table(const bringup::FittedMotion& motion) {
   const double middle =
       0.5 * static_cast<double>(motion.motion().samples.size()) * motion.motion().dt;
   return "# time s, acceleration seen, by the fit, m/s^2\n" +
@@ -72,7 +73,7 @@ std::string fit_table(const FittedMotion& motion) {
                  });
 }
 
-std::string rest_table(const FittedMotion& motion) {
+std::string rest_table(const bringup::FittedMotion& motion) {
   return "# time s, what the fit leaves, m/s^2\n" +
          by_axis(motion, 0, HUGE_VAL, [&](std::size_t i, double time) {
            return fmt::format("{:.4f} {:.6g}\n", time,
@@ -80,9 +81,9 @@ std::string rest_table(const FittedMotion& motion) {
          });
 }
 
-std::string friction_table(const FittedMotion& motion, const Identified& found) {
+std::string friction_table(const bringup::FittedMotion& motion, const bringup::Identified& found) {
   std::string text = "# speed rad/s, torque of friction N m\n";
-  for (const auto& points : joint_friction(motion, found)) {
+  for (const auto& points : bringup::joint_friction(motion, found)) {
     const std::size_t stride = points.size() / kPointsMost + 1;
     for (std::size_t i = 0; i < points.size(); i += stride) {
       text += fmt::format("{:.6g} {:.6g}\n", points[i].speed, points[i].torque);
@@ -92,17 +93,18 @@ std::string friction_table(const FittedMotion& motion, const Identified& found) 
   return text;
 }
 
-std::string friction_medians(const FittedMotion& motion, const Identified& found) {
+std::string friction_medians(const bringup::FittedMotion& motion,
+                             const bringup::Identified& found) {
   std::string text = "# speed rad/s, torque N m: median, lower and upper quartile, fit\n";
-  for (const auto& points : joint_friction(motion, found)) {
+  for (const auto& points : bringup::joint_friction(motion, found)) {
     std::vector<double> speeds;
-    for (const FrictionPoint& point : points) speeds.push_back(std::abs(point.speed));
+    for (const bringup::FrictionPoint& point : points) speeds.push_back(std::abs(point.speed));
     const double most = speeds.empty() ? 0 : quantile(speeds, 0.98);
     const double step = 2 * most / kSteps;
     for (int k = 0; k < kSteps; ++k) {
       const double from = -most + k * step;
       std::vector<double> seen, fitted;
-      for (const FrictionPoint& point : points) {
+      for (const bringup::FrictionPoint& point : points) {
         if (point.speed < from || point.speed >= from + step) continue;
         seen.push_back(point.torque);
         fitted.push_back(point.fitted);
@@ -117,11 +119,12 @@ std::string friction_medians(const FittedMotion& motion, const Identified& found
   return text;
 }
 
-std::string masses_table(const Identified& identified, const scene::ArmFile& file) {
+std::string masses_table(const bringup::Identified& identified, const scene::ArmFile& file) {
   std::string text = "# apparent mass by the constants, as seen there, half its interval, kg\n";
-  const std::vector<PlaceMass> places = masses_at_places(*identified.over.fit, file);
+  const std::vector<bringup::PlaceMass> places =
+      bringup::masses_at_places(*identified.over.fit, file);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const PlaceMass& place : places) {
+    for (const bringup::PlaceMass& place : places) {
       text += fmt::format("{:.6g} {:.6g} {:.3g}\n", place.mass[axis].value, place.seen[axis].value,
                           place.seen[axis].plus_minus);
     }
@@ -130,16 +133,17 @@ std::string masses_table(const Identified& identified, const scene::ArmFile& fil
   return text;
 }
 
-std::string lines_table(const Identified& identified, double dt) {
-  const CableFit& lines = identified.lines;
-  const TwoMassTheta stiff = stiff_of(lines);
+std::string lines_table(const bringup::Identified& identified, double dt) {
+  const bringup::CableFit& lines = identified.lines;
+  const bringup::TwoMassTheta stiff = stiff_of(lines);
   std::string text = "# frequency Hz, motion over that of stiff cables, half the interval\n";
   for (int joint = 0; joint < 3; ++joint) {
     for (std::size_t i = 0; i < identified.spectrum.lines.size(); ++i) {
-      const SpectralLine& line = identified.spectrum.lines[i];
-      const double rigid = std::abs(two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
+      const bringup::SpectralLine& line = identified.spectrum.lines[i];
+      const double rigid =
+          std::abs(bringup::two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
       const double seen = std::abs(line.q[joint]) / rigid;
-      const double error = kNormal95 * lines.noise[i][joint] / rigid;
+      const double error = bringup::kNormal95 * lines.noise[i][joint] / rigid;
       // What the noise hides says nothing.
       if (!(error < 0.5 * seen)) continue;
       text +=
@@ -150,23 +154,25 @@ std::string lines_table(const Identified& identified, double dt) {
   return text;
 }
 
-std::string resonance_table(const Identified& identified, double dt) {
-  const CableFit& lines = identified.lines;
-  const TwoMassTheta stiff = stiff_of(lines);
+std::string resonance_table(const bringup::Identified& identified, double dt) {
+  const bringup::CableFit& lines = identified.lines;
+  const bringup::TwoMassTheta stiff = stiff_of(lines);
   std::string text = "# frequency Hz, motion over that of stiff cables by the constants\n";
   for (int joint = 0; joint < 3; ++joint) {
     for (int k = 0; k <= kFrequencies; ++k) {
       const double share = static_cast<double>(k) / kFrequencies;
-      SpectralLine line;
+      bringup::SpectralLine line;
       const double hz =
-          LineForces::kLowest * math::pow(LineForces::kHighest / LineForces::kLowest, share);
+          bringup::LineForces::kLowest *
+          math::pow(bringup::LineForces::kHighest / bringup::LineForces::kLowest, share);
       line.omega = 2 * std::numbers::pi * hz;
       line.tau[joint] = 1;
-      const double rigid = std::abs(two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
-      const double found =
-          lines.stretches
-              ? std::abs(two_mass_answer(lines.elastic.theta, line, lines.JTJ, dt, true)[joint])
-              : rigid;
+      const double rigid =
+          std::abs(bringup::two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
+      const double found = lines.stretches
+                               ? std::abs(bringup::two_mass_answer(lines.elastic.theta, line,
+                                                                   lines.JTJ, dt, true)[joint])
+                               : rigid;
       text += fmt::format("{:.6g} {:.6g}\n", hz, found / rigid);
     }
     text += "\n\n";
@@ -174,4 +180,4 @@ std::string resonance_table(const Identified& identified, double dt) {
   return text;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::identified

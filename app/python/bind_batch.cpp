@@ -121,8 +121,9 @@ void bind_batch(py::module_& core) {
       .def("__len__", &HeldBatch::size)
       .def("step", &HeldBatch::step, py::arg("ticks"), py::arg("hands") = py::none())
       .def("restart", &HeldBatch::restart, py::arg("which"), py::arg("seeds"))
-      .def("warnings",
-           [](const HeldBatch& held) { return app::stability_warnings(held.first().scene()); })
+      .def(
+          "warnings",
+          [](const HeldBatch& held) { return stability::stability_warnings(held.first().scene()); })
       .def("info", [](const HeldBatch& held) { return info_of(held.first().recording_info()); });
 }
 

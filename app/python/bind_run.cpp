@@ -173,7 +173,7 @@ std::vector<std::string> warnings_of(const HeldRun& held) {
   const session::RecordingInfo info = held.run->session().recording_info();
   // More arms are of files, and a real arm of a calibration, that the text does not tell.
   if (scene.arms.size() > 1 || info.device != "sim" || info.scene_text.empty()) {
-    return app::stability_warnings(scene);
+    return stability::stability_warnings(scene);
   }
   std::string key = info.scene_text;
   for (const std::string& part : {info.arm_text, std::to_string(info.rate)}) {
@@ -182,7 +182,7 @@ std::vector<std::string> warnings_of(const HeldRun& held) {
   const auto found = kept.find(key);
   if (found != kept.end()) return found->second;
   if (kept.size() >= kMost) kept.clear();
-  return kept.emplace(std::move(key), app::stability_warnings(scene)).first->second;
+  return kept.emplace(std::move(key), stability::stability_warnings(scene)).first->second;
 }
 
 py::list figures_of(HeldRun& held, std::size_t arm) {
@@ -202,9 +202,9 @@ py::list figures_of(HeldRun& held, std::size_t arm) {
 }
 
 /// Returns what is asked for of the topics of ROS 2: None, True, or a dict.
-std::optional<faces::RosWords> topics_of(const py::object& asked) {
+std::optional<ros2::RosWords> topics_of(const py::object& asked) {
   if (asked.is_none() || (py::isinstance<py::bool_>(asked) && !asked.cast<bool>())) return {};
-  faces::RosWords words;
+  ros2::RosWords words;
   if (py::isinstance<py::bool_>(asked)) return words;
   for (const auto& [key, value] : asked.cast<py::dict>()) {
     const std::string name = py::str(key);

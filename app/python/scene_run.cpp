@@ -114,7 +114,7 @@ SceneRun::SceneRun(const RunOptions& options) {
   if (!options.real_time) {
     throw ThimbleError("ros2: topics tell of a run in real time; see thimble.open.");
   }
-  asked_topics_ = value_of(faces::ros_options(*options.topics));
+  asked_topics_ = value_of(ros2::ros_options(*options.topics));
 }
 
 SceneRun::~SceneRun() {
@@ -168,7 +168,7 @@ void SceneRun::start() {
   if (!session_->real_time()) throw ThimbleError("A run in virtual time has no thread.");
   if (servo_ || end_) throw ThimbleError("This run has begun before.");
   for (std::size_t arm = 0; asked_topics_ && arm < session_->arms(); ++arm) {
-    topics_.push_back(value_of(faces::RosRun::open(*session_, *asked_topics_, arm)));
+    topics_.push_back(value_of(ros2::RosRun::open(*session_, *asked_topics_, arm)));
   }
   servo_ = std::make_unique<session::ServoThread>(true);
   grant_ = servo_->grant();

@@ -32,7 +32,7 @@ struct RunOptions {
   bool overwrite = false;     ///< `record` may replace an existing recording.
   std::string firmware = {};  ///< For a real arm that needs some.
   bool homed = false;  ///< A real arm was in its home pose when it got power: do not ask for it.
-  std::optional<faces::RosWords> topics = {};  ///< Of ROS 2; in real time only.
+  std::optional<ros2::RosWords> topics = {};  ///< Of ROS 2; in real time only.
   std::string hold_to_run = {};  ///< Button of the arm to be held for a force; empty: none.
   bool no_real_time = false;     ///< Use a real arm though the loop gets no real-time priority.
   std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< That it shares with others; null: its own.
@@ -88,9 +88,9 @@ class SceneRun {
   bool finished_ = false;
   std::optional<driver::ServoEnd> end_;
   driver::RealTimeGrant grant_;
-  std::optional<faces::RosOptions> asked_topics_;
-  std::vector<std::unique_ptr<faces::RosRun>> topics_;  // of each arm; they end before the session
-  std::unique_ptr<session::ServoThread> servo_;         // in real time
+  std::optional<ros2::RosOptions> asked_topics_;
+  std::vector<std::unique_ptr<ros2::RosRun>> topics_;  // of each arm; they end before the session
+  std::unique_ptr<session::ServoThread> servo_;        // in real time
 };
 
 }  // namespace thimble::python

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// The least and the most of each of some columns, with the rows at which they were. A row is known
 /// by a `Place`: its index, or the row itself. Values that are NaN are passed over.
@@ -53,4 +53,4 @@ class Extremes {
   bool empty_ = true;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -8,7 +8,7 @@
 
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using Eigen::Vector3d;
@@ -236,4 +236,4 @@ std::string end_of_legend(const render::MeshFindings& found) {
   return commands.str();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -6,7 +6,7 @@
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 // What a mesh's faults look like on its picture: edges as coloured lines, vertices and triangles
 // that may be too small to be seen as open signs. Real-time: never from the servo thread.
@@ -32,4 +32,4 @@ std::string fault_legend(const render::MeshFindings& found, double x, double y);
 /// Gives the gnuplot commands that take the legend's labels and arrows away again.
 std::string end_of_legend(const render::MeshFindings& found);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

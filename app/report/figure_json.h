@@ -5,9 +5,9 @@
 
 #include "report/figure_output.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// Returns figures as `write_figures` writes them.
 nlohmann::ordered_json figures_json(const std::vector<Figure>& figures);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

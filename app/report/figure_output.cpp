@@ -8,7 +8,7 @@
 #include "output/output_file.h"
 #include "report/figure_json.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 nlohmann::ordered_json figures_json(const std::vector<Figure>& figures) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -65,4 +65,4 @@ driver::Result<void> write_text(const std::string& text, const std::filesystem::
   return output::write_file(file, output::kind_of_name(file), text);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -7,7 +7,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/figure.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 using session::Figure;
 
@@ -26,4 +26,4 @@ std::string unmet_line(const std::vector<Figure>& figures);
 /// Writes a whole file. Fails, naming it, if that cannot be done.
 driver::Result<void> write_text(const std::string& text, const std::filesystem::path& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -8,7 +8,7 @@
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 constexpr std::size_t kBucketsMax = 1500;  // about one per pixel of a panel's width
@@ -118,4 +118,4 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
   return draw_plot({"force_and_depth", 1600, 900, c.str()}, folder);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

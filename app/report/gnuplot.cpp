@@ -15,7 +15,7 @@
 #include "output/output_file.h"
 #include "report/figure_output.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 constexpr const char* kMissingMessage =
@@ -133,4 +133,4 @@ driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& fo
   return svg->commit();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

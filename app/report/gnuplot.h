@@ -5,7 +5,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// One picture: gnuplot commands that draw it, and its size.
 struct Plot {
@@ -25,4 +25,4 @@ driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& fo
 /// Returns whether gnuplot can be run.
 bool has_gnuplot();
 
-}  // namespace thimble::app
+}  // namespace thimble::report

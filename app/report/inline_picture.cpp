@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace thimble::app {
+namespace thimble::report {
 
 std::string inline_picture(const std::filesystem::path& file, const std::string& mark) {
   std::ostringstream text;
@@ -23,4 +23,4 @@ std::string inline_picture(const std::filesystem::path& file, const std::string&
   return svg;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -6,7 +6,7 @@
 
 #include "mesh/vertex_normals.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using Eigen::Vector2d;
@@ -167,4 +167,4 @@ void MeshView::shrink() {
   }
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -9,7 +9,7 @@
 
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// A direction to look from, orthographically: axes of the picture in the world. World: x
 /// towards the user, y to the user's right, z up.
@@ -63,4 +63,4 @@ class MeshView {
 /// Finds the box around a mesh's vertices; empty for a mesh without any.
 Eigen::AlignedBox3d box_of(const render::TriangleMesh& mesh);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -11,7 +11,7 @@
 #include "report/picture_style.h"
 #include "text_file.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using Eigen::Vector3d;
@@ -320,4 +320,4 @@ driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
   return done;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

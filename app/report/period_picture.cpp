@@ -7,7 +7,7 @@
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 constexpr int kBars = 160;
@@ -145,4 +145,4 @@ driver::Result<void> draw_period_histogram(const PictureInfo& info,
   return draw_plot({"period_histogram", 1600, 900, c.str()}, folder);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

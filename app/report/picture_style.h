@@ -9,7 +9,7 @@
 
 #include "report/pictures.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 // What the pictures share: colours, quoting, contact intervals; and one function per picture.
 
@@ -79,4 +79,4 @@ driver::Result<void> draw_period_histogram(const PictureInfo& info,
 /// Makes the folder and its data/.
 driver::Result<void> make_picture_folder(const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -8,7 +8,7 @@
 
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 std::string quote(const std::string& text) {
   std::string quoted = "'";
@@ -128,4 +128,4 @@ driver::Result<void> draw_pictures(std::span<const driver::TickRecord> rows,
   return draw_period_histogram(complete, folder);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -10,7 +10,7 @@
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/session/histogram.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// What pictures say beside what they show.
 struct PictureInfo {
@@ -44,4 +44,4 @@ driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
                                const std::string& unit = "unit of the file",
                                const render::MeshFindings* faults = nullptr);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

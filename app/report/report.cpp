@@ -8,7 +8,7 @@
 #include "thimble/scene/build_info.h"
 #include "wall_side.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -124,4 +124,4 @@ driver::Result<void> write_report(const session::RunFigures& report,
   return write_figures(session::figures_of(report), folder / "figures.json");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

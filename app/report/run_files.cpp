@@ -4,7 +4,7 @@
 #include "report/report.h"
 #include "setup.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 driver::Result<void> write_arm_files(const session::Session& session,
@@ -48,4 +48,4 @@ driver::Result<void> write_run_files(const session::Session& session,
   return {};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -9,7 +9,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// Returns the names of what `write_run_files` and the page of a run write in a folder.
 std::vector<std::string> run_file_names();
@@ -26,4 +26,4 @@ driver::Result<void> write_run_files(const session::Session& session,
                                      const std::filesystem::path& folder,
                                      const RunPage* page = nullptr);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

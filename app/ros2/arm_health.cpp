@@ -5,7 +5,7 @@
 
 #include "thimble/driver/heat_guard.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 ArmHealth health_of(const driver::TickRecord& tick) {
   if (tick.fault != driver::Fault::kNone) {
@@ -29,4 +29,4 @@ ArmHealth health_of(const driver::TickRecord& tick) {
   return {ArmHealth::kOk, "Forces go through the safety gate."};
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -5,7 +5,7 @@
 
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// How an arm is, as ROS 2 tells it (diagnostic_msgs/DiagnosticStatus).
 struct ArmHealth {
@@ -22,4 +22,4 @@ struct ArmHealth {
 /// or well. Real-time: never from the servo thread.
 ArmHealth health_of(const driver::TickRecord& tick);
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

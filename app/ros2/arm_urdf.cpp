@@ -6,7 +6,7 @@
 
 #include "ros2/ros_names.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr double kThick = 0.006;  // m, radius of the links' picture [chosen]
@@ -153,4 +153,4 @@ std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame,
   return std::move(writer).take();
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -4,7 +4,7 @@
 
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// Returns an arm as a URDF, which ROS 2 shows and computes with: its base stands in `world_frame`
 /// as the arm file says, and its joints are those of the topic joint_states (joint1, joint2,
@@ -20,4 +20,4 @@ namespace thimble::faces {
 std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame,
                      const std::string& name_in_scene = {});
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -13,7 +13,7 @@
 #include "ros2/ros_module.h"
 #include "thimble/version.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// How often the newest tick is looked for: twice as often as arms tick.
@@ -124,25 +124,25 @@ RosPeer* begun(std::unique_ptr<Peer> peer, std::uint32_t domain, char* error, st
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2
 
 extern "C" {
 
 extern const char thimble_ros2_version[];
 const char thimble_ros2_version[] = THIMBLE_VERSION;
 
-thimble::faces::RosPeer* thimble_ros2_open(const thimble::faces::RosOptions& options,
-                                           const thimble::faces::RosScene& scene,
-                                           thimble::faces::RosChannel& channel, char* error,
-                                           std::size_t size) {
-  using thimble::faces::CyclonePeer;
-  return thimble::faces::begun(std::make_unique<CyclonePeer>(options, scene, channel),
-                               options.domain, error, size);
+thimble::ros2::RosPeer* thimble_ros2_open(const thimble::ros2::RosOptions& options,
+                                          const thimble::ros2::RosScene& scene,
+                                          thimble::ros2::RosChannel& channel, char* error,
+                                          std::size_t size) {
+  using thimble::ros2::CyclonePeer;
+  return thimble::ros2::begun(std::make_unique<CyclonePeer>(options, scene, channel),
+                              options.domain, error, size);
 }
 
-thimble::faces::RosPeer* thimble_ros2_echo(const thimble::faces::RosOptions& options, char* error,
-                                           std::size_t size) {
-  using thimble::faces::EchoPeer;
-  return thimble::faces::begun(std::make_unique<EchoPeer>(options), options.domain, error, size);
+thimble::ros2::RosPeer* thimble_ros2_echo(const thimble::ros2::RosOptions& options, char* error,
+                                          std::size_t size) {
+  using thimble::ros2::EchoPeer;
+  return thimble::ros2::begun(std::make_unique<EchoPeer>(options), options.domain, error, size);
 }
 }

@@ -11,7 +11,7 @@
 #include <set>
 #include <system_error>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// A domain of this process that stays on this computer.
@@ -103,4 +103,4 @@ DdsDomain::~DdsDomain() {
   if (--domain.users == 0) dds_delete(domain.entity);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

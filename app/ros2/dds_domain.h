@@ -3,7 +3,7 @@
 #include "dds/dds.h"
 #include "ros2/ros_peer.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// A peer's use of a DDS domain. What stays on this computer is bound to it twice: Cyclone DDS is
 /// configured to use the loopback interface only, and its sockets, which it opens on all interfaces
@@ -25,4 +25,4 @@ class DdsDomain {
   std::uint32_t number_ = 0;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -4,7 +4,7 @@
 
 #include "ros2/type_hashes.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// What an endpoint promises or asks for.
@@ -68,4 +68,4 @@ dds_entity_t make_reliable_reader(dds_entity_t participant, const dds_topic_desc
   return make_any_reader(participant, type, topic, {.depth = depth});
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

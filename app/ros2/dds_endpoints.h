@@ -5,7 +5,7 @@
 #include "dds/dds.h"
 #include "ros2/ros_peer.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// What becomes of readers that come after a message.
 enum class LateReaders { kHearNothing, kHearTheLast };
@@ -29,4 +29,4 @@ dds_entity_t make_reader(dds_entity_t participant, const dds_topic_descriptor_t&
 dds_entity_t make_reliable_reader(dds_entity_t participant, const dds_topic_descriptor_t& type,
                                   const std::string& topic, int depth);
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

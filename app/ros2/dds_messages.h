@@ -6,7 +6,7 @@
 
 #include "ros_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 // What the writers put messages together from. DDS reads a message while it is written and does not
 // change it, though its types in C have no const.
@@ -38,4 +38,4 @@ inline builtin_interfaces_msg_dds__Time_ stamp_of(std::int64_t ns) noexcept {
   return {static_cast<std::int32_t>(ns / kSecond_ns), static_cast<std::uint32_t>(ns % kSecond_ns)};
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

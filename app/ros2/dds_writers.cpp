@@ -8,7 +8,7 @@
 #include "ros2/dds_endpoints.h"
 #include "ros2/dds_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -207,4 +207,4 @@ void DdsWriters::publish_health(const driver::TickRecord& record, std::int64_t t
   dds_write(health_, &all);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -9,7 +9,7 @@
 #include "ros2/scene_writer.h"
 #include "ros_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// The topics that a run is published on. Not thread-safe.
 class DdsWriters {
@@ -54,4 +54,4 @@ class DdsWriters {
   std::vector<char*> joint_names_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

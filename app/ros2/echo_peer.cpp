@@ -6,7 +6,7 @@
 #include "ros2/dds_messages.h"
 #include "ros_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr int kTaken = 16;  // poses at a time
@@ -60,4 +60,4 @@ void EchoPeer::serve() {
   }
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -7,7 +7,7 @@
 #include "ros2/dds_domain.h"
 #include "ros2/ros_peer.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// A program at the other end of a run's topics, as a participant of its own: it answers each pose
 /// with no force at all, stamped as the pose was, so that the run can tell how old the positions
@@ -31,4 +31,4 @@ class EchoPeer final : public RosPeer {
   std::thread thread_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 bool finite(const std::array<double, 3>& v) noexcept {
@@ -22,4 +22,4 @@ MessageVerdict check_message(const std::array<double, 3>& taken,
   return MessageVerdict::kGood;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

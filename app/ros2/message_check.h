@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// What is said of a message that came.
 enum class MessageVerdict : std::uint8_t { kGood, kNotFinite, kWrongFrame };
@@ -15,4 +15,4 @@ MessageVerdict check_message(const std::array<double, 3>& taken,
                              const std::array<double, 3>& beside, std::string_view frame,
                              std::string_view world_frame) noexcept;
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

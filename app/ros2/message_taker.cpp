@@ -5,7 +5,7 @@
 
 #include "ros2/dds_endpoints.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr int kTaken = 64;  // messages at a time
@@ -143,4 +143,4 @@ bool MessageTaker::judge(const std_msgs_msg_dds__UInt64_& message) {
   return false;  // each one counts; none is skipped
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -8,7 +8,7 @@
 #include "ros2/ros_peer.h"
 #include "ros_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// Takes the messages that come for a run, judges them, and hands the newest good one of each kind
 /// on. In a run that is stepped, what its writer knows to have arrived before it asks for a step
@@ -47,4 +47,4 @@ class MessageTaker {
   RosHandPlace place_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -9,7 +9,7 @@
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 driver::Result<session::Histogram> measure_ros_latency(const std::string& scene,
                                                        const std::string& arm_file,
@@ -43,4 +43,4 @@ driver::Result<session::Histogram> measure_ros_latency(const std::string& scene,
   return ages;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -7,7 +7,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/histogram.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// Measures how old the positions are that forces answer when another program computes them: runs a
 /// scene on its simulated arm for `duration` s of the world's time, under topics of its own, with
@@ -18,4 +18,4 @@ driver::Result<session::Histogram> measure_ros_latency(const std::string& scene,
                                                        const std::string& arm_file,
                                                        std::uint32_t domain, double duration);
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -10,7 +10,7 @@
 
 #include "thimble/version.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// Returns the file that this code is in: the program, or a module of Python's.
@@ -102,4 +102,4 @@ driver::Result<std::unique_ptr<RosPeer>> open_ros_echo(const RosOptions& options
   return made_by_module(&RosModule::echo, options);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -5,7 +5,7 @@
 #include "ros2/ros_peer.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// Fails if the module is not there, cannot be loaded, or is of another version; the error says
 /// what to install. Real-time: never from the servo thread.
@@ -30,4 +30,4 @@ using RosModuleOpen = RosPeer* (*)(const RosOptions&, const RosScene&, RosChanne
                                    std::size_t size);
 using RosModuleEcho = RosPeer* (*)(const RosOptions&, char* error, std::size_t size);
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -3,7 +3,7 @@
 #include <cctype>
 #include <numbers>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 const RosNames& ros_names(RosStyle style) noexcept {
   static constexpr RosNames kPlain{.joints = "joint_states",
@@ -88,4 +88,4 @@ std::array<double, 6> joint_angles(RosStyle style, const std::array<double, 3>& 
   return {-q[0], q[1], q[2] - q[1], kPi - g[0], -0.75 * kPi - g[1], -kPi - g[2]};
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

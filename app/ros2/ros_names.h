@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// Whose names, axes and units the topics of a run have.
 enum class RosStyle : std::uint8_t {
@@ -50,4 +50,4 @@ std::vector<std::string> joint_names(RosStyle style, std::size_t count);
 std::array<double, 6> joint_angles(RosStyle style, const std::array<double, 3>& q,
                                    const std::array<float, 3>& gimbal) noexcept;
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

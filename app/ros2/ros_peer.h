@@ -14,7 +14,7 @@
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// What becomes of the forces that come by a topic.
 enum class RosForce : std::uint8_t {
@@ -108,4 +108,4 @@ class RosPeer {
   virtual ~RosPeer() = default;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

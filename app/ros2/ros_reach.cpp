@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 std::string value_of(const char* variable) {
@@ -41,4 +41,4 @@ driver::Result<RosReach> ros_reach(bool network) {
   return range == "OFF" ? RosReach::kUnseen : RosReach::kThisComputer;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -14,7 +14,7 @@
 #include "thimble/driver/device.h"
 #include "thimble/scene/scene_file.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 RosOptions options_of_arm(const session::Session& session, const RosOptions& options,
                           std::size_t arm) {
   RosOptions own = options;
@@ -104,4 +104,4 @@ std::string RosRun::report() const {
   return s;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -10,7 +10,7 @@
 #include "thimble/session/session.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// A session's run as ROS 2 topics. In its tick the servo's thread looks for a force and for a
 /// place of the hand, where they are asked for, and keeps the poses of what moves now and then; all
@@ -57,4 +57,4 @@ class RosRun final : public session::TickObserver {
 RosOptions options_of_arm(const session::Session& session, const RosOptions& options,
                           std::size_t arm);
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

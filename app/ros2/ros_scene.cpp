@@ -8,7 +8,7 @@
 #include "thimble/driver/device.h"
 #include "thimble/scene/scene_objects.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 RosObject described(const scene::SceneObjects& objects, std::size_t number,
@@ -48,4 +48,4 @@ RosScene ros_scene(const session::Session& session, const RosOptions& options, s
   return told;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -11,7 +11,7 @@
 
 #include "thimble/driver/clock.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// How far a run in virtual time may go, and how far it is: the topics permit ticks, the run does
 /// them and waits, and the topics of each arm tell of them. Never of a run on a real arm. Any
@@ -96,4 +96,4 @@ class SteppedClock final : public driver::Clock {
   RosSteps steps_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 bool word(std::string_view text) {
@@ -101,4 +101,4 @@ driver::Result<RosOptions> ros_options(const RosWords& words) {
   return options;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

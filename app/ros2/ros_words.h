@@ -6,7 +6,7 @@
 #include "ros2/ros_peer.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// What a user says of the topics of a run, in words.
 struct RosWords {
@@ -23,4 +23,4 @@ struct RosWords {
 /// Returns what the words mean; the error says which is wrong and what to write instead.
 driver::Result<RosOptions> ros_options(const RosWords& words);
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

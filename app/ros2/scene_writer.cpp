@@ -3,7 +3,7 @@
 #include "ros2/dds_endpoints.h"
 #include "ros2/dds_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr std::int32_t kTriangleList = 11;  // [S ros2/common_interfaces, Marker.msg]
@@ -78,4 +78,4 @@ std::vector<geometry_msgs_msg_dds__TransformStamped_> SceneWriter::frames(
   return frames;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

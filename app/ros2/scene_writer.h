@@ -8,7 +8,7 @@
 #include "ros_messages.h"
 #include "scene_poses.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// Tells what is touched: the objects of a scene as markers, once and to all who come later, each
 /// in a frame that moves with it. Not thread-safe.
@@ -33,4 +33,4 @@ class SceneWriter {
   dds_return_t error_ = 0;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

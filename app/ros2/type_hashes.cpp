@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 struct Named {
@@ -52,4 +52,4 @@ std::string_view type_hash(std::string_view dds_name) noexcept {
   return {};
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// A writer that was stopped in the middle of writing must not hold a tick up.
@@ -68,4 +68,4 @@ void WrenchLaw::take(std::int64_t time_ns) noexcept {
   }
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

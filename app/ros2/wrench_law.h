@@ -10,7 +10,7 @@
 #include "thimble/driver/safety_gate.h"
 #include "thimble/session/histogram.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 
 /// The force that comes by a topic, as a force law before the gate: added to the scene's, or in its
 /// place. It runs on the servo's thread, which waits for nobody.
@@ -59,4 +59,4 @@ class WrenchLaw {
   session::Histogram ages_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

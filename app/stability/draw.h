@@ -8,7 +8,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// Draws numbers that are the same with every standard library: raw bits of the Mersenne twister,
 /// scaled here. Real-time: never from the servo thread.
@@ -44,4 +44,4 @@ class Draw {
   std::mt19937_64 bits_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

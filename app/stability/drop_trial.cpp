@@ -7,7 +7,7 @@
 #include "stability/wall_bench.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 /// Returns the time at which a run crosses `offset` between two ticks, s.
@@ -91,4 +91,4 @@ driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& 
   return mean;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -5,7 +5,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// A tip that nobody holds, which a constant force of the motors draws onto a wall.
 struct DropTrial {
@@ -33,4 +33,4 @@ struct Bounce {
 /// bounces. Real-time: never from the servo thread.
 driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& trial);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -13,7 +13,7 @@
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 // The vintage arm's numbers; app/arms/vintage_phantom.yaml holds the same with their sources.
@@ -155,4 +155,4 @@ render::EffectContext effect_context_of(const FrictionRigSettings& settings) {
   return context;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -8,7 +8,7 @@
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/stage_list.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// What hand, arm, wire and surface a friction is tried on. The defaults are the PHANTOM-like
 /// set with a hand in pinch grip at 1 kHz [PHYSICS 0].
@@ -70,4 +70,4 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
 /// Returns what an effect may know of the rig. Real-time: never from the servo thread.
 render::EffectContext effect_context_of(const FrictionRigSettings& settings);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

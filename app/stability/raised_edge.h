@@ -4,7 +4,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// By how much a wall is raised at a time [chosen: narrower dips below the edge are stepped over].
 inline constexpr double kWallRaised = 1.15;
@@ -30,4 +30,4 @@ driver::Result<double> raised_edge(double low, double most, const Rests& rests) 
   return low;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

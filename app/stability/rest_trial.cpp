@@ -13,7 +13,7 @@
 #include "thimble/scene/shared_meshes.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 constexpr double kHeld = 0.3;      // s; a shorter hold of the path is a stroke's turn [chosen]
@@ -206,4 +206,4 @@ driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim:
   return trial;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

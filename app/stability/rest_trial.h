@@ -13,7 +13,7 @@ namespace thimble::scene {
 class SharedMeshes;
 }
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// The force above 50 Hz from which on a hand that rests feels a limit cycle, N RMS [PHYSICS 6].
 inline constexpr double kRestFelt = 0.02;
@@ -44,4 +44,4 @@ struct RestTrial {
 driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim::HandSettings& hand,
                                     const std::shared_ptr<scene::SharedMeshes>& meshes = nullptr);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

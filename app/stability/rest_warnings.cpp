@@ -15,7 +15,7 @@
 #include "stability/draw.h"
 #include "stability/tuning.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 using Eigen::Vector3d;
@@ -331,4 +331,4 @@ std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTria
   return warnings;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

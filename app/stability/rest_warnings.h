@@ -10,7 +10,7 @@ namespace thimble::render {
 class ContactMesh;
 }
 
-namespace thimble::app {
+namespace thimble::stability {
 
 // What `thimble study trouble` found in limit cycles under a hand that rests, though no wall is
 // stiffer than the loop carries. Each has a law, and each law a sentence that names the object, the
@@ -30,7 +30,7 @@ std::vector<std::string> rest_causes(const scene::Scene& scene, const std::strin
 
 /// Returns a sentence for each rest of a trial that is felt to oscillate, with its measure, and the
 /// causes that the laws know for it; and one if a fault ended the trial.
-std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTrial& trial);
+std::vector<std::string> rest_warnings(const scene::Scene& scene, const stability::RestTrial& trial);
 
 /// Returns the stiffness (N/m) that a texture's waves add along the surface for each newton of
 /// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [PHYSICS 1.1].
@@ -55,4 +55,4 @@ double sharpest_hollow(const render::ContactMesh& mesh, double from);
 double quantisation_noise_of(double damping, double step, double speed, double corner,
                              double period);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

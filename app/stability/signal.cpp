@@ -6,7 +6,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 /// One section of second order, by the bilinear transform of s^2 / (s^2 + s / q + 1).
@@ -81,4 +81,4 @@ std::vector<SpectralLine> spectrum(std::span<const double> signal, double rate) 
   return lines;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

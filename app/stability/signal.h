@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::stability {
 
 // What studies measure in sampled signals. Real-time: never from the servo thread.
 
@@ -28,4 +28,4 @@ struct SpectralLine {
 /// Finds the amplitudes from one line above 0 up to half the rate, mean taken away, no window.
 std::vector<SpectralLine> spectrum(std::span<const double> signal, double rate);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

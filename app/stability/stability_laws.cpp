@@ -9,7 +9,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -241,4 +241,4 @@ double stiffness_edge(SampledWall wall) {
   return low;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -2,7 +2,7 @@
 
 #include "loop_latency.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 // The laws of [PHYSICS 1.1 to 1.5 and 2.3] as pure functions, for one direction of motion; what
 // makes a direction the worst one is in worst_direction.h. Letters as there: m, b, c mass, viscous
@@ -77,4 +77,4 @@ double limit_by_phase(const SampledWall& wall);
 /// looked at.
 double stiffness_edge(SampledWall wall);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -15,7 +15,7 @@
 #include "stability/wall_trial.h"
 #include "thimble/scene/shared_meshes.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 /// The part of the limit that is safe to ask for: tightening a grip brings stiffness as well as
@@ -414,4 +414,4 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
   return result;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

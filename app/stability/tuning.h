@@ -10,7 +10,7 @@
 #include "thimble/scene/scene_file.h"
 #include "worst_direction.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// What an arm, its loop and its hand can carry by the laws, in the worst direction.
 struct Carried {
@@ -46,7 +46,7 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene);
 
 /// What `thimble tune` tells.
 struct TuneResult {
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   std::string text;  ///< For a person.
 };
 
@@ -70,4 +70,4 @@ struct TuneOptions {
 /// thread.
 driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& options);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -12,7 +12,7 @@
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 using Eigen::Matrix3d;
@@ -235,4 +235,4 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
   return run;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

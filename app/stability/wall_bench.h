@@ -9,7 +9,7 @@
 #include "thimble/driver/safety_gate.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// A direction of the tip at an arm's home pose, and what the encoders make of it.
 struct ArmDirection {
@@ -88,4 +88,4 @@ struct WallRun {
 /// Fails if the arm cannot be simulated so. Real-time: never from the servo thread.
 driver::Result<WallRun> run_wall(const scene::ArmFile& arm, const WallCase& wall);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

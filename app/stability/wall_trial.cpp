@@ -7,7 +7,7 @@
 #include "stability/wall_bench.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 constexpr double kAway = 0.003;   // m; where the hand waits before it goes in
@@ -98,4 +98,4 @@ driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -6,7 +6,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 
 /// One wall at one place of an arm's workspace, and how the hand of the arm's file meets it.
 struct WallTrial {
@@ -51,4 +51,4 @@ bool comes_to_rest(const WallTouch& touch, double quiet);
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet);
 
-}  // namespace thimble::app
+}  // namespace thimble::stability

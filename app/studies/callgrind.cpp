@@ -15,7 +15,7 @@
 
 #include "signals.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 /// Starts a program without input and output; 0 if it cannot be started.
@@ -59,4 +59,4 @@ bool run_callgrind(const std::vector<std::string>& options,
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Runs this program with `arguments` under callgrind with `options`, without its output, and waits
 /// for it. Returns whether it ended well; false if valgrind is not installed or fails, or if the
@@ -12,4 +12,4 @@ namespace thimble::app {
 bool run_callgrind(const std::vector<std::string>& options,
                    const std::vector<std::string>& arguments);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

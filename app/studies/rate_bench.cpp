@@ -10,7 +10,7 @@
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kOften = 0.999;         // of all ticks
@@ -114,9 +114,9 @@ RateVerdict verdict_of(const RateBench& bench) {
   return verdict;
 }
 
-std::vector<Figure> figures_of(const RateBench& bench, const RateVerdict& verdict) {
+std::vector<session::Figure> figures_of(const RateBench& bench, const RateVerdict& verdict) {
   const std::string rate = std::to_string(std::lround(bench.rate)) + " Hz, ";
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   const auto add = [&](const std::string& name, double value, const std::string& unit) {
     figures.push_back({.name = rate + name, .value = value, .unit = unit, .goal = {}});
   };
@@ -133,4 +133,4 @@ std::vector<Figure> figures_of(const RateBench& bench, const RateVerdict& verdic
   return figures;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

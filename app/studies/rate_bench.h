@@ -9,7 +9,7 @@
 #include "thimble/scene/quality.h"
 #include "thimble/session/histogram.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What a loop of one rate did on this machine.
 struct RateBench {
@@ -43,6 +43,6 @@ RateVerdict verdict_of(const RateBench& bench);
 double stiffness_lost(const session::Histogram& period);
 
 /// Returns it as figures.
-std::vector<Figure> figures_of(const RateBench& bench, const RateVerdict& verdict);
+std::vector<session::Figure> figures_of(const RateBench& bench, const RateVerdict& verdict);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 ResidentMemory resident_memory() {
   ResidentMemory memory;
@@ -21,4 +21,4 @@ ResidentMemory resident_memory() {
   return memory;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Returns how much memory this process holds, bytes; all 0 where the kernel does not say.
 struct ResidentMemory {
@@ -14,4 +14,4 @@ struct ResidentMemory {
 /// that up by itself. Real-time: never from the servo thread.
 ResidentMemory resident_memory();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 
 #include "disk_paging/page_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -238,4 +238,4 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
   return writer->finish();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

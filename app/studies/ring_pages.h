@@ -6,7 +6,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A ring with bumps all over, about z; lengths in m. At u (around the ring) and v (around its
 /// tube), both in rad, the tube's radius is tube_radius (1 + amplitude sin(waves_u u) sin(waves_v
@@ -43,4 +43,4 @@ RingGrid ring_grid(const BumpyRing& ring, std::int64_t triangles);
 driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
                                 const std::filesystem::path& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "report/html/touch_page.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr const char* kStyle =
@@ -18,7 +18,7 @@ constexpr const char* kStyle =
     "a{color:#005a8c}small{color:#555c66}";
 
 std::string link(const std::string& file, const std::string& words) {
-  return "<a href=\"" + html_text(file) + "\">" + html_text(words) + "</a>";
+  return "<a href=\"" + report::html_text(file) + "\">" + report::html_text(words) + "</a>";
 }
 
 /// Runs a scene and writes its page; the error says why there is none.
@@ -27,7 +27,7 @@ driver::Result<void> write_run(const std::filesystem::path& scene,
                                const std::filesystem::path& file) {
   auto opened = session::Session::open(scene, options);
   if (!opened) return opened.error();
-  RunPage page(**opened);
+  report::RunPage page(**opened);
   (*opened)->run();
   return page.write({}, file);
 }
@@ -39,15 +39,17 @@ RunPages::RunPages(std::filesystem::path folder, const std::string& title, const
       text_(
           "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
           "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
-          html_text(title) + " - Thimble</title>\n<style>" + kStyle + "</style></head><body>\n" +
-          "<h1>" + html_text(title) + "</h1>\n<p>" + html_text(words) + "</p>\n<ul>\n") {}
+          report::html_text(title) + " - Thimble</title>\n<style>" + kStyle +
+          "</style></head><body>\n" + "<h1>" + report::html_text(title) + "</h1>\n<p>" +
+          report::html_text(words) + "</p>\n<ul>\n") {}
 
 driver::Result<void> RunPages::add(const std::filesystem::path& scene, const std::string& name,
                                    const std::string& words,
                                    const session::SessionOptions& options) {
   const std::filesystem::path page = folder_ / (name + ".html");
   std::string why;
-  if (const auto libraries = read_page_libraries(); !libraries) why = libraries.error().message;
+  if (const auto libraries = report::read_page_libraries(); !libraries)
+    why = libraries.error().message;
   if (why.empty() && bytes_ >= kBytesMost) why = "The pages before are large enough together.";
   if (why.empty()) {
     if (auto written = write_run(scene, options, page); !written) why = written.error().message;
@@ -58,21 +60,21 @@ driver::Result<void> RunPages::add(const std::filesystem::path& scene, const std
     return driver::Error{page.string() + " cannot be written: " + absent.message() + "."};
   }
   if (why.empty()) bytes_ += size;
-  text_ += "<li>" + (why.empty() ? link(name + ".html", name) : html_text(name)) + ": " +
-           html_text(words);
-  if (!why.empty()) text_ += " <small>No page: " + html_text(why) + "</small>";
+  text_ += "<li>" + (why.empty() ? link(name + ".html", name) : report::html_text(name)) + ": " +
+           report::html_text(words);
+  if (!why.empty()) text_ += " <small>No page: " + report::html_text(why) + "</small>";
   text_ += "</li>\n";
   return {};
 }
 
 void RunPages::list(const std::string& file, const std::string& words) {
-  text_ += "<li>" + link(file, file) + ": " + html_text(words) + "</li>\n";
+  text_ += "<li>" + link(file, file) + ": " + report::html_text(words) + "</li>\n";
 }
 
 driver::Result<void> RunPages::write() const {
-  return write_text(text_ + "</ul>\n<p><small>" + html_text(scene::program_name()) +
-                        ".</small></p>\n</body></html>\n",
-                    folder_ / "index.html");
+  return report::write_text(text_ + "</ul>\n<p><small>" + report::html_text(scene::program_name()) +
+                                ".</small></p>\n</body></html>\n",
+                            folder_ / "index.html");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

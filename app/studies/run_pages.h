@@ -7,7 +7,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// The runs behind a study's figures, to be looked at: a page of each in the study's folder, and an
 /// index.html there that lists and links them. Real-time: never from the servo thread.
@@ -36,4 +36,4 @@ class RunPages {
   std::uintmax_t bytes_ = 0;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

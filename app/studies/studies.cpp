@@ -7,7 +7,7 @@
 #include "studies/study_box.h"
 #include "studies/study_texture.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr std::array kStudies{
@@ -28,4 +28,4 @@ std::span<const Study> studies() {
   return kStudies;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -8,7 +8,7 @@
 #include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// One study: it measures something on the virtual clock, draws it, and says it in figures.
 struct Study {
@@ -17,7 +17,7 @@ struct Study {
   /// Writes pictures and tables into `folder`, which exists, and returns the figures; figures.json
   /// and the printed table are made of them. Fails if a file cannot be written.
   /// Real-time: never from the servo thread.
-  driver::Result<std::vector<Figure>> (*run)(const std::filesystem::path& folder);
+  driver::Result<std::vector<session::Figure>> (*run)(const std::filesystem::path& folder);
 };
 
 /// Returns the studies without options of their own. To add one: write its file in a folder of
@@ -25,4 +25,4 @@ struct Study {
 /// trouble) are commands in cli/study/.
 std::span<const Study> studies();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -12,7 +12,7 @@
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -77,9 +77,9 @@ driver::Result<void> draw(const std::filesystem::path& folder) {
   const std::string scale = "0.125";
   std::ostringstream c;
   const auto panel = [&](double left, const std::string& title, const std::string& plots) {
-    c << "set lmargin at screen " << number(left) << "\nset rmargin at screen "
-      << number(left + 0.4) << "\nset title " << quote(title) << " noenhanced font ',18'\nplot "
-      << plots << "\n";
+    c << "set lmargin at screen " << report::number(left) << "\nset rmargin at screen "
+      << report::number(left + 0.4) << "\nset title " << report::quote(title)
+      << " noenhanced font ',18'\nplot " << plots << "\n";
   };
   const auto arrows = [&](int column, const char* ink, const char* legend) {
     return "'box.csv' using 1:2:($" + std::to_string(column) + "*" + scale + "):($" +
@@ -87,45 +87,46 @@ driver::Result<void> draw(const std::filesystem::path& folder) {
            ") with vectors head size 0.5,22 filled lw 2 lc rgb '" + ink + "' title '" + legend +
            "'";
   };
-  c << quiet_style()
+  c << report::quiet_style()
     << "set multiplot\nset label 1 'Force over a square' at screen 0.075, screen "
        "0.95 font ',22' textcolor rgb '"
-    << kInk
+    << report::kInk
     << "'\nset label 2 'surface of 1 N/mm; the longest arrow is 28 N' at screen 0.965, screen "
        "0.95 right textcolor rgb '"
-    << kInk << "'\nset tmargin at screen 0.81\nset bmargin at screen 0.11\nunset grid\n"
+    << report::kInk << "'\nset tmargin at screen 0.81\nset bmargin at screen 0.11\nunset grid\n"
     << "set xrange [-18:18]\nset yrange [-18:18]\nset xlabel 'x [mm]'\nset ylabel 'z [mm]' offset "
        "1,0\nset object 1 rectangle from -15,-15 to 15,15 fc rgb '"
-    << kContactFill << "' fs solid border lc rgb '" << kFaintInk
-    << "' behind\nset key at graph 0.5, 1.0 center bottom horizontal textcolor rgb '" << kInk
-    << "'\nset title offset 0,1.6\n";
+    << report::kContactFill << "' fs solid border lc rgb '" << report::kFaintInk
+    << "' behind\nset key at graph 0.5, 1.0 center bottom horizontal textcolor rgb '"
+    << report::kInk << "'\nset title offset 0,1.6\n";
   panel(0.075, "entry_face: it depends on the path (Fig. 2a)",
-        arrows(3, kForceInk, "came in from above") + ", " +
-            arrows(5, kDepthInk, "came in from the right"));
+        arrows(3, report::kForceInk, "came in from above") + ", " +
+            arrows(5, report::kDepthInk, "came in from the right"));
   c << "unset label 1\nunset label 2\nset arrow 1 from -15,-15 to 15,15 nohead dt 2 lc rgb '"
-    << kFaintInk << "'\nset arrow 2 from -15,15 to 15,-15 nohead dt 2 lc rgb '" << kFaintInk
-    << "'\n";
+    << report::kFaintInk << "'\nset arrow 2 from -15,15 to 15,-15 nohead dt 2 lc rgb '"
+    << report::kFaintInk << "'\n";
   panel(0.565, "wedges: the nearest face pushes (Fig. 2b)",
-        arrows(7, kForceInk, "whichever way it came"));
+        arrows(7, report::kForceInk, "whichever way it came"));
   c << "unset multiplot\n";
-  return draw_plot({"box", 1600, 900, c.str()}, folder);
+  return report::draw_plot({"box", 1600, 900, c.str()}, folder);
 }
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_box(const std::filesystem::path& folder) {
-  if (auto written = write_text(table(), folder / "box.csv"); !written) return written.error();
-  if (has_gnuplot()) {
-    if (auto made = make_picture_folder(folder); !made) return made.error();
+driver::Result<std::vector<session::Figure>> study_box(const std::filesystem::path& folder) {
+  if (auto written = report::write_text(table(), folder / "box.csv"); !written)
+    return written.error();
+  if (report::has_gnuplot()) {
+    if (auto made = report::make_picture_folder(folder); !made) return made.error();
     if (auto drawn = draw(folder); !drawn) return drawn.error();
   }
   // A plate of 2 mm: stiffness * thickness / 2 = 1 N [PHYSICS 3].
   const render::Box plate{.half_sides = {0.05, 0.05, 0.001}};
-  return std::vector<Figure>{
+  return std::vector<session::Figure>{
       {"plate_2mm_pops_at_in_wedges",
        pops_at(render::PrimitiveContact(render::WedgeBox{plate}), 0.001), "N", "<= 1.001"},
       {"plate_2mm_pops_at_by_entry_face", pops_at(render::EntryFaceContact(plate), 0.001), "N",
        "== 0"}};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,11 +6,11 @@
 #include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Draws the paper's Fig. 2 from the force laws themselves: the force over a square in both forms
 /// of the box; and finds at which force a thin plate lets the tip through. Writes box.csv and a
 /// picture. Real-time: never from the servo thread.
-driver::Result<std::vector<Figure>> study_box(const std::filesystem::path& folder);
+driver::Result<std::vector<session::Figure>> study_box(const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

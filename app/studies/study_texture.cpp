@@ -18,7 +18,7 @@
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/touch.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -205,7 +205,7 @@ std::string panel(const Measured& one, std::size_t index, std::size_t count) {
   std::ostringstream data;
   data << "$asked" << index << " << EOD\n";
   for (const Line& line : one.subject.asked) {
-    data << number(line.frequency) << ',' << number(line.amplitude) << '\n';
+    data << report::number(line.frequency) << ',' << report::number(line.amplitude) << '\n';
   }
   if (one.subject.asked.empty()) data << "nan,nan\n";
   data << "EOD\n";
@@ -213,49 +213,50 @@ std::string panel(const Measured& one, std::size_t index, std::size_t count) {
   const double top = 0.94 - static_cast<double>(index) * height;
   const bool last = index + 1 == count;
   const std::size_t column = 2 + 2 * index;
-  data << "set tmargin at screen " << number(top - 0.05) << "\nset bmargin at screen "
-       << number(top - height + 0.045) << "\nset title "
-       << quote(one.subject.name + ": " + one.subject.says)
+  data << "set tmargin at screen " << report::number(top - 0.05) << "\nset bmargin at screen "
+       << report::number(top - height + 0.045) << "\nset title "
+       << report::quote(one.subject.name + ": " + one.subject.says)
        << " noenhanced offset 0,-0.4\nset xlabel " << (last ? "'frequency [Hz]'" : "''")
        << "\nset ylabel 'force [N]' offset 1,0\n";
   if (one.subject.band_end > 0) {
-    data << "set arrow 9 from " << number(one.subject.band_end) << ", graph 0 to "
-         << number(one.subject.band_end) << ", graph 1 nohead dt 2 lw 2 lc rgb '" << kDepthInk
-         << "'\nset label 9 'end of its band' at " << number(one.subject.band_end)
-         << ", graph 0.85 offset 1,0 textcolor rgb '" << kDepthInk << "'\n";
+    data << "set arrow 9 from " << report::number(one.subject.band_end) << ", graph 0 to "
+         << report::number(one.subject.band_end) << ", graph 1 nohead dt 2 lw 2 lc rgb '"
+         << report::kDepthInk << "'\nset label 9 'end of its band' at "
+         << report::number(one.subject.band_end) << ", graph 0.85 offset 1,0 textcolor rgb '"
+         << report::kDepthInk << "'\n";
   }
   data << "plot 'spectra.csv' using 1:($" << column + 1 << "<" << kFloor << "?" << kFloor << ":$"
        << column + 1 << ") with lines lw 1 lc rgb '#b8bec7' title "
        << (index == 0 ? "'positions in steps of 0.03 mm'" : "''") << ", '' using 1:($" << column
        << "<" << kFloor << "?" << kFloor << ":$" << column << ") with lines lw 2 lc rgb '"
-       << kForceInk << "' title " << (index == 0 ? "'ideal positions'" : "''") << ", $asked"
-       << index << " using 1:2 with points pt 6 ps 2 lw 2 lc rgb '" << kDepthInk << "' title "
-       << (index == 0 ? "'asked for'" : "''") << "\nunset arrow 9\nunset label 9\n";
+       << report::kForceInk << "' title " << (index == 0 ? "'ideal positions'" : "''") << ", $asked"
+       << index << " using 1:2 with points pt 6 ps 2 lw 2 lc rgb '" << report::kDepthInk
+       << "' title " << (index == 0 ? "'asked for'" : "''") << "\nunset arrow 9\nunset label 9\n";
   return data.str();
 }
 
 driver::Result<void> draw(const std::vector<Measured>& all, const std::filesystem::path& folder) {
   std::ostringstream c;
-  c << quiet_style() << "set datafile separator ','\nset multiplot\nset label 1 "
-    << quote("Force of textures while sliding at 50 mm/s, 2 mm deep, 800 N/m")
-    << " at screen 0.085, screen 0.96 font ',22' textcolor rgb '" << kInk
+  c << report::quiet_style() << "set datafile separator ','\nset multiplot\nset label 1 "
+    << report::quote("Force of textures while sliding at 50 mm/s, 2 mm deep, 800 N/m")
+    << " at screen 0.085, screen 0.96 font ',22' textcolor rgb '" << report::kInk
     << "'\nset lmargin at screen 0.085\nset rmargin at screen 0.975\nset xrange [0:250]\n"
     << "set logscale y\nset yrange [1e-5:0.3]\nset format y '10^{%T}'\n"
-    << "set key inside right top vertical textcolor rgb '" << kInk
+    << "set key inside right top vertical textcolor rgb '" << report::kInk
     << "'\nset datafile missing 'nan'\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
     c << panel(all[i], i, all.size());
     if (i == 0) c << "unset label 1\n";
   }
   c << "unset multiplot\n";
-  return draw_plot({"texture_spectra", 1600, 1100, c.str()}, folder);
+  return report::draw_plot({"texture_spectra", 1600, 1100, c.str()}, folder);
 }
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_texture(const std::filesystem::path& folder) {
+driver::Result<std::vector<session::Figure>> study_texture(const std::filesystem::path& folder) {
   std::vector<Measured> all;
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   for (Subject& subject : subjects(render::TextureForm::kDepthOnly)) {
     const std::string name = subject.name;
     Measured one{std::move(subject), {}, {}};
@@ -291,13 +292,13 @@ driver::Result<std::vector<Figure>> study_texture(const std::filesystem::path& f
   }
   for (const auto& [name, text] :
        {std::pair{"spectra.csv", spectra_csv(all)}, {"lines.csv", lines_csv(all)}}) {
-    if (auto written = write_text(text, folder / name); !written) return written.error();
+    if (auto written = report::write_text(text, folder / name); !written) return written.error();
   }
-  if (has_gnuplot()) {
-    if (auto made = make_picture_folder(folder); !made) return made.error();
+  if (report::has_gnuplot()) {
+    if (auto made = report::make_picture_folder(folder); !made) return made.error();
     if (auto drawn = draw(all, folder); !drawn) return drawn.error();
   }
   return figures;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,12 +6,12 @@
 #include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Slides a tip over textures at constant speed and depth and compares the spectrum of the force
 /// with the lines asked for, with ideal positions and with those of an encoder; and measures the
 /// work around a closed way. Writes spectra.csv, lines.csv and a picture. Real-time: never from the
 /// servo thread.
-driver::Result<std::vector<Figure>> study_texture(const std::filesystem::path& folder);
+driver::Result<std::vector<session::Figure>> study_texture(const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

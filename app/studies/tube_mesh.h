@@ -5,7 +5,7 @@
 
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Makes a closed tube of `around` by `across` quadrilaterals, each of two triangles. `point(u, v)`
 /// tells where the surface is at the angles u around the ring and v around its tube (rad).
@@ -27,4 +27,4 @@ render::TriangleMesh tube_mesh(std::int32_t around, std::int32_t across, const P
   return mesh;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "math/elementary.h"
 #include "twin/twin_constants.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 /// How an error hangs together with another: sums over all ticks that had a report.
@@ -274,4 +274,4 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
       .comparison = std::move(found), .forces = std::move(forces), .trace = std::move(trace)};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -10,7 +10,7 @@
 #include "twin/twin_forces.h"
 #include "twin/twin_motion.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// How a recording is compared.
 struct TwinOptions {
@@ -94,4 +94,4 @@ struct TwinResult {
 driver::Result<TwinResult> compare_twin(const session::Recording& recording,
                                         const scene::ArmFile& file, const TwinOptions& options);
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -10,7 +10,7 @@
 #include "plant/drive_train_plant.h"
 #include "twin/twin_motors.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 constexpr std::int64_t kSubStep_ns = 100'000;
@@ -139,4 +139,4 @@ driver::Result<std::unique_ptr<TwinMover>> make_drive_train_twin(const TwinMotio
                                        : make_of<driver::SerialArm>(motion, file);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -7,7 +7,7 @@
 #include "twin/twin_motion.h"
 #include "twin/twin_mover.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// Makes the arm of a file that names a drive train: the plant itself (device_sim,
 /// drive_train_plant.h), in sub-steps of 0.1 ms, so that a resonance w (rad/s) is too high by (w
@@ -15,4 +15,4 @@ namespace thimble::app {
 driver::Result<std::unique_ptr<TwinMover>> make_drive_train_twin(const TwinMotion& motion,
                                                                  const scene::ArmFile& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 constexpr int kStartsMost = 12;         // fits of a start
@@ -201,4 +201,4 @@ driver::Result<Relived> Relive::operator()(const scene::ArmFile& file) {
   return relived;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -9,7 +9,7 @@
 #include "twin/twin_motion.h"
 #include "twin/twin_mover.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// A piece of a recording that a twin relives from the recording's own state.
 struct TwinWindow {
@@ -66,4 +66,4 @@ class Relive {
   bool settled_ = false;  // the starts were sought widely
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -5,7 +5,7 @@
 
 #include "twin/relive.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 using Numbers = Eigen::Matrix<double, StartFit::kNumbers, 1>;
@@ -117,4 +117,4 @@ Eigen::Matrix3Xd StartFit::operator()(TwinMover& mover, const TwinMotion& motion
   return best;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -7,7 +7,7 @@
 #include "twin/twin_motion.h"
 #include "twin/twin_mover.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 struct TwinWindow;
 
@@ -34,4 +34,4 @@ class StartFit {
   Eigen::LDLT<Eigen::Matrix<double, kNumbers, kNumbers>> normal_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 constexpr double kPart = 0.02;  // of a constant: the step of a difference
@@ -127,4 +127,4 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
   return all;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -6,7 +6,7 @@
 
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// A constant of an arm file that may be what keeps a twin from its arm.
 struct TwinConstant {
@@ -23,4 +23,4 @@ struct TwinConstant {
 /// motor's inertia, and the currents' lag. Real-time: never from the servo thread.
 std::vector<TwinConstant> twin_constants(const scene::ArmFile& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

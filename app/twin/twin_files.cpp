@@ -9,7 +9,7 @@
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 constexpr double kMicro = 1e6;
@@ -85,8 +85,9 @@ std::string motion_table(const TwinTrace& trace) {
 }
 
 std::string heading(const std::string& title) {
-  return quiet_style() + "set title " + quote(title) + " noenhanced textcolor rgb '" + kInk +
-         "'\nset key top right textcolor rgb '" + kInk + "'\n";
+  return report::quiet_style() + "set title " + report::quote(title) +
+         " noenhanced textcolor rgb '" + report::kInk + "'\nset key top right textcolor rgb '" +
+         report::kInk + "'\n";
 }
 
 // Three colours apart for colour-blind eyes too [M Okabe and Ito].
@@ -104,32 +105,34 @@ std::string plots(const char* file, const char* style, int first, const std::str
 }
 
 driver::Result<void> draw(const std::string& title, const std::filesystem::path& folder) {
-  const Plot motion{"twin_motion", 1600, 900,
-                    heading("Where the twin is farthest off: " + title) +
-                        "set xlabel 'time [s]'\nset ylabel 'tip less a straight line [mm]'\n" +
-                        plots("twin_motion", "lines lw 2", 2, "recorded", false) +
-                        plots("twin_motion", "lines lw 2 dt 2", 5, "twin", true) + "\n"};
-  const Plot error{"twin_error", 1600, 700,
-                   heading("Error of the twin over time: " + title) +
-                       "set xlabel 'time [s]'\nset ylabel 'error of a window, RMS [um]'\nset "
-                       "yrange [0:*]\n" +
-                       plots("twin_error", "linespoints pt 7 ps 0.5", 2, "", false) + "\n"};
-  const Plot spectrum{
+  const report::Plot motion{
+      "twin_motion", 1600, 900,
+      heading("Where the twin is farthest off: " + title) +
+          "set xlabel 'time [s]'\nset ylabel 'tip less a straight line [mm]'\n" +
+          plots("twin_motion", "lines lw 2", 2, "recorded", false) +
+          plots("twin_motion", "lines lw 2 dt 2", 5, "twin", true) + "\n"};
+  const report::Plot error{
+      "twin_error", 1600, 700,
+      heading("Error of the twin over time: " + title) +
+          "set xlabel 'time [s]'\nset ylabel 'error of a window, RMS [um]'\nset "
+          "yrange [0:*]\n" +
+          plots("twin_error", "linespoints pt 7 ps 0.5", 2, "", false) + "\n"};
+  const report::Plot spectrum{
       "twin_spectrum", 1600, 900,
       heading("Error of the twin over frequency: " + title) +
           "set logscale xy\nset xlabel 'frequency [Hz]'\nset ylabel 'amplitude [um]'\n" +
           plots("twin_spectrum", "lines lw 2", 2, "error", false) +
           plots("twin_spectrum", "lines lw 1 dt 2", 5, "motion", true) + "\n"};
-  for (const Plot* plot : {&motion, &error, &spectrum}) {
-    if (auto done = draw_plot(*plot, folder); !done) return done;
+  for (const report::Plot* plot : {&motion, &error, &spectrum}) {
+    if (auto done = report::draw_plot(*plot, folder); !done) return done;
   }
   return {};
 }
 
 }  // namespace
 
-std::vector<Figure> twin_figures(const TwinComparison& found, double fit_least) {
-  std::vector<Figure> figures;
+std::vector<session::Figure> twin_figures(const TwinComparison& found, double fit_least) {
+  std::vector<session::Figure> figures;
   for (const TwinAxis& axis : found.axes) {
     const bool moved = !std::isnan(axis.fit);
     figures.push_back({fmt::format("fit_{}", axis.name), moved ? axis.fit : 0, "%",
@@ -197,18 +200,19 @@ std::string twin_table(const TwinComparison& found) {
   return text;
 }
 
-driver::Result<void> write_twin(const TwinResult& result, const std::vector<Figure>& figures,
+driver::Result<void> write_twin(const TwinResult& result,
+                                const std::vector<session::Figure>& figures,
                                 const std::string& title, const std::filesystem::path& folder) {
-  if (auto made = make_picture_folder(folder); !made) return made;
-  if (auto done = write_figures(figures, folder / "figures.json"); !done) return done;
+  if (auto made = report::make_picture_folder(folder); !made) return made;
+  if (auto done = report::write_figures(figures, folder / "figures.json"); !done) return done;
   const std::pair<const char*, std::string> tables[] = {
       {"data/twin_motion.dat", motion_table(result.trace)},
       {"data/twin_error.dat", error_table(result.trace)},
       {"data/twin_spectrum.dat", spectrum_table(result.comparison)}};
   for (const auto& [name, text] : tables) {
-    if (auto done = write_text(text, folder / name); !done) return done;
+    if (auto done = report::write_text(text, folder / name); !done) return done;
   }
-  return has_gnuplot() ? draw(title, folder) : driver::Result<void>();
+  return report::has_gnuplot() ? draw(title, folder) : driver::Result<void>();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -9,7 +9,7 @@
 #include "thimble/scene/arm_file.h"
 #include "twin/twin_motion.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// What forces a recorded motion asks for along one axis of the world, RMS over all pieces of it.
 struct TwinForceAxis {
@@ -65,9 +65,9 @@ struct TwinForces {
 TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file);
 
 /// Returns them as figures.
-std::vector<Figure> force_figures(const TwinForces& forces);
+std::vector<session::Figure> force_figures(const TwinForces& forces);
 
 /// Returns them as a table and a sentence that says whether something else acted, and what.
 std::string force_table(const TwinForces& forces);
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -12,7 +12,7 @@
 #include "twin/unseen_constants.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 constexpr double kSameTip = 0.5e-3;  // m, that a tip may lie beside where its joint angles put it
@@ -210,4 +210,4 @@ driver::Result<TwinMotion> twin_motion(const session::Recording& recording,
   return Reader(recording, file, *recorded).run(span);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -8,7 +8,7 @@
 #include "thimble/scene/arm_file.h"
 #include "thimble/session/recording.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// What a recording tells of one tick. Frames: B base, T tip.
 struct TwinSample {
@@ -45,4 +45,4 @@ struct TwinSpan {
 driver::Result<TwinMotion> twin_motion(const session::Recording& recording,
                                        const scene::ArmFile& file, const TwinSpan& span = {});
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -8,7 +8,7 @@
 #include "thimble/device_sim/settings.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// How recorded ticks reach the motors: within a tick the older currents last for the delay's
 /// fraction.
@@ -47,4 +47,4 @@ struct TwinMotors {
   }
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -8,7 +8,7 @@
 #include "twin/drive_train_twin.h"
 #include "twin/twin_motors.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 /// A rigid arm: the tip is a mass with friction, which each axis of the simulated arm moves exactly
@@ -75,4 +75,4 @@ driver::Result<std::unique_ptr<TwinMover>> make_twin_mover(const TwinMotion& mot
   return std::unique_ptr<TwinMover>(std::make_unique<RigidTwin>(motion, file, *dynamics));
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

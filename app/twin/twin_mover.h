@@ -9,7 +9,7 @@
 #include "thimble/scene/arm_file.h"
 #include "twin/twin_motion.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// How an arm moves at a moment.
 struct TwinStart {
@@ -44,4 +44,4 @@ class TwinMover {
 driver::Result<std::unique_ptr<TwinMover>> make_twin_mover(const TwinMotion& motion,
                                                            const scene::ArmFile& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -11,7 +11,7 @@
 #include "stability/wall_bench.h"
 #include "stability/wall_trial.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 constexpr double kRate = 1000;  // Hz, at which arms are identified and recorded
@@ -23,11 +23,11 @@ constexpr double kSpeed = 0.2, kSpeedSpan = 0.1;  // m/s of the hand, and how fa
 /// Tries walls at home, each from many starts.
 class WallStarts {
  public:
-  WallStarts(const scene::ArmFile& arm, const ArmDirection& direction)
+  WallStarts(const scene::ArmFile& arm, const stability::ArmDirection& direction)
       : arm_(arm),
         direction_(direction),
-        carried_(carried_by(arm, loop_times(arm, kRate), 1000, 0)),
-        quiet_(kQuietAtRest + kQuietSteps * carried_.tip.encoder_step) {}
+        carried_(stability::carried_by(arm, stability::loop_times(arm, kRate), 1000, 0)),
+        quiet_(stability::kQuietAtRest + stability::kQuietSteps * carried_.tip.encoder_step) {}
 
   /// Returns the stiffness by the law, N/m.
   double by_law() const { return carried_.stiffness_exact; }
@@ -39,7 +39,7 @@ class WallStarts {
     for (int i = 0; i < kTriesMost && std::abs(more) < kClear; ++i) {
       const auto touch = from(i, stiffness);
       if (!touch) return touch.error();
-      more += comes_to_rest(*touch, quiet_) ? 1 : -1;
+      more += stability::comes_to_rest(*touch, quiet_) ? 1 : -1;
     }
     return more > 0;
   }
@@ -48,24 +48,24 @@ class WallStarts {
   /// Starts are spread evenly however many there are, by multiples of the golden section and of the
   /// roots of 2 and 3: where within a step of the encoders the wall stands, how fast the hand
   /// comes, and how stiff the wall is, within a step of raising it.
-  driver::Result<WallTouch> from(int start, double stiffness) const {
+  driver::Result<stability::WallTouch> from(int start, double stiffness) const {
     const auto spread = [start](double by) {
       const double at = by * (start + 0.5);
       return at - std::floor(at);
     };
     const double further = spread(std::numbers::phi - 1) * direction_.step;
-    return press_on_wall(
-        arm_,
-        {.p_W = direction_.p_WT + further * direction_.n_W,
-         .n_W = direction_.n_W,
-         .stiffness = stiffness * (1 + (kWallRaised - 1) * (spread(std::numbers::sqrt3) - 0.5)),
-         .rate = kRate,
-         .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
+    return stability::press_on_wall(
+        arm_, {.p_W = direction_.p_WT + further * direction_.n_W,
+               .n_W = direction_.n_W,
+               .stiffness = stiffness * (1 + (stability::kWallRaised - 1) *
+                                                 (spread(std::numbers::sqrt3) - 0.5)),
+               .rate = kRate,
+               .speed = kSpeed + kSpeedSpan * (spread(std::numbers::sqrt2) - 0.5)});
   }
 
   const scene::ArmFile& arm_;
-  const ArmDirection& direction_;
-  Carried carried_;
+  const stability::ArmDirection& direction_;
+  stability::Carried carried_;
   double quiet_;  // m
 };
 
@@ -73,10 +73,12 @@ class WallStarts {
 /// between two steps of the encoders and on how it is met, so that it is the median over these.
 /// Some walls beyond it rest from half of the starts again, and some below it hardly from half: so
 /// walls about as stiff count as well.
-driver::Result<double> stiffest_wall(const scene::ArmFile& arm, const ArmDirection& direction) {
+driver::Result<double> stiffest_wall(const scene::ArmFile& arm,
+                                     const stability::ArmDirection& direction) {
   const WallStarts starts(arm, direction);
-  return raised_edge(starts.by_law() / 10, 10 * starts.by_law(),
-                     [&starts](double stiffness) { return starts.mostly_rest(stiffness); });
+  return stability::raised_edge(
+      starts.by_law() / 10, 10 * starts.by_law(),
+      [&starts](double stiffness) { return starts.mostly_rest(stiffness); });
 }
 
 }  // namespace
@@ -85,7 +87,7 @@ driver::Result<TwinPrediction> twin_prediction(const scene::ArmFile& file) {
   scene::ArmFile arm = file;
   // Tremor is drawn anew in each run, and no constant of the arm.
   arm.simulated.hand.tremor_amplitude = 0;
-  const auto direction = worst_direction_at_home(arm);
+  const auto direction = stability::worst_direction_at_home(arm);
   if (!direction) return direction.error();
   const auto edge = stiffest_wall(arm, *direction);
   if (!edge) return edge.error();
@@ -93,13 +95,13 @@ driver::Result<TwinPrediction> twin_prediction(const scene::ArmFile& file) {
   found.n_W = direction->n_W;
   found.stiffest_wall = *edge;
   found.drop.n_W = direction->n_W;
-  const auto bounce = drop_on_wall(arm, found.drop);
+  const auto bounce = stability::drop_on_wall(arm, found.drop);
   if (!bounce) return bounce.error();
   found.bounce = *bounce;
   return found;
 }
 
-std::vector<Figure> prediction_figures(const TwinPrediction& found) {
+std::vector<session::Figure> prediction_figures(const TwinPrediction& found) {
   const std::string wall =
       fmt::format("off a wall of {:g} N/m, by a pull of {:g} N over {:g} mm", found.drop.stiffness,
                   found.drop.pull, 1e3 * found.drop.height);
@@ -121,4 +123,4 @@ std::string prediction_text(const TwinPrediction& found) {
       1e3 * found.bounce.flight);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

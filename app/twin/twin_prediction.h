@@ -8,7 +8,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// What a twin says of its arm before anybody tries it: a wall and a bounce.
 struct TwinPrediction {
@@ -18,8 +18,8 @@ struct TwinPrediction {
   /// how fast the hand meets it (0.15 to 0.25 m/s), and how stiff the wall is within 7.5 %: of a
   /// stiff wall each decides whether it rests, of one arm as of its twin.
   double stiffest_wall = 0;
-  DropTrial drop;  ///< The wall that the tip is dropped on.
-  Bounce bounce;   ///< Free of the hand.
+  stability::DropTrial drop;  ///< The wall that the tip is dropped on.
+  stability::Bounce bounce;   ///< Free of the hand.
 };
 
 /// Tries both with the simulated arm of a file, through the whole loop at 1 kHz. Fails if the arm
@@ -27,9 +27,9 @@ struct TwinPrediction {
 driver::Result<TwinPrediction> twin_prediction(const scene::ArmFile& file);
 
 /// Returns a prediction as figures: the stiffest wall, restitution and time of flight.
-std::vector<Figure> prediction_figures(const TwinPrediction& prediction);
+std::vector<session::Figure> prediction_figures(const TwinPrediction& prediction);
 
 /// Returns a prediction as two sentences.
 std::string prediction_text(const TwinPrediction& prediction);
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

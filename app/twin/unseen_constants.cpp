@@ -8,7 +8,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 bool differs(double a, double b) {
@@ -72,4 +72,4 @@ std::vector<std::string> never_seen() {
   };
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

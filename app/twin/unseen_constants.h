@@ -5,7 +5,7 @@
 
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 
 /// Returns how an arm file differs, in what a comparison of motions cannot show, from the one that
 /// a recording was made with, a sentence each: counts, ratios, signs, home position, base. A
@@ -17,4 +17,4 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
 /// Returns what no comparison of motions tests, and what does, a sentence each.
 std::vector<std::string> never_seen();
 
-}  // namespace thimble::app
+}  // namespace thimble::twin

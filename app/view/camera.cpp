@@ -7,7 +7,7 @@
 
 #include "view/touch_marks.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kSteepest = 1.5;  // rad: short of straight up and down, where "up" is not known
@@ -168,4 +168,4 @@ Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect) 
   return camera;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 
 #include "view/drawn_scene.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// An eye that circles about a point of the world. World: x towards the user, y to the user's
 /// right, z up.
@@ -52,4 +52,4 @@ std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnM
 /// front. `aspect` is the picture's width by height.
 Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

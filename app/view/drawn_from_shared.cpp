@@ -9,7 +9,7 @@
 
 #include "share/arm_lines.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// Returns whether a mesh is flat: it stands for a plane, which has no end.
@@ -71,4 +71,4 @@ std::vector<DrawnRod> rods_of(const session::SharedScene::Arm& arm,
   return rods;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include "thimble/driver/tick_record.h"
 #include "view/drawn_scene.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns what of a described scene is drawn and stays the same. Real-time: never from the servo
 /// thread, as below.
@@ -15,4 +15,4 @@ DrawnScene drawn_scene_of(const session::SharedScene& scene);
 /// Returns the rods of an arm in the pose of a tick, from its base to its tip.
 std::vector<DrawnRod> rods_of(const session::SharedScene::Arm& arm, const driver::TickRecord& tick);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -11,7 +11,7 @@
 #include "thimble/render/body_pose.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// One object as it is drawn; a field has a mesh without triangles.
 struct DrawnObject {
@@ -75,4 +75,4 @@ struct DrawnMoment {
 /// Takes a point of an object's frame to where it is now (W, m).
 Eigen::Vector3d placed(const render::BodyPose& pose, const Eigen::Vector3d& p_B);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
                                   const Eigen::Matrix4f& shadow_from_world, float ground_height,
@@ -37,4 +37,4 @@ Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
       Eigen::AlignedBox2i(Eigen::Vector2i(low.cast<int>()), Eigen::Vector2i(high.cast<int>())));
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

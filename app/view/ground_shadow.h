@@ -5,7 +5,7 @@
 
 #include "view/view_block.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns the part of a picture outside of which the ground lies in no shadow: pixels from the
 /// lower left of the scene's part (`size`, pixels), whole ones. It is empty where nothing casts
@@ -15,4 +15,4 @@ Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
                                   const Eigen::Matrix4f& shadow_from_world, float ground_height,
                                   const Eigen::AlignedBox2f& casters, const Eigen::Vector2i& size);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -10,7 +10,7 @@
 
 #include "view/number_text.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// The unit a knob is read in: one for all its values, so that it does not change on the way.
@@ -82,4 +82,4 @@ void draw_knobs(session::SharedReader& reader) {
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 
 #include "share/shared_reader.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Draws the slider of a knob within its bounds, in the unit that is read best; control and a click
 /// let a value be typed. Returns whether the user turned it to another `value` (SI). To be called
@@ -17,4 +17,4 @@ std::string knob_text(const session::SharedScene::Knob& knob, double value);
 /// Draws all knobs of a run: name and value, below them slider and reset. As above.
 void draw_knobs(session::SharedReader& reader);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

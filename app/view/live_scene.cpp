@@ -6,7 +6,7 @@
 
 #include "view/drawn_from_shared.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 LiveScene::LiveScene(const session::SharedReader& reader)
     : reader_(reader), scene_(drawn_scene_of(reader.scene())) {}
@@ -50,4 +50,4 @@ void LiveScene::update_shapes(DrawnMoment& moment) {
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

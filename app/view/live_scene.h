@@ -5,7 +5,7 @@
 #include "share/shared_reader.h"
 #include "view/drawn_scene.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Turns what a run shares into what is drawn.
 class LiveScene {
@@ -28,4 +28,4 @@ class LiveScene {
   std::uint64_t shape_moves_ = 0;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 // Below this a micrometre or a millinewton is what is read. Chosen: one more digit than the larger
@@ -40,4 +40,4 @@ std::string plain_force(double force) {
   return force < kMillinewtons ? fmt::format("{:g} mN", force * 1e3) : fmt::format("{:g} N", force);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// A unit in which people read a quantity, and how many of the SI unit it is.
 struct ReadUnit {
@@ -23,4 +23,4 @@ std::string force_text(double force);
 /// Writes a force (N) as short as it can be: "2 N", "50 mN".
 std::string plain_force(double force);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

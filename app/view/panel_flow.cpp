@@ -2,7 +2,7 @@
 
 #include "view/text_style.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 ImVec4 shown_colour(const Colour& colour) {
   const Colour text = text_colour(colour, shown_theme());
@@ -23,4 +23,4 @@ void Flow::value(const Colour& colour, const std::string& text, const char* wide
   ImGui::TextColored(shown_colour(colour), "%s", text.c_str());
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

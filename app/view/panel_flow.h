@@ -6,7 +6,7 @@
 
 #include "view/gl/palette.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns a colour as text of the current style is written in it.
 ImVec4 shown_colour(const Colour& colour);
@@ -24,4 +24,4 @@ class Flow {
   bool first_ = true;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "share/steer/save_knobs.h"
 #include "view/panel_flow.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kFaster = 1.25;  // of one press of a key
@@ -151,4 +151,4 @@ void RunButtons::take_key(int key, bool shift, bool ctrl, session::SharedReader&
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

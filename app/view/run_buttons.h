@@ -6,7 +6,7 @@
 #include "share/shared_reader.h"
 #include "view/scene_menu.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// One key of the window that concerns the run's course, and what it does.
 struct RunKey {
@@ -51,4 +51,4 @@ std::string counted(const session::SharedReader::Counters& counters);
 /// it does nothing now stands below; empty: it does.
 void explain(const char* what, const std::string& why = {});
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

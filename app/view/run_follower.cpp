@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 bool RunFollower::step(double dt) {
   const bool another = runs_.step();
@@ -49,4 +49,4 @@ std::string RunFollower::kept() const {
                      1e-6 * static_cast<double>(ring_.bytes()));
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -11,7 +11,7 @@
 #include "view/playback/moment_ring.h"
 #include "view/touch_source.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Keeps the newest moment of the runs that are watched, one after the other, and those of the last
 /// minute to look back at. Real-time: never from the servo thread.
@@ -52,4 +52,4 @@ class RunFollower final : public TouchSource {
   std::vector<std::string> about_;  // none
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -10,7 +10,7 @@
 #include "text_file.h"
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ std::string SceneMenu::draw(session::SharedReader& reader) {
   return told;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 
 #include "share/shared_reader.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// One scene that can be run in place of the one that is shown.
 struct SceneChoice {
@@ -41,4 +41,4 @@ class SceneMenu {
   SceneChoices choices_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

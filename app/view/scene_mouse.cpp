@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kTurn = 4.0;        // rad for a drag over the scene's height
@@ -73,4 +73,4 @@ void SceneMouse::step(Camera& camera, const Eigen::Vector3d& p_WT, const ScreenP
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

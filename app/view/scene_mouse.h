@@ -5,7 +5,7 @@
 #include "view/camera.h"
 #include "view/text_style.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Where the mouse wants the hand.
 struct HandWish {
@@ -38,4 +38,4 @@ class SceneMouse {
   Eigen::Vector2d grip_{0, 0};        // pixel from which it moves
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

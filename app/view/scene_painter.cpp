@@ -11,7 +11,7 @@
 #include "view/overlays/force_marks.h"
 #include "view/view_block.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::size_t kFewTriangles = 1500;  // so many can be told from each other in a picture
@@ -383,4 +383,4 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   return marks.labels;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

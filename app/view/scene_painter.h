@@ -17,7 +17,7 @@
 #include "view/overlays/pane_model.h"
 #include "view/touch_marks.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Says whether polygons are outlined.
 enum class Edges {
@@ -104,4 +104,4 @@ class ScenePainter {
   std::ptrdiff_t floor_object_ = -1;  // the object that is the ground: a level plane
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -15,7 +15,7 @@
 
 #include "view/text_style.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 std::string glfw_words() {
@@ -107,4 +107,4 @@ Picture Screen::read() {
   return picture;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

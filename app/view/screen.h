@@ -8,7 +8,7 @@
 
 struct GLFWwindow;
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The window with its OpenGL and ImGui; all go with it. Real-time: never from the servo thread.
 class Screen {
@@ -46,4 +46,4 @@ class Screen {
   std::vector<int> keys_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "view/overlays/legend.h"
 #include "view/overlays/tip_trail.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// An observer that looks at a run tick by tick, on its virtual clock.
@@ -150,4 +150,4 @@ Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
   return canvas_.read();
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

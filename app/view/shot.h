@@ -16,7 +16,7 @@
 #include "view/playback/plots.h"
 #include "view/scene_painter.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// A scene that plays on the virtual clock, to take pictures of: what a viewer sees, by the same
 /// way through shared memory, but stopped at any tick.
@@ -83,4 +83,4 @@ class ShotPainter {
   float scale_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

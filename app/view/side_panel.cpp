@@ -18,7 +18,7 @@
 #include "view/panel_flow.h"
 #include "view/playback/time_line.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// One key and what it does.
@@ -384,4 +384,4 @@ void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 #include "view/scene_painter.h"
 #include "view/touch_source.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What the user chose by panel and keys.
 struct ViewChoice {
@@ -47,4 +47,4 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
 /// Does what a key asks for (a GLFW_KEY_...); lists of them stand in the help.
 void take_key(int key, session::SharedReader* reader, ViewChoice& choice);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr const char* kFont =
@@ -152,4 +152,4 @@ void PictureText::end() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -9,7 +9,7 @@
 
 struct ImGuiContext;
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Gives text, panels and plots of the current ImGui context their looks, `scale` times as large as
 /// on a usual screen (1 for 96 pixels an inch). Real-time: never from the servo thread.
@@ -61,4 +61,4 @@ class PictureText {
   ImGuiContext* context_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kThinnest = 0.05;    // N: less than this no hand feels in the arm's own friction
@@ -214,4 +214,4 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
   return marks;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 #include "view/drawn_scene.h"
 #include "view/gl/solids.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// A word at a place of the scene.
 struct Label {
@@ -51,4 +51,4 @@ struct MarkChoice {
 TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double eye_distance,
                       const MarkChoice& choice);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 #include "view/playback/play_head.h"
 #include "view/playback/plots.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What a window shows over time: runs that go on, or a recording. Real-time: never from the servo
 /// thread.
@@ -45,4 +45,4 @@ class TouchSource {
   virtual const std::vector<std::string>& about() const = 0;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 Eigen::Vector4f padded(const Eigen::Vector3f& v) {
@@ -64,4 +64,4 @@ ViewBlock view_block(const Camera& camera, double aspect, Theme theme, const Lit
   return block;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include "view/camera.h"
 #include "view/gl/palette.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The block `View` of the shaders, which all programs read; std140 leaves no gaps between these.
 struct ViewBlock {
@@ -37,4 +37,4 @@ Eigen::Vector3f linear(const Colour& colour);
 ViewBlock view_block(const Camera& camera, double aspect, Theme theme, const LitPlace& place,
                      const Eigen::AlignedBox2f& casters);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -29,7 +29,7 @@
 #include "view/screen.h"
 #include "view/side_panel.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;  // s
@@ -289,4 +289,4 @@ driver::Result<void> show_recording(const RecordingView& recording, const std::s
   return show(player, choice);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -9,7 +9,7 @@
 #include "view/input/hand_input.h"
 #include "view/playback/recording_view.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What a window begins with, and when it closes by itself, for tests.
 struct WindowChoice {
@@ -32,4 +32,4 @@ driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoic
 driver::Result<void> show_recording(const RecordingView& recording, const std::string& file,
                                     const WindowChoice& choice);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

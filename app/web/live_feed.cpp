@@ -13,7 +13,7 @@
 #include "report/html/page_scene.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -24,7 +24,7 @@ void fill_up(std::string& bytes, char with) {
   bytes.resize((bytes.size() + 7) / 8 * 8, with);
 }
 
-std::string update_of(Json json, const PageBlock& block) {
+std::string update_of(Json json, const report::PageBlock& block) {
   json["arrays"] = block.arrays();
   // Names come from files and may hold any byte; what is not UTF-8 is replaced, not thrown over.
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -40,7 +40,7 @@ std::string update_of(Json json, const PageBlock& block) {
 }
 
 // One dent, as a page of a run that is over has many (page_dents).
-void add_dent(const render::BodyPatch& patch, double t, PageBlock& block) {
+void add_dent(const render::BodyPatch& patch, double t, report::PageBlock& block) {
   const auto points_of =
       static_cast<std::uint16_t>(patch.triangle_count > 0 ? patch.point_count : 0);
   std::vector<float> points;
@@ -73,14 +73,14 @@ void add_dent(const render::BodyPatch& patch, double t, PageBlock& block) {
 
 LiveFeed::LiveFeed(session::SharedReader& reader)
     : reader_(reader),
-      draws_all_(draws_all(reader.scene())),
+      draws_all_(report::draws_all(reader.scene())),
       other_ticks_(reader.scene().arms.size() - 1, UINT64_MAX),
       marks_(reader.scene().period_ns),
       statistics_(std::make_unique<session::RunStatistics>()),
       patch_(std::make_unique<render::BodyPatch>()) {
   for (const session::SharedScene::Object& object : reader.scene().objects) {
     const bool shown = object.shaped && draws_all_;
-    first_.push_back(shown ? mesh_of(reader.scene(), object) : render::TriangleMesh{});
+    first_.push_back(shown ? report::mesh_of(reader.scene(), object) : render::TriangleMesh{});
   }
   base_ = meshes_ = first_;
 }
@@ -91,27 +91,27 @@ std::string LiveFeed::run() const {
 
 driver::Result<std::string> LiveFeed::page(std::uint16_t port) const {
   const session::SharedScene& scene = reader_.scene();
-  PageTouch touch{.title = scene.name,
-                  .subtitle = {},
-                  .program = scene::program_name(),
-                  .rate = 1e9 / static_cast<double>(scene.period_ns),
-                  .virtual_time = !scene.wall_clock,
-                  .scene = scene};
+  report::PageTouch touch{.title = scene.name,
+                          .subtitle = {},
+                          .program = scene::program_name(),
+                          .rate = 1e9 / static_cast<double>(scene.period_ns),
+                          .virtual_time = !scene.wall_clock,
+                          .scene = scene};
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     touch.arms.emplace_back();
     touch.arms.back().force_limit = scene.force_max;
   }
-  const PageSource source{.port = port,
-                          .rows = kTicksMost,
-                          .run = run(),
-                          .no_restart = reader_.why_no_restart(),
-                          .no_step = reader_.why_no_step()};
-  return page_text(touch, &source);
+  const report::PageSource source{.port = port,
+                                  .rows = kTicksMost,
+                                  .run = run(),
+                                  .no_restart = reader_.why_no_restart(),
+                                  .no_step = reader_.why_no_step()};
+  return report::page_text(touch, &source);
 }
 
 void LiveFeed::step() {
   Update update;
-  PageBlock block;
+  report::PageBlock block;
   const session::SharedReader::Counters counters = reader_.counters();
   Json json{{"state", session::name_of(reader_.state())},
             {"paused", reader_.pause_asked()},
@@ -142,7 +142,7 @@ void LiveFeed::step() {
   while (updates_.size() > 1 && (kept_ticks_ > kTicksMost || kept_bytes_ > kBytesMost)) forget();
 }
 
-void LiveFeed::take_ticks(Json& json, PageBlock& block, Update& update) {
+void LiveFeed::take_ticks(Json& json, report::PageBlock& block, Update& update) {
   if (has_last_) {
     ticks_.front() = ticks_.back();
     ticks_.resize(1);
@@ -159,8 +159,8 @@ void LiveFeed::take_ticks(Json& json, PageBlock& block, Update& update) {
     const auto fresh = std::span(ticks_).subspan(old);
     for (const driver::TickRecord& tick : fresh) statistics_->take(tick);
     for (const std::uint64_t number : marks_.take(fresh)) {
-      if (const PageMark* mark = marks_.mark(number)) {
-        arm["marks"].push_back({number, page_mark(*mark, begin_ns_)});
+      if (const report::PageMark* mark = marks_.mark(number)) {
+        arm["marks"].push_back({number, report::page_mark(*mark, begin_ns_)});
       }
     }
     std::vector<std::size_t> kept;
@@ -169,9 +169,9 @@ void LiveFeed::take_ticks(Json& json, PageBlock& block, Update& update) {
       kept.push_back(i);
     }
     arm["rows"] = kept.size();
-    add_rows(block, "arm0.", ticks_, kept, begin_ns_);
-    add_bars(reader_.scene().arms.front(), std::span(ticks_).last(1), begin_ns_, "arm0.", arm,
-             block);
+    report::add_rows(block, "arm0.", ticks_, kept, begin_ns_);
+    report::add_bars(reader_.scene().arms.front(), std::span(ticks_).last(1), begin_ns_, "arm0.",
+                     arm, block);
     update.ticks = ticks_.size() - old;
     now_ = 1e-9 * static_cast<double>(ticks_.back().time_ns - begin_ns_);
     has_last_ = true;
@@ -179,7 +179,7 @@ void LiveFeed::take_ticks(Json& json, PageBlock& block, Update& update) {
   json["arms"] = Json::array({arm});
 }
 
-void LiveFeed::take_other_arms(Json& json, PageBlock& block) {
+void LiveFeed::take_other_arms(Json& json, report::PageBlock& block) {
   for (std::size_t i = 0; i < other_ticks_.size(); ++i) {
     driver::TickRecord tick;
     Json arm{{"rows", 0}, {"marks", Json::array()}};
@@ -187,15 +187,16 @@ void LiveFeed::take_other_arms(Json& json, PageBlock& block) {
       other_ticks_[i] = tick.tick;
       const std::string prefix = "arm" + std::to_string(i + 1) + ".";
       const std::size_t only = 0;
-      add_rows(block, prefix, std::span<const driver::TickRecord>(&tick, 1), {&only, 1}, begin_ns_);
-      add_bars(reader_.scene().arms[i + 1], {&tick, 1}, begin_ns_, prefix, arm, block);
+      report::add_rows(block, prefix, std::span<const driver::TickRecord>(&tick, 1), {&only, 1},
+                       begin_ns_);
+      report::add_bars(reader_.scene().arms[i + 1], {&tick, 1}, begin_ns_, prefix, arm, block);
       arm["rows"] = 1;
     }
     json["arms"].push_back(std::move(arm));
   }
 }
 
-void LiveFeed::take_bodies(Json& json, PageBlock& block) {
+void LiveFeed::take_bodies(Json& json, report::PageBlock& block) {
   session::ScenePoses poses;
   if (!has_begin_ || !reader_.poses(poses) || poses.count == 0) return;
   std::vector<float> numbers;
@@ -210,7 +211,7 @@ void LiveFeed::take_bodies(Json& json, PageBlock& block) {
   json["bodies"]["objects"] = objects;
 }
 
-void LiveFeed::take_shapes(Json& json, PageBlock& block, Update& update) {
+void LiveFeed::take_shapes(Json& json, report::PageBlock& block, Update& update) {
   const std::uint64_t moves = reader_.shape_moves();
   if (!draws_all_ || moves == shape_moves_) return;
   shape_moves_ = moves;
@@ -218,13 +219,13 @@ void LiveFeed::take_shapes(Json& json, PageBlock& block, Update& update) {
     if (!reader_.scene().objects[i].shaped) continue;
     render::TriangleMesh now = meshes_[i];
     reader_.shape(i, now);
-    ShapeStep step = shape_step(meshes_[i], now);
+    report::ShapeStep step = report::shape_step(meshes_[i], now);
     step.t = now_;
     step.object = i;
     meshes_[i] = std::move(now);
     if (!step.empty()) update.shapes.push_back(std::move(step));
   }
-  json["shapes"] = page_shapes(update.shapes, block);
+  json["shapes"] = report::page_shapes(update.shapes, block);
 }
 
 void LiveFeed::take_dent(Update& update) {
@@ -232,7 +233,7 @@ void LiveFeed::take_dent(Update& update) {
   if (!draws_all_ || !has_begin_ || patches == patches_) return;
   patches_ = patches;
   if (!reader_.patch(*patch_)) return;
-  PageBlock block;
+  report::PageBlock block;
   add_dent(*patch_, now_, block);
   const std::string dent = update_of({{"dents", {{"frames", 1}}}}, block);
   update.bytes += dent;
@@ -243,22 +244,22 @@ void LiveFeed::add_figures(Json& json) {
   until_figures_ = kStepsPerFigures;
   const session::RunStatistics& sums = *statistics_;
   const session::SharedReader::Counters counters = reader_.counters();
-  json["figures"] = page_figures(
-      std::vector<Figure>{{"ticks", static_cast<double>(counters.ticks), "", ""},
-                          {"rate", sums.rate(), "Hz", ""},
-                          {"ticks_missed", static_cast<double>(counters.missed), "", ""},
-                          {"touch_downs", static_cast<double>(sums.contacts()), "", ""},
-                          {"force_max", sums.force_max(), "N", ""},
-                          {"force_rms", sums.force_rms(), "N", ""},
-                          {"depth_max", 1e3 * sums.depth_max(), "mm", ""},
-                          {"energy_to_hand", 1e3 * sums.energy_to_hand(), "mJ", ""},
-                          {"reports_missing", static_cast<double>(sums.missing_reports()), "", ""},
-                          {"fault_ticks", static_cast<double>(sums.fault_ticks()), "", "== 0"}});
+  json["figures"] = report::page_figures(std::vector<session::Figure>{
+      {"ticks", static_cast<double>(counters.ticks), "", ""},
+      {"rate", sums.rate(), "Hz", ""},
+      {"ticks_missed", static_cast<double>(counters.missed), "", ""},
+      {"touch_downs", static_cast<double>(sums.contacts()), "", ""},
+      {"force_max", sums.force_max(), "N", ""},
+      {"force_rms", sums.force_rms(), "N", ""},
+      {"depth_max", 1e3 * sums.depth_max(), "mm", ""},
+      {"energy_to_hand", 1e3 * sums.energy_to_hand(), "mJ", ""},
+      {"reports_missing", static_cast<double>(sums.missing_reports()), "", ""},
+      {"fault_ticks", static_cast<double>(sums.fault_ticks()), "", "== 0"}});
 }
 
 void LiveFeed::forget() {
   Update& update = updates_.front();
-  for (const ShapeStep& step : update.shapes) {
+  for (const report::ShapeStep& step : update.shapes) {
     render::TriangleMesh& mesh = base_[step.object];
     for (std::size_t i = 0; i < step.vertices.size(); ++i) {
       const std::size_t v = step.vertices[i];
@@ -282,18 +283,18 @@ void LiveFeed::forget() {
 }
 
 std::string LiveFeed::base(std::uint64_t lost) const {
-  PageBlock block;
+  report::PageBlock block;
   Json json{{"base", true}, {"run", run()}, {"lost_here", lost}};
-  std::vector<ShapeStep> shapes;
+  std::vector<report::ShapeStep> shapes;
   for (std::size_t i = 0; i < base_.size(); ++i) {
-    ShapeStep step = shape_step(first_[i], base_[i]);
+    report::ShapeStep step = report::shape_step(first_[i], base_[i]);
     step.object = i;
     if (!step.empty()) shapes.push_back(std::move(step));
   }
-  json["shapes"] = page_shapes(shapes, block);
+  json["shapes"] = report::page_shapes(shapes, block);
   Json marks = Json::array();
   for (std::uint64_t number = marks_.oldest(); number < marks_.end(); ++number) {
-    marks.push_back({number, page_mark(*marks_.mark(number), begin_ns_)});
+    marks.push_back({number, report::page_mark(*marks_.mark(number), begin_ns_)});
   }
   json["arms"] = Json::array({{{"rows", 0}, {"marks", marks}}});
   return update_of(std::move(json), block) + base_dent_;
@@ -314,4 +315,4 @@ std::string LiveFeed::message(Place& place) const {
   return bytes;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::web

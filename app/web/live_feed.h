@@ -14,7 +14,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/run_statistics.h"
 
-namespace thimble::app {
+namespace thimble::web {
 
 /// What the pages of a run that goes on are told: updates, each with all ticks since the one
 /// before, kept for a while for whoever comes later or is slow.
@@ -68,14 +68,14 @@ class LiveFeed {
   struct Update {
     std::string bytes;
     std::size_t ticks = 0;
-    std::vector<ShapeStep> shapes;
+    std::vector<report::ShapeStep> shapes;
     std::size_t dent = 0;  // bytes of it that tell of a dent, at its end; 0: none was drawn
   };
 
-  void take_ticks(nlohmann::ordered_json& json, PageBlock& block, Update& update);
-  void take_other_arms(nlohmann::ordered_json& json, PageBlock& block);
-  void take_bodies(nlohmann::ordered_json& json, PageBlock& block);
-  void take_shapes(nlohmann::ordered_json& json, PageBlock& block, Update& update);
+  void take_ticks(nlohmann::ordered_json& json, report::PageBlock& block, Update& update);
+  void take_other_arms(nlohmann::ordered_json& json, report::PageBlock& block);
+  void take_bodies(nlohmann::ordered_json& json, report::PageBlock& block);
+  void take_shapes(nlohmann::ordered_json& json, report::PageBlock& block, Update& update);
   void take_dent(Update& update);
   void add_figures(nlohmann::ordered_json& json);
   void forget();
@@ -91,7 +91,7 @@ class LiveFeed {
   std::int64_t begin_ns_ = 0;
   double now_ = 0;  // s, of the newest tick
   std::vector<std::uint64_t> other_ticks_;
-  MarksAsTheyCome marks_;
+  report::MarksAsTheyCome marks_;
   std::unique_ptr<session::RunStatistics> statistics_;
   int until_figures_ = 0;
   std::string told_;  // state and the like, as the last update had it
@@ -106,4 +106,4 @@ class LiveFeed {
   std::unique_ptr<render::BodyPatch> patch_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::web

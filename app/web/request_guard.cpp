@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 constexpr std::size_t kTokenBytes = 16;
@@ -82,4 +82,4 @@ std::string RequestGuard::refuse_change(const Request& request, std::string_view
   return {};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::web

@@ -6,7 +6,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::web {
 
 /// Who may see a page that is served on this computer: who knows its token, and no web page of
 /// anybody else, whatever name it has given our address (DNS rebinding). Real-time: never from the
@@ -41,4 +41,4 @@ class RequestGuard {
   std::string token_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::web

@@ -6,7 +6,7 @@
 
 #include "share/knob_order.h"
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 driver::Result<void> ask(session::SharedReader& reader, std::string_view request) {
@@ -39,4 +39,4 @@ driver::Result<void> steer_run(session::SharedReader& reader, std::string_view r
   return reader.heard();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::web

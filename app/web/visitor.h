@@ -12,7 +12,7 @@
 
 #include "web/live_feed.h"
 
-namespace thimble::app {
+namespace thimble::web {
 
 /// One connection: it asks for one thing and gets it, the page or what the page is told.
 class Visitor {
@@ -151,4 +151,4 @@ class Visitor {
   bool open_ = false, sending_ = false, closing_ = false, cut_ = false;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::web

@@ -1,7 +1,7 @@
 // In place of the server where the library that it is made with was missing.
 #include "web/web_server.h"
 
-namespace thimble::app {
+namespace thimble::web {
 
 class WebServer::Parts {};
 
@@ -26,4 +26,4 @@ std::size_t WebServer::pages() const noexcept {
 void WebServer::step() {}
 void WebServer::leave(std::chrono::milliseconds) {}
 
-}  // namespace thimble::app
+}  // namespace thimble::web

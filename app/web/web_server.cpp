@@ -17,7 +17,7 @@
 #include "web/steer_run.h"
 #include "web/visitor.h"
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 namespace asio = boost::asio;
@@ -252,4 +252,4 @@ void WebServer::leave(std::chrono::milliseconds most) {
   parts_->leave(most);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::web

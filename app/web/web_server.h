@@ -8,7 +8,7 @@
 #include "share/run_attachment.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::web {
 
 /// Serves the page of a run that goes on to browsers on this computer: over HTTP the page, over
 /// WebSocket what it is told (LiveFeed). Who has not the token, or asks for a page of somebody
@@ -51,4 +51,4 @@ class WebServer {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::web

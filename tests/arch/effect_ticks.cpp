@@ -66,8 +66,8 @@ void operator delete(void* piece, std::size_t, std::align_val_t alignment) noexc
 int main(int argc, char** argv) {
   using namespace thimble;
   if (argc != 3) return 2;
-  const auto states = app::ring_stroke(app::kCostRing, 1000, 0.001);
-  for (const app::CostSubject& subject : app::cost_subjects()) {
+  const auto states = studies::ring_stroke(studies::kCostRing, 1000, 0.001);
+  for (const studies::CostSubject& subject : studies::cost_subjects()) {
     if (subject.name != argv[1]) continue;
     const std::size_t before = held;
     const auto touch = subject.build();

@@ -14,7 +14,7 @@ using namespace thimble;
 constexpr double kTick = 1e-3;  // s
 
 /// Moves the tip to and fro by motors. What runs in here is counted, and nothing else.
-[[gnu::noinline]] bool counted_ticks(app::BenchArm& bench, long ticks) {
+[[gnu::noinline]] bool counted_ticks(bringup::BenchArm& bench, long ticks) {
   const std::atomic<bool> never{false};
   const auto push = [&bench](const driver::DeviceState&) -> Eigen::Vector3d {
     const double turn = 2 * std::numbers::pi * 3 * bench.now();
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   const Eigen::Vector3d middle = file->workspace.middle();
-  auto bench = app::BenchArm::open(*file, {}, {}, {{0, middle}}, 1);
+  auto bench = bringup::BenchArm::open(*file, {}, {}, {{0, middle}}, 1);
   if (!bench || !(*bench)->device().activate()) return 1;
   if (!counted_ticks(**bench, std::atol(argv[2]))) return 1;
   std::printf("%.1f\n", 1e6 * ((*bench)->device().state().p_WT - middle).norm());

@@ -136,7 +136,7 @@ class Bench {
     if (one.empty() || beside.empty()) return false;
     const Batch alone = open(scene, 1);
     if (!alone) return false;
-    const std::size_t before = app::resident_memory().now;
+    const std::size_t before = studies::resident_memory().now;
     const auto begin = std::chrono::steady_clock::now();
     const Batch many = open(scene, arms);
     if (!many) return false;
@@ -144,7 +144,8 @@ class Bench {
     const std::chrono::duration<double> made = std::chrono::steady_clock::now() - begin;
     add(all + ": made in", made.count(), "s");
     add(all + ": memory of each",
-        static_cast<double>(app::resident_memory().now - before) / 1024 / static_cast<double>(arms),
+        static_cast<double>(studies::resident_memory().now - before) / 1024 /
+            static_cast<double>(arms),
         "KiB");
     alone->step(700);
     many->step(700);
@@ -170,7 +171,7 @@ class Bench {
         median(beside) / one.front(), "", ">= 0.9");
     return true;
   }
-  const std::vector<app::Figure>& figures() const { return figures_; }
+  const std::vector<session::Figure>& figures() const { return figures_; }
 
  private:
   void add(const std::string& name, double value, const std::string& unit,
@@ -179,7 +180,7 @@ class Bench {
     std::printf("%s: %g %s\n", name.c_str(), value, unit.c_str());
     std::fflush(stdout);
   }
-  std::vector<app::Figure> figures_;
+  std::vector<session::Figure> figures_;
 };
 
 }  // namespace
@@ -213,9 +214,9 @@ int main(int argc, char** argv) {
   const bool done = bench.run(folder, arms, processes);
   std::filesystem::remove_all(folder);
   if (!done) return 1;
-  std::printf("\n%s", thimble::app::figure_table(bench.figures()).c_str());
+  std::printf("\n%s", thimble::report::figure_table(bench.figures()).c_str());
   if (figures_file.empty()) return 0;
-  const auto written = thimble::app::write_figures(bench.figures(), figures_file);
+  const auto written = thimble::report::write_figures(bench.figures(), figures_file);
   if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
   return written ? 0 : 1;
 }

@@ -196,7 +196,7 @@ int main(int argc, char** argv) {
   thimble::bench::FiguresReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   if (figures_file.empty()) return 0;
-  const auto written = thimble::app::write_figures(reporter.figures(), figures_file);
+  const auto written = thimble::report::write_figures(reporter.figures(), figures_file);
   if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
   return written ? 0 : 1;
 }

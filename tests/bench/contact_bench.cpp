@@ -169,7 +169,7 @@ class Bench {
     build_shape("torus " + size, support::bench_ring(support::Ring(), triangles), triangles);
   }
 
-  const std::vector<app::Figure>& figures() const { return figures_; }
+  const std::vector<session::Figure>& figures() const { return figures_; }
 
  private:
   void build_shape(const std::string& name, const render::TriangleMesh& mesh,
@@ -209,7 +209,7 @@ class Bench {
   void add(const std::string& name, double value, const std::string& unit,
            const std::string& goal = {}) {
     figures_.push_back({.name = name, .value = value, .unit = unit, .goal = goal});
-    std::printf("%s", app::figure_table({figures_.back()}).c_str());
+    std::printf("%s", report::figure_table({figures_.back()}).c_str());
     std::fflush(stdout);
   }
 
@@ -390,7 +390,7 @@ class Bench {
   }
 
   bool hot_, cold_;
-  std::vector<app::Figure> figures_;
+  std::vector<session::Figure> figures_;
 };
 
 }  // namespace
@@ -436,9 +436,9 @@ int main(int argc, char** argv) {
     }
     triangles *= 10;
   }
-  std::printf("\n%s", thimble::app::figure_table(bench.figures()).c_str());
+  std::printf("\n%s", thimble::report::figure_table(bench.figures()).c_str());
   if (!figures_file.empty()) {
-    const auto written = thimble::app::write_figures(bench.figures(), figures_file);
+    const auto written = thimble::report::write_figures(bench.figures(), figures_file);
     if (!written) {
       std::fprintf(stderr, "%s\n", written.error().message.c_str());
       return 1;

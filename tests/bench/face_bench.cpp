@@ -16,7 +16,7 @@
 #include "compat/core/open_channel.h"
 #include "compat/server/arm_server.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 /// A server in this process, for as long as the benchmarks run.
@@ -82,10 +82,10 @@ void hd_phantom_read(benchmark::State& state) {
 BENCHMARK(hd_phantom_read);
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat
 
 int main(int argc, char** argv) {
-  const thimble::faces::Server server;
+  const thimble::compat::Server server;
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -31,7 +31,7 @@ class FiguresReporter : public benchmark::ConsoleReporter {
     }
   }
 
-  std::vector<app::Figure>& figures() { return figures_; }
+  std::vector<session::Figure>& figures() { return figures_; }
 
  private:
   /// Takes the processor's time, in which a busy machine does not show, unless the benchmark timed
@@ -41,7 +41,7 @@ class FiguresReporter : public benchmark::ConsoleReporter {
     return manual ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime();
   }
 
-  std::vector<app::Figure> figures_;
+  std::vector<session::Figure> figures_;
 };
 
 }  // namespace thimble::bench

@@ -31,7 +31,7 @@ namespace {
 using Eigen::Vector3d;
 using Clock = std::chrono::steady_clock;
 
-constexpr app::BumpyRing kRing;
+constexpr studies::BumpyRing kRing;
 constexpr double kPressed = 0.5e-3;  // m below the surface
 constexpr double kTick = 1e-3;       // s
 constexpr double kSpeed = 0.5;       // m/s
@@ -121,9 +121,9 @@ class Slide {
 };
 
 render::TriangleMesh ring_mesh(std::int64_t triangles) {
-  const app::RingGrid grid = app::ring_grid(kRing, triangles);
-  return app::tube_mesh(grid.around, grid.across,
-                        [](double u, double v) { return kRing.at(u, v); });
+  const studies::RingGrid grid = studies::ring_grid(kRing, triangles);
+  return studies::tube_mesh(grid.around, grid.across,
+                            [](double u, double v) { return kRing.at(u, v); });
 }
 
 // Asks the kernel to forget what it has read of a file; it may refuse.
@@ -141,13 +141,13 @@ class Bench {
   bool run(const std::string& size, std::int64_t triangles, const std::filesystem::path& folder) {
     const auto file = folder / ("ring_" + std::to_string(triangles) + ".pages");
     auto begin = Clock::now();
-    const app::RingGrid grid = app::ring_grid(kRing, triangles);
-    if (const auto written = app::write_ring(kRing, grid, file); !written) {
+    const studies::RingGrid grid = studies::ring_grid(kRing, triangles);
+    if (const auto written = studies::write_ring(kRing, grid, file); !written) {
       std::fprintf(stderr, "%s\n", written.error().message.c_str());
       return false;
     }
     add(size + ": generate", seconds_since(begin), "s");
-    add(size + ": generate, memory", megabytes(app::resident_memory().now), "MiB");
+    add(size + ": generate, memory", megabytes(studies::resident_memory().now), "MiB");
     add(size + ": page file", static_cast<double>(std::filesystem::file_size(file)) / 1e6, "MB");
     begin = Clock::now();
     auto reference = render::MemoryContact::build(ring_mesh(1'000'000));
@@ -159,7 +159,7 @@ class Bench {
     return true;
   }
 
-  const std::vector<app::Figure>& figures() const { return figures_; }
+  const std::vector<session::Figure>& figures() const { return figures_; }
 
  private:
   static double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
@@ -167,7 +167,7 @@ class Bench {
   void add(const std::string& name, double value, const std::string& unit,
            const std::string& goal = {}) {
     figures_.push_back({.name = name, .value = value, .unit = unit, .goal = goal});
-    std::printf("%s", app::figure_table({figures_.back()}).c_str());
+    std::printf("%s", report::figure_table({figures_.back()}).c_str());
     std::fflush(stdout);
   }
 
@@ -200,7 +200,7 @@ class Bench {
     add(name + ": pages read per s",
         static_cast<double>(surface->counters().loads) / (ticks * kTick), "1/s");
     add(name + ": hops cut short", static_cast<double>(paged.counters().long_walks), "ticks");
-    add(name + ": memory, with the mesh of 10^6", megabytes(app::resident_memory().now), "MiB",
+    add(name + ": memory, with the mesh of 10^6", megabytes(studies::resident_memory().now), "MiB",
         "< 1024");
     add(name + ": memory of the pages", megabytes(surface->bytes()), "MiB");
     add(name + ": tick in the loop, mean", on_disk.mean(), "ns");
@@ -214,7 +214,7 @@ class Bench {
     return true;
   }
 
-  std::vector<app::Figure> figures_;
+  std::vector<session::Figure> figures_;
 };
 
 }  // namespace
@@ -249,9 +249,9 @@ int main(int argc, char** argv) {
     if (!bench.run("10^" + std::to_string(power), triangles, folder)) return 1;
     triangles *= 10;
   }
-  std::printf("\n%s", thimble::app::figure_table(bench.figures()).c_str());
+  std::printf("\n%s", thimble::report::figure_table(bench.figures()).c_str());
   if (!figures_file.empty()) {
-    const auto written = thimble::app::write_figures(bench.figures(), figures_file);
+    const auto written = thimble::report::write_figures(bench.figures(), figures_file);
     if (!written) {
       std::fprintf(stderr, "%s\n", written.error().message.c_str());
       return 1;

@@ -289,9 +289,9 @@ int main(int argc, char** argv) {
       figure.unit = "us";
     }
   }
-  std::printf("\n%s", thimble::app::figure_table(reporter.figures()).c_str());
+  std::printf("\n%s", thimble::report::figure_table(reporter.figures()).c_str());
   if (!figures_file.empty()) {
-    const auto written = thimble::app::write_figures(reporter.figures(), figures_file);
+    const auto written = thimble::report::write_figures(reporter.figures(), figures_file);
     if (!written) {
       std::fprintf(stderr, "%s\n", written.error().message.c_str());
       return 1;

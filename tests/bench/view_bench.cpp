@@ -19,9 +19,9 @@
 namespace thimble::bench {
 namespace {
 
-using app::view::Canvas;
-using app::view::DrawnMoment;
-using app::view::PaintChoice;
+using view::Canvas;
+using view::DrawnMoment;
+using view::PaintChoice;
 
 /// Returns the time that all processors have spent on this process, ms.
 double processor_ms() {
@@ -34,19 +34,19 @@ double processor_ms() {
 }
 
 void paint(benchmark::State& state) {
-  const auto context = app::view::OffscreenContext::open();
+  const auto context = view::OffscreenContext::open();
   if (!context) return state.SkipWithError("no OpenGL");
   state.SetLabel((*context)->renderer());
-  app::view::DrawnScene scene;
+  view::DrawnScene scene;
   scene.objects.push_back(
       {.name = "ball",
        .mesh = support::bumpy_sphere(static_cast<int>(state.range(0)), 0.05, 0.002, 40)});
-  auto programs = app::view::ScenePrograms::make();
+  auto programs = view::ScenePrograms::make();
   if (!programs) return state.SkipWithError(programs.error().message.c_str());
-  app::view::ScenePainter painter(scene, std::move(programs).value());
+  view::ScenePainter painter(scene, std::move(programs).value());
   Canvas canvas(960, 640);
   const DrawnMoment moment{};
-  auto camera = app::view::frame(scene, moment, canvas.aspect());
+  auto camera = view::frame(scene, moment, canvas.aspect());
   PaintChoice choice;
   choice.fine = state.range(1) == 1;
   // The first pictures translate the shaders.

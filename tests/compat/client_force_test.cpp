@@ -9,7 +9,7 @@
 #include "thimble/driver/servo_loop.h"
 #include "thimble/scene/simulated_device.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 /// Runs an arm for a second; a fault comes at 0.2 s, and the program switches the force on again at
@@ -48,4 +48,4 @@ TEST(ClientForce, LeavesAFaultOfARealArmToAPerson) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -13,7 +13,7 @@
 #include "compat/server/read_hand_path.h"
 #include "support/scratch.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using Eigen::Vector3d;
@@ -351,4 +351,4 @@ TEST(FaceCore, ProgramKilledWhileItAskedLeavesArmFree) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -20,7 +20,7 @@
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/session/session.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// What the simulated motors of the first arm pull with, tick by tick: what is true, not what was
 /// sent.
@@ -111,4 +111,4 @@ class ExecRig {
   std::thread thread_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

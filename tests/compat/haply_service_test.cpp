@@ -26,7 +26,7 @@
 #include "vendors/haply/haply_message.h"
 #include "vendors/linked_arms.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using Eigen::Vector3d;
@@ -216,4 +216,4 @@ TEST(HaplyServiceMessage, TakesTheForcesThatOurOwnBackEndAsksFor) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -12,7 +12,7 @@
 
 #include "compat/exec_rig.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using namespace std::chrono_literals;
@@ -345,4 +345,4 @@ TEST_F(FaceHdScheduler, RefusesCallbacksBeyondAllSense) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

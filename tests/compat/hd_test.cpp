@@ -7,7 +7,7 @@
 
 #include "compat/exec_rig.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using Eigen::Vector3d;
@@ -351,4 +351,4 @@ TEST_F(FaceHd, SaysHowAProgramGetsAnArmWhereNoneIs) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

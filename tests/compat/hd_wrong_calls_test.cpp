@@ -14,7 +14,7 @@
 #include "compat/hd/hd_parameters.h"
 #include "support/seed.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 void clear_errors() {
@@ -334,4 +334,4 @@ TEST(FaceHdFuzz, BearsAnyCallsInAnyOrderFromSeveralThreads) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

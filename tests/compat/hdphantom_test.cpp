@@ -9,7 +9,7 @@
 #include "compat/exec_rig.h"
 #include "hdPhantom.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using Eigen::Vector3d;
@@ -122,4 +122,4 @@ TEST(FaceHdPhantom, FailsByMinusOneWhateverItIsGiven) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

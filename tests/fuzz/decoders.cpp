@@ -184,9 +184,9 @@ bool hid_descriptor(Bytes bytes) {
 
 /// What a SpaceMouse tells is whole, or leaves what was told before.
 bool space_mouse(Bytes bytes) {
-  const app::view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
-  app::view::SpaceMouseState state = before;
-  if (app::view::take_space_mouse_report(bytes, state)) return true;
+  const view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
+  view::SpaceMouseState state = before;
+  if (view::take_space_mouse_report(bytes, state)) return true;
   promise(state == before, "a rejected report leaves the state alone");
   return false;
 }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 TEST(ArmHealth, NamesAFaultBeforeAllElse) {
@@ -32,4 +32,4 @@ TEST(ArmHealth, NamesALossAfterAnotherFault) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

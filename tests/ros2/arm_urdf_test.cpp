@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// A joint of a URDF; the little that is needed of the format, read apart from what writes it.
@@ -155,4 +155,4 @@ TEST(ArmUrdf, IsATreeWithOneRootForEveryArmThatIsShipped) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

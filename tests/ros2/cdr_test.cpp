@@ -13,7 +13,7 @@
 #include "ros2/dds_messages.h"
 #include "ros_messages.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 // Numbers as they are on the wire.
@@ -228,4 +228,4 @@ TEST_F(Cdr, OfTheOmnisMessages) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr const char* kForeign = "10.9.8.7";  // an address of this computer, but not of loopback
@@ -153,4 +153,4 @@ TEST(DdsDomain, IsSharedByPeersOfOneProcess) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

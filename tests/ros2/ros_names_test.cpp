@@ -12,7 +12,7 @@
 #include "ros2/ros_names.h"
 #include "ros2/ros_steps.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr RosStyle kAll[] = {RosStyle::kPlain, RosStyle::kCrtk, RosStyle::kOmni};
@@ -104,4 +104,4 @@ TEST(RosSteps, AreToldOnceTheTopicsOfAllArmsHave) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -7,7 +7,7 @@
 
 #include "ros2/ros_words.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 /// The variables of ROS 2, as they are not in the environment of these tests.
@@ -68,4 +68,4 @@ TEST_F(RosReachTest, UnknownValueIsRefused) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

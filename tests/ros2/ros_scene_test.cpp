@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 std::vector<std::string> links_of(const std::string& urdf) {
@@ -49,4 +49,4 @@ TEST(RosScene, OneArmKeepsTheNameOfItsFile) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -20,12 +20,12 @@ int main(int argc, char** argv) {
     return 1;
   }
   session::Session& run = **opened;
-  std::unique_ptr<faces::RosRun> topics;
+  std::unique_ptr<ros2::RosRun> topics;
   if (part != "none") {
-    faces::RosOptions options;
+    ros2::RosOptions options;
     options.domain = 99;
-    if (part == "force") options.force = faces::RosForce::kAdd;
-    auto put = faces::RosRun::open(run, options);
+    if (part == "force") options.force = ros2::RosForce::kAdd;
+    auto put = ros2::RosRun::open(run, options);
     if (!put) {
       std::fprintf(stderr, "%s\n", put.error().message.c_str());
       return 1;

@@ -9,7 +9,7 @@
 #include "ros2/message_check.h"
 #include "ros2/ros_words.h"
 
-namespace thimble::faces {
+namespace thimble::ros2 {
 namespace {
 
 constexpr driver::GateLimits kLimits{.force_max = 3,
@@ -180,4 +180,4 @@ TEST(RosWords, MeanWhatTheySay) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::ros2

@@ -23,7 +23,7 @@
 #include "surface/friction/bristle.h"
 #include "surface/friction/friction_settings.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 using render::MapSettings;
@@ -34,7 +34,7 @@ using support::record_hard_case;
 std::unique_ptr<render::AnyStage> friction(std::string_view name, const FrictionRigSettings& rig,
                                            std::map<std::string, std::string> words = {}) {
   return make_friction(name, MapSettings({{"coefficient", 0.5}}, std::move(words)),
-                       app::effect_context_of(rig));
+                       stability::effect_context_of(rig));
 }
 
 struct Rest {
@@ -86,7 +86,7 @@ TEST(NaiveFriction, MovesTheHandNoMoreOnceTheEncodersAreIdeal) {
 TEST(HardCase13, NaiveFrictionHasTheMeanAndRippleOfItsLaw) {
   double worst_mean = 0, worst_ripple = 0, ideal_ripple = 0;
   for (const double speed : {0.005, 0.02}) {
-    const EvenSliding naive = slide_evenly({}, speed);
+    const studies::EvenSliding naive = studies::slide_evenly({}, speed);
     const double p = speed * 1e-3 / 3e-5;
     EXPECT_NEAR(naive.mean, p * 0.5, 0.01 * p * 0.5) << speed;
     EXPECT_NEAR(naive.ripple, 0.5 * std::sqrt(p * (1 - p)), 0.01 * 0.5 * std::sqrt(p * (1 - p)))
@@ -96,7 +96,7 @@ TEST(HardCase13, NaiveFrictionHasTheMeanAndRippleOfItsLaw) {
         std::max(worst_ripple, std::abs(naive.ripple / (0.5 * std::sqrt(p * (1 - p))) - 1));
     FrictionRigSettings ideal;
     ideal.encoder_step = 0;
-    const EvenSliding whole = slide_evenly(ideal, speed);
+    const studies::EvenSliding whole = studies::slide_evenly(ideal, speed);
     EXPECT_NEAR(whole.mean, 0.5, 0.005) << speed;
     EXPECT_LT(whole.ripple, 0.005) << speed;
     ideal_ripple = std::max(ideal_ripple, whole.ripple);
@@ -142,11 +142,11 @@ TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFricti
     for (int i = 0; i < 40; ++i) {
       FrictionRigSettings rig;
       rig.delay_ns = delay * 1'000'000;
-      const double stiffness = render::stick_stiffness_max(app::effect_context_of(rig));
+      const double stiffness = render::stick_stiffness_max(stability::effect_context_of(rig));
       rig.arm_coulomb = 0;
       const render::BristleFriction stage(
           {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = stiffness},
-          app::effect_context_of(rig));
+          stability::effect_context_of(rig));
       render::AnyStageOf<render::BristleFriction> bristle(stage);
       const Rest rest = rest_after_stop(bristle, rig, 0.01 + i * 3e-5 / 40);
       EXPECT_LE(rest.force_hf, 0.5 * stiffness * 3e-5) << delay << " " << i;
@@ -202,7 +202,7 @@ TEST(HardCase20, BristleThatBendsByOneCountWouldChatter) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(
       {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 0.5 / 3e-5},
-      app::effect_context_of(rig)));
+      stability::effect_context_of(rig)));
   const double force_hf = rest_after_stop(bristle, rig, 0.01).force_hf;
   EXPECT_GT(force_hf, 0.1);
   record_hard_case(20, "guard: z_max of one count, after a stop", "> force above 50 Hz, RMS",
@@ -229,7 +229,7 @@ TEST(HardCase15, DefaultFrictionSlidesSlowlyWithAllItsForceAndQuietly) {
 // The arm's own dry friction is away, so that nothing else holds.
 TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
   FrictionRigSettings rig;
-  const auto context = app::effect_context_of(rig);
+  const auto context = stability::effect_context_of(rig);
   rig.arm_coulomb = 0;
   for (const double holding : {0.5, 0.6}) {
     const auto bristle = make_friction(
@@ -250,7 +250,7 @@ TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
 
 TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatOscillates) {
   FrictionRigSettings rig;
-  const auto context = app::effect_context_of(rig);
+  const auto context = stability::effect_context_of(rig);
   rig.arm_coulomb = 0;
   const bool full = support::long_form();
   const int cycles = full ? 1000 : 200;
@@ -294,4 +294,4 @@ TEST(EveryFrictionButNaiveAndPaper, IsSilentAfterAStopAtAnyDelay) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::stability

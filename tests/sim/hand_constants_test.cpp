@@ -121,12 +121,12 @@ Unrest unrest_of(const scene::ArmFile& file, double rate, double stiffness, doub
     scene::ArmFile arm = file;
     arm.simulated.hand = hand;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto touch = app::press_on_wall(arm, {.p_W = {0, 0, 0},
-                                                  .n_W = Eigen::Vector3d::Unit(axis),
-                                                  .stiffness = stiffness,
-                                                  .damping = damping,
-                                                  .rate = rate,
-                                                  .press = 1});
+      const auto touch = stability::press_on_wall(arm, {.p_W = {0, 0, 0},
+                                                        .n_W = Eigen::Vector3d::Unit(axis),
+                                                        .stiffness = stiffness,
+                                                        .damping = damping,
+                                                        .rate = rate,
+                                                        .press = 1});
       if (!touch) continue;
       EXPECT_FALSE(touch->fault);
       ++found.tried;
@@ -148,9 +148,9 @@ TEST(HandConstants, EveryHandRestsOnEveryShippedWall) {
         unrest_of(scene.arms.front().arm, scene.rate, object.stiffness, object.damping);
     EXPECT_EQ(unrest.loud, 0) << object.name << " " << object.stiffness << ", " << unrest.who;
     most = std::max(most, unrest.force_rms);
-    const app::Carried carried =
-        app::carried_by(scene.arms.front().arm, app::loop_times(scene.arms.front().arm, scene.rate),
-                        object.stiffness, object.damping);
+    const stability::Carried carried = stability::carried_by(
+        scene.arms.front().arm, stability::loop_times(scene.arms.front().arm, scene.rate),
+        object.stiffness, object.damping);
     EXPECT_LE(object.stiffness, carried.stiffness_safe) << object.name;
   }
   support::record_hard_case(7, "the same walls pressed along three axes, through wire and gate",
@@ -164,7 +164,8 @@ TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
         scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
     ASSERT_TRUE(arm);
     for (const double damping : {0.0, 1.0}) {
-      const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 800, damping);
+      const stability::Carried carried =
+          stability::carried_by(*arm, stability::loop_times(*arm, 1000), 800, damping);
       EXPECT_LT(carried.stiffness_any_hand, 0.7 * carried.stiffness_exact);
       EXPECT_LT(carried.stiffness_safe, carried.stiffness_any_hand);
       EXPECT_DOUBLE_EQ(carried.worst_hand.damping, arm->simulated.hand.damping / 3);
@@ -181,7 +182,8 @@ TEST(HandConstants, GuardALowImpedanceGripOscillatesOnWhatAnotherCarries) {
   const auto arm =
       scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   ASSERT_TRUE(arm);
-  const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 800, 0);
+  const stability::Carried carried =
+      stability::carried_by(*arm, stability::loop_times(*arm, 1000), 800, 0);
   // Seven tenths of the edge with the hand of the file: a third of its damping does not do.
   const Unrest unrest = unrest_of(*arm, 1000, 0.7 * carried.stiffness_exact, 0);
   EXPECT_EQ(unrest.loud, 27);  // all with 1 N s/m, and none with 3 or 9

@@ -242,10 +242,10 @@ scene::ArmFile vintage() {
 TEST(HardCase11, ControllerOfTheArmFileStopsAWallThatIsFarTooStiffThroughTheWholeWay) {
   scene::ArmFile arm = vintage();
   arm.simulated.hand.damping = 0.3;  // a hand that hardly helps
-  app::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
-  const auto wild = app::press_on_wall(arm, trial);
+  stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
+  const auto wild = stability::press_on_wall(arm, trial);
   trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kPassivity);
-  const auto tamed = app::press_on_wall(arm, trial);
+  const auto tamed = stability::press_on_wall(arm, trial);
   ASSERT_TRUE(wild);
   ASSERT_TRUE(tamed);
   EXPECT_GT(wild->oscillation, 3 * tamed->oscillation);
@@ -264,12 +264,12 @@ TEST(HardCase11, ControllerOfTheArmFileStopsAWallThatIsFarTooStiffThroughTheWhol
 TEST(HardCase11, BookedEnergyIsThatOfTheTrueMotors) {
   // What the observer sees through counts, mA and a late wire against what the motors did.
   scene::ArmFile arm = vintage();
-  app::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
+  stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
   arm.simulated.hand.damping = 0.3;
   trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kPassivity);
   trial.energy.allowance = 100;  // watches only
   trial.energy.reservoir = 100;
-  const auto touch = app::press_on_wall(arm, trial);
+  const auto touch = stability::press_on_wall(arm, trial);
   ASSERT_TRUE(touch);
   EXPECT_GT(touch->energy_given, 5e-3);
   const double booked = -touch->gate.energy_least;
@@ -281,12 +281,12 @@ TEST(HardCase11, BookedEnergyIsThatOfTheTrueMotors) {
 
 TEST(HardCase12, BoundedWallOfTwentyNewtonsPerMillimetreRestsThroughTheWholeWay) {
   const scene::ArmFile arm = vintage();
-  app::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 20'000};
-  const auto wild = app::press_on_wall(arm, trial);
+  stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 20'000};
+  const auto wild = stability::press_on_wall(arm, trial);
   trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kBounding);
   // The hand's damping is part of what may be spent: a third of it is sure to be there.
   trial.energy.slope = (0.005 + 1) / 0.0015;
-  const auto tamed = app::press_on_wall(arm, trial);
+  const auto tamed = stability::press_on_wall(arm, trial);
   ASSERT_TRUE(wild);
   ASSERT_TRUE(tamed);
   EXPECT_GT(wild->oscillation, 10 * tamed->oscillation);

@@ -70,7 +70,7 @@ struct Felt {
 };
 
 double carried(const scene::ArmFile& arm) {
-  return app::carried_by(arm, app::loop_times(arm, 1000), 800, 0).stiffness_exact;
+  return stability::carried_by(arm, stability::loop_times(arm, 1000), 800, 0).stiffness_exact;
 }
 
 Felt run(const scene::ArmFile& arm, SlowSide& slow, Law law, const Way& way, double duration) {
@@ -250,11 +250,11 @@ TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
   // Computed for a whole period, then held for one: a delay of T, and the wire's.
   const double period = 1.0 / 60;
   const double edge =
-      app::stiffness_edge({.mass = simulated.plant.mass + simulated.hand.mass,
-                           .viscous = simulated.plant.viscous + simulated.hand.damping,
-                           .hand_stiffness = simulated.hand.stiffness,
-                           .period = period,
-                           .delay = period + 1e-3});
+      stability::stiffness_edge({.mass = simulated.plant.mass + simulated.hand.mass,
+                                 .viscous = simulated.plant.viscous + simulated.hand.damping,
+                                 .hand_stiffness = simulated.hand.stiffness,
+                                 .period = period,
+                                 .delay = period + 1e-3});
   const double quiet = pressed_oscillation(0.8 * edge, Law::kHeldForce);
   const double loud = pressed_oscillation(1.5 * edge, Law::kHeldForce);
   const double model = pressed_oscillation(0.7 * carried(arm), Law::kLocalModel);

@@ -74,7 +74,7 @@ TEST(HardCase01, StiffnessLimitIsTheLatencyBudgetAtAnyRateAndDelay) {
           scene::latency_of({.period = static_cast<double>(period_ns) * 1e-9,
                              .delay = static_cast<double>(wall.delay_ns) * 1e-9});
       const double plain = scene::stiffness_limit(1, latency);
-      const double law = app::late_stiffness_limit(1, latency, kMass);
+      const double law = stability::late_stiffness_limit(1, latency, kMass);
       std::array<double, 2> grown{};
       for (int i = 0; i < 2; ++i) {
         wall.stiffness = law * (i == 0 ? 0.97 : 1.03);
@@ -168,13 +168,13 @@ double worst_operator(double stiffness, double damping, double delay, double vis
       const double angle = 0.02 * std::pow(M_PI / 0.02, j / 111.0);  // of a tick, up to Nyquist's
       const double total = mass * std::pow(angle / 1e-3, 2);
       const double hand = std::max(0.0, total - stiffness);
-      worst = std::max(worst, app::growth_per_tick({.mass = mass,
-                                                    .viscous = viscous,
-                                                    .hand_stiffness = hand,
-                                                    .stiffness = stiffness,
-                                                    .damping = damping,
-                                                    .period = 1e-3,
-                                                    .delay = delay}));
+      worst = std::max(worst, stability::growth_per_tick({.mass = mass,
+                                                          .viscous = viscous,
+                                                          .hand_stiffness = hand,
+                                                          .stiffness = stiffness,
+                                                          .damping = damping,
+                                                          .period = 1e-3,
+                                                          .delay = delay}));
     }
   }
   return worst;
@@ -328,8 +328,8 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
           all_rest = all_rest && end.rests;
           cycle = std::max(cycle, end.amplitude / kStep);
         }
-        const double limit = app::oscillation_speed_limit(stiffness, wall.plant.viscous,
-                                                          wall.plant.coulomb, (0.5 + delay) * 1e-3);
+        const double limit = stability::oscillation_speed_limit(
+            stiffness, wall.plant.viscous, wall.plant.coulomb, (0.5 + delay) * 1e-3);
         const double fast = damped ? 1 : 2 * limit;
         const Ending thrown = ending(wall, 0, fast, 20);
         const bool grows = thrown.amplitude > 2.2 * fast / std::sqrt(stiffness / kMass);
@@ -361,7 +361,7 @@ TEST(HardCase06, DryFrictionHoldsAnOscillationUpToItsLimitSpeed) {
     Wall wall{.plant = {.mass = kMass, .viscous = 0.005, .coulomb = 0.04}};
     wall.stiffness = stiffness;
     wall.two_sided = true;
-    const double limit = app::oscillation_speed_limit(stiffness, 0.005, 0.04, 0.5e-3);
+    const double limit = stability::oscillation_speed_limit(stiffness, 0.005, 0.04, 0.5e-3);
     const auto last_speed = [&](double start) {
       WallRig rig(wall);
       rig.state.v = start;
@@ -415,7 +415,7 @@ TEST(HardCase07, AFreeMassComesBackFromAWallAsTheLawSays) {
         EXPECT_NEAR(sum / 200 / law, 1, 0.01) << stiffness << " " << period_ns << " " << delay;
         worst = std::max(worst, std::abs(sum / 200 / law - 1));
         if (stiffness * latency * latency / kMass > 0.05) continue;
-        const double plain = app::restitution(stiffness, 0.005, kMass, latency);
+        const double plain = stability::restitution(stiffness, 0.005, kMass, latency);
         worst_plain = std::max(worst_plain, std::abs(sum / 200 / plain - 1));
       }
     }
@@ -467,10 +467,10 @@ TEST(HardCase08, MoreDampingCarriesMoreStiffnessUpToItsCorner) {
   for (int delay = 0; delay < 3; ++delay) {
     double most = 0;
     for (int i = 1; i <= 200; ++i) {
-      const double edge = app::stiffness_edge({.mass = kMass,
-                                               .damping = i / 200.0 * kMass / 1e-3,
-                                               .period = 1e-3,
-                                               .delay = delay * 1e-3});
+      const double edge = stability::stiffness_edge({.mass = kMass,
+                                                     .damping = i / 200.0 * kMass / 1e-3,
+                                                     .period = 1e-3,
+                                                     .delay = delay * 1e-3});
       most = std::max(most, edge * 1e-6 / kMass);
     }
     const double expected = stated[static_cast<std::size_t>(delay)];

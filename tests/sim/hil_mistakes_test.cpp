@@ -19,7 +19,7 @@
 #include "simulated_arm.h"
 #include "thimble/driver/wire_link.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 constexpr double kMass = 0.03, kLength = 0.1;  // kg, m
@@ -32,13 +32,13 @@ class Desk {
 
   scene::ArmFile believed, truth;
 
-  driver::Result<std::unique_ptr<BenchArm>> open(TipHold hold) {
+  driver::Result<std::unique_ptr<bringup::BenchArm>> open(TipHold hold) {
     device_sim::SimulatedArmSettings settings = truth.simulated;
     settings.firmware.speaks = truth.protocol;
     settings.firmware.line_model = truth.board_model;
     scene::ArmFile file = believed;
     std::vector<std::pair<double, Eigen::Vector3d>> way{{0, believed.workspace.middle()}};
-    if (hold == TipHold::kHand) way = feel_check_hand({0, 0, 0});
+    if (hold == TipHold::kHand) way = bringup::feel_check_hand({0, 0, 0});
     if (hold == TipHold::kHome) way = home_pose_hand(believed);
     if (hold == TipHold::kLength) way = known_length_hand(believed, kLength);
     if (hold == TipHold::kHome || hold == TipHold::kLength) settings.hand = firm_hand();
@@ -58,7 +58,7 @@ class Desk {
             .value()));
     auto clock = std::make_unique<driver::VirtualClock>();
     auto wire = std::make_unique<device_sim::SimTransport>(*clock, *arms_.back());
-    return BenchArm::open_link(
+    return bringup::BenchArm::open_link(
         file,
         std::make_unique<driver::WireLink>(std::move(wire),
                                            driver::make_arm(believed.protocol, believed.model)),
@@ -72,7 +72,7 @@ class Desk {
 /// Returns what a check said.
 std::string outcome_text(const HilResult& result) {
   std::string text = result.name + ": " + result.text;
-  for (const Figure& figure : result.figures) {
+  for (const session::Figure& figure : result.figures) {
     if (!figure.met()) text += " [" + figure.name + " " + std::to_string(figure.value) + "]";
   }
   return text;
@@ -230,4 +230,4 @@ TEST(HilMistakes, RightArmIsPassedWithAPerson) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::hil

@@ -10,7 +10,7 @@
 #include "support/figure_value.h"
 #include "support/long_form.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using support::figure_value;
@@ -44,7 +44,7 @@ HilResult soak_of(const scene::ArmFile& file, const scene::ArmFile& arm, double 
 /// The names of the figures that miss their goals.
 std::string missed(const HilResult& result) {
   std::string names;
-  for (const Figure& one : result.figures) {
+  for (const session::Figure& one : result.figures) {
     if (!one.met()) names += (names.empty() ? "" : " ") + one.name;
   }
   return names;
@@ -127,4 +127,4 @@ TEST(HilSoak, SaysWhatCannotBeKnownOfAnArm) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::hil

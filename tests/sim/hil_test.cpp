@@ -20,7 +20,7 @@
 #include "support/long_form.h"
 #include "support/seed.h"
 
-namespace thimble::app {
+namespace thimble::hil {
 namespace {
 
 using support::figure_value;
@@ -323,4 +323,4 @@ TEST(Hil, PushesNoFurtherAgainstAMotorThatIsTurnedRound) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::hil

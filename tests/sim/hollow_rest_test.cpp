@@ -158,7 +158,8 @@ TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
     const auto arm =
         scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + pressed.arm + ".yaml");
     ASSERT_TRUE(arm);
-    const app::Carried carried = app::carried_by(*arm, app::loop_times(*arm, 1000), 500, 0);
+    const stability::Carried carried =
+        stability::carried_by(*arm, stability::loop_times(*arm, 1000), 500, 0);
     const double edge = carried.stiffness_exact;
     pressed.bare = i % 2 == 1 && pressed.arm != "polhem";
     pressed.stiffness =

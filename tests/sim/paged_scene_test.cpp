@@ -22,8 +22,9 @@ namespace {
 std::filesystem::path scene(const std::string& object_lines, const std::string& station) {
   const auto folder = support::scratch_folder();
   if (!std::filesystem::exists(folder / "ring.pages")) {
-    const app::BumpyRing ring;
-    EXPECT_TRUE(app::write_ring(ring, app::ring_grid(ring, 100'000), folder / "ring.pages").ok());
+    const studies::BumpyRing ring;
+    EXPECT_TRUE(
+        studies::write_ring(ring, studies::ring_grid(ring, 100'000), folder / "ring.pages").ok());
   }
   const auto file = folder / "ring.yaml";
   std::ofstream(file) << "name: ring\narm: " << THIMBLE_SOURCE_DIR

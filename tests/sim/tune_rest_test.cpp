@@ -26,7 +26,7 @@
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 const std::filesystem::path kArm =
@@ -68,8 +68,8 @@ std::vector<std::string> warnings_of(const scene::Scene& scene) {
 
 TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
   const auto folder = support::scratch_folder();
-  ASSERT_TRUE(write_small_meshes(folder / "meshes"));
-  const RandomSceneLimits limits{
+  ASSERT_TRUE(studies::write_small_meshes(folder / "meshes"));
+  const studies::RandomSceneLimits limits{
       .arm = *scene::load_arm(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
   // Scenes of the long search in which the tip oscillates, and then any.
   std::vector<std::uint64_t> seeds{0x9e0ae1da2e824ea6, 0x12d51};
@@ -77,21 +77,21 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
   for (int i = 0; i < count; ++i) seeds.push_back(77'000 + static_cast<std::uint64_t>(i));
   int ran = 0, oscillate = 0, alarms = 0, wrong = 0, missed = 0, by_rules = 0, rules_wrong = 0;
   for (const std::uint64_t seed : seeds) {
-    const RandomScene drawn = random_scene(seed, limits);
+    const studies::RandomScene drawn = studies::random_scene(seed, limits);
     const auto file = folder / "scene.yaml";
     std::ofstream(file) << drawn.text;
-    const TroubleFound found = run_for_trouble(file, drawn);
+    const studies::TroubleFound found = studies::run_for_trouble(file, drawn);
     if (found.refused || found.bad()) continue;
     const auto scene = scene::load_scene(file);
     ASSERT_TRUE(scene);
     ++ran;
-    bool oscillates = found.limit_cycle > kLimitCycleMost;
+    bool oscillates = found.limit_cycle > studies::kLimitCycleMost;
     const bool alarm = !warnings_of(*scene).empty();
     if (alarm && !oscillates) {
       // Where the scene's own rest touches nothing, tune stops the hand on its path.
       const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
       ASSERT_TRUE(trial && trial->worst());
-      oscillates = oscillation_stopped_at(file, trial->worst()->time) > kLimitCycleMost;
+      oscillates = oscillation_stopped_at(file, trial->worst()->time) > studies::kLimitCycleMost;
     }
     const bool rule = !rest_causes(*scene).empty();
     oscillate += oscillates;
@@ -185,4 +185,4 @@ TEST(TuneRest, StopsTheHandInWhatItOnlyStrokes) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::stability

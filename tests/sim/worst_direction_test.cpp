@@ -20,7 +20,7 @@
 // The rule for three dimensions [PHYSICS 9] against simulation on the real kinematics, at poses
 // all over the workspace.
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 using Eigen::Matrix3d;
@@ -166,7 +166,7 @@ TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
   ASSERT_TRUE(tuned) << tuned.error().message;
   const TuneResult& result = *tuned;
   std::printf("%s", result.text.c_str());
-  for (const Figure& figure : result.figures) {
+  for (const session::Figure& figure : result.figures) {
     if (figure.name == "wall.simulated_over_exact") {
       EXPECT_NEAR(figure.value, 1, 0.05);
     }
@@ -181,4 +181,4 @@ TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::stability

@@ -9,9 +9,9 @@
 namespace thimble::support {
 
 /// Returns the value of the figure of that name; -1 if there is none.
-inline double figure_value(const std::vector<app::Figure>& figures, const std::string& name) {
+inline double figure_value(const std::vector<session::Figure>& figures, const std::string& name) {
   const auto found = std::find_if(figures.begin(), figures.end(),
-                                  [&](const app::Figure& one) { return one.name == name; });
+                                  [&](const session::Figure& one) { return one.name == name; });
   return found == figures.end() ? -1 : found->value;
 }
 

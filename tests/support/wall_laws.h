@@ -61,7 +61,7 @@ inline WallRegion region_of(const WallPlace& place) {
 
 /// Returns the mean restitution of an impact of a free mass from the slowest root s of
 /// m s^2 + b s + K e^{-s L} = 0, as exp(pi Re s / Im s): what lateness does to the period of the
-/// oscillation is in it. For K L^2 / m up to 0.5; app::restitution is 1 % off at 0.08.
+/// oscillation is in it. For K L^2 / m up to 0.5; stability::restitution is 1 % off at 0.08.
 inline double late_restitution(double stiffness, double damping, double mass, double latency) {
   std::complex<double> s(0, std::sqrt(stiffness / mass));
   for (int i = 0; i < 50; ++i) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// When a torque that was asked for at a tick acts: the middle of its tick at the motors, so many
 /// whole ticks and a part of one later.
@@ -26,4 +26,4 @@ struct ActingTick {
   }
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

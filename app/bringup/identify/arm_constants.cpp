@@ -6,7 +6,7 @@
 #include "gravity_terms.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr int kSeen = 8;    // constants per mass: all but the stiffness
@@ -124,4 +124,4 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

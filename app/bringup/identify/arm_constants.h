@@ -6,7 +6,7 @@
 #include "bringup/identify/line_forces.h"
 #include "bringup/identify/motion_fit.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// One joint's motor and cable as they are written into an arm file, with their intervals.
 struct CableConstants {
@@ -69,4 +69,4 @@ Estimate by_gain(const Estimate& torque, const Estimate& gain);
 driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
                                            const std::optional<PerMass>& loaded, double added_mass);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

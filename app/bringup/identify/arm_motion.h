@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What was seen of an arm at one tick, and what its motors were asked for. Frames: B base, T tip.
 struct MotionSample {
@@ -35,4 +35,4 @@ struct ArmMotion {
   std::vector<MotionSample> samples;  ///< One for each tick.
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -13,7 +13,7 @@
 #include "bringup/identify/link_inertia/place_masses.h"
 #include "bringup/identify/not_identified.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 class Rows {
@@ -277,4 +277,4 @@ std::string constants_table(const Identified& identified, const scene::ArmFile& 
   return text;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

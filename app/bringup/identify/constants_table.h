@@ -6,7 +6,7 @@
 
 #include "bringup/identify/identify.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// One constant as people read it.
 struct ConstantRow {
@@ -27,4 +27,4 @@ std::string fit_text(const Identified& identified);
 /// identified.
 std::string constants_table(const Identified& identified, const scene::ArmFile& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

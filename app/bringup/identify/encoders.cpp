@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr int kSeenLeast = 3;  // differences of one size: fewer are taken for misread counts
@@ -78,4 +78,4 @@ EncoderRest encoders_at_rest(BenchArm& bench, double seconds, const std::atomic<
   return noise_at_rest(counts);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -10,7 +10,7 @@
 #include "bringup/estimate.h"
 #include "bringup/identify/arm_motion.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What the reports of a moving arm say of one encoder's step.
 struct EncoderStep {
@@ -50,4 +50,4 @@ EncoderRest noise_at_rest(const std::vector<std::array<std::int32_t, 3>>& counts
 /// the servo thread.
 EncoderRest encoders_at_rest(BenchArm& bench, double seconds, const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

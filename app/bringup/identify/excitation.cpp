@@ -7,7 +7,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr double kAmplitude = 0.11;             // of each sine, of what is allowed
@@ -47,4 +47,4 @@ Eigen::Vector3d Excitation::force(double time, double dt, const Eigen::Vector3d&
   return f * (most / length);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

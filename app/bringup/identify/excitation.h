@@ -7,7 +7,7 @@
 #include "bringup/hold_place.h"
 #include "bringup/identify/line_forces.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// A force that moves a free arm in all directions at once, so that mass, friction and gains show
 /// in its motion: sines of many frequencies per axis, and a weak spring and damper that keep the
@@ -48,4 +48,4 @@ class Excitation {
   std::array<std::array<double, kSines>, 3> phase_{};
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/identify/weak_form/clustered_fit.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // Information by which a difference must be better before it is believed, and its share of the
@@ -65,4 +65,4 @@ FrictionDirections friction_directions(const FittedMotion& motion, const Estimat
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

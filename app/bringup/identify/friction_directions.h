@@ -5,7 +5,7 @@
 
 #include "bringup/identify/weak_form/fitted_motion.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Coulomb friction along each axis of the base, and in its two directions.
 ///
@@ -30,4 +30,4 @@ struct FrictionDirections {
 /// thread.
 FrictionDirections friction_directions(const FittedMotion& motion, const Estimate& mass);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -15,7 +15,7 @@
 #include "bringup/identify/rubbing_joints.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // What the smoothing of velocities' signs and torques that are held for a tick cost beyond the
@@ -542,4 +542,4 @@ driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile&
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -22,7 +22,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// The most that identifying asks an arm for unless the user says another, N.
 inline constexpr double kIdentifyForceMax = 1.0;
@@ -127,4 +127,4 @@ driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOpti
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/identify/identify.h"
 #include "gravity_terms.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // A right arm leaves 1 to 4 times what its encoders' steps do, or below 1 % of its acceleration
@@ -94,4 +94,4 @@ driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOpti
   return {};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion,
                                                          const Identified& found) {
@@ -39,4 +39,4 @@ std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& mot
   return points;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/identify/identify.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Friction of one joint over one piece of motion of 60 ms.
 struct FrictionPoint {
@@ -20,4 +20,4 @@ struct FrictionPoint {
 std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& motion,
                                                          const Identified& found);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // N; inertia takes motion away as the square of the frequency, so the force's power grows with it.
@@ -43,4 +43,4 @@ Eigen::Vector3d LineForces::force(double time) const noexcept {
   return f;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Small forces at many single frequencies, each along one axis, that show where an arm's cables
 /// and links resonate: an odd random-phase multisine [M Pintelon and Schoukens, System
@@ -30,4 +30,4 @@ class LineForces {
   std::array<std::array<double, kLines>, 3> phase_{};
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

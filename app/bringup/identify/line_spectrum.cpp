@@ -8,7 +8,7 @@
 #include "bringup/identify/line_forces.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Series = std::vector<double>;
@@ -86,4 +86,4 @@ LineSpectrum line_spectrum(const ArmMotion& motion) {
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

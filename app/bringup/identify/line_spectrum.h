@@ -7,7 +7,7 @@
 #include "bringup/identify/arm_motion.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What one frequency of a motion shows, or of what is beside it: how far torques and joints
 /// oscillate there, joint by joint.
@@ -37,4 +37,4 @@ inline std::complex<double> turn_by(double angle) {
 /// Empty if the motion is shorter than a period. Real-time: never from the servo thread.
 LineSpectrum line_spectrum(const ArmMotion& motion);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -9,7 +9,7 @@
 #include "bringup/identify/weak_form/fit_residual.h"
 #include "bringup/identify/weak_form/motion_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Row = MotionEquations::Row;
@@ -116,4 +116,4 @@ driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
   return Fit(motion, with_stiffness, with_inertia).run();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "bringup/identify/arm_motion.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Constants of a motion, per moved mass: what motion alone can tell.
 ///
@@ -47,4 +47,4 @@ struct PerMass {
 driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
                                    bool with_inertia = false);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

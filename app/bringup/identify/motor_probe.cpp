@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr double kWeakest = 0.05;  // N, of the first push
@@ -215,4 +215,4 @@ driver::Result<Eigen::Vector3d> probe_motors(
   return shares;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "bringup/bench_arm.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Pushes each joint to and fro for an instant, before any force follows the motion: one whose
 /// motor is turned round would drive the tip away. A push begins weak and doubles until the joint
@@ -22,4 +22,4 @@ driver::Result<Eigen::Vector3d> probe_motors(
     BenchArm& bench, const scene::ArmFile& file, double force_most,
     const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

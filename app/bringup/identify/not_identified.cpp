@@ -7,7 +7,7 @@
 
 #include "bringup/identify/line_forces.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Sentences = std::vector<std::string>;
@@ -350,4 +350,4 @@ std::vector<std::string> not_identified(const Identified& identified) {
   return all;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -12,7 +12,7 @@
 #include "gravity_terms.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr double kTick = 1e-3;       // s, of BenchArm
@@ -295,4 +295,4 @@ driver::Result<std::vector<ArmMotion>> record_places(BenchArm& bench, const scen
   return motions;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

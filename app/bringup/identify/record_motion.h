@@ -8,7 +8,7 @@
 #include "bringup/identify/arm_motion.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What motion is asked for.
 struct MotionOrder {
@@ -47,4 +47,4 @@ driver::Result<std::vector<ArmMotion>> record_places(BenchArm& bench, const scen
                                                      const std::vector<Eigen::Vector3d>& places_W,
                                                      const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

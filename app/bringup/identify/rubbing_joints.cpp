@@ -11,7 +11,7 @@
 #include "bringup/identify/weak_form/clustered_fit.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // Information by which a friction must be better before it is believed, and share of the residual's
@@ -312,4 +312,4 @@ RubbingJoints rubbing_left(const FittedMotion& motion) {
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

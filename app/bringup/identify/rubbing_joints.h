@@ -9,7 +9,7 @@
 #include "bringup/identify/weak_form/fitted_motion.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Friction of the joints of a rigid arm, which turns its sign with them rather than with the axes
 /// of the base (device_sim::DriveTrainSettings). Torques by the arm file's constants.
@@ -48,4 +48,4 @@ ArmMotion freed_of_rubbing(const ArmMotion& motion, const RubbingJoints& rubbing
 /// by the arm file's constants. Real-time: never from the servo thread.
 RubbingJoints rubbing_left(const FittedMotion& motion);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "bringup/identify/weak_form/clustered_fit.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // Information by which it must be better before it is believed, and how much of the torque beyond
@@ -144,4 +144,4 @@ std::array<Saturation, 3> saturations(const FittedMotion& motion) {
   return all;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 
 #include "bringup/identify/weak_form/fitted_motion.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Whether a motor gives all of the torque that it is asked for.
 struct Saturation {
@@ -19,4 +19,4 @@ struct Saturation {
 /// moves nothing. Real-time: never from the servo thread.
 std::array<Saturation, 3> saturations(const FittedMotion& motion);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -3,7 +3,7 @@
 #include "bringup/identify/arm_constants.h"
 #include "gravity_terms.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& file,
                                                           double added_mass, bool hold_it,
@@ -19,4 +19,4 @@ driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& 
   return BenchArm::open(bench, {}, {}, {{0, middle}}, force_most);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -5,7 +5,7 @@
 #include "bringup/bench_arm.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Opens the simulated arm of a file as one that is to be identified: its tip in the middle of the
 /// workspace, nobody's hand on it, and a mass fixed to it (kg, 0: none) that gravity pulls on. An
@@ -15,4 +15,4 @@ driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& 
                                                           double added_mass, bool hold_it = false,
                                                           double force_most = 1);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// A smooth bump (1 - x^2)^4 over |x| < 1 with its derivatives by time (1/s, 1/s^2), at `half`
 /// ticks of `dt` (s) to either side of its middle.
@@ -53,4 +53,4 @@ struct TurnSmoothing {
   }
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
                         const std::string& about, const std::string& part) {
@@ -19,4 +19,4 @@ void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -2,7 +2,7 @@
 // THIMBLE_COMMISSIONING.
 #include "cli/commands.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void add_feel_check_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "feel-check", "Check an arm by hand", "THIMBLE_COMMISSIONING");
@@ -26,4 +26,4 @@ void add_hil_command(CLI::App& app, int& exit_code) {
                      "THIMBLE_COMMISSIONING");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -1,7 +1,7 @@
 // In place of the commands that measure, in a program without THIMBLE_STUDIES.
 #include "cli/commands.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void add_study_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "study", "Measure and draw accuracy, cost and stability",
@@ -21,4 +21,4 @@ void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code) {
                      "Write a page file of any number of triangles", "THIMBLE_STUDIES");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

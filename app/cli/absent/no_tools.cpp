@@ -1,7 +1,7 @@
 // In place of the commands that app/demo.sh does without.
 #include "cli/commands.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void add_calibrate_command(CLI::App& app, int& exit_code) {
   add_absent_command(app, exit_code, "calibrate",
@@ -33,4 +33,4 @@ void add_help_command(CLI::App& app, int& exit_code) {
                      "List the keys of scene and arm files, with units and limits");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

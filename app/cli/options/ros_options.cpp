@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace thimble::app {
+namespace thimble::cli {
 
 void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
   const std::string how = time == RosTime::kRealOrStepped
@@ -61,10 +61,10 @@ void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
 
 driver::Result<void> check_ros_arguments(RosArguments& arguments) {
   if (!arguments.asked) return {};
-  auto options = faces::ros_options(arguments.words);
+  auto options = ros2::ros_options(arguments.words);
   if (!options) return options.error();
   arguments.options = std::move(options).value();
   return {};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -5,13 +5,13 @@
 #include "ros2/ros_words.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// What the arguments --ros2... of a command say.
 struct RosArguments {
   bool asked = false;
-  faces::RosWords words;
-  faces::RosOptions options;  ///< What they mean; see check_ros_arguments.
+  ros2::RosWords words;
+  ros2::RosOptions options;  ///< What they mean; see check_ros_arguments.
 };
 
 /// Which time the topics of a command may have.
@@ -23,4 +23,4 @@ void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time);
 /// Reads the words among the arguments into their options; fails if they do not go together.
 driver::Result<void> check_ros_arguments(RosArguments& arguments);
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

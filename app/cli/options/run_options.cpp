@@ -13,7 +13,7 @@
 #include "share/shared_layout.h"
 #include "share/viewer_process.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 driver::Result<void> check_run_options(RunOptions& options) {
   if (options.budget && options.quality != "auto") {
@@ -42,7 +42,7 @@ driver::Result<void> check_run_options(RunOptions& options) {
   }
   options.ros.options.lead_hand = options.by_topic();
   if (options.ros.asked) {
-    if (auto there = faces::check_ros_module(); !there) return there;
+    if (auto there = ros2::check_ros_module(); !there) return there;
   }
   const bool felt = options.sound || options.rumble;
   if (felt && !options.view && !options.by_viewer()) {
@@ -267,4 +267,4 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--seed", options.seed, "Seed of everything random; the scene's if absent");
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -12,7 +12,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// What `thimble run` is asked for.
 struct RunOptions {
@@ -79,4 +79,4 @@ session::ViewerChoice viewer_choice(const RunOptions& options);
 /// Returns what `thimble view` is told besides the run's name.
 std::vector<std::string> viewer_arguments(const RunOptions& options);
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -5,7 +5,7 @@
 
 #include "signals.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 constexpr int kLook_ms = 20;  // [chosen: shorter than anybody notices]
@@ -47,4 +47,4 @@ void KeyStop::listen() {
   }
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <thread>
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Stops the program by any key while it exists, as Ctrl-C does: for motion that a person watches.
 /// It listens only to a terminal in whose foreground the program is. Keys are then not shown and
@@ -34,4 +34,4 @@ class KeyStop {
 /// Returns whether standard input is a terminal in whose foreground this program is.
 bool has_terminal();
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -7,7 +7,7 @@
 
 #include "log/printed_text.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 bool says_yes(const std::string& question, const std::atomic<bool>& stop) {
   scene::print_format("%s [y/N] ", question.c_str());
@@ -23,4 +23,4 @@ bool says_yes(const std::string& question, const std::atomic<bool>& stop) {
   return false;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

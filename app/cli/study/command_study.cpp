@@ -8,10 +8,10 @@
 #include "output/output_plan.h"
 #include "studies/study.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
-int run_study(const Study& study, const std::filesystem::path& folder) {
+int run_study(const studies::Study& study, const std::filesystem::path& folder) {
   output::OutputPlan plan;
   plan.write_folder("--out", folder, {"figures.json"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
@@ -26,7 +26,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
   CLI::App* group =
       app.add_subcommand("study", "Measure, draw and tell in figures; each study says what");
   group->require_subcommand(1);
-  for (const Study& study : studies()) {
+  for (const studies::Study& study : studies::studies()) {
     CLI::App* command = group->add_subcommand(std::string(study.name), std::string(study.about));
     auto folder = std::make_shared<std::string>("study-" + std::string(study.name));
     command->add_option("--out", *folder, "Folder for pictures, tables and figures.json")
@@ -39,4 +39,4 @@ void add_study_command(CLI::App& app, int& exit_code) {
   add_trouble_study(*group, exit_code);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -19,7 +19,7 @@
 #include "studies/accuracy/study_accuracy.h"
 #include "studies/run_pages.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 struct AccuracyOptions {
@@ -36,7 +36,7 @@ int run_accuracy(const AccuracyOptions& options) {
     plan.write("--table", options.table, output::kQualityTable);
     if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
     const auto written =
-        output::write_file(options.table, output::kQualityTable, quality_table_text());
+        output::write_file(options.table, output::kQualityTable, studies::quality_table_text());
     if (!written) return complain(written.error(), kExitTrouble);
     scene::print_format("Points for --quality auto: %s\n", options.table.c_str());
     return kExitDone;
@@ -46,11 +46,11 @@ int run_accuracy(const AccuracyOptions& options) {
   plan.write_folder("--out", folder, {"figures.json", "index.html"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  const auto report = study_accuracy({.axes = options.axes,
-                                      .count = !options.no_count,
-                                      .resume = options.resume,
-                                      .folder = folder},
-                                     stop);
+  const auto report = studies::study_accuracy({.axes = options.axes,
+                                               .count = !options.no_count,
+                                               .resume = options.resume,
+                                               .folder = folder},
+                                              stop);
   if (!report) return complain(report.error(), kExitBadInput);
   if (report->stopped) {
     scene::print_format("Stopped early; the same command with --resume continues.\n");
@@ -66,15 +66,17 @@ struct GatingOptions {
 };
 
 /// Writes pages of the two runs that are compared.
-driver::Result<void> write_gating_runs(const std::string& scene, const GatingReport& report,
+driver::Result<void> write_gating_runs(const std::string& scene,
+                                       const studies::GatingReport& report,
                                        const std::filesystem::path& folder) {
-  RunPages pages(folder, "Which effects of the arm the scene could do without",
-                 "The decisions are in gating.txt; these are the runs that were compared.");
+  studies::RunPages pages(
+      folder, "Which effects of the arm the scene could do without",
+      "The decisions are in gating.txt; these are the runs that were compared.");
   if (auto added = pages.add(scene, "full", "with all effects of the arm"); !added) return added;
   session::SessionOptions reduced;
   reduced.adjust = [&report](scene::Scene& changed) {
-    for (const GateDecision& one : report.decisions) {
-      if (one.left_out) leave_out(one.name, changed);
+    for (const studies::GateDecision& one : report.decisions) {
+      if (one.left_out) studies::leave_out(one.name, changed);
     }
   };
   if (auto added = pages.add(scene, "reduced", "without those it could do without", reduced);
@@ -90,13 +92,14 @@ int run_gating(const GatingOptions& options) {
   plan.read(options.scene);
   plan.write_folder("--out", folder, {"figures.json", "gating.txt", "index.html"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto report = decide_gating(options.scene, !options.no_count);
+  const auto report = studies::decide_gating(options.scene, !options.no_count);
   if (!report) return complain(report.error(), kExitBadInput);
-  const std::string text = gating_text(*report);
+  const std::string text = studies::gating_text(*report);
   scene::print_format("%s", text.c_str());
-  for (const auto& written : {write_figures(figures_of(*report), folder / "figures.json"),
-                              write_text(text, folder / "gating.txt"),
-                              write_gating_runs(options.scene, *report, folder)}) {
+  for (const auto& written :
+       {report::write_figures(studies::figures_of(*report), folder / "figures.json"),
+        report::write_text(text, folder / "gating.txt"),
+        write_gating_runs(options.scene, *report, folder)}) {
     if (!written) return complain(written.error(), kExitTrouble);
   }
   scene::print_format("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
@@ -136,4 +139,4 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

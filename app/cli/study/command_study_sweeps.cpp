@@ -13,7 +13,7 @@
 #include "studies/fuzz_scenes/study_trouble.h"
 #include "studies/stability/study_stability.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// What every study by a sweep asks for.
@@ -38,19 +38,19 @@ struct SweepChoice {
 template <class Run>
 int run_by_sweep(const SweepChoice& choice, const Run& run) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  const auto team = SweepTeam::join();
+  const auto team = studies::SweepTeam::join();
   if (!team) return complain(team.error(), kExitBadInput);
   const bool leads = *team == nullptr || (*team)->rank() == 0;
   output::OutputPlan plan;
   if (leads) plan.write_folder("--out", choice.out, {"figures.json"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
   const auto report = run(
-      SweepOptions{
+      studies::SweepOptions{
           .folder = choice.out, .jobs = choice.jobs, .resume = choice.resume, .team = team->get()},
       stop);
   if (!report) return complain(report.error(), kExitBadInput);
-  if (report->end == SweepEnd::kHelped) return kExitDone;
-  if (report->end == SweepEnd::kStopped) {
+  if (report->end == studies::SweepEnd::kHelped) return kExitDone;
+  if (report->end == studies::SweepEnd::kStopped) {
     scene::print_format("Stopped early; the same command with --resume continues.\n");
     return kExitInterrupted;
   }
@@ -63,7 +63,7 @@ void add_stability_study(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand(
       "stability", "where walls are stable on an arm: the laws, and the simulated loop");
   auto choice = std::make_shared<SweepChoice>();
-  auto options = std::make_shared<StabilityOptions>();
+  auto options = std::make_shared<studies::StabilityOptions>();
   choice->out = "study-stability";
   choice->add_options(*command);
   add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
@@ -81,9 +81,9 @@ void add_stability_study(CLI::App& study_command, int& exit_code) {
       ->expected(3);
   command->add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
   command->callback([choice, options, &exit_code] {
-    exit_code =
-        run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
-          return study_stability(*options, sweep, stop);
+    exit_code = run_by_sweep(
+        *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {
+          return studies::study_stability(*options, sweep, stop);
         });
   });
 }
@@ -92,7 +92,7 @@ void add_trouble_study(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand(
       "trouble", "random scenes and hands by the thousand: nothing may go wrong in any");
   auto choice = std::make_shared<SweepChoice>();
-  auto options = std::make_shared<TroubleOptions>();
+  auto options = std::make_shared<studies::TroubleOptions>();
   choice->out = "study-trouble";
   choice->add_options(*command);
   add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
@@ -101,11 +101,11 @@ void add_trouble_study(CLI::App& study_command, int& exit_code) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of all scenes")->capture_default_str();
   command->callback([choice, options, &exit_code] {
-    exit_code =
-        run_by_sweep(*choice, [&](const SweepOptions& sweep, const std::atomic<bool>& stop) {
-          return study_trouble(*options, sweep, stop);
+    exit_code = run_by_sweep(
+        *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {
+          return studies::study_trouble(*options, sweep, stop);
         });
   });
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

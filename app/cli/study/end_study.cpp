@@ -5,19 +5,19 @@
 #include "cli/complain.h"
 #include "log/printed_text.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
-ExitCode end_study(const std::vector<Figure>& figures, const std::filesystem::path& folder,
+ExitCode end_study(const std::vector<session::Figure>& figures, const std::filesystem::path& folder,
                    const std::string& where_to_look) {
-  if (const auto written = write_figures(figures, folder / "figures.json"); !written) {
+  if (const auto written = report::write_figures(figures, folder / "figures.json"); !written) {
     return complain(written.error(), kExitTrouble);
   }
-  scene::print_format("%s\nWritten to %s%s.\n", figure_table(figures).c_str(), folder.c_str(),
-                      where_to_look.c_str());
-  const std::string unmet = unmet_line(figures);
+  scene::print_format("%s\nWritten to %s%s.\n", report::figure_table(figures).c_str(),
+                      folder.c_str(), where_to_look.c_str());
+  const std::string unmet = report::unmet_line(figures);
   if (unmet.empty()) return kExitDone;
   scene::print_format("%s\n", unmet.c_str());
   return kExitUnmet;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

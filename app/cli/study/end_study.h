@@ -7,13 +7,13 @@
 #include "cli/exit_code.h"
 #include "report/figure_output.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Writes a study's figures to figures.json in its folder, prints them as a table, where they are
 /// and `where_to_look` in it, and in the last line what misses its goal. Returns the exit code:
 /// that of unmet figures, or of a file that could not be written. Real-time: never from the servo
 /// thread.
-ExitCode end_study(const std::vector<Figure>& figures, const std::filesystem::path& folder,
+ExitCode end_study(const std::vector<session::Figure>& figures, const std::filesystem::path& folder,
                    const std::string& where_to_look = {});
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -12,7 +12,7 @@
 
 #include "text/nearest_word.h"
 
-namespace thimble::app {
+namespace thimble::cli {
 namespace {
 
 /// Returns how a command is called: "thimble study friction".
@@ -403,4 +403,4 @@ void check_texts(CLI::App& program) {
   }
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::cli {
 
 /// Returns what is wrong with a command line that the argument library refused, in the program's
 /// words: the unknown or wrong word, what was expected, the known word that is nearest to it, and
@@ -32,4 +32,4 @@ void check_numbers(CLI::App& program);
 /// were added.
 void check_texts(CLI::App& program);
 
-}  // namespace thimble::app
+}  // namespace thimble::cli

@@ -17,7 +17,7 @@
 #include "compat/core/open_channel.h"
 #include "compat/core/shared_wait.h"
 
-namespace thimble::faces::arms {
+namespace thimble::compat::arms {
 namespace {
 
 constexpr std::int64_t kLook_ns = 100'000'000;  // how often a waiter looks after the other side
@@ -408,4 +408,4 @@ void wrong_call(const char* function, const char* what) noexcept {
   channel->wrong_calls_used.store(used + 1);
 }
 
-}  // namespace thimble::faces::arms
+}  // namespace thimble::compat::arms

@@ -5,7 +5,7 @@
 
 #include "compat/core/arm_data.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// The arms of `thimble exec`, as the libraries that stand in for others' reach them: the only way
 /// from a face to an arm. The servo loop, the gate and the arm are in the process of `thimble
@@ -84,4 +84,4 @@ bool is_calibrated(int arm) noexcept;
 void wrong_call(const char* function, const char* what) noexcept;
 
 }  // namespace arms
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -9,7 +9,7 @@
 #include "compat/core/arm_data.h"
 #include "thimble/driver/snapshot.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 // The memory that `thimble exec` and the program that it started share. It begins as zeros. What
 // one side writes the other only reads, but for counters; all that changes while an arm is open is
@@ -87,4 +87,4 @@ struct Channel {
   std::atomic<std::uint64_t> grippers_asked{0};  ///< The same with a force of the gripper.
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -6,7 +6,7 @@
 #include "thimble/driver/fault.h"
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 // What goes between a program that was written for another arm and `thimble exec`, as plain data.
 // SI units. World: x to the user, y to the user's right, z up. Frames: W world, T tip.
@@ -82,4 +82,4 @@ struct ForceAsked {
   double gripper = 0;                ///< N; the same.
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -13,7 +13,7 @@
 
 #include "compat/core/channel_layout.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 struct Opened {
@@ -111,4 +111,4 @@ void use_channel(Channel* channel, const std::string& path) {
   only.trouble = channel == nullptr ? "No channel is there." : "";
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -4,7 +4,7 @@
 
 #include "compat/core/arm_channel.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// Returns the channel that THIMBLE_EXEC names, mapped at the first call; null where there is none.
 /// `trouble`, if given, says why. Never from the servo thread.
@@ -18,4 +18,4 @@ int channel_file();
 /// that are served inside `thimble exec`, and for tests; while no arm is open.
 void use_channel(Channel* channel, const std::string& path = {});
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <ctime>
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 // Waiting for a word of memory that processes share: std::atomic::wait sees one process alone.
 
@@ -29,4 +29,4 @@ void wake_all(const std::atomic<Word>& word) noexcept {
   syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -6,8 +6,8 @@
 #include "compat/dhd/open_arms.h"
 #include "drdc.h"
 
-using namespace thimble::faces;
-using namespace thimble::faces::dhd;
+using namespace thimble::compat;
+using namespace thimble::compat::dhd;
 
 namespace {
 
@@ -223,8 +223,8 @@ int dhdSetMot(unsigned short*, unsigned char, char id) {
 
 }  // extern "C"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 bool expert_mode() noexcept {
   return expert;
 }
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

@@ -46,7 +46,7 @@ bool key_waits(int timeout_ms) noexcept {
 extern "C" {
 
 double dhdGetTime(void) {
-  return 1e-9 * static_cast<double>(thimble::faces::arms::now_ns());
+  return 1e-9 * static_cast<double>(thimble::compat::arms::now_ns());
 }
 double drdGetTime(void) {
   return dhdGetTime();
@@ -55,7 +55,7 @@ double drdGetTime(void) {
 void dhdSleep(double seconds) {
   if (!(seconds > 0)) return;
   constexpr double kLongest = 1e8;  // three years
-  thimble::faces::arms::sleep_ns(std::llround(1e9 * std::fmin(seconds, kLongest)));
+  thimble::compat::arms::sleep_ns(std::llround(1e9 * std::fmin(seconds, kLongest)));
 }
 void drdSleep(double seconds) {
   dhdSleep(seconds);
@@ -77,7 +77,7 @@ char dhdKbGet(void) {
 }
 
 int dhdStartThread(void* function(void*), void* argument, int) {
-  using thimble::faces::dhd::fail;
+  using thimble::compat::dhd::fail;
   if (!function) return fail("dhdStartThread", DHD_ERROR_NULL_ARGUMENT, "null pointer");
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);

@@ -4,14 +4,16 @@
 #include "compat/dhd/last_error.h"
 #include "drdc.h"
 
-#define THIMBLE_NOT_ANSWERED(name)                                                                 \
-  int name() {                                                                                     \
-    return thimble::faces::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, "not answered by Thimble"); \
+#define THIMBLE_NOT_ANSWERED(name)                                      \
+  int name() {                                                          \
+    return thimble::compat::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, \
+                                      "not answered by Thimble");       \
   }
 // The same where the answer is a real number.
-#define THIMBLE_NO_NUMBER(name)                                                                    \
-  double name() {                                                                                  \
-    return thimble::faces::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, "not answered by Thimble"); \
+#define THIMBLE_NO_NUMBER(name)                                         \
+  double name() {                                                       \
+    return thimble::compat::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, \
+                                      "not answered by Thimble");       \
   }
 
 extern "C" {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 
 /// Returns the angles a, b, c (rad) of a rotation R = Rx(a) Ry(b) Rz(c), b between -pi/2 and pi/2.
 /// Where b is a right angle, c is 0. Real-time: safe.
@@ -15,4 +15,4 @@ inline Eigen::Vector3d euler_angles(const Eigen::Matrix3d& R) noexcept {
   return {std::atan2(-R(1, 2), R(2, 2)), std::asin(sine), std::atan2(-R(0, 1), R(0, 0))};
 }
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

@@ -9,7 +9,7 @@
 #include "compat/dhd/open_arms.h"
 #include "drdc.h"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 namespace {
 
 constexpr double kVibrationMost = 500;  // Hz: half the ticks of a loop of 1 kHz
@@ -62,10 +62,10 @@ int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
   return f_W.norm() > most ? DHD_MOTOR_SATURATED : 0;
 }
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd
 
-using namespace thimble::faces;
-using namespace thimble::faces::dhd;
+using namespace thimble::compat;
+using namespace thimble::compat::dhd;
 
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 
 struct OpenArm;
 
@@ -13,4 +13,4 @@ struct OpenArm;
 int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
                const Eigen::Vector3d& torque_U, double gripper) noexcept;
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

@@ -5,7 +5,7 @@
 #include "compat/core/arm_access.h"
 #include "drdc.h"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 namespace {
 
 thread_local int last = DHD_NO_ERROR;
@@ -48,14 +48,14 @@ int last_error() noexcept {
   return last;
 }
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd
 
-using thimble::faces::dhd::kTexts;
+using thimble::compat::dhd::kTexts;
 
 extern "C" {
 
 int dhdErrorGetLast(void) {
-  return thimble::faces::dhd::last_error();
+  return thimble::compat::dhd::last_error();
 }
 
 const char* dhdErrorGetLastStr(void) {

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 
 /// Notes that a call was wrong: the error number for `dhdErrorGetLast` of this thread, and a line
 /// for the report of `thimble exec`. Returns -1, what such a call answers.
@@ -9,4 +9,4 @@ int fail(const char* function, int error, const char* what) noexcept;
 /// Returns the error number of the last wrong call of this thread; DHD_NO_ERROR if there was none.
 int last_error() noexcept;
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

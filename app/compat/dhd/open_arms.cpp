@@ -6,7 +6,7 @@
 #include "compat/dhd/last_error.h"
 #include "drdc.h"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 namespace {
 
 struct Table {
@@ -145,4 +145,4 @@ void switch_off(OpenArm& arm, ForceOffCause cause) noexcept {
   arms::enable_force(arm.number, false);
 }
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

@@ -10,7 +10,7 @@
 #include "compat/core/arm_access.h"
 #include "compat/dhd/regulator.h"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 
 /// Who said what about the force of an arm.
 enum class ForceSwitch : std::uint8_t {
@@ -88,4 +88,4 @@ bool switch_on_if_untold(OpenArm& arm) noexcept;
 /// Switches the force of an arm off for this cause.
 void switch_off(OpenArm& arm, ForceOffCause cause) noexcept;
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

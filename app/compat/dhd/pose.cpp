@@ -6,8 +6,8 @@
 #include "compat/dhd/open_arms.h"
 #include "drdc.h"
 
-using namespace thimble::faces;
-using namespace thimble::faces::dhd;
+using namespace thimble::compat;
+using namespace thimble::compat::dhd;
 
 namespace {
 

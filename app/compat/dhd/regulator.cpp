@@ -5,7 +5,7 @@
 
 #include "compat/core/arm_access.h"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 namespace {
 
 // A tracked point counts as reached within this, m, and at less than this speed, m/s [chosen].
@@ -167,4 +167,4 @@ void Regulator::run(int arm) noexcept {
   running_ = false;
 }
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

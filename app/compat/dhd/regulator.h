@@ -9,7 +9,7 @@
 #include "compat/core/arm_data.h"
 #include "compat/dhd/straight_path.h"
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 
 /// Holds the tip of an arm at a point by a spring and a damper, and moves that point: the thread of
 /// the functions drd..., which asks for its force as every program does. World frame, SI units.
@@ -84,4 +84,4 @@ class Regulator {
   ForceAsked free_;
 };
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

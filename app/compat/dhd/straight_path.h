@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::faces::dhd {
+namespace thimble::compat::dhd {
 
 /// Bounds of a motion along a path: m/s^2, m/s, m/s^3.
 struct PathBounds {
@@ -46,4 +46,4 @@ class StraightPath {
   double duration_ = 0;
 };
 
-}  // namespace thimble::faces::dhd
+}  // namespace thimble::compat::dhd

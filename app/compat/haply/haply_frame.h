@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 
 // The frame in which an Inverse3's service tells and takes vectors (B: x right, y away from the
 // user, z up [S docs.haply.co/inverseSDK]), placed in our world as app/arms/inverse3.yaml places
@@ -30,4 +30,4 @@ inline Eigen::Vector3d vector_of(const std::array<double, 3>& v) {
   return Eigen::Map<const Eigen::Vector3d>(v.data());
 }
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

@@ -23,7 +23,7 @@
 #include "thimble/version.h"
 #include "transports/socket_owner.h"
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 namespace {
 
 namespace asio = boost::asio;
@@ -287,4 +287,4 @@ bool Service::ended() const noexcept {
   return listener_->ended();
 }
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

@@ -7,7 +7,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 
 /// Begins the Server line of the stand-in's answer to a program that connects: a driver that looks
 /// for an arm takes it for none.
@@ -61,4 +61,4 @@ class Service {
   std::unique_ptr<Listener> listener_;
 };
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

@@ -3,7 +3,7 @@
 #include "compat/core/arm_access.h"
 #include "compat/haply/haply_frame.h"
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 
 void ServedArms::open() {
   for (int number = 0; number < arms::count(); ++number) {
@@ -108,4 +108,4 @@ std::string ServedArms::message(int session, bool full) {
   return state_message(told, session, full);
 }
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

@@ -13,7 +13,7 @@
 #include "compat/core/arm_data.h"
 #include "compat/haply/service_message.h"
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 
 /// The arms of `thimble exec` as an Inverse3's service shows them to several programs at once: each
 /// is a session, and an arm gets the sum of what its sessions ask for, as the service adds them up
@@ -55,4 +55,4 @@ class ServedArms {
   std::array<Arm, kArmsMost> arms_;
 };
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

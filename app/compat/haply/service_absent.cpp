@@ -4,7 +4,7 @@
 
 // In place of the other sources of this folder in a build without Boost.Beast or nlohmann's JSON.
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 
 class Service::Listener {};
 
@@ -34,4 +34,4 @@ bool Service::ended() const noexcept {
   return true;
 }
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

@@ -12,7 +12,7 @@
 #include "compat/haply/haply_frame.h"
 #include "thimble/version.h"
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 namespace {
 
 using nlohmann::json;
@@ -196,4 +196,4 @@ std::string state_message(std::span<const ToldArm> arms, int session, bool full)
   return message.dump();
 }
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

@@ -9,7 +9,7 @@
 
 #include "compat/core/arm_data.h"
 
-namespace thimble::faces::haply {
+namespace thimble::compat::haply {
 
 // The JSON messages of an Inverse3's service, from the service's side, as its published pages [S
 // docs.haply.co/inverseSDK: WebSocket protocol, simulation channel] and open clients have them.
@@ -57,4 +57,4 @@ std::string device_id_of(int arm);
 /// grip.
 std::string state_message(std::span<const ToldArm> arms, int session, bool full);
 
-}  // namespace thimble::faces::haply
+}  // namespace thimble::compat::haply

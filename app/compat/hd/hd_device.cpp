@@ -12,7 +12,7 @@
 #include "compat/hd/hd_errors.h"
 #include "compat/hd/hd_parameters.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 namespace {
 
 thread_local std::optional<HHD> chosen;
@@ -157,10 +157,10 @@ void end_forgotten_frames() noexcept {
   }
 }
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd
 
-using namespace thimble::faces;
-using namespace thimble::faces::hd;
+using namespace thimble::compat;
+using namespace thimble::compat::hd;
 
 extern "C" {
 

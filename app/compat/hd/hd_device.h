@@ -10,7 +10,7 @@
 
 #include "compat/core/arm_data.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 
 /// The state of an arm that a frame shows, and what is asked in it.
 struct Frame {
@@ -71,4 +71,4 @@ bool scheduler_stopped() noexcept;
 /// Ends a frame that this thread left open when its callbacks were over, with HD_FRAME_ERROR.
 void end_forgotten_frames() noexcept;
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd

@@ -6,7 +6,7 @@
 #include "compat/core/arm_access.h"
 #include "compat/hd/hd_device.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 namespace {
 
 constexpr std::size_t kErrorsMost = 64;  // chosen: a program that asks now and then loses none
@@ -35,9 +35,9 @@ void keep_wrong_call(HDerror error, const char* function, const char* what) noex
   keep_error(error, current_device());
 }
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd
 
-using namespace thimble::faces;
+using namespace thimble::compat;
 
 extern "C" {
 

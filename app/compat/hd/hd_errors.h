@@ -2,7 +2,7 @@
 
 #include <HD/hd.h>
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 
 /// Keeps an error for hdGetError; the oldest goes where there are too many.
 void keep_error(HDerror error, HHD device, int internal = 0) noexcept;
@@ -10,4 +10,4 @@ void keep_error(HDerror error, HHD device, int internal = 0) noexcept;
 /// Keeps an error of a wrong call, and counts it for the report of `thimble exec`.
 void keep_wrong_call(HDerror error, const char* function, const char* what) noexcept;
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd

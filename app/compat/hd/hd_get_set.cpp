@@ -9,7 +9,7 @@
 #include "compat/hd/hd_parameters.h"
 #include "thimble/version.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 namespace {
 
 /// Returns a number as another type holds it: rounded, and cut to what it holds.
@@ -113,10 +113,10 @@ void switch_capability(const char* function, HDenum number, bool on) noexcept {
 }
 
 }  // namespace
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd
 
-using namespace thimble::faces;
-using namespace thimble::faces::hd;
+using namespace thimble::compat;
+using namespace thimble::compat::hd;
 
 extern "C" {
 

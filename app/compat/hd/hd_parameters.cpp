@@ -5,7 +5,7 @@
 
 #include "compat/core/arm_access.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 namespace {
 
 constexpr double kMillimetres = 1e3;  // per m
@@ -333,4 +333,4 @@ std::array<double, 16> transform_of(const ArmReading& state) noexcept {
   return transform;
 }
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd

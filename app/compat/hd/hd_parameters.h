@@ -7,7 +7,7 @@
 
 #include "compat/hd/hd_device.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 
 /// The most numbers that one parameter has.
 inline constexpr std::size_t kNumbersMost = 36;
@@ -45,4 +45,4 @@ std::array<double, 3> from_hd(const std::array<double, 3>& v_hd) noexcept;
 /// Returns a reading's transform: 16 numbers, column by column, mm.
 std::array<double, 16> transform_of(const ArmReading& state) noexcept;
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd

@@ -18,7 +18,7 @@
 #include "compat/hd/hd_device.h"
 #include "compat/hd/hd_errors.h"
 
-namespace thimble::faces::hd {
+namespace thimble::compat::hd {
 namespace {
 
 constexpr std::size_t kCallbacksMost = 256;  // chosen: programs have two to five
@@ -179,10 +179,10 @@ bool scheduler_stopped() noexcept {
   return own_stop != nullptr && own_stop->load();
 }
 
-}  // namespace thimble::faces::hd
+}  // namespace thimble::compat::hd
 
-using namespace thimble::faces;
-using namespace thimble::faces::hd;
+using namespace thimble::compat;
+using namespace thimble::compat::hd;
 
 extern "C" {
 

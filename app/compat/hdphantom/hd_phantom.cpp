@@ -11,10 +11,10 @@
 
 namespace {
 
-namespace arms = thimble::faces::arms;
-using thimble::faces::ArmFacts;
-using thimble::faces::ArmReading;
-using thimble::faces::ForceAsked;
+namespace arms = thimble::compat::arms;
+using thimble::compat::ArmFacts;
+using thimble::compat::ArmReading;
+using thimble::compat::ForceAsked;
 
 constexpr int kFailed = -1, kDone = 0, kTrue = 1;
 
@@ -24,8 +24,8 @@ std::mutex& mutex() {
 }
 
 /// What was asked for last: a torque alone keeps the force, and the other way round.
-std::array<ForceAsked, thimble::faces::kArmsMost>& asked() {
-  static auto& all = *new std::array<ForceAsked, thimble::faces::kArmsMost>;
+std::array<ForceAsked, thimble::compat::kArmsMost>& asked() {
+  static auto& all = *new std::array<ForceAsked, thimble::compat::kArmsMost>;
   return all;
 }
 
@@ -152,7 +152,7 @@ int hdPhantomGetType(int id, char* name) {
 void hdPhantomStartServo(void) {}
 
 void hdPhantomStopServo(void) {
-  for (int id = 0; id < thimble::faces::kArmsMost; ++id) {
+  for (int id = 0; id < thimble::compat::kArmsMost; ++id) {
     if (!arms::is_open(id)) continue;
     const std::lock_guard lock(mutex());
     asked()[static_cast<std::size_t>(id)] = {};

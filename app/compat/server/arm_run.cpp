@@ -18,7 +18,7 @@
 #include "terminal.h"
 #include "thimble/driver/fault.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 std::filesystem::path recording_of(const std::filesystem::path& path, std::size_t index,
@@ -141,9 +141,9 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
 
 driver::Result<void> ArmRun::open_topics() {
   if (!options_.topics) return {};
-  RosOptions topics = *options_.topics;
+  ros2::RosOptions topics = *options_.topics;
   if (options_.arms.size() > 1) topics.name_space += fmt::format("/arm{}", index_ + 1);
-  auto opened = RosRun::open(*session_, topics);
+  auto opened = ros2::RosRun::open(*session_, topics);
   if (!opened) return opened.error();
   topics_ = std::move(opened).value();
   return {};
@@ -213,4 +213,4 @@ ArmRun::~ArmRun() {
   end();
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

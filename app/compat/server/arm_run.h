@@ -19,7 +19,7 @@
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// One arm while a program has it: a session of its own, on a thread of its own, with the program's
 /// force in it. Real-time: never from the servo thread, all of it.
@@ -67,7 +67,7 @@ class ArmRun {
   std::unique_ptr<session::ServoThread> servo_;
   std::unique_ptr<ClientForce> client_;
   std::unique_ptr<ReadingPublisher> publisher_;
-  std::unique_ptr<RosRun> topics_;  // null: nobody asked
+  std::unique_ptr<ros2::RosRun> topics_;  // null: nobody asked
   std::optional<session::ReplugWatches> watch_;
   std::optional<session::RunAttendance> attendance_;
   std::atomic<bool> stop_{false};
@@ -76,4 +76,4 @@ class ArmRun {
   bool begun_ = false, over_ = false;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

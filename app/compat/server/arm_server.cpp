@@ -13,7 +13,7 @@
 #include "system/printable_text.h"
 #include "thimble/scene/scene_file.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 /// Returns what is known of an arm before it is opened.
@@ -177,4 +177,4 @@ std::string ArmServer::report() const {
   return s;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -12,7 +12,7 @@
 #include "share/shared_memory.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// What gives a program that was written for another arm ours: it owns the arms' sessions, servo
 /// threads and gates, and does what the libraries that stand in for others' ask for over shared
@@ -73,4 +73,4 @@ class ArmServer {
   bool any_fault_ = false, ended_by_viewer_ = false, over_ = false;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

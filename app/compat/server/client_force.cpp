@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 /// A writer that was stopped in the middle of writing must not hold a tick up.
@@ -90,4 +90,4 @@ Eigen::Vector3d ClientForce::own_part(const driver::DeviceState& state) noexcept
   return own_opened_ < 1 ? Eigen::Vector3d(f_W * own_opened_) : f_W;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -9,7 +9,7 @@
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// The force of a program that was written for another arm, as a force law: what it asked for last
 /// and the scene's force, added up, before the gate. It runs on the servo's thread; the program is
@@ -64,4 +64,4 @@ class ClientForce {
   std::atomic<std::uint64_t> renewals_{0};
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

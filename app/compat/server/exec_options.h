@@ -14,7 +14,7 @@ namespace thimble::session {
 class Session;
 }
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// One arm that a program gets.
 struct ExecArm {
@@ -34,15 +34,15 @@ struct ExecOptions {
   /// Ticks wait for the program: the same result each time, as fast as it goes. Only with simulated
   /// arms, and without a viewer.
   bool paced = false;
-  std::optional<RosOptions> topics = {};  ///< Of ROS 2; not with `paced`.
-  bool view = false;                      ///< Watch the run in a window.
-  bool yes = false;                       ///< Give a real arm forces without asking.
-  bool unchecked = false;                 ///< Its whole force without a passed feel check.
-  bool homed = false;                     ///< It was in its home pose when it got power.
-  bool no_real_time = false;              ///< Without real-time priority.
-  driver::HoldToRun hold = {};            ///< Buttons of the arm to be held for a force.
+  std::optional<ros2::RosOptions> topics = {};  ///< Of ROS 2; not with `paced`.
+  bool view = false;                            ///< Watch the run in a window.
+  bool yes = false;                             ///< Give a real arm forces without asking.
+  bool unchecked = false;                       ///< Its whole force without a passed feel check.
+  bool homed = false;                           ///< It was in its home pose when it got power.
+  bool no_real_time = false;                    ///< Without real-time priority.
+  driver::HoldToRun hold = {};                  ///< Buttons of the arm to be held for a force.
   /// Called with an arm's number and session before its loop begins, for tests.
   std::function<void(std::size_t, session::Session&)> opened = {};
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

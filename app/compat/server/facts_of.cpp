@@ -5,7 +5,7 @@
 
 #include "compat/server/put_text.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 ArmBuild build_of(const scene::ArmFile& arm) {
@@ -42,4 +42,4 @@ void name_real(ArmFacts& facts, const std::string& name) {
   put_text(facts.serial, name);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

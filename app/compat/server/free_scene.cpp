@@ -11,7 +11,7 @@
 
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 driver::Result<std::unique_ptr<FreeScene>> FreeScene::make(const std::string& arm) {
   const auto found = scene::find_arm_file(arm.empty() ? "vintage_phantom" : arm);
@@ -49,4 +49,4 @@ FreeScene::~FreeScene() {
   std::filesystem::remove(file_, status);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

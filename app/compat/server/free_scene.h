@@ -6,7 +6,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// A scene in which there is nothing to touch, as a file that lives as long as this: what a program
 /// gets that draws its own world. Real-time: never from the servo thread.
@@ -27,4 +27,4 @@ class FreeScene {
   std::filesystem::path file_;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 driver::Result<std::filesystem::path> face_folder() {
   std::error_code status;
@@ -16,4 +16,4 @@ driver::Result<std::filesystem::path> face_folder() {
       "the package thimble anew, or build the target thimble_compat_libraries."};
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -4,7 +4,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// Returns the folder of the libraries that stand in for others', found from where this program
 /// lies: installed, or in a build tree. It is on nobody's search path, so that the owner of another
@@ -12,4 +12,4 @@ namespace thimble::faces {
 /// the servo thread.
 driver::Result<std::filesystem::path> face_folder();
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

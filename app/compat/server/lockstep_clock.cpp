@@ -2,7 +2,7 @@
 
 #include "compat/core/shared_wait.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 LockstepClock::LockstepClock(ArmChannel& channel) noexcept : channel_(channel) {
   channel_.permitted.store(channel_.ticks.load() + 1);
@@ -29,4 +29,4 @@ void LockstepClock::release() noexcept {
   wake_all(channel_.permitted);
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

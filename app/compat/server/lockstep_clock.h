@@ -6,7 +6,7 @@
 #include "compat/core/arm_channel.h"
 #include "thimble/driver/clock.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// Virtual time that waits for a program: a tick begins when the program waits for one, so that
 /// every tick has the force that the program asked for after the tick before. The same program does
@@ -31,4 +31,4 @@ class LockstepClock final : public driver::Clock {
   std::atomic<bool> released_{false};
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// Copies a text into room that others read, cut where it is too long; it ends with a 0.
 template <std::size_t N>
@@ -15,4 +15,4 @@ void put_text(std::array<char, N>& to, std::string_view from) noexcept {
   std::memcpy(to.data(), from.data(), std::min(from.size(), N - 1));
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -12,7 +12,7 @@
 #include "hand/bag_hand.h"
 #include "system/regular_file.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::filesystem::path& file) {
   if (bag::is_bag(file)) return scene::read_bag_hand(file, {}, bag::BagAxes::kPlain);
@@ -57,4 +57,4 @@ driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::files
   return stations;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

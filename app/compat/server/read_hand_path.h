@@ -6,7 +6,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/hand_route.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// Reads the path of a simulated hand: a line per station, "t x y z" (s; m in the world: x to the
 /// user, y to the user's right, z up), separated by blanks, commas or semicolons; times grow; what
@@ -14,4 +14,4 @@ namespace thimble::faces {
 /// The error names file and line. Real-time: never from the servo thread.
 driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::filesystem::path& file);
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

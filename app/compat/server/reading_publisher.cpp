@@ -7,7 +7,7 @@
 #include "compat/core/shared_wait.h"
 #include "thimble/driver/orientation.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -91,4 +91,4 @@ void ReadingPublisher::look_at_gate() noexcept {
   counters_ = now;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

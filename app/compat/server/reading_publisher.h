@@ -9,7 +9,7 @@
 #include "thimble/scene/arm_file.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// An observer that shows each tick to a program that was written for another arm, and wakes what
 /// waits for it there.
@@ -38,4 +38,4 @@ class ReadingPublisher final : public session::TickObserver {
   std::int64_t time_ns_ = 0;
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

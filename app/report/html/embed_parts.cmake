@@ -15,11 +15,11 @@ foreach(file ${SCRIPTS})
 endforeach()
 file(WRITE "${OUTPUT}" "#include \"report/html/page_parts.h\"
 
-namespace thimble::app {
+namespace thimble::report {
 
 const std::string_view kPageHtml = ${html};
 const std::string_view kPageStyle = ${style};
 const std::string_view kPageScript = ${script};
 
-}  // namespace thimble::app
+}  // namespace thimble::report
 ")

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 // Joins the vertices in each cell of this width (m).
@@ -60,4 +60,4 @@ render::TriangleMesh light_mesh(const render::TriangleMesh& mesh, std::size_t tr
   }
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

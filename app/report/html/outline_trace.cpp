@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace thimble::app {
+namespace thimble::report {
 
 OutlineTrace::OutlineTrace(std::uint64_t expected_ticks)
     : ticks_(kRowsMost), periods_ns_(kRowsMost) {
@@ -87,4 +87,4 @@ void OutlineTrace::finish() {
   periods_ns_ = std::move(periods_ns);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

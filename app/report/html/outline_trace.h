@@ -10,7 +10,7 @@
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// The ticks of a run that is too long to keep each of them: those in contact, while there is room,
 /// and of each stretch of all ticks those at which force, asked force, depth, period, computing
@@ -65,4 +65,4 @@ class OutlineTrace final : public session::TickObserver {
   bool finished_ = false;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -10,7 +10,7 @@
 #include "report/html/page_parts.h"
 #include "report/html/page_scene.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -129,4 +129,4 @@ driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::p
   return output::write_file(file, output::kWebPage, *text);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

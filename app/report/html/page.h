@@ -18,7 +18,7 @@
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// One arm of a touch that a page plays.
 struct PageArm {
@@ -78,4 +78,4 @@ driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* 
 /// thread.
 driver::Result<void> write_page(const PageTouch& touch, const std::filesystem::path& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

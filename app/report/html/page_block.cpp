@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace thimble::app {
+namespace thimble::report {
 
 static_assert(std::endian::native == std::endian::little, "a page's numbers are little-endian");
 
@@ -76,4 +76,4 @@ std::string html_text(std::string_view text) {
   return safe;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// The numbers of a page: arrays of plain numbers one after the other, little-endian, each at a
 /// multiple of 8 bytes, so that a browser looks at them in place. Real-time: never from the servo
@@ -43,4 +43,4 @@ std::string base64(std::span<const std::uint8_t> bytes);
 /// Writes text so that it may stand in HTML, between tags or in a quoted attribute.
 std::string html_text(std::string_view text);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

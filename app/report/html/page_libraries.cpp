@@ -8,7 +8,7 @@
 
 #include "text_file.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ driver::Result<std::vector<PageLibrary>> read_page_libraries() {
   return libraries;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

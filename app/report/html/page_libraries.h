@@ -5,7 +5,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// A library of other people's that is put into a page.
 struct PageLibrary {
@@ -21,4 +21,4 @@ struct PageLibrary {
 /// The error says what to install. Real-time: never from the servo thread.
 driver::Result<std::vector<PageLibrary>> read_page_libraries();
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -13,7 +13,7 @@
 
 #include "events/event_words.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using session::Activity;
@@ -280,4 +280,4 @@ std::uint64_t MarksAsTheyCome::end() const noexcept {
   return parts_->marks.end();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

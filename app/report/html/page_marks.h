@@ -13,7 +13,7 @@
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// Something that happened in a run, as a page marks it.
 struct PageMark {
@@ -83,4 +83,4 @@ class MarksAsTheyCome {
 std::vector<PageMark> marks_of_ticks(std::span<const driver::TickRecord> ticks,
                                      std::int64_t period_ns);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace thimble::app {
+namespace thimble::report {
 
 // The files of app/report/html/parts, put into the program when it is built (embed_parts.cmake).
 
@@ -10,4 +10,4 @@ extern const std::string_view kPageHtml;    ///< page.html, with @NAMES@ for wha
 extern const std::string_view kPageStyle;   ///< page.css
 extern const std::string_view kPageScript;  ///< All scripts, in the order in which they are needed.
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -8,7 +8,7 @@
 
 #include "report/extremes.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using driver::TickRecord;
@@ -298,4 +298,4 @@ void add_rows(PageBlock& block, const std::string& prefix, const PageTicks& tick
   block.add(prefix + "touching", touching);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -9,7 +9,7 @@
 #include "report/html/page_block.h"
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// Ticks of one arm, and the time from the tick before each of them to it.
 struct PageTicks {
@@ -45,4 +45,4 @@ std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most
 void add_rows(PageBlock& block, const std::string& prefix, const PageTicks& ticks,
               std::span<const std::size_t> kept, std::int64_t begin_ns);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

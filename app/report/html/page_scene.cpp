@@ -13,7 +13,7 @@
 #include "report/html/page_rows.h"
 #include "share/arm_lines.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -257,4 +257,4 @@ Json page_arm(const PageTouch& touch, std::size_t number, PageBlock& block) {
   return json;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

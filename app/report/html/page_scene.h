@@ -8,7 +8,7 @@
 #include "report/html/page.h"
 #include "report/html/page_block.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 // What a page tells of a touch, part by part: each gives its JSON and adds its numbers to `block`
 // under the names that this tells. Real-time: never from the servo thread.
@@ -45,4 +45,4 @@ nlohmann::ordered_json page_figures(std::span<const Figure> figures);
 /// Returns an arm: its ticks, its bars, what happened to it and its figures.
 nlohmann::ordered_json page_arm(const PageTouch& touch, std::size_t arm, PageBlock& block);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

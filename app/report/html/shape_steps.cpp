@@ -1,6 +1,6 @@
 #include "report/html/shape_steps.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 ShapeStep shape_step(const render::TriangleMesh& before, const render::TriangleMesh& after) {
   ShapeStep step;
@@ -49,4 +49,4 @@ nlohmann::ordered_json page_shapes(std::span<const ShapeStep> steps, PageBlock& 
   return {{"steps", times.size()}};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -9,7 +9,7 @@
 #include "report/html/page_block.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// How the mesh of an object that is shaped for good changed from one picture to the next: vertices
 /// and triangles that are other ones from then on, new ones behind all others.
@@ -32,4 +32,4 @@ ShapeStep shape_step(const render::TriangleMesh& before, const render::TriangleM
 /// Real-time: never from the servo thread.
 nlohmann::ordered_json page_shapes(std::span<const ShapeStep> steps, PageBlock& block);
 
-}  // namespace thimble::app
+}  // namespace thimble::report

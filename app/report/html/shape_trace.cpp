@@ -5,7 +5,7 @@
 
 #include "share/shared_edge_split.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 ShapeTrace::ShapeTrace(std::vector<Shaped> shaped)
     : shaped_(std::move(shaped)), frames_(kFramesMost), moves_(kMovesMost) {
@@ -130,4 +130,4 @@ std::vector<ShapeStep> ShapeTrace::steps(std::vector<render::TriangleMesh> first
   return steps;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -12,7 +12,7 @@
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/session/tick_observer.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// How the objects of a run that are shaped for good came to what they were left as, often enough
 /// for a film of it. All memory is there and touched when it is made.
@@ -87,4 +87,4 @@ class ShapeTrace final : public session::TickObserver {
   std::int64_t newest_ns_ = 0;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -13,7 +13,7 @@
 #include "share/describe_scene.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 std::vector<PageShape> shapes_left(const scene::Scene& scene, const scene::SceneObjects& objects) {
@@ -167,4 +167,4 @@ driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
   return write_page(touch, file);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -15,7 +15,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::report {
 
 /// What the page of a run needs beyond what a session keeps: where its objects have moved, and what
 /// happened to its arms, and the outline of a run of which the session keeps every n-th tick only.
@@ -60,4 +60,4 @@ class ReplayPage final : public session::ReplayFilm {
   std::unique_ptr<ShapeTrace> shapes_;  // null if nothing is shaped for good
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::report

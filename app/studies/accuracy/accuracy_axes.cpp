@@ -2,7 +2,7 @@
 
 #include "studies/accuracy/axes/axes.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr std::array kAxes{
@@ -44,4 +44,4 @@ std::span<const AxisMaker> accuracy_axes() {
   return kAxes;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Runs one stroke of work and returns a number made of all that was worked out, so that none of it
 /// can be left out as unused.
@@ -72,4 +72,4 @@ struct AxisMaker {
 /// Returns every axis, in the order of the page. To add one: write its file, add its line there.
 std::span<const AxisMaker> accuracy_axes();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "studies/accuracy/axis_words.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr const char* kHead = R"(<!doctype html>
@@ -43,7 +43,7 @@ that runs the same binary; they decide what is cheaper. Errors are the same bits
 )";
 
 std::string cell(const std::string& text) {
-  return "<td>" + html_text(text) + "</td>";
+  return "<td>" + report::html_text(text) + "</td>";
 }
 
 // Lists the diagrams of one kind, if there are any.
@@ -62,9 +62,10 @@ void add_contents(const std::vector<AxisSection>& sections, bool given, const ch
 void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
   const AccuracyAxis& a = axis.axis;
   page << "<details><summary>Figures</summary><div class=\"scroll\"><table><tr><th>method</th><th>"
-       << html_text(a.knob) << (a.knob_unit.empty() ? "" : ", ") << html_text(a.knob_unit)
-       << "</th><th>" << html_text(a.unit) << "</th><th>ns " << (a.cost_is_added ? "more " : "")
-       << "per " << a.per << "</th><th>&plusmn;</th><th>instructions</th>"
+       << report::html_text(a.knob) << (a.knob_unit.empty() ? "" : ", ")
+       << report::html_text(a.knob_unit) << "</th><th>" << report::html_text(a.unit)
+       << "</th><th>ns " << (a.cost_is_added ? "more " : "") << "per " << a.per
+       << "</th><th>&plusmn;</th><th>instructions</th>"
        << "<th>best bargain</th></tr>\n";
   for (const MeasuredLine& line : axis.lines) {
     for (const MeasuredPoint& point : line.points) {
@@ -91,17 +92,18 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
   for (const AxisSection& section : sections) {
     const MeasuredAxis& axis = *section.axis;
     const AccuracyAxis& a = axis.axis;
-    page << "<h2 id=\"" << a.name << "\">" << html_text(a.title) << "</h2>\n<p class=\"felt\">"
-         << html_text(felt_sentence(axis)) << "</p>\n<div class=\"pictures\">\n";
+    page << "<h2 id=\"" << a.name << "\">" << report::html_text(a.title)
+         << "</h2>\n<p class=\"felt\">" << report::html_text(felt_sentence(axis))
+         << "</p>\n<div class=\"pictures\">\n";
     for (const std::string& name : section.pictures) {
-      page << inline_picture(folder / (name + ".svg"), name + "-") << '\n';
+      page << report::inline_picture(folder / (name + ".svg"), name + "-") << '\n';
     }
-    page << "</div>\n<p>" << html_text(default_sentence(axis)) << "</p>\n";
+    page << "</div>\n<p>" << report::html_text(default_sentence(axis)) << "</p>\n";
     if (const std::string orders = order_sentence(axis); !orders.empty()) {
-      page << "<p>" << html_text(orders) << "</p>\n";
+      page << "<p>" << report::html_text(orders) << "</p>\n";
     }
-    page << "<p class=\"small\">Truth: " << html_text(a.truth)
-         << " Left out: " << html_text(a.left_out) << "</p>\n";
+    page << "<p class=\"small\">Truth: " << report::html_text(a.truth)
+         << " Left out: " << report::html_text(a.left_out) << "</p>\n";
     add_table(axis, page);
   }
   const scene::BuildInfo build = scene::build_info();
@@ -109,7 +111,7 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
           "together, to be looked at.</p>\n";
   page << "<p class=\"small\">thimble " << build.version << ", " << build.type << ", "
        << build.compiler << ".</p>\n</body></html>\n";
-  return write_text(page.str(), folder / "index.html");
+  return report::write_text(page.str(), folder / "index.html");
 }
 
 driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sections,
@@ -146,7 +148,7 @@ driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sect
     }
     list.push_back(std::move(entry));
   }
-  return write_text(list.dump(2) + "\n", file);
+  return report::write_text(list.dump(2) + "\n", file);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,7 +7,7 @@
 #include "studies/accuracy/measure_axis.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// One section of the page: an axis, and its pictures' names without ending.
 struct AxisSection {
@@ -25,4 +25,4 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
 driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sections,
                                             const std::filesystem::path& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

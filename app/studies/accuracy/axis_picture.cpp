@@ -10,7 +10,7 @@
 #include "report/picture_style.h"
 #include "studies/accuracy/axis_words.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // Colours that stay apart for colour-blind eyes [M Okabe and Ito].
@@ -108,7 +108,7 @@ std::string tics_of(char axis, double low, double high) {
     for (const double factor : {1.0, 2.0, 3.0, 5.0}) {
       if (factor > 1 && (high / low > 300 || (factor == 3) != high_numbers)) continue;
       if (factor * power < low || factor * power > high) continue;
-      text.append(first ? "" : ", ").append(number(factor * power));
+      text.append(first ? "" : ", ").append(report::number(factor * power));
       first = false;
     }
   }
@@ -172,21 +172,22 @@ void draw_apart(const MeasuredLine& line, const Eye& eye, std::size_t index,
   for (const MeasuredPoint& point : line.points) {
     if (!eye.sees(point)) continue;
     const std::string data = "$apart" + std::to_string(index) + "_" + std::to_string(k);
-    text << data << " << EOD\n" << number(eye.x(point)) << ' ' << number(eye.y(point)) << "\nEOD\n";
+    text << data << " << EOD\n"
+         << report::number(eye.x(point)) << ' ' << report::number(eye.y(point)) << "\nEOD\n";
     plots << ", " << data << " using 1:2 with points lw 2 ps 1.4 pt "
           << (k < kMarks.size() ? kMarks[k] : kHollowMarks[k % kHollowMarks.size()]) << " lc rgb '"
           << kColours[(k + 1) % kColours.size()] << "' title "
-          << quote(point.point->title.empty() ? point.point->name : point.point->title);
+          << report::quote(point.point->title.empty() ? point.point->name : point.point->title);
     ++k;
   }
 }
 
-Plot plot_of(const MeasuredAxis& axis, View view) {
+report::Plot plot_of(const MeasuredAxis& axis, View view) {
   const Eye eye(axis, view);
   const AccuracyAxis& a = axis.axis;
   std::ostringstream text;
   std::ostringstream plots;
-  text << quiet_style()
+  text << report::quiet_style()
        << "set key below left Left reverse samplen 2 spacing 1.15 width 1 height 1.5 "
           "font ',13'"
        << (axis.lines.back().line->apart ? " maxrows 8" : "") << "\n";
@@ -211,8 +212,8 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
       high_y = std::max(high_y, y);
       const bool law = point.point->law && view == View::kErrorOverKnob;
       laws = laws || law;
-      text << number(x) << ' ' << number(y) << ' '
-           << (law ? number(eye.shown(*point.point->law)) : std::string("NaN")) << " \""
+      text << report::number(x) << ' ' << report::number(y) << ' '
+           << (law ? report::number(eye.shown(*point.point->law)) : std::string("NaN")) << " \""
            << (line.line->apart ? point.point->name : three_digits(point.point->knob)) << "\"\n";
       ++points;
     }
@@ -220,7 +221,7 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
     if (points == 0) continue;
     const std::string colour = kColours[i % kColours.size()];
     const std::string data = "$line" + std::to_string(i);
-    const std::string title = quote(line.line->title);
+    const std::string title = report::quote(line.line->title);
     const bool again = i >= kMarks.size();
     const std::string mark =
         std::to_string(again ? kHollowMarks[i % kHollowMarks.size()] : kMarks[i % kMarks.size()]) +
@@ -232,14 +233,14 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
     plots << ", " << data << " using 1:2 with linespoints lw 2.4 ps 1 lc rgb '" << colour << "' pt "
           << mark << " title " << title;
     if (laws) {
-      law_plots << ", " << data << " using 1:3 with lines lw 4 dt '.' lc rgb '" << kInk
+      law_plots << ", " << data << " using 1:3 with lines lw 4 dt '.' lc rgb '" << report::kInk
                 << (law_named ? "' notitle" : "' title 'what the published law tells'");
       law_named = true;
     }
   }
   plots << law_plots.str();
   if (marked != nullptr && eye.sees(*marked)) {
-    plots << ", '-' using 1:2 with points pt 6 ps 2.1 lw 2.2 lc rgb '" << kInk
+    plots << ", '-' using 1:2 with points pt 6 ps 2.1 lw 2.2 lc rgb '" << report::kInk
           << (a.given ? "' title 'a PHANTOM-like arm'" : "' title 'default of the product'");
   }
   std::string title = wrapped(a.title, kTitleWidth);
@@ -248,9 +249,9 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   const bool over_cost = view == View::kErrorOverCost;
   const std::string cost = "ns" + std::string(a.cost_is_added ? " more" : "") + " per " + a.per;
   text << "set xlabel "
-       << (over_cost ? quote(cost + ", median") : labelled(a.knob, a.knob_unit, kKnobWidth))
+       << (over_cost ? report::quote(cost + ", median") : labelled(a.knob, a.knob_unit, kKnobWidth))
        << "\nset ylabel "
-       << (view == View::kCostOverKnob ? quote(cost + ", median")
+       << (view == View::kCostOverKnob ? report::quote(cost + ", median")
                                        : labelled(a.metric, a.unit, kErrorWidth))
        << '\n';
   const std::size_t label_lines =
@@ -258,15 +259,16 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   text << "set lmargin " << 9 + 2 * label_lines << "\nset rmargin 5\nset ylabel offset -1\n";
   if (over_cost && a.cost_is_added) {
     const double more = 0.08 * (high_x - std::min(low_x, 0.0));
-    text << "set xrange [" << number(std::min(low_x, 0.0) - more / 4) << ':'
-         << number(high_x + more) << "]\n";
+    text << "set xrange [" << report::number(std::min(low_x, 0.0) - more / 4) << ':'
+         << report::number(high_x + more) << "]\n";
   } else if (spans_decades(low_x, high_x)) {
-    text << "set logscale x\nset xrange [" << number(low_x / 1.35) << ':' << number(high_x * 1.35)
-         << "]\n"
+    text << "set logscale x\nset xrange [" << report::number(low_x / 1.35) << ':'
+         << report::number(high_x * 1.35) << "]\n"
          << tics_of('x', low_x / 1.35, high_x * 1.35);
   } else if (high_x > low_x) {
     const double more = 0.06 * (high_x - low_x);
-    text << "set xrange [" << number(low_x - more) << ':' << number(high_x + more) << "]\n";
+    text << "set xrange [" << report::number(low_x - more) << ':' << report::number(high_x + more)
+         << "]\n";
   }
   if (a.threshold && view != View::kCostOverKnob) {
     low_y = std::min(low_y, *a.threshold);
@@ -274,26 +276,27 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
   }
   if (low_y < high_y) {
     const double low = low_y / (floored ? 5 : 1.6);
-    text << "set logscale y\nset format y '%g'\nset yrange [" << number(low) << ':'
-         << number(high_y * 1.6) << "]\n"
+    text << "set logscale y\nset format y '%g'\nset yrange [" << report::number(low) << ':'
+         << report::number(high_y * 1.6) << "]\n"
          << tics_of('y', low, high_y * 1.6);
   }
   if (a.threshold && view != View::kCostOverKnob) {
     text << "set object 1 rectangle from graph 0, graph 0 to graph 1, first "
-         << number(*a.threshold) << " behind fillcolor rgb '" << kUnfeltFill
+         << report::number(*a.threshold) << " behind fillcolor rgb '" << kUnfeltFill
          << "' fillstyle solid noborder\n";
-    plots << ", " << number(*a.threshold) << " with lines dt '-' lw 1.5 lc rgb '" << kFaintInk
-          << "' title " << quote("not felt below: " + a.threshold_words);
+    plots << ", " << report::number(*a.threshold) << " with lines dt '-' lw 1.5 lc rgb '"
+          << report::kFaintInk << "' title "
+          << report::quote("not felt below: " + a.threshold_words);
   }
   if (floored) {
     text << "set label 2 'none and rounding are drawn at the lower edge' at graph 0.99, graph 0.03 "
             "right font "
             "',12' tc rgb '"
-         << kFaintInk << "'\n";
+         << report::kFaintInk << "'\n";
   }
   text << "plot " << plots.str().substr(2) << '\n';
   if (marked != nullptr && eye.sees(*marked)) {
-    text << number(eye.x(*marked)) << ' ' << number(eye.y(*marked)) << "\ne\n";
+    text << report::number(eye.x(*marked)) << ' ' << report::number(eye.y(*marked)) << "\ne\n";
   }
   std::string name = a.name;
   if (view == View::kErrorOverKnob && a.over_cost) name += "_knob";
@@ -313,16 +316,16 @@ Plot plot_of(const MeasuredAxis& axis, View view) {
 
 driver::Result<std::vector<std::string>> draw_axis(const MeasuredAxis& axis,
                                                    const std::filesystem::path& folder) {
-  std::vector<Plot> plots;
+  std::vector<report::Plot> plots;
   if (axis.axis.over_cost) plots.push_back(plot_of(axis, View::kErrorOverCost));
   if (axis.axis.over_knob) plots.push_back(plot_of(axis, View::kErrorOverKnob));
   if (axis.axis.cost_over_knob) plots.push_back(plot_of(axis, View::kCostOverKnob));
   std::vector<std::string> names;
-  for (const Plot& plot : plots) {
-    if (auto drawn = draw_plot(plot, folder); !drawn) return drawn.error();
+  for (const report::Plot& plot : plots) {
+    if (auto drawn = report::draw_plot(plot, folder); !drawn) return drawn.error();
     names.push_back(plot.name);
   }
   return names;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,7 +7,7 @@
 #include "studies/accuracy/measure_axis.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Draws an axis into `folder`, as PNG and SVG each: error over cost, error over knob, cost over
 /// knob, as it asks for. The default is ringed, the threshold a dashed line with its words, laws
@@ -16,4 +16,4 @@ namespace thimble::app {
 driver::Result<std::vector<std::string>> draw_axis(const MeasuredAxis& axis,
                                                    const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 std::string with_unit(double value, const std::string& unit) {
@@ -122,8 +122,8 @@ std::string order_sentence(const MeasuredAxis& axis) {
   return text.empty() ? text : "Slopes of error over the knob: " + text + ".";
 }
 
-std::vector<Figure> figures_of(const MeasuredAxis& axis) {
-  std::vector<Figure> figures;
+std::vector<session::Figure> figures_of(const MeasuredAxis& axis) {
+  std::vector<session::Figure> figures;
   const std::string& name = axis.axis.name;
   for (const MeasuredLine& line : axis.lines) {
     const std::string line_name = name + ", " + line.line->title;
@@ -196,4 +196,4 @@ std::string csv_of(const MeasuredAxis& axis) {
   return csv.str();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

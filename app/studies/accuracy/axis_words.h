@@ -6,7 +6,7 @@
 #include "report/figure_output.h"
 #include "studies/accuracy/measure_axis.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 // What an axis says in words and figures. Real-time: never from the servo thread.
 
@@ -27,9 +27,9 @@ std::string default_sentence(const MeasuredAxis& axis);
 std::string order_sentence(const MeasuredAxis& axis);
 
 /// Returns what the axis found as figures.
-std::vector<Figure> figures_of(const MeasuredAxis& axis);
+std::vector<session::Figure> figures_of(const MeasuredAxis& axis);
 
 /// Returns all points as a table with commas.
 std::string csv_of(const MeasuredAxis& axis);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "track/normal_projection_tracker.h"
 #include "track/packed_contact_in_memory.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -193,4 +193,4 @@ std::unique_ptr<Follower> make_follower(const FollowedSurface& surface,
       *choice.search == render::SearchChoice::kLinear ? surface.linear : surface.tree);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "search/contact_search.h"
 #include "thimble/render/contact_choice.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// How a study follows a tip below a surface: by one of the product's trackers, or by one of
 /// what they are compared with.
@@ -55,4 +55,4 @@ class Follower {
 std::unique_ptr<Follower> make_follower(const FollowedSurface& surface,
                                         const FollowerChoice& choice);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

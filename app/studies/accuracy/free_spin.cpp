@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 struct Jacobi {
@@ -75,4 +75,4 @@ Eigen::Vector3d true_rate(const FreeSpin& spin, double t) {
   return omega;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A body that spins freely, near its middle axis, where it turns over again and again.
 struct FreeSpin {
@@ -14,4 +14,4 @@ struct FreeSpin {
 /// [M Landau and Lifshitz, Mechanics, section 37]. Real-time: never from the servo thread.
 Eigen::Vector3d true_rate(const FreeSpin& spin, double t);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

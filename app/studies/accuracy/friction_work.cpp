@@ -8,7 +8,7 @@
 #include "stability/signal.h"
 #include "studies/accuracy/hand_signal.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kSpeed = 0.001;  // m/s
@@ -16,18 +16,18 @@ constexpr double kCorner = 50;    // Hz [PHYSICS 2.5]
 
 }  // namespace
 
-Creep creep_of(const FrictionCase& which, const FrictionRigSettings& rig) {
+Creep creep_of(const FrictionCase& which, const stability::FrictionRigSettings& rig) {
   const auto friction = build_friction(which, rig);
-  const RigRun run =
-      rub(*friction, {{0, -1.25 * kSpeed}, {0.5, -1.25 * kSpeed}, {3, 1.25 * kSpeed}}, 3, rig);
+  const stability::RigRun run = stability::rub(
+      *friction, {{0, -1.25 * kSpeed}, {0.5, -1.25 * kSpeed}, {3, 1.25 * kSpeed}}, 3, rig);
   const double rate = 1 / run.period;
   const auto second = static_cast<std::size_t>(std::llround(rate));
-  const std::vector<double> fast = high_passed(run.force, rate, kCorner);
-  return {.limit_cycle = root_mean_square(std::span(fast).last(second)),
-          .mean = -mean(std::span<const double>(run.force).last(second))};
+  const std::vector<double> fast = stability::high_passed(run.force, rate, kCorner);
+  return {.limit_cycle = stability::root_mean_square(std::span(fast).last(second)),
+          .mean = -stability::mean(std::span<const double>(run.force).last(second))};
 }
 
-Stroke friction_work(const FrictionCase& which, const FrictionRigSettings& rig) {
+Stroke friction_work(const FrictionCase& which, const stability::FrictionRigSettings& rig) {
   const std::shared_ptr<render::AnyStage> friction = build_friction(which, rig);
   std::vector<driver::DeviceState> states(kFrictionTicks);
   for (int i = 0; i < kFrictionTicks; ++i) {
@@ -41,11 +41,11 @@ Stroke friction_work(const FrictionCase& which, const FrictionRigSettings& rig) 
     state.fresh = true;
   }
   return [friction, states, load = rig.load, depth = rig.depth] {
-    EvenSurface surface(*friction, load, depth);
+    stability::EvenSurface surface(*friction, load, depth);
     double sum = 0;
     for (const auto& state : states) sum += surface(state).f_T_W.x();
     return sum;
   };
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

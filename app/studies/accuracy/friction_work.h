@@ -4,7 +4,7 @@
 #include "studies/accuracy/accuracy_axis.h"
 #include "studies/friction/friction_cases.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What a friction does under a hand that creeps at 1 mm/s, N.
 struct Creep {
@@ -14,10 +14,10 @@ struct Creep {
 
 /// Creeps on the rig for 3 s, of which the last second counts. Real-time: never from the servo
 /// thread.
-Creep creep_of(const FrictionCase& which, const FrictionRigSettings& rig);
+Creep creep_of(const FrictionCase& which, const stability::FrictionRigSettings& rig);
 
 /// Makes a stroke of the friction alone ready: `kFrictionTicks` ticks of a creeping tip.
-Stroke friction_work(const FrictionCase& which, const FrictionRigSettings& rig);
+Stroke friction_work(const FrictionCase& which, const stability::FrictionRigSettings& rig);
 inline constexpr int kFrictionTicks = 4000;
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

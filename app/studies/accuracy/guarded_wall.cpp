@@ -1,6 +1,6 @@
 #include "studies/accuracy/guarded_wall.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using driver::EnergyStage;
@@ -69,4 +69,4 @@ double GuardedWall::coupled(double depth) noexcept {
   return sent;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -5,7 +5,7 @@
 #include "thimble/driver/energy_guard.h"
 #include "thimble/driver/safety_gate.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// The arm in front of a guarded wall: PHANTOM-like [PHYSICS 0].
 struct GuardedArm {
@@ -52,4 +52,4 @@ class GuardedWall {
   bool begun_ = false;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

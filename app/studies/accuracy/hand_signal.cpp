@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 HandSignal hand_signal(double t) {
   struct Wave {
@@ -24,4 +24,4 @@ double counted(double x, double step) {
   return step > 0 ? step * std::round(x / step) : x;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A hand's motion along one line that is known in closed form: a slow stroke, a faster one, and
 /// the tremor of a hand. Real-time: never from the servo thread.
@@ -15,4 +15,4 @@ HandSignal hand_signal(double t);
 /// Cuts `x` to whole steps of an encoder; 0 leaves it as it is.
 double counted(double x, double step);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Where a mass is (m) and how fast (m/s), along one line.
 struct LineMotion {
@@ -19,4 +19,4 @@ inline LineMotion moved_by_held_force(const LineMotion& at, double mass, double 
   return {at.x + end * time + (at.v - end) * fade / rate, at.v + (end - at.v) * fade};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -5,7 +5,7 @@
 
 #include "studies/accuracy/held_motion.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr int kPhases = 200;
@@ -71,4 +71,4 @@ double mean_restitution(const Impact& impact) {
   return sum / kPhases;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

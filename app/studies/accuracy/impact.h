@@ -2,7 +2,7 @@
 
 #include <functional>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A free mass that flies into a sampled wall and out again, without dry friction: the cheapest
 /// look at what a loop's time does [PHYSICS 1.5]. SI.
@@ -23,4 +23,4 @@ struct Impact {
 /// moment of contact. Exact between events. Real-time: never from the servo thread.
 double mean_restitution(const Impact& impact);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 
 #include "studies/accuracy/probed_stroke.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // The time that this thread has worked, s: others that want the processor do not count.
@@ -245,4 +245,4 @@ MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options) {
   return measured;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

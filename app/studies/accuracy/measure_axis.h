@@ -9,7 +9,7 @@
 
 #include "studies/accuracy/accuracy_axis.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What one point was found to be. `error` in the unit of the axis.
 struct MeasuredPoint {
@@ -78,4 +78,4 @@ inline constexpr int kSlopePointsLeast = 4;
 /// `kSlopePointsLeast` of them have an error. Real-time: never from the servo thread.
 std::optional<double> slope_of(const std::vector<MeasuredPoint>& points);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,13 +7,13 @@
 
 #include "studies/callgrind.h"
 
-extern "C" [[gnu::noinline]] double thimble_probed_stroke(const thimble::app::Stroke& stroke) {
+extern "C" [[gnu::noinline]] double thimble_probed_stroke(const thimble::studies::Stroke& stroke) {
   const double sum = stroke();
   asm volatile("");  // so that the call above is no jump, and the function ends here
   return sum;
 }
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 bool begins_with(const std::string& name, const std::string& prefix) {
@@ -98,4 +98,4 @@ std::optional<std::vector<double>> count_subject(const std::string& subject) {
   return counts;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

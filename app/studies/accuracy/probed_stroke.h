@@ -8,9 +8,9 @@
 
 /// Runs one stroke. Instructions are counted inside this function alone, which callgrind finds by
 /// its name; so it has a plain one.
-extern "C" double thimble_probed_stroke(const thimble::app::Stroke& stroke);
+extern "C" double thimble_probed_stroke(const thimble::studies::Stroke& stroke);
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Runs one stroke of every point whose name AXIS/LINE/POINT begins with `prefix`, in the order of
 /// the axis, each followed by what it does besides if there is that, and returns how many there
@@ -26,4 +26,4 @@ std::optional<std::vector<double>> count_strokes(const std::string& prefix);
 /// `thimble_probed_stroke`.
 std::optional<std::vector<double>> count_subject(const std::string& subject);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

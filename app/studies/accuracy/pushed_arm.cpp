@@ -6,7 +6,7 @@
 
 #include "stability/draw.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // Goes on by a tick: m v' = f - b v - c sgn v in closed form, and the time at which v comes to zero
@@ -51,7 +51,7 @@ LineMotion rounded(const LongMotion& at) {
 const std::vector<double>& pushing_forces() {
   static const std::vector<double> all = [] {
     std::vector<double> list;
-    Draw draw(9);
+    stability::Draw draw(9);
     while (list.size() < PushedArm::kTicks) {
       const double force = draw.uniform(-0.25, 0.25);
       const auto ticks = static_cast<std::size_t>(draw.uniform(20, 60));
@@ -95,4 +95,4 @@ std::vector<LineMotion> pushed_in_hand() {
   return way;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

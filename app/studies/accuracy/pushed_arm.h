@@ -4,7 +4,7 @@
 
 #include "studies/accuracy/held_motion.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 // One axis of the PHANTOM-like arm [PHYSICS 0], pushed for a second by a force that a
 // servo loop holds for 1 ms each; and where it truly goes. Real-time: never from the servo thread.
@@ -31,4 +31,4 @@ std::vector<LineMotion> pushed_with_dry_friction();
 /// damped oscillator by its complex root.
 std::vector<LineMotion> pushed_in_hand();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

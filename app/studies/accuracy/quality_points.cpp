@@ -16,7 +16,7 @@
 #include "studies/cost/cost_subjects.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using render::BlendingChoice;
@@ -160,4 +160,4 @@ std::string quality_table_text() {
          contact_rows() + ring_rows() + step_rows();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

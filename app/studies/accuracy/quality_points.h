@@ -4,7 +4,7 @@
 
 #include "studies/accuracy/accuracy_axis.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Returns the diagram of all ways to touch a mesh that `--quality auto` chooses among: the knob is
 /// the mesh's typical turn over an edge (scene's quality_table.h), the error the worst of force,
@@ -15,4 +15,4 @@ AccuracyAxis contact_points_axis();
 /// after the one that is built in. Takes about a minute. Real-time: never from the servo thread.
 std::string quality_table_text();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

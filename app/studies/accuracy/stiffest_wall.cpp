@@ -6,7 +6,7 @@
 
 #include "studies/accuracy/held_motion.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kStart = 1e-3;    // m
@@ -68,4 +68,4 @@ double stiffest(const RestedWall& wall) {
   return holds;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

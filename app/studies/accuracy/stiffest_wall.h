@@ -5,7 +5,7 @@
 
 #include "studies/accuracy/velocity_estimates.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A wall that an arm rests against in a hand: a two-sided spring and a damper that are worked
 /// out once per tick. The hand's damping is the arm's; its spring does not matter beside the
@@ -27,4 +27,4 @@ struct RestedWall {
 /// if it grows at 1 N/m. The same bits each time. Real-time: never from the servo thread.
 double stiffest(const RestedWall& wall);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

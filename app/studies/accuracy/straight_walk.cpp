@@ -6,7 +6,7 @@
 
 #include "mesh/surface_weights.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr int kEdgesMax = 10000;  // per advance; only steps of metres meet more
@@ -64,4 +64,4 @@ Eigen::Vector3d StraightWalk::weights() const noexcept {
   return render::within_triangle(render::projected_weights(mesh_, triangle_, p_W_));
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -5,7 +5,7 @@
 
 #include "mesh/contact_mesh.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A walk straight ahead on the surface of a mesh: over an edge it keeps its angle with it, as on
 /// both triangles laid flat side by side, so that nothing but what is looked at on the way can
@@ -31,4 +31,4 @@ class StraightWalk {
   Eigen::Vector3d d_W_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -8,7 +8,7 @@
 #include "studies/cost/cost_subjects.h"
 #include "thimble/render/build_object_touch.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -83,4 +83,4 @@ double edge_over_radius(int across) {
   return 2 * std::sin(std::numbers::pi / across);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

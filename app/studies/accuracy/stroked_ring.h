@@ -9,7 +9,7 @@
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/object_touch.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 // The ring of `thimble study cost`, cut as finely as wanted, stroked and compared with itself.
 // Real-time: never from the servo thread.
@@ -46,4 +46,4 @@ inline constexpr int kRingTicks = 4000;
 /// Returns the length of an edge around the tube over the tube's radius, L / R [PHYSICS 3].
 double edge_over_radius(int across);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

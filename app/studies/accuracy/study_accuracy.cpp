@@ -24,7 +24,7 @@
 #include "thimble/scene/quality.h"
 #include "thimble/scene/shipped_files.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::string>& names) {
@@ -151,8 +151,8 @@ driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
   const std::filesystem::path& folder = choice.folder;
   const auto makers = named_axes(choice.axes);
   if (!makers) return makers.error();
-  const bool draws = has_gnuplot();
-  if (auto made = make_picture_folder(folder); !made) return made.error();
+  const bool draws = report::has_gnuplot();
+  if (auto made = report::make_picture_folder(folder); !made) return made.error();
   std::vector<AccuracyAxis> axes;
   for (const AxisMaker* maker : *makers) axes.push_back(maker->make());
   const auto measured = AxisSweep(choice, std::move(axes), stop).run();
@@ -165,7 +165,8 @@ driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
     if (report.stopped = stop.load(); report.stopped) return report;
     const MeasuredAxis& axis = *one;
     AxisSection section{.axis = &axis, .pictures = {}};
-    if (auto written = write_text(csv_of(axis), folder / (axis.axis.name + ".csv")); !written) {
+    if (auto written = report::write_text(csv_of(axis), folder / (axis.axis.name + ".csv"));
+        !written) {
       return written.error();
     }
     if (draws) {
@@ -174,7 +175,7 @@ driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
       section.pictures = *std::move(drawn);
     }
     sections.push_back(std::move(section));
-    for (Figure& figure : figures_of(axis)) report.figures.push_back(std::move(figure));
+    for (session::Figure& figure : figures_of(axis)) report.figures.push_back(std::move(figure));
   }
   if (!draws)
     scene::print_format("No pictures: gnuplot is not installed (apt install gnuplot-nox).\n");
@@ -192,4 +193,4 @@ driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
   return report;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -8,7 +8,7 @@
 #include "report/figure_output.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What the study of accuracy is asked for.
 struct AccuracyChoice {
@@ -21,7 +21,7 @@ struct AccuracyChoice {
 /// What the study of accuracy found.
 struct AccuracyReport {
   bool stopped = false;  ///< Stopped early; the journal holds the axes that were measured.
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
 };
 
 /// Measures what accuracy costs: one diagram per axis, as pictures, tables and one page. Shows a
@@ -31,4 +31,4 @@ struct AccuracyReport {
 driver::Result<AccuracyReport> study_accuracy(const AccuracyChoice& choice,
                                               const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -5,7 +5,7 @@
 
 #include "velocity_estimator.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr int kMost = 64;
@@ -115,4 +115,4 @@ std::unique_ptr<VelocityEstimate> levant_estimate(double most, double period) {
   return std::make_unique<LevantEstimate>(most, period);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Estimates velocity along one line from counted positions: the product's estimator and others to
 /// compare it with. Real-time: safe, once built.
@@ -26,4 +26,4 @@ std::unique_ptr<VelocityEstimate> adaptive_estimate(int most, double step, doubl
 /// [M Levant 1998: gains 1.1 and 1.5 root].
 std::unique_ptr<VelocityEstimate> levant_estimate(double most, double period);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

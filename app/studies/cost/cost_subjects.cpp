@@ -11,7 +11,7 @@
 #include "thimble/render/build_object_touch.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Built = driver::Result<std::unique_ptr<render::ObjectTouch>>;
@@ -117,4 +117,4 @@ std::vector<CostSubject> cost_subjects() {
   return subjects;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 #include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// One thing whose cost per tick is measured: an object of a scene, made of named stages.
 struct CostSubject {
@@ -36,4 +36,4 @@ inline constexpr const char* kBareSubject = "bare";
 /// of a plain scene. Real-time: never from the servo thread.
 std::vector<CostSubject> cost_subjects();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

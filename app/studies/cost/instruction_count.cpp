@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // Counts the instructions of a whole run; valgrind says so at its end: "Collected : 12345".
@@ -41,4 +41,4 @@ std::optional<double> instructions_per_tick(const std::string& subject) {
   return (*many - *few) / ((kMany - kFew) * kStrokeTicks);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Counts the instructions that one tick of a cost subject executes, on average over its stroke:
 /// two runs of this program under callgrind that differ in the number of strokes, divided. The same
@@ -14,4 +14,4 @@ std::optional<double> instructions_per_tick(const std::string& subject);
 /// The number of ticks of one stroke.
 inline constexpr int kStrokeTicks = 4000;
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -14,7 +14,7 @@
 #include "studies/cost/ring_surface.h"
 #include "thimble/render/contact_choice.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -117,4 +117,4 @@ std::vector<MemoryTrade> measure_memory_trades() {
   return trades;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// One way to answer a question that a contact asks, with what it holds in memory for that.
 struct MemoryTrade {
@@ -18,4 +18,4 @@ struct MemoryTrade {
 /// on the ring of the cost subjects. Real-time: never from the servo thread.
 std::vector<MemoryTrade> measure_memory_trades();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,7 +6,7 @@
 
 #include "studies/tube_mesh.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -56,4 +56,4 @@ std::vector<driver::DeviceState> ring_stroke(const RingSurface& ring, int ticks,
   return states;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,7 +6,7 @@
 #include "thimble/driver/device_state.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A ring (torus) about the z axis of the world: a surface whose depth and normal are known at
 /// every point, hollow on the inner side and round on the outer. m.
@@ -34,4 +34,4 @@ struct RingSurface {
 /// Real-time: never from the servo thread.
 std::vector<driver::DeviceState> ring_stroke(const RingSurface& ring, int ticks, double dt);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -23,7 +23,7 @@
 #include "studies/cost/memory_trades.h"
 #include "studies/sweep/progress_bar.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -124,24 +124,26 @@ struct Bar {
 };
 
 // Bars one under the other, each with its name on the left and a short text at its end.
-Plot bar_plot(const std::string& name, const std::string& title, const std::string& axis,
-              const std::vector<Bar>& bars) {
+report::Plot bar_plot(const std::string& name, const std::string& title, const std::string& axis,
+                      const std::vector<Bar>& bars) {
   std::ostringstream text;
   double most = 1;
-  text << quiet_style() << "$bars << EOD\n";
+  text << report::quiet_style() << "$bars << EOD\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
     most = std::max(most, bars[i].ns);
-    text << i << ' ' << number(std::max(bars[i].ns, 0.0)) << " \"" << bars[i].name << "\" \""
-         << bars[i].says << "\"\n";
+    text << i << ' ' << report::number(std::max(bars[i].ns, 0.0)) << " \"" << bars[i].name
+         << "\" \"" << bars[i].says << "\"\n";
   }
   const int height = 170 + 44 * static_cast<int>(bars.size());
-  text << "EOD\nset title " << quote(title) << "\nset xlabel " << quote(axis) << '\n'
+  text << "EOD\nset title " << report::quote(title) << "\nset xlabel " << report::quote(axis)
+       << '\n'
        << "set key off\nset style fill solid 0.85 noborder\nunset grid\nset grid xtics\n"
-       << "set yrange [" << number(static_cast<double>(bars.size()) - 0.4) << ":-0.6]\n"
-       << "set xrange [0:" << number(1.75 * most) << "]\nset ytics scale 0 noenhanced\n"
+       << "set yrange [" << report::number(static_cast<double>(bars.size()) - 0.4) << ":-0.6]\n"
+       << "set xrange [0:" << report::number(1.75 * most) << "]\nset ytics scale 0 noenhanced\n"
        << "plot $bars using (0):1:(0):2:($1-0.28):($1+0.28):ytic(3) with boxxyerror lc rgb '"
-       << kForceInk << "', $bars using 2:1:4 with labels left offset 0.8,0 noenhanced tc rgb '"
-       << kInk << "'\n";
+       << report::kForceInk
+       << "', $bars using 2:1:4 with labels left offset 0.8,0 noenhanced tc rgb '" << report::kInk
+       << "'\n";
   return {.name = name, .width = 1500, .height = height, .commands = text.str()};
 }
 
@@ -166,21 +168,21 @@ driver::Result<void> draw(const std::vector<Cost>& costs, const Cost& bare,
            rounded(added, 0).append(" ns for ") + rounded(1000 * cost.error, 0).append(" mN")});
     }
   }
-  const Plot plots[] = {
+  const report::Plot plots[] = {
       bar_plot("cost_of_contact",
                "What a tick on a ring of 4,096 triangles costs, and how wrong its force is (RMS)",
                "ns per tick", ways),
       bar_plot("cost_of_effects",
                "What each effect adds to a tick, and the force that is missing without it (RMS)",
                "ns added per tick", effects)};
-  for (const Plot& plot : plots) {
-    if (auto drawn = draw_plot(plot, folder); !drawn) return drawn.error();
+  for (const report::Plot& plot : plots) {
+    if (auto drawn = report::draw_plot(plot, folder); !drawn) return drawn.error();
   }
   return {};
 }
 
-std::vector<Figure> figures_of(const std::vector<Cost>& costs, const Cost& bare) {
-  std::vector<Figure> figures;
+std::vector<session::Figure> figures_of(const std::vector<Cost>& costs, const Cost& bare) {
+  std::vector<session::Figure> figures;
   const auto add = [&](const std::string& name, double value, const std::string& unit,
                        const std::string& goal = {}) {
     figures.push_back({.name = name, .value = value, .unit = unit, .goal = goal});
@@ -223,7 +225,7 @@ void count_all(std::vector<Cost>& costs) {
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_cost(const std::filesystem::path& folder) {
+driver::Result<std::vector<session::Figure>> study_cost(const std::filesystem::path& folder) {
   const std::vector<CostSubject> subjects = cost_subjects();
   const auto states = ring_stroke(kCostRing, kStrokeTicks, 0.001);
   std::vector<Cost> costs;
@@ -253,14 +255,14 @@ driver::Result<std::vector<Figure>> study_cost(const std::filesystem::path& fold
       compare_with_bare(cost, bare);
     }
   }
-  if (auto written = write_text(csv_of(costs, bare), folder / "cost.csv"); !written) {
+  if (auto written = report::write_text(csv_of(costs, bare), folder / "cost.csv"); !written) {
     return written.error();
   }
-  if (has_gnuplot()) {
-    if (auto made = make_picture_folder(folder); !made) return made.error();
+  if (report::has_gnuplot()) {
+    if (auto made = report::make_picture_folder(folder); !made) return made.error();
     if (auto drawn = draw(costs, bare, folder); !drawn) return drawn.error();
   }
   return figures_of(costs, bare);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/effect/map_settings.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kCoefficient = 0.5;   // of 1 N [PHYSICS 2.2]
@@ -21,15 +21,17 @@ constexpr double kOscillates = 0.001;  // N RMS [PHYSICS 7, case 14]
 
 /// Returns the RMS above the corner in the last `ticks`; what is left of the filter's ringing is 0.
 double above_corner(std::span<const double> signal, double rate, std::size_t ticks) {
-  const std::vector<double> fast = high_passed(signal, rate, kCorner);
-  const double found = root_mean_square(std::span(fast).last(ticks));
+  const std::vector<double> fast = stability::high_passed(signal, rate, kCorner);
+  const double found = stability::root_mean_square(std::span(fast).last(ticks));
   return found > kNothing ? found : 0;
 }
 
 /// Creeps at `speed` for long enough to slide, symmetric about the arm's home.
-RigRun creep_run(const FrictionCase& which, const FrictionRigSettings& rig, double speed) {
+stability::RigRun creep_run(const FrictionCase& which, const stability::FrictionRigSettings& rig,
+                            double speed) {
   const auto friction = build_friction(which, rig);
-  return rub(*friction, {{0, -3 * speed}, {0.5, -3 * speed}, {6.5, 3 * speed}}, 6.5, rig);
+  return stability::rub(*friction, {{0, -3 * speed}, {0.5, -3 * speed}, {6.5, 3 * speed}}, 6.5,
+                        rig);
 }
 
 }  // namespace
@@ -55,12 +57,12 @@ const std::vector<FrictionCase>& friction_cases() {
 }
 
 std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
-                                                 const FrictionRigSettings& rig) {
+                                                 const stability::FrictionRigSettings& rig) {
   if (which.stiffness > 0) {
     return std::make_unique<render::AnyStageOf<render::BristleFriction>>(
         render::BristleFriction({.coulomb = {.sliding = kCoefficient, .holding = kCoefficient},
                                  .stiffness = which.stiffness},
-                                effect_context_of(rig)));
+                                stability::effect_context_of(rig)));
   }
   std::map<std::string, double> numbers{{"coefficient", kCoefficient}};
   if (which.static_coefficient > 0) numbers["static_coefficient"] = which.static_coefficient;
@@ -72,18 +74,20 @@ std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
   });
   assert(kind != table.end());
   render::MapSettings settings(numbers, words);
-  const render::StageBuilder build = kind->read(settings, effect_context_of(rig));
+  const render::StageBuilder build = kind->read(settings, stability::effect_context_of(rig));
   assert(settings.mistakes().empty());
   return build();
 }
 
-RigRun stop_run(const FrictionCase& which, const FrictionRigSettings& rig, double stop) {
+stability::RigRun stop_run(const FrictionCase& which, const stability::FrictionRigSettings& rig,
+                           double stop) {
   const auto friction = build_friction(which, rig);
-  return rub(*friction, {{0, stop - 0.02}, {kStopTime - 0.4, stop - 0.02}, {kStopTime, stop}},
-             kStopTime + 2, rig);
+  return stability::rub(*friction,
+                        {{0, stop - 0.02}, {kStopTime - 0.4, stop - 0.02}, {kStopTime, stop}},
+                        kStopTime + 2, rig);
 }
 
-FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& rig) {
+FrictionMeasures measure(const FrictionCase& which, const stability::FrictionRigSettings& rig) {
   FrictionMeasures found;
   found.stop = stop_run(which, rig);
   const double rate = 1 / found.stop.period;
@@ -91,28 +95,29 @@ FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& r
   found.rest_force = above_corner(found.stop.force, rate, second);
   found.rest_way = above_corner(found.stop.x, rate, second);
   std::vector<double> rest(found.stop.force.end() - std::llround(rate), found.stop.force.end());
-  const double held = std::abs(mean(rest));
+  const double held = std::abs(stability::mean(rest));
   if (found.rest_force > kOscillates) {
-    const double middle = mean(rest);
+    const double middle = stability::mean(rest);
     for (double& force : rest) force -= middle;
-    found.rest_frequency = sign_changes_per_second(rest, rate) / 2;
+    found.rest_frequency = stability::sign_changes_per_second(rest, rate) / 2;
   }
   found.rest_held = held > kNothing ? held : 0;
 
-  const RigRun creep = creep_run(which, rig, 0.001);
+  const stability::RigRun creep = creep_run(which, rig, 0.001);
   found.creep_force = above_corner(creep.force, rate, 2 * second);
-  found.creep_mean = -mean(std::span<const double>(creep.force).last(2 * second));
-  const RigRun slow = creep_run(which, rig, 0.005);
-  found.slow_mean = -mean(std::span<const double>(slow.force).last(2 * second));
+  found.creep_mean = -stability::mean(std::span<const double>(creep.force).last(2 * second));
+  const stability::RigRun slow = creep_run(which, rig, 0.005);
+  found.slow_mean = -stability::mean(std::span<const double>(slow.force).last(2 * second));
 
-  FrictionRigSettings tremulous = rig;
+  stability::FrictionRigSettings tremulous = rig;
   tremulous.tremor_amplitude = 300e-6;  // [PHYSICS 2.2]
   const auto friction = build_friction(which, tremulous);
-  found.tremor_force = above_corner(rub(*friction, {{0, 0}}, 3, tremulous).force, rate, 2 * second);
+  found.tremor_force =
+      above_corner(stability::rub(*friction, {{0, 0}}, 3, tremulous).force, rate, 2 * second);
   return found;
 }
 
-EvenSliding slide_evenly(FrictionRigSettings rig, double speed) {
+EvenSliding slide_evenly(stability::FrictionRigSettings rig, double speed) {
   rig.hand_stiffness = 1e7;
   rig.hand_damping = 2000;
   constexpr int kRuns = 20;
@@ -123,8 +128,8 @@ EvenSliding slide_evenly(FrictionRigSettings rig, double speed) {
     const double begin = i * 3e-5 / kRuns - 0.0015;
     const auto friction = build_friction(friction_cases().front(), rig);
     const double duration = 0.5 + 0.003 / speed;
-    const RigRun run =
-        rub(*friction, {{0, begin}, {0.5, begin}, {duration, begin + 0.003}}, duration, rig);
+    const stability::RigRun run = stability::rub(
+        *friction, {{0, begin}, {0.5, begin}, {duration, begin + 0.003}}, duration, rig);
     // 2.7 mm are 90 whole counts.
     const auto ticks = static_cast<std::size_t>(std::llround(0.0027 / speed / run.period));
     for (const double force : std::span(run.force).last(ticks)) {
@@ -137,4 +142,4 @@ EvenSliding slide_evenly(FrictionRigSettings rig, double speed) {
   return {-average, std::sqrt(squares / count - average * average)};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

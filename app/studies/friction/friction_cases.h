@@ -7,7 +7,7 @@
 #include "stability/friction_rig.h"
 #include "thimble/render/effect/stage_list.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// One friction that the study compares, as a scene would name it: 0.5 of a load of 1 N.
 struct FrictionCase {
@@ -27,7 +27,7 @@ const std::vector<FrictionCase>& friction_cases();
 /// can carry its settings (the caller's duty).
 /// Real-time: never from the servo thread.
 std::unique_ptr<render::AnyStage> build_friction(const FrictionCase& which,
-                                                 const FrictionRigSettings& rig);
+                                                 const stability::FrictionRigSettings& rig);
 
 /// What is measured of one friction at one delay. Forces in N, places in m, RMS above 50 Hz.
 struct FrictionMeasures {
@@ -40,7 +40,7 @@ struct FrictionMeasures {
   double creep_mean = 0;   ///< Mean friction, then.
   double slow_mean = 0;    ///< The same at 5 mm/s.
   double tremor_force = 0;  ///< The hand at one place, with a tremor of 300 um.
-  RigRun stop;              ///< The run of the stop, for pictures.
+  stability::RigRun stop;   ///< The run of the stop, for pictures.
 };
 
 /// When and where the run of the stop stops.
@@ -48,11 +48,11 @@ inline constexpr double kStopTime = 0.8;    // s
 inline constexpr double kStopPlace = 0.01;  // m
 
 /// Slides at 50 mm/s, stops at `stop` (m), and waits two seconds.
-RigRun stop_run(const FrictionCase& which, const FrictionRigSettings& rig,
-                double stop = kStopPlace);
+stability::RigRun stop_run(const FrictionCase& which, const stability::FrictionRigSettings& rig,
+                           double stop = kStopPlace);
 
 /// Measures a friction on a rig. Real-time: never from the servo thread.
-FrictionMeasures measure(const FrictionCase& which, const FrictionRigSettings& rig);
+FrictionMeasures measure(const FrictionCase& which, const stability::FrictionRigSettings& rig);
 
 /// What the naive law does when it slides evenly [PHYSICS 2.1].
 struct EvenSliding {
@@ -63,6 +63,6 @@ struct EvenSliding {
 /// Slides the naive friction evenly at `speed` (m/s) by a very stiff hand, twenty times over 3 mm
 /// around the arm's home. Farther out counts of the other joints reach x, each of them a full pulse
 /// of the naive law. Real-time: never from the servo thread.
-EvenSliding slide_evenly(FrictionRigSettings rig, double speed);
+EvenSliding slide_evenly(stability::FrictionRigSettings rig, double speed);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

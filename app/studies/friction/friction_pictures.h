@@ -6,7 +6,7 @@
 #include "studies/friction/friction_cases.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Draws one friction's stop as NAME.png and .svg: place and force around the stop, the tip's
 /// limit cycle afterwards, and the spectrum of the force at rest. The numbers go to data/. Fails if
@@ -19,4 +19,4 @@ driver::Result<void> draw_friction(const FrictionCase& which, const FrictionMeas
 driver::Result<void> draw_friction_overview(const std::vector<FrictionMeasures>& found,
                                             const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -16,7 +16,7 @@
 #include "studies/friction/study_friction.h"
 #include "surface/friction/friction_settings.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr int kDelays = 4;  // ticks 0 to 3
@@ -46,26 +46,28 @@ struct WorstStop {
 WorstStop worst_stop(const FrictionCase& which) {
   WorstStop worst;
   for (int delay = 0; delay < kDelays; ++delay) {
-    FrictionRigSettings rig;
+    stability::FrictionRigSettings rig;
     rig.delay_ns = delay * rig.period_ns;
     for (int i = 0; i < kStops; ++i) {
-      const RigRun run = stop_run(which, rig, kStopPlace + i * rig.encoder_step / kStops);
-      const std::vector<double> force = high_passed(run.force, 1000, 50);
-      const std::vector<double> way = high_passed(run.x, 1000, 50);
+      const stability::RigRun run =
+          stop_run(which, rig, kStopPlace + i * rig.encoder_step / kStops);
+      const std::vector<double> force = stability::high_passed(run.force, 1000, 50);
+      const std::vector<double> way = stability::high_passed(run.x, 1000, 50);
       const std::span<const double> rest = std::span(run.force).last(1000);
-      worst.force = std::max(worst.force, root_mean_square(std::span(force).last(1000)));
-      worst.way = std::max(worst.way, root_mean_square(std::span(way).last(1000)));
-      worst.sign_changes = std::max(worst.sign_changes, sign_changes_per_second(rest, 1000));
-      worst.held_least = std::min(worst.held_least, std::abs(mean(rest)));
+      worst.force = std::max(worst.force, stability::root_mean_square(std::span(force).last(1000)));
+      worst.way = std::max(worst.way, stability::root_mean_square(std::span(way).last(1000)));
+      worst.sign_changes =
+          std::max(worst.sign_changes, stability::sign_changes_per_second(rest, 1000));
+      worst.held_least = std::min(worst.held_least, std::abs(stability::mean(rest)));
     }
   }
   return worst;
 }
 
 /// Adds the naive law's mean and ripple against their closed forms [PHYSICS 2.1].
-void add_even_sliding(std::vector<Figure>& figures) {
+void add_even_sliding(std::vector<session::Figure>& figures) {
   for (const double speed : {0.005, 0.02}) {
-    const FrictionRigSettings rig;
+    const stability::FrictionRigSettings rig;
     const EvenSliding found = slide_evenly(rig, speed);
     const double p = speed * static_cast<double>(rig.period_ns) * 1e-9 / rig.encoder_step;
     const double mean_law = p * 0.5;
@@ -79,7 +81,7 @@ void add_even_sliding(std::vector<Figure>& figures) {
   }
 }
 
-void add_measures(std::vector<Figure>& figures, const FrictionCase& which,
+void add_measures(std::vector<session::Figure>& figures, const FrictionCase& which,
                   const FrictionMeasures& found) {
   const std::string name = which.name + ".";
   // What the default promises, and what the paper's limit cycle is [PHYSICS 2.2 and 7, cases 14,
@@ -103,9 +105,9 @@ void add_measures(std::vector<Figure>& figures, const FrictionCase& which,
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& folder) {
-  if (auto made = make_picture_folder(folder); !made) return made.error();
-  std::vector<Figure> figures;
+driver::Result<std::vector<session::Figure>> study_friction(const std::filesystem::path& folder) {
+  if (auto made = report::make_picture_folder(folder); !made) return made.error();
+  std::vector<session::Figure> figures;
   std::vector<FrictionMeasures> undelayed;
   std::string csv =
       "friction,delay_ticks,rest_force_N,rest_way_m,rest_frequency_Hz,rest_held_N,creep_force_N,"
@@ -120,7 +122,7 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
       " force\n");
   for (const FrictionCase& which : friction_cases()) {
     for (int delay = 0; delay < kDelays; ++delay) {
-      FrictionRigSettings rig;
+      stability::FrictionRigSettings rig;
       rig.delay_ns = delay * rig.period_ns;
       FrictionMeasures found = measure(which, rig);
       csv += csv_row(which, delay, found);
@@ -133,7 +135,7 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
   scene::print_format("\n");
   add_even_sliding(figures);
 
-  FrictionRigSettings ideal;
+  stability::FrictionRigSettings ideal;
   ideal.encoder_step = 0;
   const FrictionMeasures smooth = measure(friction_cases()[1], ideal);
   figures.push_back({"naive_hold.ideal_encoder.rest_way", smooth.rest_way, "m", "<= 1e-06"});
@@ -146,8 +148,8 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
   figures.push_back({"bristle.worst_of_160_stops.sign_changes", worst.sign_changes, "1/s", "== 0"});
   figures.push_back({"bristle.worst_of_160_stops.held_least", worst.held_least, "N", ">= 0.25"});
 
-  if (auto done = write_text(csv, folder / "friction.csv"); !done) return done.error();
-  if (!has_gnuplot()) {
+  if (auto done = report::write_text(csv, folder / "friction.csv"); !done) return done.error();
+  if (!report::has_gnuplot()) {
     scene::logger().warn(
         "NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Table, CSV and figures "
         "are complete.");
@@ -162,4 +164,4 @@ driver::Result<std::vector<Figure>> study_friction(const std::filesystem::path& 
   return figures;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -4,7 +4,7 @@
 
 #include "thimble/driver/energy_guard.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Most energy that motors gave in any window of a run, beyond what the pressed springs held at its
 /// beginning.
@@ -38,4 +38,4 @@ inline double energy_let_go(const driver::EnergyGuardSettings& stage) {
   return stage.reservoir + stage.allowance + 2 * stage.onset;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -15,7 +15,7 @@
 #include "studies/fuzz_scenes/small_meshes.h"
 #include "thimble/render/contact_choice.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -336,7 +336,7 @@ class Drawing {
                    ", press: ", number(draw_.uniform(0, 0.01))});
   }
 
-  Draw draw_;
+  stability::Draw draw_;
   const RandomSceneLimits& limits_;
   std::uint64_t seed_;
   double rate_ = 1000;
@@ -355,4 +355,4 @@ RandomScene random_scene(std::uint64_t seed, const RandomSceneLimits& limits) {
   return Drawing(seed, limits).scene();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,7 +6,7 @@
 
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Between what limits random scenes are drawn. Stiffness lies within what an arm and a loop
 /// can carry by the laws, so that any trouble is a mistake of the program or of a law. What a law
@@ -38,4 +38,4 @@ struct RandomScene {
 /// The same seed gives the same scene on every machine. Real-time: never from the servo thread.
 RandomScene random_scene(std::uint64_t seed, const RandomSceneLimits& limits);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 #include "studies/tube_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -133,4 +133,4 @@ driver::Result<void> write_small_meshes(const std::filesystem::path& folder) {
   return {};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

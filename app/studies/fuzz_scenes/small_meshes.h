@@ -8,7 +8,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Names the small closed meshes for random scenes, about 1 unit large: smooth and sharp, hollow,
 /// thin, and with a needle's point.
@@ -21,4 +21,4 @@ render::TriangleMesh small_mesh(std::size_t which);
 /// Writes all of them into `folder` as NAME.off; makes the folder. Fails if it cannot.
 driver::Result<void> write_small_meshes(const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

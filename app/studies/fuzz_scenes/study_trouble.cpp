@@ -17,7 +17,7 @@
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr int kTries = 12;           // a scene that the loader refuses is drawn anew
@@ -63,7 +63,7 @@ driver::Result<std::vector<double>> measure(std::size_t cell, std::uint64_t seed
     const std::uint64_t drawn = try_seed(seed, cell, attempt);
     const RandomScene scene = random_scene(drawn, limits);
     const std::filesystem::path file = folder / (seed_name(drawn) + ".yaml");
-    if (auto done = write_text(scene.text, file); !done) return done.error();
+    if (auto done = report::write_text(scene.text, file); !done) return done.error();
     found = run_for_trouble(file, scene);
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
@@ -118,7 +118,7 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
         fmt::format("# own_energy: {:.9g} J; {}\n", scene.own_energy, showed);
     const std::string name = fmt::format("{:02}_{}", rank + 1, seed_name(drawn));
     const std::filesystem::path file = folder / (name + ".yaml");
-    if (auto done = write_text(heading + scene.text, file); !done) return done;
+    if (auto done = report::write_text(heading + scene.text, file); !done) return done;
     pages.list(name + ".yaml", showed);
     if (rank >= kShown) continue;
     if (auto done = pages.add(file, name, "its run, to be looked at."); !done) return done;
@@ -194,7 +194,8 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                     {"of_those_no_warning_foretold", unforetold, "", "== 0"},
                     {"largest_limit_cycle_of_naive_and_paper_friction", known, "N", ""}};
   const std::filesystem::path& folder = sweep_options.folder;
-  if (auto done = write_text(table_of(result->numbers, options.seed), folder / "trouble.csv");
+  if (auto done =
+          report::write_text(table_of(result->numbers, options.seed), folder / "trouble.csv");
       !done) {
     return done.error();
   }
@@ -204,4 +205,4 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
   return report;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 #include "studies/sweep/sweep.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// How far trouble is searched for.
 struct TroubleOptions {
@@ -22,7 +22,7 @@ struct TroubleOptions {
 /// What the search found.
 struct TroubleReport {
   SweepEnd end = SweepEnd::kDone;
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
 };
 
 /// Touches `count` random scenes by random hands (random_scene.h), and writes
@@ -34,4 +34,4 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
                                             const SweepOptions& sweep,
                                             const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

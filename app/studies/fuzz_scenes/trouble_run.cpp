@@ -17,7 +17,7 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -64,8 +64,8 @@ class Account {
     double square = 0;
     for (const auto& axis : force_) {
       if (axis.size() < rest) continue;
-      const std::vector<double> fast = high_passed(axis, rate, kCorner);
-      const double one = root_mean_square(std::span(fast).last(rest));
+      const std::vector<double> fast = stability::high_passed(axis, rate, kCorner);
+      const double one = stability::root_mean_square(std::span(fast).last(rest));
       square += one * one;
     }
     found_.limit_cycle = found_.not_finite > 0 ? 0 : std::sqrt(square);
@@ -120,7 +120,7 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
       scene.own_energy;
   found.must_oscillate = scene.oscillates;
   found.unforetold = !found.must_oscillate && found.limit_cycle > kLimitCycleMost &&
-                     rest_causes(session.scene()).empty();
+                     stability::rest_causes(session.scene()).empty();
   return found;
 }
 
@@ -155,4 +155,4 @@ TroubleFound trouble_of(const std::vector<double>& numbers) {
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,7 +6,7 @@
 
 #include "studies/fuzz_scenes/random_scene.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What a scene showed on the virtual clock. All of it is finite, whatever happened.
 struct TroubleFound {
@@ -44,4 +44,4 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
 std::vector<double> numbers_of(const TroubleFound& found);
 TroubleFound trouble_of(const std::vector<double>& numbers);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,7 +7,7 @@
 
 #include "body/spring/oscillator.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 render::SpringNetwork<1> membrane_network(const Membrane& membrane) {
   const std::int32_t n = membrane.n;
@@ -60,4 +60,4 @@ std::vector<double> membrane_truth(const Membrane& membrane, double t) {
   return {field.data(), field.data() + field.size()};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -5,7 +5,7 @@
 
 #include "body/spring/spring_network.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A square membrane of n x n nodes in a fixed frame that is poked at one node and let go: the
 /// deformable body whose motion is known exactly [PHYSICS 4].
@@ -29,4 +29,4 @@ render::SpringNetwork<1> membrane_network(const Membrane& membrane);
 /// by its closed form. Real-time: never from the servo thread.
 std::vector<double> membrane_truth(const Membrane& membrane, double t);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,7 +7,7 @@
 
 #include "body/spring/modal_motion.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // Looks at the touched node, in a way that cannot be left out.
@@ -152,4 +152,4 @@ template driver::Result<WorkPoint> measure<3>(const PokedBody<3>&, render::Sprin
 template driver::Result<WorkPoint> measure_modal<1>(const PokedBody<1>&);
 template driver::Result<WorkPoint> measure_modal<3>(const PokedBody<3>&);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -8,7 +8,7 @@
 #include "body/spring/spring_network.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// A body that is poked at one node and let go, and how it truly moves: all numbers of all nodes
 /// at the end of each frame of 1 ms.
@@ -49,4 +49,4 @@ driver::Result<WorkPoint> measure(const PokedBody<kDof>& body, render::SpringSch
 template <int kDof>
 driver::Result<WorkPoint> measure_modal(const PokedBody<kDof>& body);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -21,7 +21,7 @@
 #include "studies/sweep/progress_bar.h"
 #include "thimble/render/mesh/mesh_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using render::SpringScheme;
@@ -160,42 +160,42 @@ std::string spoken(std::string name) {
 // Errors below this share are drawn at it: rounding, which would squeeze all else.
 constexpr double kFloor = 1e-7;
 
-Plot work_precision(const Diagram& diagram) {
+report::Plot work_precision(const Diagram& diagram) {
   // Colours that stay apart for colour-blind eyes [M Okabe and Ito].
   constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a919c", "#30343b"};
   constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
   std::ostringstream text;
   std::string plots;
-  text << quiet_style();
+  text << report::quiet_style();
   for (std::size_t i = 0; i < diagram.lines.size(); ++i) {
     text << "$line" << i << " << EOD\n";
     int points = 0;
     for (const WorkPoint& point : diagram.lines[i]) {
       if (point.diverged) continue;
-      text << number(point.frame_us) << ' ' << number(100 * std::max(point.error, kFloor)) << ' '
-           << point.substeps << '\n';
+      text << report::number(point.frame_us) << ' '
+           << report::number(100 * std::max(point.error, kFloor)) << ' ' << point.substeps << '\n';
       ++points;
     }
     text << "EOD\n";
     if (points == 0) continue;
     plots += ", $line" + std::to_string(i) + " using 1:2 with linespoints lw 2.4 pt " +
              std::to_string(kMarks[i]) + " ps 1.2 lc rgb '" + kColours[i] + "' title " +
-             quote(spoken(diagram.lines[i][0].integrator)
-                       .append(diagram.lines[i][0].error < kFloor ? " (exact)" : ""));
+             report::quote(spoken(diagram.lines[i][0].integrator)
+                               .append(diagram.lines[i][0].error < kFloor ? " (exact)" : ""));
   }
-  text << "set title " << quote(diagram.title) << "\nset logscale xy\n"
+  text << "set title " << report::quote(diagram.title) << "\nset logscale xy\n"
        << "set xlabel 'work per tick of 1 ms [µs]'\n"
        << "set ylabel 'largest error [% of the largest motion]'\n"
        << "set format x '10^{%L}'\nset format y '10^{%L}'\n"
        << "set key outside right center Left reverse samplen 2\n"
-       << "set arrow 1 from graph 0, first " << number(100 * kFelt) << " to graph 1, first "
-       << number(100 * kFelt) << " nohead dt '-' lc rgb '" << kFaintInk << "'\n"
-       << "set label 1 'below: not felt' at graph 0.01, first " << number(100 * kFelt)
-       << " left offset 0,-0.8 tc rgb '" << kFaintInk << "'\n"
+       << "set arrow 1 from graph 0, first " << report::number(100 * kFelt) << " to graph 1, first "
+       << report::number(100 * kFelt) << " nohead dt '-' lc rgb '" << report::kFaintInk << "'\n"
+       << "set label 1 'below: not felt' at graph 0.01, first " << report::number(100 * kFelt)
+       << " left offset 0,-0.8 tc rgb '" << report::kFaintInk << "'\n"
        << "set label 2 'a tick' at first 1000, graph 0.03 rotate left offset 0.8,0 tc rgb '"
-       << kFaintInk
+       << report::kFaintInk
        << "'\nset arrow 2 from first 1000, graph 0 to first 1000, graph 1 nohead dt '-' "
-       << "lc rgb '" << kFaintInk << "'\nplot " << plots.substr(2) << '\n';
+       << "lc rgb '" << report::kFaintInk << "'\nplot " << plots.substr(2) << '\n';
   return {.name = diagram.name, .width = 1600, .height = 900, .commands = text.str()};
 }
 
@@ -215,7 +215,7 @@ double order_named(const std::string& integrator) {
   return NAN;
 }
 
-void add_figures(const Diagram& diagram, bool with_orders, std::vector<Figure>& figures) {
+void add_figures(const Diagram& diagram, bool with_orders, std::vector<session::Figure>& figures) {
   for (const auto& line : diagram.lines) {
     const std::string name = diagram.name + ", " + spoken(line[0].integrator);
     const WorkPoint* cheapest = nullptr;
@@ -245,7 +245,8 @@ void add_figures(const Diagram& diagram, bool with_orders, std::vector<Figure>& 
 
 }  // namespace
 
-driver::Result<std::vector<Figure>> study_integrators(const std::filesystem::path& folder) {
+driver::Result<std::vector<session::Figure>> study_integrators(
+    const std::filesystem::path& folder) {
   std::vector<Diagram> diagrams;
   auto membrane =
       measure_all(poked_membrane(), true,
@@ -266,18 +267,19 @@ driver::Result<std::vector<Figure>> study_integrators(const std::filesystem::pat
   } else {
     scene::print_format("The scanned mesh is left out: %s\n", scan.error().message.c_str());
   }
-  if (auto written = write_text(csv_of(diagrams), folder / "integrators.csv"); !written) {
+  if (auto written = report::write_text(csv_of(diagrams), folder / "integrators.csv"); !written) {
     return written.error();
   }
-  if (has_gnuplot()) {
-    if (auto made = make_picture_folder(folder); !made) return made.error();
+  if (report::has_gnuplot()) {
+    if (auto made = report::make_picture_folder(folder); !made) return made.error();
     for (const Diagram& diagram : diagrams) {
-      if (auto drawn = draw_plot(work_precision(diagram), folder); !drawn) return drawn.error();
+      if (auto drawn = report::draw_plot(work_precision(diagram), folder); !drawn)
+        return drawn.error();
     }
   }
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
   for (const Diagram& diagram : diagrams) add_figures(diagram, &diagram == &diagrams[0], figures);
   return figures;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

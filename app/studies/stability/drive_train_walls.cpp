@@ -10,7 +10,7 @@
 #include "stability/signal.h"
 #include "studies/stability/stability_picture_parts.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Matrix3d;
@@ -21,7 +21,7 @@ constexpr double kCellRange =
 
 /// A joint that alone moves the tip along its own way at home.
 struct LoneJoint {
-  ArmDirection direction;
+  stability::ArmDirection direction;
   Matrix3d J_BT;  // at home, m/rad
 };
 
@@ -36,7 +36,7 @@ std::optional<LoneJoint> lone_joint(const scene::ArmFile& arm) {
     const double others =
         std::max(std::abs(n.dot(J.col((i + 1) % 3))), std::abs(n.dot(J.col((i + 2) % 3))));
     if (!(others < kAlone * J.col(i).norm())) continue;
-    const auto direction = direction_at_home(arm, arm.R_WB * n);
+    const auto direction = stability::direction_at_home(arm, arm.R_WB * n);
     if (direction) return LoneJoint{*direction, J};
   }
   return std::nullopt;
@@ -54,20 +54,21 @@ std::vector<double> series(double least, double most, int count, bool logarithmi
 
 /// Finds whether an oscillation that a kick begins grows. What is looked at is the force: where a
 /// motor oscillates against its tip, the tip shows little of it.
-driver::Result<bool> force_grows(const scene::ArmFile& arm, WallCase wall, double mass) {
+driver::Result<bool> force_grows(const scene::ArmFile& arm, stability::WallCase wall, double mass) {
   constexpr double kStartForce = 0.3;  // N, far above a step of the current
   constexpr double kFarFromStart = 10;
   constexpr double kFarthest = 0.05;  // m
   const double frequency = std::sqrt(wall.stiffness / mass);
   wall.kick = kStartForce / wall.stiffness * frequency;
   wall.give_up = kFarthest;
-  const auto run = run_wall(arm, wall);
+  const auto run = stability::run_wall(arm, wall);
   if (!run) return run.error();
   if (run->gave_up) return true;
   // The motor against the tip may grow, quickly to and fro, while the slower of both dies.
   const double rate = 1e9 / static_cast<double>(wall.period_ns);
   const double between = 2 * frequency / (2 * std::numbers::pi);
-  const std::vector<double> quick = high_passed(run->push, rate, std::min(between, 0.3 * rate));
+  const std::vector<double> quick =
+      stability::high_passed(run->push, rate, std::min(between, 0.3 * rate));
   const auto grown = [&](const std::vector<double>& force) {
     const auto most = [&](double from, double to) {
       const auto at = [&](double share) {
@@ -99,8 +100,8 @@ void add_drive_train_walls(const StabilitySetup& setup, std::vector<StabilityCel
   }
 }
 
-SampledWall drive_train_wall(const StabilitySetup& setup, const StabilityCell& cell) {
-  SampledWall wall{
+stability::SampledWall drive_train_wall(const StabilitySetup& setup, const StabilityCell& cell) {
+  stability::SampledWall wall{
       .mass = setup.arm.simulated.plant.mass, .viscous = kBareDamping, .period = setup.period()};
   if (cell.part == StabilityPart::kLagEdge) {
     wall.amplifier_lag = cell.a;
@@ -114,11 +115,11 @@ SampledWall drive_train_wall(const StabilitySetup& setup, const StabilityCell& c
 }
 
 driver::Result<double> drive_train_edge(const StabilitySetup& setup, const StabilityCell& cell) {
-  const SampledWall linear = drive_train_wall(setup, cell);
+  const stability::SampledWall linear = drive_train_wall(setup, cell);
   scene::ArmFile arm = setup.arm;
   auto& train = arm.simulated.drive_train;
   train = {};
-  WallCase wall;
+  stability::WallCase wall;
   wall.direction = setup.direction;
   wall.tip = {.mass = linear.mass, .viscous = linear.viscous, .coulomb = 0};
   wall.period_ns = setup.period_ns;
@@ -136,7 +137,7 @@ driver::Result<double> drive_train_edge(const StabilitySetup& setup, const Stabi
       train.inertia[i] = linear.rotor_mass * lever2;
     }
   }
-  const double about = stiffness_edge(linear);
+  const double about = stability::stiffness_edge(linear);
   double low = about / kCellRange, high = about * kCellRange;
   while (high > 1.002 * low) {
     wall.stiffness = std::sqrt(low * high);
@@ -155,8 +156,10 @@ driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
     lags.push_back({1e3 * row.cell.a, row.found[0]});
   }
   for (const double lag : series(0, 0.003, 61, false)) {
-    const SampledWall wall = drive_train_wall(setup, {.part = StabilityPart::kLagEdge, .a = lag});
-    lag_law.push_back({1e3 * lag, limit_by_phase(wall), stiffness_edge(wall)});
+    const stability::SampledWall wall =
+        drive_train_wall(setup, {.part = StabilityPart::kLagEdge, .a = lag});
+    lag_law.push_back(
+        {1e3 * lag, stability::limit_by_phase(wall), stability::stiffness_edge(wall)});
   }
   std::vector<double> dampings;
   for (const StabilityRow& row : part_of(rows, StabilityPart::kCableEdge)) {
@@ -169,9 +172,10 @@ driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
   for (const double damping : dampings) {
     if (!cable_law.empty()) cable_law.push_back({});
     for (const double stiffness : series(1e3, 1e6, 121, true)) {
-      const SampledWall wall = drive_train_wall(
+      const stability::SampledWall wall = drive_train_wall(
           setup, {.part = StabilityPart::kCableEdge, .a = stiffness, .b = damping});
-      cable_law.push_back({1e-3 * stiffness, limit_by_phase(wall), stiffness_edge(wall)});
+      cable_law.push_back(
+          {1e-3 * stiffness, stability::limit_by_phase(wall), stability::stiffness_edge(wall)});
     }
   }
   for (const auto& [data, file] : {std::pair(&lags, "by_lag.dat"),
@@ -184,21 +188,22 @@ driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
                         const std::string& title) {
     const std::string part = " every :::" + std::to_string(block) + "::" + std::to_string(block);
     return "'data/" + file + "_law.dat'" + part + " using 1:3 with lines lw 1.5 dt 2 lc rgb '" +
-           kInk + "' notitle, 'data/" + file + "_law.dat'" + part +
-           " using 1:2 with lines lw 2.5 lc rgb '" + ink + "' title " + quote(title) + ", 'data/" +
-           file + ".dat'" + part + " using 1:2 with points pt 7 ps 1 lc rgb '" + ink + "' notitle";
+           report::kInk + "' notitle, 'data/" + file + "_law.dat'" + part +
+           " using 1:2 with lines lw 2.5 lc rgb '" + ink + "' title " + report::quote(title) +
+           ", 'data/" + file + ".dat'" + part + " using 1:2 with points pt 7 ps 1 lc rgb '" + ink +
+           "' notitle";
   };
-  constexpr std::array kInks{kForceInk, kDepthInk, kGreenInk};
+  constexpr std::array kInks{report::kForceInk, report::kDepthInk, kGreenInk};
   std::ostringstream c;
-  c << quiet_style() << "set multiplot\n"
+  c << report::quiet_style() << "set multiplot\n"
     << heading("What the drive train does to the largest stiffness of a wall",
                "free linear arm, b = 1 N s/m; lines: the law; dots: the simulated loop; dashed: "
                "exact map of one tick; " +
                    setup.arm.name)
-    << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << kInk << "'\n"
+    << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << report::kInk << "'\n"
     << panel(0.085, 0.475, 0.14, 0.79) << panel_title("Amplifiers that lag")
     << axis_labels("time constant of the currents [ms]", "largest stiffness [N/m]")
-    << "set xrange [-0.1:3.1]\nset yrange [0:*]\nplot " << sweep("by_lag", 0, kForceInk, "")
+    << "set xrange [-0.1:3.1]\nset yrange [0:*]\nplot " << sweep("by_lag", 0, report::kForceInk, "")
     << "\nunset label 101\nunset label 102\n";
   if (!dampings.empty()) {
     c << panel(0.565, 0.975, 0.14, 0.79)
@@ -213,7 +218,7 @@ driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
     c << "\n";
   }
   c << "unset multiplot\n";
-  return draw_plot({"drive_train", 1600, 800, c.str()}, folder);
+  return report::draw_plot({"drive_train", 1600, 800, c.str()}, folder);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

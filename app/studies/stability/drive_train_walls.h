@@ -8,7 +8,7 @@
 #include "studies/stability/stability_tables.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 // What the drive train does to the largest stiffness: amplifiers that lag, and cables that stretch.
 // The arm is that of case 1 [PHYSICS 7], free and linear. With a cable a part of its mass belongs
@@ -23,7 +23,7 @@ inline constexpr double kRotorShare = 0.3;
 void add_drive_train_walls(const StabilitySetup& setup, std::vector<StabilityCell>& cells);
 
 /// Returns the linear loop of a cell of either sweep.
-SampledWall drive_train_wall(const StabilitySetup& setup, const StabilityCell& cell);
+stability::SampledWall drive_train_wall(const StabilitySetup& setup, const StabilityCell& cell);
 
 /// Finds the largest stiffness of the simulated arm, N/m. Fails as run_wall.
 driver::Result<double> drive_train_edge(const StabilitySetup& setup, const StabilityCell& cell);
@@ -33,4 +33,4 @@ driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
                                             const std::vector<StabilityRow>& rows,
                                             const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

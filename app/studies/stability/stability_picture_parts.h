@@ -13,7 +13,7 @@
 #include "report/picture_style.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 // What the pictures of this study share.
 
@@ -33,23 +33,25 @@ inline std::string panel(double left, double right, double bottom, double top) {
 /// Puts title and subtitle above a picture.
 inline std::string heading(const std::string& title, const std::string& below) {
   std::ostringstream c;
-  c << "set label 101 " << quote(fitted(title, 1400, 22))
+  c << "set label 101 " << report::quote(report::fitted(title, 1400, 22))
     << " at screen 0.06, screen 0.955 font ',22' noenhanced "
-    << "textcolor rgb '" << kInk << "'\nset label 102 " << quote(fitted(below, 1700, 15))
-    << " at screen 0.06, screen 0.912 font ',15' noenhanced textcolor rgb '" << kFaintInk << "'\n";
+    << "textcolor rgb '" << report::kInk << "'\nset label 102 "
+    << report::quote(report::fitted(below, 1700, 15))
+    << " at screen 0.06, screen 0.912 font ',15' noenhanced textcolor rgb '" << report::kFaintInk
+    << "'\n";
   return c.str();
 }
 
 /// Puts a panel's own title above it, from its left edge, a line's height away from the frame.
 inline std::string panel_title(const std::string& title) {
-  return "set label 103 " + quote(title) +
-         " at graph 0, graph 1 offset 0,0.9 noenhanced textcolor rgb '" + kInk + "'\n";
+  return "set label 103 " + report::quote(title) +
+         " at graph 0, graph 1 offset 0,0.9 noenhanced textcolor rgb '" + report::kInk + "'\n";
 }
 
 /// Labels both axes.
 inline std::string axis_labels(const std::string& x, const std::string& y) {
-  return "set xlabel " + quote(x) + " noenhanced textcolor rgb '" + kInk + "'\nset ylabel " +
-         quote(y) + " noenhanced textcolor rgb '" + kInk + "'\n";
+  return "set xlabel " + report::quote(x) + " noenhanced textcolor rgb '" + report::kInk +
+         "'\nset ylabel " + report::quote(y) + " noenhanced textcolor rgb '" + report::kInk + "'\n";
 }
 
 /// Writes columns of numbers as gnuplot reads them; what is no number leaves a gap.
@@ -62,7 +64,7 @@ inline driver::Result<void> write_data(const std::vector<std::vector<double>>& r
     }
     text += "\n";
   }
-  return write_text(text, file);
+  return report::write_text(text, file);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

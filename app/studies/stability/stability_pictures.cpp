@@ -16,7 +16,7 @@
 #include "studies/stability/drive_train_walls.h"
 #include "studies/stability/stability_picture_parts.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 /// Says which arm, hand and loop it is.
@@ -40,7 +40,7 @@ double log_of(double value) {
 std::string curve(const std::string& file, const std::string& columns, const char* color,
                   const std::string& style, const std::string& title) {
   return "'data/" + file + "' using " + columns + " " + style + " lc rgb '" + color + "' title " +
-         quote(title);
+         report::quote(title);
 }
 
 // ---- The K-B map ----
@@ -57,11 +57,11 @@ driver::Result<void> write_kb_lines(const StabilitySetup& setup,
   std::vector<std::vector<double>> lines;
   for (std::size_t i = 0; i < linear.size(); ++i) {
     const double b = linear[i].cell.b;
-    lines.push_back({std::log10(b), log_of(linear[i].found[0]), log_of(linear[i].law),
-                     log_of(linear[i].exact), log_of(arm[i].found[0]), log_of(arm[i].law),
-                     log_of(diagonal[i].found[0]),
-                     log_of(passive_stiffness(tip.viscous, b, setup.period(), setup.delay())),
-                     log_of(guarded[i].found[0])});
+    lines.push_back(
+        {std::log10(b), log_of(linear[i].found[0]), log_of(linear[i].law), log_of(linear[i].exact),
+         log_of(arm[i].found[0]), log_of(arm[i].law), log_of(diagonal[i].found[0]),
+         log_of(stability::passive_stiffness(tip.viscous, b, setup.period(), setup.delay())),
+         log_of(guarded[i].found[0])});
   }
   return write_data(lines, folder / "data/kb_lines.dat");
 }
@@ -107,25 +107,28 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   const double latency = scene::latency_of({.period = setup.period(), .delay = setup.delay()});
   const double quantised =
-      passive_stiffness_quantised(tip.viscous, tip.coulomb, step, setup.period());
+      stability::passive_stiffness_quantised(tip.viscous, tip.coulomb, step, setup.period());
   std::string note;
   std::ostringstream c;
-  c << quiet_style() << "set multiplot\n"
+  c << report::quiet_style() << "set multiplot\n"
     << heading("Where a wall is stable: stiffness against damping", subject(setup, true))
-    << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
+    << "unset grid\nset border 15 lw 1 lc rgb '" << report::kFaintInk << "'\n"
     << "set key at screen 0.065, screen 0.195 left top Left reverse samplen 2.2 spacing 1.2 "
        "maxrows 6 font ',15' textcolor rgb '"
-    << kInk << "'\n"
+    << report::kInk << "'\n"
     << axis_labels("damping B of the wall [N s/m]", "stiffness K of the wall [N/m]")
     << decade_axes() << panel(0.065, 0.42, 0.29, 0.83)
     << panel_title("Linear arm: ideal encoders, no dry friction")
     << "set palette defined (-40 '#0072b2', -8 '#a9cfe6', 0 '#ffffff', 8 '#f3c19b', 40 '#d55e00')\n"
     << "set cbrange [-40:40]\nset cbtics 20\n"
-    << "set cblabel 'growth of an oscillation [1/s]' textcolor rgb '" << kInk << "' offset 0.6,0\n"
+    << "set cblabel 'growth of an oscillation [1/s]' textcolor rgb '" << report::kInk
+    << "' offset 0.6,0\n"
     << "set colorbox user origin screen 0.43, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_linear.dat' using 1:2:3 with image pixels notitle, "
-    << curve("kb_lines.dat", "1:2", kInk, "with points pt 7 ps 0.45", "measured edge") << ", "
-    << curve("kb_lines.dat", "1:4", kInk, "with lines lw 1.5", "exact map of one tick") << ", "
+    << curve("kb_lines.dat", "1:2", report::kInk, "with points pt 7 ps 0.45", "measured edge")
+    << ", "
+    << curve("kb_lines.dat", "1:4", report::kInk, "with lines lw 1.5", "exact map of one tick")
+    << ", "
     << curve("kb_lines.dat", "1:3", kGreenInk, "with lines lw 3 dt 2", "latency budget (b+B)/L")
     << ", "
     << curve("kb_lines.dat", "1:8", kPurpleInk, "with lines lw 3",
@@ -139,16 +142,17 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << "set palette defined (-2 '#ffffff', -1 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2 '#8c2d04', "
        "3 '#3b0f00')\n"
     << "set cbrange [-2:3]\nset cbtics ('rest' -2, '0.1' -1, '1' 0, '10' 1, '100' 2, '1000' 3)\n"
-    << "set cblabel 'limit cycle at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
+    << "set cblabel 'limit cycle at the end [encoder steps]' textcolor rgb '" << report::kInk
+    << "'\n"
     << "set colorbox user origin screen 0.915, screen 0.29 size screen 0.012, screen 0.54\n"
     << "plot 'data/kb_arm.dat' using 1:2:3 with image pixels notitle, "
-    << curve("kb_lines.dat", "1:5", kInk, "with lines lw 2",
+    << curve("kb_lines.dat", "1:5", report::kInk, "with lines lw 2",
              "measured edge: limit cycle of 1/4 step")
     << ", "
-    << curve("kb_lines.dat", "1:9", kForceInk, "with lines lw 2.5",
+    << curve("kb_lines.dat", "1:9", report::kForceInk, "with lines lw 2.5",
              "the same with the arm's energy stage")
     << ", "
-    << curve("kb_lines.dat", "1:7", kInk, "with lines lw 3 dt 3",
+    << curve("kb_lines.dat", "1:7", report::kInk, "with lines lw 3 dt 3",
              "the same where all encoders step at once")
     << ", "
     << curve("kb_lines.dat", "1:6", kGreenInk, "with lines lw 3 dt 2",
@@ -157,7 +161,7 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << "' title 'passive: min(2b/T, 2c/Δ) (Abbott, Okamura)', " << log_of(2 * tip.coulomb / step)
     << " with lines lw 2 dt 4 lc rgb '" << kGoldInk
     << "' title 'σ = 1/2: dry friction holds one step (Diolaiti)'\nunset multiplot\n";
-  return draw_plot({"kb_map", 1700, 1000, c.str()}, folder);
+  return report::draw_plot({"kb_map", 1700, 1000, c.str()}, folder);
 }
 
 // ---- Restitution ----
@@ -165,7 +169,8 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
 driver::Result<void> draw_restitution(const StabilitySetup& setup,
                                       const std::vector<StabilityRow>& rows,
                                       const std::filesystem::path& folder) {
-  constexpr std::array kInks{kInk, kDepthInk, kPurpleInk, kForceInk, kGreenInk, kGoldInk};
+  constexpr std::array kInks{report::kInk,      report::kDepthInk, kPurpleInk,
+                             report::kForceInk, kGreenInk,         kGoldInk};
   const auto bounces = part_of(rows, StabilityPart::kRestitution);
   std::vector<std::vector<double>> points, curves;
   std::vector<StabilityCell> series;
@@ -185,15 +190,16 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
         bounces[i + 1].cell.d != cell.d || bounces[i + 1].cell.b != cell.b) {
       const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
       for (double k = 100; k <= cell.a * 1.001; k *= 1.03) {
-        curves.push_back({k, restitution(k, tip.viscous + cell.b, tip.mass,
-                                         scene::latency_of({.period = cell.c, .delay = cell.d}))});
+        curves.push_back(
+            {k, stability::restitution(k, tip.viscous + cell.b, tip.mass,
+                                       scene::latency_of({.period = cell.c, .delay = cell.d}))});
       }
     }
   }
   if (auto done = write_data(points, folder / "data/restitution.dat"); !done) return done;
   if (auto done = write_data(curves, folder / "data/restitution_law.dat"); !done) return done;
   std::ostringstream c;
-  c << quiet_style()
+  c << report::quiet_style()
     << heading("How a wall throws back what hits it",
                setup.arm.name +
                    " without a hand, ideal encoders, no dry friction; 0.1 m/s; dots: mean over all "
@@ -204,13 +210,13 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
     << axis_labels("stiffness of the wall [N/m]", "restitution: speed out / speed in")
     << "set key at screen 0.745, screen 0.84 left top Left reverse samplen 2 spacing 1.6 font "
        "',15' textcolor rgb '"
-    << kInk << "'\n"
-    << "set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead lw 1.5 lc rgb '" << kFaintInk
-    << "'\n"
+    << report::kInk << "'\n"
+    << "set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead lw 1.5 lc rgb '"
+    << report::kFaintInk << "'\n"
     << "set label 1 'above this line the wall gives energy away, below it takes some' at first "
        "95, first 0.97 font "
        "',14' textcolor rgb '"
-    << kFaintInk << "'\nplot ";
+    << report::kFaintInk << "'\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
     std::string title = fmt::format("{:.4g} kHz", 1e-3 / series[i].c);
     if (series[i].d > 0) {
@@ -221,11 +227,13 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
     }
     c << "'data/restitution.dat' every :::" << i << "::" << i
       << " using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1 lc rgb '" << kInks[i % kInks.size()]
-      << "' title " << quote(title) << ", 'data/restitution_law.dat' every :::" << i << "::" << i
-      << " using 1:2 with lines lw 2 lc rgb '" << kInks[i % kInks.size()] << "' notitle, ";
+      << "' title " << report::quote(title) << ", 'data/restitution_law.dat' every :::" << i
+      << "::" << i << " using 1:2 with lines lw 2 lc rgb '" << kInks[i % kInks.size()]
+      << "' notitle, ";
   }
-  c << "NaN with lines lw 2 lc rgb '" << kFaintInk << "' title 'lines: the law; dots: simulated'\n";
-  return draw_plot({"restitution", 1600, 900, c.str()}, folder);
+  c << "NaN with lines lw 2 lc rgb '" << report::kFaintInk
+    << "' title 'lines: the law; dots: simulated'\n";
+  return report::draw_plot({"restitution", 1600, 900, c.str()}, folder);
 }
 
 // ---- Limit cycles ----
@@ -234,16 +242,17 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
                                  const std::filesystem::path& folder) {
   const auto cycles = part_of(rows, StabilityPart::kCycle);
   std::ostringstream c;
-  c << quiet_style() << "set multiplot\n"
+  c << report::quiet_style() << "set multiplot\n"
     << heading(
            "Where coarse encoders and dry friction keep a wall in a limit cycle",
            "β = b/(K T), σ = c/(K Δ); blue: corners of Diolaiti et al.; green: where dry friction "
            "just holds the start; " +
                setup.arm.name + ", no hand")
-    << "unset grid\nset border 15 lw 1 lc rgb '" << kFaintInk << "'\n"
+    << "unset grid\nset border 15 lw 1 lc rgb '" << report::kFaintInk << "'\n"
     << "set palette defined (-3 '#ffffff', -2 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2.4 '#3b0f00')\n"
     << "set cbrange [-3:2.4]\nset cbtics ('rest' -3, '0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2)\n"
-    << "set cblabel 'oscillation at the end [encoder steps]' textcolor rgb '" << kInk << "'\n"
+    << "set cblabel 'oscillation at the end [encoder steps]' textcolor rgb '" << report::kInk
+    << "'\n"
     << "set xrange [0.02:1.53]\nset xtics 0.5\nset ytics 0.5\n";
   int index = 0;
   for (const double start : {3.5, 60.5}) {
@@ -272,18 +281,19 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
       c << panel(left, left + 0.35, top - 0.3, top) << panel_title(title)
         << axis_labels(row == 1 ? "dry friction σ" : "", column == 0 ? "viscous friction β" : "")
         << "set yrange [" << 0.02 + delay << ":" << 1.53 + delay << "]\n"
-        << "set arrow 1 from 0.5, graph 0 to 0.5, graph 1 nohead front lw 2 lc rgb '" << kForceInk
-        << "'\nset arrow 2 from graph 0, first " << 0.5 + delay << " to graph 1, first "
-        << 0.5 + delay << " nohead front lw 2 lc rgb '" << kForceInk << "'\n";
+        << "set arrow 1 from 0.5, graph 0 to 0.5, graph 1 nohead front lw 2 lc rgb '"
+        << report::kForceInk << "'\nset arrow 2 from graph 0, first " << 0.5 + delay
+        << " to graph 1, first " << 0.5 + delay << " nohead front lw 2 lc rgb '"
+        << report::kForceInk << "'\n";
       const auto region = [&](int tag, const char* text, double x, double y, const char* ink) {
         c << "set label " << tag << " '" << text << "' at graph " << x << ", graph " << y
           << " center front font ',15' textcolor rgb '" << ink << "'\n";
       };
       const bool large = start > 10;
-      region(1, "comes to rest", 0.66, 0.66, kInk);
-      region(2, "flickers", 0.16, 0.66, kInk);
+      region(1, "comes to rest", 0.66, 0.66, report::kInk);
+      region(2, "flickers", 0.16, 0.66, report::kInk);
       region(3, large ? "too fast for dry friction: grows" : "holds so small an oscillation", 0.66,
-             large ? 0.06 : 0.16, large ? "#ffffff" : kInk);
+             large ? 0.06 : 0.16, large ? "#ffffff" : report::kInk);
       region(4, large ? "grows" : "", 0.16, 0.06, "#ffffff");
       c << (index == 0 ? "set colorbox user origin screen 0.89, screen 0.14 size screen 0.014, "
                          "screen 0.7\n"
@@ -295,7 +305,7 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
     }
   }
   c << "unset multiplot\n";
-  return draw_plot({"limit_cycles", 1500, 1200, c.str()}, folder);
+  return report::draw_plot({"limit_cycles", 1500, 1200, c.str()}, folder);
 }
 
 // ---- Largest stiffness ----
@@ -328,33 +338,33 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
                        int block) {
     const std::string blocks = " every :::" + std::to_string(block) + "::" + std::to_string(block);
     return "'data/" + file + "'" + blocks + " using 1:3 with lines lw 2.5 lc rgb '" + color +
-           "' title " + quote(title) + ", 'data/" + file + "'" + blocks +
+           "' title " + report::quote(title) + ", 'data/" + file + "'" + blocks +
            " using 1:2 with points pt 7 ps 1 lc rgb '" + color + "' notitle";
   };
   const std::string y = "largest stiffness [N/m]";
   std::ostringstream c;
-  c << quiet_style() << "set multiplot\n"
+  c << report::quiet_style() << "set multiplot\n"
     << heading("What the largest stiffness of a wall depends on",
                "lines: the laws; dots: the simulated loop; " + setup.arm.name)
-    << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << kInk << "'\n"
+    << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << report::kInk << "'\n"
     << panel(0.095, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
     << axis_labels("rate [kHz]", y)
     << "set logscale xy\nset xrange [0.22:9]\nset xtics (0.25, 0.5, 1, 2, 4, 8)\n"
     << "set ytics (100, 300, 1000, 3000, 10000, 30000)\nset yrange [80:40000]\nset key bottom "
        "right\nplot "
-    << pair("by_rate.dat", kForceInk, "no delay", 0) << ", "
-    << pair("by_rate.dat", kDepthInk, "one period late", 1)
+    << pair("by_rate.dat", report::kForceInk, "no delay", 0) << ", "
+    << pair("by_rate.dat", report::kDepthInk, "one period late", 1)
     << "\nunset label 101\nunset label 102\n"
     << panel(0.575, 0.975, 0.57, 0.83) << panel_title("Delay: the same arm")
     << axis_labels("delay beyond the hold [ms]", "")
     << "unset logscale x\nset xrange [-0.1:5.1]\nset xtics auto\nset ytics (200, 300, 500, 1000, "
        "2000)\nset yrange [150:3000]\n"
-    << "set key top right\nplot " << pair("by_delay.dat", kForceInk, "", 0) << "\n"
+    << "set key top right\nplot " << pair("by_delay.dat", report::kForceInk, "", 0) << "\n"
     << panel(0.095, 0.475, 0.11, 0.40) << panel_title("Jitter: the same arm")
     << axis_labels("late ticks, or spread of the period [%]", y)
     << "unset logscale y\nset xrange [-2:92]\nset ytics 500\nset yrange [0:2800]\nplot "
-    << pair("by_late.dat", kDepthInk, "this share of ticks comes 3 periods late", 0) << ", "
-    << pair("by_spread.dat", kForceInk, "periods spread evenly by ± this", 0) << "\n"
+    << pair("by_late.dat", report::kDepthInk, "this share of ticks comes 3 periods late", 0) << ", "
+    << pair("by_spread.dat", report::kForceInk, "periods spread evenly by ± this", 0) << "\n"
     << panel(0.575, 0.975, 0.11, 0.40)
     << panel_title("Encoder step: the arm with its dry friction and the hand")
     << axis_labels("encoder step at the tip [µm]", "")
@@ -362,9 +372,11 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
     << "set yrange [150:5000]\nset ytics (200, 500, 1000, 2000, 5000)\n"
     << "set label 1 'what damping and dry friction hold' at graph 0.03, graph 0.62 font ',14' "
        "textcolor rgb '"
-    << kFaintInk << "'\nset label 2 '2 c / Δ' at graph 0.86, graph 0.42 font ',14' textcolor rgb '"
-    << kFaintInk << "'\nplot " << pair("by_step.dat", kForceInk, "", 0) << "\nunset multiplot\n";
-  return draw_plot({"stiffness", 1600, 1100, c.str()}, folder);
+    << report::kFaintInk
+    << "'\nset label 2 '2 c / Δ' at graph 0.86, graph 0.42 font ',14' textcolor rgb '"
+    << report::kFaintInk << "'\nplot " << pair("by_step.dat", report::kForceInk, "", 0)
+    << "\nunset multiplot\n";
+  return report::draw_plot({"stiffness", 1600, 1100, c.str()}, folder);
 }
 
 }  // namespace
@@ -379,4 +391,4 @@ driver::Result<void> draw_stability(const StabilitySetup& setup,
   return draw_drive_train_walls(setup, rows, folder);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,7 +6,7 @@
 #include "studies/stability/stability_tables.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Draws all pictures of the study out of the tables that lie in `folder` (write_stability_tables).
 /// Fails if gnuplot does. Real-time: never from the servo thread.
@@ -14,4 +14,4 @@ driver::Result<void> draw_stability(const StabilitySetup& setup,
                                     const std::vector<StabilityRow>& rows,
                                     const std::filesystem::path& folder);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "studies/stability/drive_train_walls.h"
 #include "studies/stability/wall_measures.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // The limits of all maps: five decades of each, from what passivity allows to beyond any arm.
@@ -36,8 +36,8 @@ std::vector<double> even(double least, double most, int count) {
 }
 
 /// The arm as a linear one: no dry friction, ideal encoders, no limits.
-WallCase linear_case(const StabilitySetup& setup) {
-  WallCase wall;
+stability::WallCase linear_case(const StabilitySetup& setup) {
+  stability::WallCase wall;
   wall.direction = setup.direction;
   wall.tip = setup.arm.simulated.plant;
   wall.tip.coulomb = 0;
@@ -51,8 +51,9 @@ WallCase linear_case(const StabilitySetup& setup) {
 
 /// The arm with its friction, encoders and limits, but without the energy stage of its gate, of
 /// which the laws know nothing.
-WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
-  WallCase wall = linear_case(setup);
+stability::WallCase arm_case(const StabilitySetup& setup,
+                             const stability::ArmDirection& direction) {
+  stability::WallCase wall = linear_case(setup);
   wall.direction = direction;
   wall.tip = setup.arm.simulated.plant;
   wall.own_step = true;
@@ -61,8 +62,8 @@ WallCase arm_case(const StabilitySetup& setup, const ArmDirection& direction) {
 }
 
 /// A free linear arm with b = 1, as in case 1 of [PHYSICS 7].
-WallCase bare_case(const StabilitySetup& setup) {
-  WallCase wall = linear_case(setup);
+stability::WallCase bare_case(const StabilitySetup& setup) {
+  stability::WallCase wall = linear_case(setup);
   wall.hand = {};
   wall.tip.viscous = kBareDamping;
   wall.velocity_corner = 0;
@@ -75,20 +76,22 @@ std::int64_t to_ns(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
-driver::Result<double> edge_by_law(const StabilitySetup& setup, const WallCase& wall,
+driver::Result<double> edge_by_law(const StabilitySetup& setup, const stability::WallCase& wall,
                                    const scene::LoopTimes& times) {
   const double law = scene::stiffness_limit(kBareDamping, scene::latency_of(times));
   return linear_edge(setup.arm, wall, law / kEdgeRange, law * kEdgeRange);
 }
 
-driver::Result<double> arm_oscillation(const StabilitySetup& setup, const WallCase& wall) {
+driver::Result<double> arm_oscillation(const StabilitySetup& setup,
+                                       const stability::WallCase& wall) {
   return setup.hand.stiffness > 0 ? pressed_oscillation(setup.arm, wall)
                                   : released_oscillation(setup.arm, wall, kReleaseSpeed, 2);
 }
 
-driver::Result<double> arm_edge(const StabilitySetup& setup, const ArmDirection& direction,
-                                double damping, bool guarded) {
-  WallCase wall = arm_case(setup, direction);
+driver::Result<double> arm_edge(const StabilitySetup& setup,
+                                const stability::ArmDirection& direction, double damping,
+                                bool guarded) {
+  stability::WallCase wall = arm_case(setup, direction);
   if (guarded) {
     wall.energy =
         scene::energy_settings(setup.arm, 1e9 / static_cast<double>(wall.period_ns), std::nullopt);
@@ -102,7 +105,7 @@ driver::Result<double> arm_edge(const StabilitySetup& setup, const ArmDirection&
 }
 
 driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& cell) {
-  WallCase wall = bare_case(setup);
+  stability::WallCase wall = bare_case(setup);
   const double period = setup.period();
   wall.stiffness = kCycleStiffness;
   wall.step = kCycleStep;
@@ -121,7 +124,7 @@ driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& c
 
 /// Returns the largest stiffness that comes to rest with encoders of one step.
 driver::Result<double> step_edge(const StabilitySetup& setup, double step) {
-  WallCase wall = linear_case(setup);
+  stability::WallCase wall = linear_case(setup);
   wall.tip = setup.arm.simulated.plant;
   wall.velocity_corner = 0;
   wall.step = step;
@@ -224,19 +227,19 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
                                                       const StabilityCell& cell) {
   switch (cell.part) {
     case StabilityPart::kLinearMap: {
-      WallCase wall = linear_case(setup);
+      stability::WallCase wall = linear_case(setup);
       wall.stiffness = cell.a;
       wall.damping = cell.b;
       return alone(growth_rate(setup.arm, wall));
     }
     case StabilityPart::kArmMap: {
-      WallCase wall = arm_case(setup, setup.direction);
+      stability::WallCase wall = arm_case(setup, setup.direction);
       wall.stiffness = cell.a;
       wall.damping = cell.b;
       return alone(arm_oscillation(setup, wall));
     }
     case StabilityPart::kLinearEdge: {
-      WallCase wall = linear_case(setup);
+      stability::WallCase wall = linear_case(setup);
       wall.damping = cell.b;
       return alone(linear_edge(setup.arm, wall, kStiffnessLeast, kStiffnessMost));
     }
@@ -247,7 +250,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
     case StabilityPart::kDiagonalEdge:
       return alone(arm_edge(setup, setup.diagonal, cell.b, false));
     case StabilityPart::kRestitution: {
-      WallCase wall = linear_case(setup);
+      stability::WallCase wall = linear_case(setup);
       wall.hand = {};
       wall.velocity_corner = 0;
       wall.stiffness = cell.a;
@@ -262,19 +265,19 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
       return alone(cycle(setup, cell));
     case StabilityPart::kRateEdge:
     case StabilityPart::kDelayEdge: {
-      WallCase wall = bare_case(setup);
+      stability::WallCase wall = bare_case(setup);
       wall.period_ns = to_ns(cell.c);
       wall.delay_ns = to_ns(cell.d);
       return alone(edge_by_law(setup, wall, {.period = cell.c, .delay = cell.d}));
     }
     case StabilityPart::kLateEdge: {
-      WallCase wall = bare_case(setup);
+      stability::WallCase wall = bare_case(setup);
       wall.gaps_ns = late_ticks(setup.period_ns, cell.a, kLatePeriods, 1);
       wall.duration = setup.coarse ? 8 : 20;
       return alone(edge_by_law(setup, wall, late_times(setup.period(), cell.a)));
     }
     case StabilityPart::kSpreadEdge: {
-      WallCase wall = bare_case(setup);
+      stability::WallCase wall = bare_case(setup);
       wall.report_ns = setup.period_ns / 20;
       wall.gaps_ns = spread_ticks(setup.period_ns, cell.a, wall.report_ns, 1);
       wall.duration = setup.coarse ? 4 : 20;
@@ -301,4 +304,4 @@ scene::LoopTimes spread_times(double period, double spread) {
   return {.period = period, .period_spread = spread * period / std::sqrt(3.0)};
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -6,14 +6,14 @@
 #include "stability/stability_laws.h"
 #include "stability/wall_bench.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What a study of stability is about.
 struct StabilitySetup {
   scene::ArmFile arm;
   device_sim::HandSettings hand;
-  ArmDirection direction;  ///< That of all sweeps.
-  ArmDirection diagonal;   ///< In which the encoders' steps add up to the most.
+  stability::ArmDirection direction;  ///< That of all sweeps.
+  stability::ArmDirection diagonal;   ///< In which the encoders' steps add up to the most.
   std::int64_t period_ns = 1'000'000;
   bool coarse = false;
 
@@ -75,4 +75,4 @@ scene::LoopTimes spread_times(double period, double spread);
 /// Returns the speed (m/s) at which an oscillation of `counts` begins in the map of limit cycles.
 double cycle_speed(const StabilitySetup& setup, double counts);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

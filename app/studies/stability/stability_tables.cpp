@@ -11,13 +11,13 @@
 #include "stability/stability_laws.h"
 #include "studies/stability/drive_train_walls.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// The wall that the exact map knows, of the arm with the hand.
-SampledWall sampled(const StabilitySetup& setup, double damping) {
+stability::SampledWall sampled(const StabilitySetup& setup, double damping) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   return {.mass = tip.mass + setup.hand.mass,
           .viscous = tip.viscous + setup.hand.damping,
@@ -29,7 +29,7 @@ SampledWall sampled(const StabilitySetup& setup, double damping) {
 }
 
 /// The free linear arm of case 1 [PHYSICS 7].
-SampledWall bare(const StabilitySetup& setup, double period, double delay) {
+stability::SampledWall bare(const StabilitySetup& setup, double period, double delay) {
   return {.mass = setup.arm.simulated.plant.mass,
           .viscous = kBareDamping,
           .period = period,
@@ -57,7 +57,7 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
   row.law = row.exact = kNone;
   switch (cell.part) {
     case StabilityPart::kLinearEdge:
-      row.exact = stiffness_edge(sampled(setup, cell.b));
+      row.exact = stability::stiffness_edge(sampled(setup, cell.b));
       row.law = scene::stiffness_limit(
           sampled(setup, 0).viscous + cell.b,
           scene::latency_of({.period = setup.period(), .delay = setup.delay()}));
@@ -69,13 +69,14 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
       break;
     case StabilityPart::kRestitution: {
       const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
-      row.law = restitution(cell.a, tip.viscous + cell.b, tip.mass, scene::latency_of(times));
+      row.law =
+          stability::restitution(cell.a, tip.viscous + cell.b, tip.mass, scene::latency_of(times));
       break;
     }
     case StabilityPart::kRateEdge:
     case StabilityPart::kDelayEdge:
       row.law = scene::stiffness_limit(kBareDamping, scene::latency_of(times));
-      row.exact = stiffness_edge(bare(setup, cell.c, cell.d));
+      row.exact = stability::stiffness_edge(bare(setup, cell.c, cell.d));
       break;
     case StabilityPart::kLateEdge:
       row.law = scene::stiffness_limit(kBareDamping,
@@ -90,8 +91,8 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
       break;
     case StabilityPart::kLagEdge:
     case StabilityPart::kCableEdge:
-      row.law = limit_by_phase(drive_train_wall(setup, cell));
-      row.exact = stiffness_edge(drive_train_wall(setup, cell));
+      row.law = stability::limit_by_phase(drive_train_wall(setup, cell));
+      row.exact = stability::stiffness_edge(drive_train_wall(setup, cell));
       break;
     default:
       break;
@@ -249,8 +250,8 @@ CycleAgreement cycle_agreement(const StabilitySetup& setup, const std::vector<St
     const double coulomb = cell.a * kCycleStiffness * kCycleStep;
     const double latency = scene::latency_of({.period = period, .delay = cell.d * period});
     // Far from rest every axis slides, and each rubs by itself.
-    const double limit = oscillation_speed_limit(kCycleStiffness, viscous,
-                                                 coulomb * setup.direction.friction_share, latency);
+    const double limit = stability::oscillation_speed_limit(
+        kCycleStiffness, viscous, coulomb * setup.direction.friction_share, latency);
     const double speed = cycle_speed(setup, cell.c);
     const double oscillation = row.found[0];
     const bool near_speed = std::abs(speed / limit - 1) < 0.1;
@@ -317,14 +318,14 @@ driver::Result<void> write_stability_tables(const StabilitySetup&,
     for (const StabilityPart part : table.parts) {
       for (const StabilityRow& row : part_of(rows, part)) text += csv_line(columns(row));
     }
-    if (auto done = write_text(text, folder / table.file); !done) return done;
+    if (auto done = report::write_text(text, folder / table.file); !done) return done;
   }
   return {};
 }
 
-std::vector<Figure> stability_figures(const StabilitySetup& setup,
-                                      const std::vector<StabilityRow>& rows) {
-  std::vector<Figure> figures;
+std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
+                                               const std::vector<StabilityRow>& rows) {
+  std::vector<session::Figure> figures;
   const auto percent = [&figures](const std::string& name, double error, const char* goal,
                                   const std::string& note = {}) {
     figures.push_back({name, 100 * error, "%", goal, note});
@@ -356,7 +357,7 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
                     [&](const StabilityRow& row) { return row.cell.b < below_tip; }),
         "<= 1");
   const double latency = scene::latency_of({.period = setup.period(), .delay = setup.delay()});
-  const SampledWall wall = sampled(setup, 0);
+  const stability::SampledWall wall = sampled(setup, 0);
   judge("agreement.edge_with_latency_law",
         worst_error(linear, &StabilityRow::law,
                     [&](const StabilityRow& row) {
@@ -424,4 +425,4 @@ std::vector<Figure> stability_figures(const StabilitySetup& setup,
   return figures;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "studies/sweep/sweep.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// One cell with what was measured and what the laws say of it.
 struct StabilityRow {
@@ -46,7 +46,7 @@ driver::Result<void> write_stability_tables(const StabilitySetup& setup,
                                             const std::filesystem::path& folder);
 
 /// Returns how well laws and simulation agree, with the tolerances of [PHYSICS 1 and 7].
-std::vector<Figure> stability_figures(const StabilitySetup& setup,
-                                      const std::vector<StabilityRow>& rows);
+std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
+                                               const std::vector<StabilityRow>& rows);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

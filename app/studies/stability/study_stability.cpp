@@ -14,7 +14,7 @@
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 driver::Result<device_sim::HandSettings> hand_of(const StabilityOptions& options,
@@ -35,10 +35,11 @@ driver::Result<device_sim::HandSettings> hand_of(const StabilityOptions& options
 }
 
 /// Writes what was studied and the figures, for people and for scripts.
-driver::Result<void> write_summary(const StabilitySetup& setup, const std::vector<Figure>& figures,
+driver::Result<void> write_summary(const StabilitySetup& setup,
+                                   const std::vector<session::Figure>& figures,
                                    const std::filesystem::path& folder) {
   nlohmann::ordered_json summary;
-  const auto way = [](const ArmDirection& d) {
+  const auto way = [](const stability::ArmDirection& d) {
     return nlohmann::ordered_json{{"direction", {d.n_W.x(), d.n_W.y(), d.n_W.z()}},
                                   {"encoder_step_m", d.step},
                                   {"one_dimensional", d.is_one_dimensional()}};
@@ -53,7 +54,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
   summary["loop"] = {{"period_s", setup.period()}, {"delay_s", setup.delay()}};
   summary["studied"] = way(setup.direction);
   summary["diagonal"] = way(setup.diagonal);
-  for (const Figure& figure : figures) {
+  for (const session::Figure& figure : figures) {
     auto& entry = summary["figures"][figure.name];
     entry["value"] = figure.value;
     entry["unit"] = figure.unit;
@@ -62,7 +63,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup, const std::vecto
     entry["goal"] = figure.goal;
     entry["met"] = figure.met();
   }
-  return write_text(summary.dump(2) + "\n", folder / "summary.json");
+  return report::write_text(summary.dump(2) + "\n", folder / "summary.json");
 }
 
 }  // namespace
@@ -75,11 +76,11 @@ driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options) 
   }
   auto hand = hand_of(options, *arm);
   if (!hand) return hand.error();
-  auto diagonal = diagonal_direction_at_home(*arm);
+  auto diagonal = stability::diagonal_direction_at_home(*arm);
   if (!diagonal) return diagonal.error();
   const auto& d = options.direction;
-  auto direction =
-      d.size() == 3 ? direction_at_home(*arm, {d[0], d[1], d[2]}) : worst_direction_at_home(*arm);
+  auto direction = d.size() == 3 ? stability::direction_at_home(*arm, {d[0], d[1], d[2]})
+                                 : stability::worst_direction_at_home(*arm);
   if (!direction) return direction.error();
   return StabilitySetup{.arm = std::move(arm).value(),
                         .hand = *hand,
@@ -111,10 +112,10 @@ driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
   const std::filesystem::path& folder = sweep_options.folder;
   const auto rows = stability_rows(*setup, result->numbers);
   report.figures = stability_figures(*setup, rows);
-  if (auto made = make_picture_folder(folder); !made) return made.error();
+  if (auto made = report::make_picture_folder(folder); !made) return made.error();
   if (auto done = write_stability_tables(*setup, rows, folder); !done) return done.error();
   if (auto done = write_summary(*setup, report.figures, folder); !done) return done.error();
-  if (!has_gnuplot()) {
+  if (!report::has_gnuplot()) {
     scene::logger().warn(
         "NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Tables and figures are "
         "complete.");
@@ -124,4 +125,4 @@ driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
   return report;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -12,7 +12,7 @@
 #include "studies/sweep/sweep.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What a study of stability is asked for.
 struct StabilityOptions {
@@ -29,7 +29,7 @@ driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options);
 /// What the study found.
 struct StabilityReport {
   SweepEnd end = SweepEnd::kDone;
-  std::vector<Figure> figures;
+  std::vector<session::Figure> figures;
 };
 
 /// Measures where walls are stable on a simulated arm, through the whole loop from the force law
@@ -40,4 +40,4 @@ driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
                                                 const SweepOptions& sweep,
                                                 const std::atomic<bool>& stop);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

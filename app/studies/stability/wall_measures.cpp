@@ -7,7 +7,7 @@
 
 #include "stability/draw.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [PHYSICS 1.5 and 1.6]
@@ -45,7 +45,8 @@ driver::Result<bool> is_quiet(const driver::Result<double>& oscillation, double 
 }
 
 /// Returns the energy of an oscillation at each tick, J.
-std::vector<double> oscillation_energies(const WallRun& run, const WallCase& wall) {
+std::vector<double> oscillation_energies(const stability::WallRun& run,
+                                         const stability::WallCase& wall) {
   const double mass = wall.tip.mass + wall.hand.mass;
   const double spring = wall.stiffness + wall.hand.stiffness;
   std::vector<double> energies;
@@ -57,22 +58,22 @@ std::vector<double> oscillation_energies(const WallRun& run, const WallCase& wal
 
 template <class Times>
 void shuffle(Times& times, std::uint64_t seed) {
-  Draw draw(seed);
+  stability::Draw draw(seed);
   for (std::size_t i = times.size(); i > 1; --i) std::swap(times[i - 1], times[draw.one_of(i)]);
 }
 
 }  // namespace
 
-driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
+driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCase wall) {
   const double start = std::min(kStartMost, kStartForce / wall.stiffness);
   const double mass = wall.tip.mass + wall.hand.mass;
   const double frequency = std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
   wall.kick = start * frequency;
   wall.give_up = kFarthest;
   wall.duration = std::max(wall.duration, kOscillations * 2 * std::numbers::pi / frequency);
-  const auto ran = run_wall(arm, wall);
+  const auto ran = stability::run_wall(arm, wall);
   if (!ran) return ran.error();
-  const WallRun& run = *ran;
+  const stability::WallRun& run = *ran;
   if (run.gave_up) return std::log(kFarthest / start) / std::max(run.time.back(), 1e-3);
   const std::vector<double> energies = oscillation_energies(run, wall);
   const std::size_t count = energies.size();
@@ -102,8 +103,8 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall) {
   return 0.5 * std::log(late / most(0.1, 0.25)) / (0.75 * run.time.back());
 }
 
-driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, double least,
-                                   double most) {
+driver::Result<double> linear_edge(const scene::ArmFile& arm, stability::WallCase wall,
+                                   double least, double most) {
   return bisect(least, most, 0.003, [&](double stiffness) {
     wall.stiffness = stiffness;
     const auto rate = growth_rate(arm, wall);
@@ -112,10 +113,11 @@ driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, dou
   });
 }
 
-driver::Result<double> last_oscillation(const scene::ArmFile& arm, const WallCase& wall) {
-  const auto ran = run_wall(arm, wall);
+driver::Result<double> last_oscillation(const scene::ArmFile& arm,
+                                        const stability::WallCase& wall) {
+  const auto ran = stability::run_wall(arm, wall);
   if (!ran) return ran.error();
-  const WallRun& run = *ran;
+  const stability::WallRun& run = *ran;
   if (run.gave_up) return wall.give_up;
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
@@ -126,7 +128,7 @@ driver::Result<double> last_oscillation(const scene::ArmFile& arm, const WallCas
   return std::min(high - low, wall.give_up);
 }
 
-driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, WallCase wall) {
+driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, stability::WallCase wall) {
   constexpr double kWay = 0.005;  // m, to each side of the wall
   wall.one_sided = true;
   wall.offset = -kWay;
@@ -139,8 +141,8 @@ driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, WallCase w
   return last_oscillation(arm, wall);
 }
 
-driver::Result<double> released_oscillation(const scene::ArmFile& arm, WallCase wall, double speed,
-                                            double duration) {
+driver::Result<double> released_oscillation(const scene::ArmFile& arm, stability::WallCase wall,
+                                            double speed, double duration) {
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.one_sided = false;
   const double step = wall.own_step ? wall.direction.step : wall.step;
@@ -157,23 +159,25 @@ driver::Result<double> released_oscillation(const scene::ArmFile& arm, WallCase 
   return last_oscillation(arm, wall);
 }
 
-driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet,
-                                    double least, double most) {
+driver::Result<double> pressed_edge(const scene::ArmFile& arm, stability::WallCase wall,
+                                    double quiet, double least, double most) {
   return bisect(least, most, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
     return is_quiet(pressed_oscillation(arm, wall), quiet);
   });
 }
 
-driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, double speed,
-                                     double duration, double quiet, double least, double most) {
+driver::Result<double> released_edge(const scene::ArmFile& arm, stability::WallCase wall,
+                                     double speed, double duration, double quiet, double least,
+                                     double most) {
   return bisect(least, most, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
     return is_quiet(released_oscillation(arm, wall, speed, duration), quiet);
   });
 }
 
-driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases) {
+driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, stability::WallCase wall,
+                                          int phases) {
   constexpr double kRunUp = 0.002;  // m
   const double mass = wall.tip.mass + wall.hand.mass;
   const double period = static_cast<double>(wall.period_ns) * 1e-9;
@@ -187,9 +191,9 @@ driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, WallCase wa
   Restitution found{0, HUGE_VAL, 0};
   for (int i = 0; i < phases; ++i) {
     wall.offset = -kRunUp - (i + 0.5) / phases * kTouchSpeed * period;
-    const auto ran = run_wall(arm, wall);
+    const auto ran = stability::run_wall(arm, wall);
     if (!ran) return ran.error();
-    const WallRun& run = *ran;
+    const stability::WallRun& run = *ran;
     // In: the last tick before the wall. Out: when the last force has ended, `late` ticks after the
     // first that is seen outside again.
     std::size_t k = 0;
@@ -230,4 +234,4 @@ std::vector<std::int64_t> spread_ticks(std::int64_t period_ns, double spread, st
   return gaps;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

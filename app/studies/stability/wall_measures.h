@@ -5,7 +5,7 @@
 #include "stability/wall_bench.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 // What is measured of a wall. All are pure functions of their arguments and fail as
 // run_wall does.
@@ -13,32 +13,33 @@ namespace thimble::app {
 
 /// Measures how fast a small oscillation about the middle of a two-sided spring grows, 1/s; below 0
 /// it dies. For a wall whose arm is linear: no dry friction, ideal encoders.
-driver::Result<double> growth_rate(const scene::ArmFile& arm, WallCase wall);
+driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCase wall);
 
 /// Finds by bisection the largest stiffness whose oscillations do not grow, N/m, to 0.3 % between
 /// `least` and `most`; 0 if even the least grows, `most` if nothing does.
-driver::Result<double> linear_edge(const scene::ArmFile& arm, WallCase wall, double least,
-                                   double most);
+driver::Result<double> linear_edge(const scene::ArmFile& arm, stability::WallCase wall,
+                                   double least, double most);
 
 /// Measures how far the tip still oscillates at the end of a run, from peak to peak in the last
 /// quarter of the time, m; `give_up` of the case if it went too far.
-driver::Result<double> last_oscillation(const scene::ArmFile& arm, const WallCase& wall);
+driver::Result<double> last_oscillation(const scene::ArmFile& arm, const stability::WallCase& wall);
 
 /// Lets a hand move the tip at 0.1 m/s against a one-sided wall and hold it there: the last
 /// oscillation, m. Sets how the case begins and how long it lasts.
-driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, WallCase wall);
+driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, stability::WallCase wall);
 
 /// Lets go of the tip beside the middle of a two-sided spring, so that it oscillates at `speed`
 /// (m/s) at first: the last oscillation after `duration` (s), m.
-driver::Result<double> released_oscillation(const scene::ArmFile& arm, WallCase wall, double speed,
-                                            double duration);
+driver::Result<double> released_oscillation(const scene::ArmFile& arm, stability::WallCase wall,
+                                            double speed, double duration);
 
 /// Finds by bisection the largest stiffness at which `pressed_oscillation` or
 /// `released_oscillation` stays below `quiet` (m), N/m, to 0.5 %; 0 if even the least does not.
-driver::Result<double> pressed_edge(const scene::ArmFile& arm, WallCase wall, double quiet,
-                                    double least, double most);
-driver::Result<double> released_edge(const scene::ArmFile& arm, WallCase wall, double speed,
-                                     double duration, double quiet, double least, double most);
+driver::Result<double> pressed_edge(const scene::ArmFile& arm, stability::WallCase wall,
+                                    double quiet, double least, double most);
+driver::Result<double> released_edge(const scene::ArmFile& arm, stability::WallCase wall,
+                                     double speed, double duration, double quiet, double least,
+                                     double most);
 
 /// How fast a tip leaves a wall against how fast it came, over several sampling phases.
 struct Restitution {
@@ -47,7 +48,8 @@ struct Restitution {
 };
 
 /// Throws the free tip against a one-sided wall at 0.1 m/s in `phases` sampling phases.
-driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, WallCase wall, int phases);
+driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, stability::WallCase wall,
+                                          int phases);
 
 /// Makes times between ticks with the mean of `period_ns` or above, in an order drawn by `seed`:
 /// a share of all ticks that come `late_periods` late, or times spread evenly by +-`spread` of the
@@ -57,4 +59,4 @@ std::vector<std::int64_t> late_ticks(std::int64_t period_ns, double share, int l
 std::vector<std::int64_t> spread_ticks(std::int64_t period_ns, double spread, std::int64_t grain_ns,
                                        std::uint64_t seed);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

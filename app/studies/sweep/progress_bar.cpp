@@ -8,7 +8,7 @@
 
 #include "log/console.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr std::size_t kWidth = 40;  // characters
@@ -44,4 +44,4 @@ void ProgressBar::show(std::size_t done) {
   scene::console().show(fmt::format("[{}{}] {} of {}{}", full, left, done, all_, rest));
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

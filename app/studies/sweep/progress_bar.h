@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstddef>
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// Shows on stderr how far a long work is, if stderr is a terminal; else does nothing.
 class ProgressBar {
@@ -25,4 +25,4 @@ class ProgressBar {
   Clock::time_point start_, last_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -18,7 +18,7 @@
 #include "studies/sweep/progress_bar.h"
 #include "studies/sweep/sweep_journal.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Message = SweepTeam::Message;
@@ -275,4 +275,4 @@ int jobs_here() {
   return std::max(cores, 1);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

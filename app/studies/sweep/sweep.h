@@ -11,7 +11,7 @@
 #include "studies/sweep/sweep_team.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// The numbers of each cell that was measured; an empty list stands for a cell that was not.
 using CellNumbers = std::vector<std::vector<double>>;
@@ -66,4 +66,4 @@ std::uint64_t cell_seed(std::uint64_t seed, std::size_t cell);
 /// processes beside it on this machine.
 int jobs_here();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -15,7 +15,7 @@
 #include "text_file.h"
 #include "text_hash.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 std::string hex(std::uint64_t value) {
@@ -147,4 +147,4 @@ driver::Result<void> SweepJournal::finish(const CellNumbers& numbers) {
   return output::write_file(file_, output::kPlainText, text);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 #include "studies/sweep/sweep.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// The file that keeps what a sweep has measured: one line per cell, to the bit, with a check
 /// sum, each written by one call. Whatever ends the program, at most the last line is torn; `open`
@@ -50,4 +50,4 @@ class SweepJournal {
   int descriptor_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

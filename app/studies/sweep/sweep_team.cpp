@@ -8,7 +8,7 @@
 
 #include "studies/sweep/mpi_link.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 /// A team that talks by MPI.
@@ -89,4 +89,4 @@ driver::Result<std::unique_ptr<SweepTeam>> SweepTeam::join() {
   return std::unique_ptr<SweepTeam>(std::move(team));
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

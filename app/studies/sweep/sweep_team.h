@@ -6,7 +6,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// The processes that share a sweep, as `mpirun` started them; process 0 keeps the journal and
 /// has the numbers, the others help. Used by the main thread alone.
@@ -38,4 +38,4 @@ class SweepTeam {
   virtual Message receive(int from) = 0;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Where sound goes: a card, or a double in tests.
 class SoundOutput {
@@ -33,4 +33,4 @@ class RumbleOutput {
 /// stand still. Chosen.
 inline constexpr double kRumbleMost = 0.2;
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

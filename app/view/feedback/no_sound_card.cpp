@@ -1,6 +1,6 @@
 #include "view/feedback/sound_card.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
   return driver::Error{
@@ -8,4 +8,4 @@ driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
       "`thimble export REC.h5 --sound FILE.wav` works without."};
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

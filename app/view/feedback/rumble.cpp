@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::size_t kWordBits = 8 * sizeof(unsigned long);
@@ -91,4 +91,4 @@ driver::Result<std::unique_ptr<RumbleOutput>> open_rumble(const std::filesystem:
                                 : "; plug one in and begin again.")};
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

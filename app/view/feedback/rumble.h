@@ -6,7 +6,7 @@
 #include "thimble/driver/result.h"
 #include "view/feedback/feedback_outputs.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Opens the first gamepad that can rumble, by the kernel's force feedback (evdev, FF_RUMBLE).
 /// `folder`: where its event files are. The kernel itself stops the motors kRumbleMost after they
@@ -15,4 +15,4 @@ namespace thimble::app::view {
 driver::Result<std::unique_ptr<RumbleOutput>> open_rumble(
     const std::filesystem::path& folder = "/dev/input");
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

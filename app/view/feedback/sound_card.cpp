@@ -10,7 +10,7 @@
 #include "view/feedback/touch_sound.h"
 #include "view/feedback/wav_file.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr unsigned kLatency =
@@ -69,4 +69,4 @@ driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
   return std::unique_ptr<SoundOutput>(std::make_unique<AlsaCard>(card));
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,11 +5,11 @@
 #include "thimble/driver/result.h"
 #include "view/feedback/feedback_outputs.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Opens the sound card that the person has chosen: ALSA's `default`, behind which PipeWire and
 /// PulseAudio stand where they run. The error says what to do. Real-time: never from the servo
 /// thread.
 driver::Result<std::unique_ptr<SoundOutput>> open_sound_card();
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 TickUpsampler::TickUpsampler(double samples_per_tick)
     : samples_per_tick_(samples_per_tick), weights_(kPhases) {
@@ -34,4 +34,4 @@ double TickUpsampler::at(double share) const {
   return sum;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Makes audio samples of numbers that come once a tick, without what was not in them: a sinc of
 /// 16 ticks under a Hann window. It delays by 8 ticks. Real-time: never from the servo thread.
@@ -39,4 +39,4 @@ class TickUpsampler {
   std::vector<std::array<double, kTaps>> weights_;  // of each phase
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kRumbleFull = 0.5;  // N from tick to tick for the light motor's all; chosen
@@ -74,4 +74,4 @@ void TouchPlayer::step(const session::SharedReader& run, std::int64_t now_ns) {
   if (!ticks_.empty() && force_max > 0) rumble(rumble_of(ticks_, force_max), now_ns);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

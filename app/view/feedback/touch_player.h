@@ -10,7 +10,7 @@
 #include "view/feedback/feedback_outputs.h"
 #include "view/feedback/touch_sound.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns how a gamepad shall rumble for ticks in a row: the heavy motor by the largest force of a
 /// touch as a share of `force_max` (N, above 0), the light one by how much the force changes from
@@ -49,4 +49,4 @@ class TouchPlayer {
   std::vector<float> samples_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

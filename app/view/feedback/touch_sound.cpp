@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using Eigen::Vector3d;
@@ -146,4 +146,4 @@ std::vector<float> sound_of(const std::vector<driver::TickRecord>& ticks, std::i
   return samples;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

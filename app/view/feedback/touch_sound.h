@@ -8,7 +8,7 @@
 #include "thimble/driver/tick_record.h"
 #include "view/feedback/tick_upsampler.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Makes sound of what a run felt, tick by tick: what of the force is faster than kLowest is heard
 /// as it is, a touch that begins clicks, and friction hisses. Silent where nothing touches, and
@@ -63,4 +63,4 @@ class TouchSound {
 /// Returns the sound of a whole touch, such as a recording's. As TouchSound.
 std::vector<float> sound_of(const std::vector<driver::TickRecord>& ticks, std::int64_t period_ns);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

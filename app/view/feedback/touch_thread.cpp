@@ -7,7 +7,7 @@
 #include "view/feedback/rumble.h"
 #include "view/feedback/sound_card.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenSteps{10};
@@ -52,4 +52,4 @@ void TouchThread::follow(const std::string& run) {
   });
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,7 +5,7 @@
 
 #include "view/feedback/touch_player.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What a person hears and feels of a run beside its pictures.
 struct FeltChoice {
@@ -32,4 +32,4 @@ class TouchThread {
   std::jthread thread_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

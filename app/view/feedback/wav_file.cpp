@@ -7,7 +7,7 @@
 
 #include "output/output_file.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 44;
@@ -56,4 +56,4 @@ driver::Result<void> write_wav(std::span<const float> samples, int rate, const s
   return output::write_file(file, output::kSound, bytes);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -7,7 +7,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns samples (-1 to 1) as 16 bits each; what is outside, or no number, is brought within.
 std::vector<std::int16_t> sixteen_bits(std::span<const float> samples);
@@ -16,4 +16,4 @@ std::vector<std::int16_t> sixteen_bits(std::span<const float> samples);
 /// names the file. Real-time: never from the servo thread.
 driver::Result<void> write_wav(std::span<const float> samples, int rate, const std::string& file);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

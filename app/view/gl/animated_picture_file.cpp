@@ -18,7 +18,7 @@
 // follow, and for each picture where it goes and its pixels. The system's libpng writes the file
 // and its chunks, but knows nothing of what is in these.
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -193,4 +193,4 @@ driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, do
   return target->commit();
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

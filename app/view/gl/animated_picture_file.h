@@ -6,7 +6,7 @@
 #include "thimble/driver/result.h"
 #include "view/gl/canvas.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Writes pictures of one size as an animated PNG (APNG) that plays for ever, `frame_time` (s)
 /// each, in 256 colours for all. What shows no animations shows the first.
@@ -14,4 +14,4 @@ namespace thimble::app::view {
 driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, double frame_time,
                                         const std::filesystem::path& file);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 void store(const GlTexture& texture, GLint format, GLenum kind, GLint filter, int width,
@@ -111,4 +111,4 @@ Picture Canvas::read() {
   return picture;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

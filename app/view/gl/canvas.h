@@ -5,7 +5,7 @@
 
 #include "view/gl/gl_objects.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// A picture: three bytes (red, green, blue) a pixel, rows from the top.
 struct Picture {
@@ -53,4 +53,4 @@ class Canvas {
   GlFramebuffer surfaces_, lit_, pixels_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::size_t kMost = 256;
@@ -157,4 +157,4 @@ std::vector<std::uint8_t> ColourTable::numbers(const Picture& picture) const {
   return result;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

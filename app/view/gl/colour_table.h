@@ -6,7 +6,7 @@
 
 #include "view/gl/canvas.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The colours that stand for all of some pictures, at most 256, by median cut [Heckbert 1982,
 /// "Color image quantization for frame buffer display"].
@@ -31,4 +31,4 @@ class ColourTable {
   mutable std::vector<std::int16_t> known_;  // nearest colour by 6 bits of each; -1: not yet asked
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::uint32_t kTubeSides = 6;
@@ -123,4 +123,4 @@ void ColouredModel::draw() const {
   glDrawElements(GL_TRIANGLES, indices_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -9,7 +9,7 @@
 #include "view/gl/gl_objects.h"
 #include "view/gl/palette.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// One corner of a mesh whose colour changes from place to place.
 struct ColouredVertex {
@@ -47,4 +47,4 @@ class ColouredModel {
   GLsizei indices_count_ = 0;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 
 #include "mesh/vertex_normals.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// One side of a triangle, named so that both sides of an edge have the same name.
@@ -135,4 +135,4 @@ CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle, Normal
   return result;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -7,7 +7,7 @@
 
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// How much each polygon counts in the normal of a vertex.
 enum class NormalWeights {
@@ -31,4 +31,4 @@ struct CreasedMesh {
 CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle,
                    NormalWeights weights = NormalWeights::kAngle);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 
 #include "mesh/vertex_normals.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// Finds the weights of a triangle's corners at the foot of a point on its plane, all in 0 to 1.
@@ -131,4 +131,4 @@ void DentSurface::set(const render::BodyPatch& patch) {
   hidden_.erase(std::unique(hidden_.begin(), hidden_.end()), hidden_.end());
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "view/gl/creased_mesh.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// One corner of a bent triangle, with all that its shade is made of. `a`, `b`, `c` are the
 /// corners of the mesh's own triangle, as it is drawn when nothing is bent.
@@ -55,4 +55,4 @@ class DentSurface {
   std::vector<std::uint32_t> hidden_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -17,7 +17,7 @@
 
 #include "output/output_file.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 enum class Ended { kGood, kMissing, kBad };
@@ -184,4 +184,4 @@ driver::Result<void> write_film(const std::vector<Picture>& pictures, double fra
                        (text.empty() ? std::string(".") : ": " + text)};
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include "thimble/driver/result.h"
 #include "view/gl/canvas.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns whether a file of this name is a film that ffmpeg writes: .mp4 or .gif.
 bool is_film(const std::filesystem::path& file);
@@ -28,4 +28,4 @@ driver::Result<void> find_ffmpeg();
 driver::Result<void> write_film(const std::vector<Picture>& pictures, double frame_time,
                                 const std::filesystem::path& file);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

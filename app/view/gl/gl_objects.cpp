@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 driver::Error refused(const std::string& what, const char* words) {
@@ -42,4 +42,4 @@ driver::Result<GlProgram> GlProgram::make(const std::string& vertex, const std::
   return refused("two shaders", words.data());
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

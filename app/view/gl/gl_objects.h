@@ -7,7 +7,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Owns one name that OpenGL gave; deletes it with the context that is current then.
 template <auto make, auto remove>
@@ -97,4 +97,4 @@ class GlProgram {
   GLuint name_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

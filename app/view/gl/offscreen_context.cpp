@@ -4,7 +4,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 driver::Error missing(const std::string& what) {
@@ -67,4 +67,4 @@ std::string OffscreenContext::renderer() const {
   return name == nullptr ? "" : name;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

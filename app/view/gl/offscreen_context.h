@@ -5,7 +5,7 @@
 
 #include "thimble/driver/result.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// OpenGL 3.3 without a screen: EGL without a surface, on the processor if there is no graphics
 /// card (Mesa). Current on the thread that made it for as long as it lives.
@@ -27,4 +27,4 @@ class OffscreenContext {
   void* context_ = nullptr;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include "object_colours.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 using scene::Colour;
 using scene::colour_of;
@@ -51,4 +51,4 @@ constexpr Colour text_colour(const Colour& colour, Theme theme) {
   return {0.5F + 0.5F * colour[0], 0.5F + 0.5F * colour[1], 0.5F + 0.5F * colour[2]};
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -11,7 +11,7 @@
 #include "system/regular_file.h"
 #include "view/gl/colour_table.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// Returns libpng's description of a picture.
@@ -81,4 +81,4 @@ driver::Result<Picture> read_png(const std::filesystem::path& file) {
   return picture;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -7,7 +7,7 @@
 #include "thimble/driver/result.h"
 #include "view/gl/canvas.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// How many colours a PNG holds.
 enum class PngColours {
@@ -27,4 +27,4 @@ std::FILE* write_stream(const output::OutputFile& file);
 /// Reads a PNG. The error names the file. Real-time: never from the servo thread.
 driver::Result<Picture> read_png(const std::filesystem::path& file);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -1,6 +1,6 @@
 #include "view/gl/picture_parts.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 void paint_apart(const Canvas& canvas, const Eigen::AlignedBox2i& box,
                  const std::function<void()>& within, const std::function<void()>& beside) {
@@ -24,4 +24,4 @@ void paint_apart(const Canvas& canvas, const Eigen::AlignedBox2i& box,
   glDisable(GL_SCISSOR_TEST);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,7 +5,7 @@
 
 #include "view/gl/canvas.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Draws a picture in parts: calls `within` for a box of it (pixels from the lower left of the
 /// scene's part, inside of it) and `beside` for what is left, in up to four parts, each time with
@@ -13,4 +13,4 @@ namespace thimble::app::view {
 void paint_apart(const Canvas& canvas, const Eigen::AlignedBox2i& box,
                  const std::function<void()>& within, const std::function<void()>& beside);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

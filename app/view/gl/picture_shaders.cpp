@@ -2,7 +2,7 @@
 #include "view/gl/shader_parts.h"
 #include "view/gl/shaders.h"
 
-namespace thimble::app::view::shaders {
+namespace thimble::view::shaders {
 
 std::string picture_vertex() {
   return kHead + R"(
@@ -140,4 +140,4 @@ void main() {
 )";
 }
 
-}  // namespace thimble::app::view::shaders
+}  // namespace thimble::view::shaders

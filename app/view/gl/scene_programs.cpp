@@ -2,7 +2,7 @@
 
 #include "view/gl/shaders.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 driver::Result<ScenePrograms> ScenePrograms::make() {
   const auto shaded = [](std::string (*vertex)(Shading), Shading shading) {
@@ -59,4 +59,4 @@ std::array<const GlProgram*, 16> ScenePrograms::all() const {
           &backdrop, &light, &edges,           &smooth};
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

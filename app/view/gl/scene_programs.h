@@ -4,7 +4,7 @@
 
 #include "view/gl/gl_objects.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The programs that a scene is drawn with. Precondition of all: the context they were made in is
 /// current.
@@ -22,4 +22,4 @@ struct ScenePrograms {
   std::array<const GlProgram*, 16> all() const;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,7 +5,7 @@
 #include "view/gl/shaders.h"
 
 // Parts that several shaders have in common.
-namespace thimble::app::view::shaders {
+namespace thimble::view::shaders {
 
 inline const std::string kHead = R"(#version 330 core
 layout(std140) uniform View {
@@ -118,4 +118,4 @@ inline const std::string kToScreen = R"(
 vec3 to_screen(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
 )";
 
-}  // namespace thimble::app::view::shaders
+}  // namespace thimble::view::shaders

@@ -2,7 +2,7 @@
 
 #include "view/gl/shader_parts.h"
 
-namespace thimble::app::view::shaders {
+namespace thimble::view::shaders {
 
 std::string surface_vertex(Shading shading) {
   return kHead + choice(shading) + kLight + R"(
@@ -234,4 +234,4 @@ void main() {
 )";
 }
 
-}  // namespace thimble::app::view::shaders
+}  // namespace thimble::view::shaders

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Where the light on a surface is reckoned.
 enum class Shading {
@@ -11,9 +11,9 @@ enum class Shading {
   kMarked,   ///< As kPhong, with marks on textures and friction.
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view
 
-namespace thimble::app::view::shaders {
+namespace thimble::view::shaders {
 
 // The texts of all shaders (GLSL 3.30). Those that light read the block `View` (view_block.h).
 
@@ -41,4 +41,4 @@ std::string edges_fragment();
 /// between those leaves it [FXAA].
 std::string smooth_fragment();
 
-}  // namespace thimble::app::view::shaders
+}  // namespace thimble::view::shaders

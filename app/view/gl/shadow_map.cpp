@@ -1,6 +1,6 @@
 #include "view/gl/shadow_map.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 void make_depths(const GlTexture& texture, const GlFramebuffer& frame) {
@@ -60,4 +60,4 @@ void ShadowMap::begin(bool on_kept) {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, *map_frame_);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include "view/gl/gl_objects.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What the light sees of a scene, as depths. What stands still is drawn once and kept; in a
 /// picture it is copied, and only what moves is drawn over it.
@@ -29,4 +29,4 @@ class ShadowMap {
   GlFramebuffer map_frame_, kept_frame_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr int kSides = 32;
@@ -117,4 +117,4 @@ SolidModels::SolidModels() {
   models_.emplace_back(unit_rod(0.001), kSharp);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

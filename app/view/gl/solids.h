@@ -6,7 +6,7 @@
 #include "view/gl/palette.h"
 #include "view/gl/surface_model.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What a solid is.
 enum class SolidKind { kBall, kRod, kCone };
@@ -40,4 +40,4 @@ class SolidModels {
   std::vector<SurfaceModel> models_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// One vertex as OpenGL takes it.
@@ -154,4 +154,4 @@ void SurfaceModel::draw_edges() const {
   glDrawElements(GL_LINES, dent_edges_, GL_UNSIGNED_INT, nullptr);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

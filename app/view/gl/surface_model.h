@@ -8,7 +8,7 @@
 #include "view/gl/dent_surface.h"
 #include "view/gl/gl_objects.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// One object's surface where OpenGL can draw it: the mesh goes there once, and in a picture
 /// only the dent does.
@@ -62,4 +62,4 @@ class SurfaceModel {
   GLsizei dent_edges_ = 0;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 std::optional<HandSource> hand_source_named(std::string_view name) {
   const auto* const found = std::find(kHandSources.begin(), kHandSources.end(), name);
@@ -34,4 +34,4 @@ void HandInput::step(const HandPush& push, const Camera& camera, const Eigen::Ve
   hand_.p_WH = p.cwiseMax(reach.min()).cwiseMin(reach.max());
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -10,7 +10,7 @@
 #include "view/input/hand_push.h"
 #include "view/scene_mouse.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What leads the simulated hand in the window.
 enum class HandSource { kMouse, kKeyboard, kGamepad, kSpaceMouse };
@@ -66,4 +66,4 @@ class HandInput {
   HandWish hand_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

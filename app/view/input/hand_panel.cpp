@@ -11,7 +11,7 @@
 
 #include "view/panel_flow.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr float kGhost = 0.45F;  // radius of the target's ring, in heights of a letter
@@ -172,4 +172,4 @@ bool HandPanel::draw_box(bool held, const ScreenPart& part) {
   return another;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -9,7 +9,7 @@
 #include "view/input/space_mouse.h"
 #include "view/text_style.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Reads keyboard, gamepad and SpaceMouse for the simulated hand, shows who leads it, and draws its
 /// target. To be called between ImGui's NewFrame and Render. Real-time: never from the servo
@@ -41,4 +41,4 @@ class HandPanel {
   std::string trouble_;      // why the source tells nothing; empty: it does
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// Takes a dead zone off a vector, by its length; what is not a number pushes nothing.
@@ -49,4 +49,4 @@ HandPush push_of(const SpaceMouseState& mouse) {
           (mouse.buttons & 2U) != 0};
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 
 #include "view/input/space_mouse_report.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// How a person pushes the hand's target: as shares (-1 to 1) of its speed.
 struct HandPush {
@@ -54,4 +54,4 @@ inline constexpr double kCapDeadZone = 0.05;
 /// lets go.
 HandPush push_of(const SpaceMouseState& mouse);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

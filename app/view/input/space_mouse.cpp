@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// USB ids of one device.
@@ -101,4 +101,4 @@ std::optional<SpaceMouseState> SpaceMouse::read() {
   return state_;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

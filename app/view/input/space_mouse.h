@@ -8,7 +8,7 @@
 
 struct hid_device_;
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns whether a HID interface is that of a SpaceMouse: its USB ids are known, and where the
 /// system tells what it is used as, it is a multi-axis controller.
@@ -41,4 +41,4 @@ class SpaceMouse {
   std::chrono::steady_clock::time_point next_look_{};
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr std::byte kTranslation{1}, kRotation{2}, kButtons{3};
@@ -42,4 +42,4 @@ bool take_space_mouse_report(std::span<const std::byte> report, SpaceMouseState&
   return true;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

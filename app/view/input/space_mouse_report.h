@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// How a 3Dconnexion SpaceMouse stands, as its reports have told so far. Counts along and about its
 /// own axes: x to the right, y towards the person, z down. A cap that is let go tells zeros.
@@ -29,4 +29,4 @@ inline constexpr double kSpaceMouseFull = 350;
 /// `state` is as it was. Reports of other kinds (battery, say) are rejected too.
 bool take_space_mouse_report(std::span<const std::byte> report, SpaceMouseState& state) noexcept;
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

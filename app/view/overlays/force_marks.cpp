@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kWeakest = 0.06;  // of the field's strongest: less is not drawn [chosen]
@@ -74,4 +74,4 @@ void add_trail(std::span<const TrailPoint> trail, double strongest, double radiu
   add_tube(points, colours, radius, mesh);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,7 +5,7 @@
 #include "view/drawn_scene.h"
 #include "view/gl/coloured_model.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Returns the colour that stands for a share of the strongest force, from 0 (blue) over amber to 1
 /// (vermillion): lightness differs as well, and people who see two primaries only tell them apart.
@@ -24,4 +24,4 @@ void add_field(const DrawnScene& scene, double strongest, ColouredMesh& mesh);
 void add_trail(std::span<const TrailPoint> trail, double strongest, double radius,
                ColouredMesh& mesh);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

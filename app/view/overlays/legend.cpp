@@ -9,7 +9,7 @@
 #include "view/number_text.h"
 #include "view/overlays/force_marks.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 ImU32 screen_colour(const Colour& colour) {
@@ -74,4 +74,4 @@ void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 #include "view/scene_painter.h"
 #include "view/text_style.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What the marks of a picture mean, in words.
 struct Legend {
@@ -28,4 +28,4 @@ Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const Paint
 /// NewFrame and Render.
 void write_legend(const Legend& legend, Theme theme, const ScreenPart& part);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 PaneModel::PaneModel() {
   glBindVertexArray(*array_);
@@ -47,4 +47,4 @@ void PaneModel::draw(const std::vector<Pane>& panes, const Camera& camera,
   glDepthMask(GL_TRUE);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

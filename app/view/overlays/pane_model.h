@@ -6,7 +6,7 @@
 #include "view/gl/gl_objects.h"
 #include "view/touch_marks.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Draws panes: what can be seen through, over all that is drawn already.
 /// Precondition of all: the context it was made in is current.
@@ -21,4 +21,4 @@ class PaneModel {
   GlVertexArray array_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

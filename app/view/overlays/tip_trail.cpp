@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kStep = 3e-4;                      // m: a pixel of a usual picture
@@ -39,4 +39,4 @@ void TipTrail::give(std::vector<TrailPoint>& trail) const {
   for (const Kept& kept : kept_) trail.push_back(kept.point);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

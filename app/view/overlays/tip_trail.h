@@ -7,7 +7,7 @@
 #include "thimble/driver/tick_record.h"
 #include "view/drawn_scene.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Keeps where the tip was in the last seconds, with the force on the hand there: on the surface
 /// while it touches one.
@@ -31,4 +31,4 @@ class TipTrail {
   std::deque<Kept> kept_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 // What rounding leaves of a number that should be round, as a share of a step.
@@ -90,4 +90,4 @@ std::string with_unit(Quantity quantity, double value) {
   return fmt::format("{:.{}f} {}", shown, decimals, unit.name);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

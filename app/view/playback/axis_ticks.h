@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The numbers at an axis: round ones (1, 2 or 5 times a power of ten apart).
 struct AxisTicks {
@@ -43,4 +43,4 @@ ShownUnit unit_for(Quantity quantity, double most);
 /// Writes a value (SI) with a unit that fits it, three digits: "2.31 N", "840 um".
 std::string with_unit(Quantity quantity, double value);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

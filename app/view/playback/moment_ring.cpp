@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 template <class T>
@@ -117,4 +117,4 @@ bool MomentRing::show(double time, DrawnMoment& moment) const {
   return true;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

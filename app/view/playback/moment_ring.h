@@ -9,7 +9,7 @@
 
 #include "view/drawn_scene.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The last minute of a run as it was drawn, to look back while it goes on. The viewer keeps it by
 /// itself; the run knows nothing of it. Memory is bounded: where moments are large, fewer seconds
@@ -70,4 +70,4 @@ class MomentRing {
   double shapes_time_ = -1e300;  // when shapes were taken last, s
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 void PlayHead::set_span(double begin, double end) {
   begin_ = begin;
@@ -46,4 +46,4 @@ void PlayHead::set_speed(double speed) {
   speed_ = std::clamp(speed, kSlowest, kFastest);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Where on a line of time one looks, s: at the newest moment of a run, at one of its last, or at
 /// one of a recording. Knows no picture and no clock. Real-time: never from the servo thread.
@@ -59,4 +59,4 @@ class PlayHead {
   double speed_ = 1;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

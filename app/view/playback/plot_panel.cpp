@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kWheel = 0.8;       // of the range's width that is left by one step; chosen
@@ -133,4 +133,4 @@ std::optional<double> PlotPanel::draw(const Plots& plots, const PlotTime& time, 
   return asked_;
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 
 #include "view/playback/plots.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// When it is that plots are looked at.
 struct PlotTime {
@@ -47,4 +47,4 @@ class PlotPanel {
   std::optional<double> asked_;                 // s
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

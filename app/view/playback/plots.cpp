@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kNarrowest = 1e-4;  // s
@@ -120,4 +120,4 @@ Plots::Extent Plots::extent(Channel channel, const TimeRange& range) const {
   return extent(channel, first_at(range.begin), to);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

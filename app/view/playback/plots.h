@@ -13,7 +13,7 @@
 
 struct ImDrawList;
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// What of a tick is drawn over time.
 enum class Channel : std::uint8_t {
@@ -121,4 +121,4 @@ class Plots {
   std::deque<Block> blocks_;    // the first is the block of the first sample
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

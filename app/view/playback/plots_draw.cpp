@@ -10,7 +10,7 @@
 
 #include "view/playback/plots.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 // What is told of a channel beside its numbers.
@@ -258,4 +258,4 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRan
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 RecordingPlayer::RecordingPlayer(const RecordingView& recording, std::string name)
     : recording_(recording), name_(std::move(name)) {
@@ -15,4 +15,4 @@ bool RecordingPlayer::step(double dt) {
   return std::exchange(first_, false);
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

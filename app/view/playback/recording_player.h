@@ -7,7 +7,7 @@
 #include "view/playback/recording_view.h"
 #include "view/touch_source.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// Plays a recording into a window. Real-time: never from the servo thread.
 class RecordingPlayer final : public TouchSource {
@@ -38,4 +38,4 @@ class RecordingPlayer final : public TouchSource {
   bool first_ = true;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -11,7 +11,7 @@
 #include "share/describe_scene.h"
 #include "view/drawn_from_shared.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 std::int64_t in_ns(double time) {
@@ -186,4 +186,4 @@ void RecordingView::show(double time, DrawnMoment& moment) const {
   }
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

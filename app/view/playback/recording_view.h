@@ -15,7 +15,7 @@
 #include "view/playback/plots.h"
 #include "view/playback/shape_film.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// A recording as it is drawn, at any of its ticks. The ticks are the recorded ones; where objects
 /// were, how they were dented and shaped comes from a replay, since no recording tells it.
@@ -61,4 +61,4 @@ class RecordingView {
   std::vector<std::string> about_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 void ShapeFilm::begin(const scene::Scene& scene,
                       std::shared_ptr<const scene::SceneObjects> objects) {
@@ -49,4 +49,4 @@ ShapeFilm::Mesh ShapeFilm::shape_at(std::size_t object, std::int64_t time_ns) co
   return found->meshes[static_cast<std::size_t>(at)];
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 #include "recording/replay_film.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The film of a replay with the shapes that objects were left in for good, now and then.
 /// Real-time: never from the servo thread.
@@ -47,4 +47,4 @@ class ShapeFilm final : public session::ReplayFilm {
   std::int64_t next_ns_ = INT64_MIN;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

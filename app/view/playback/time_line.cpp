@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr float kOneRow = 34;     // in heights of the font: so wide must a part be for one row
@@ -235,4 +235,4 @@ void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
   ImGui::End();
 }
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

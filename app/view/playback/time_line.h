@@ -5,7 +5,7 @@
 #include "view/text_style.h"
 #include "view/touch_source.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// The line of time below the scene: buttons and a bar to look at any moment that is kept. As the
 /// panel, it is drawn between ImGui's NewFrame and Render. Real-time: never from the servo thread.
@@ -25,4 +25,4 @@ class TimeLine {
 /// Returns which moment is looked at: "2.431 of 8.000 s", "now", "12.4 s behind".
 std::string words_of(const PlayHead& head);
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,7 +5,7 @@
 #include "compat/dhd/fake_arms.h"
 #include "drdc.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 /// Two arms of our own making, none of them open; -1 afterwards means the first.
 class DhdFace : public ::testing::Test {
@@ -33,4 +33,4 @@ class DhdFace : public ::testing::Test {
   }
 };
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 constexpr double kPeriod = 1e-3;  // s
@@ -287,4 +287,4 @@ void wrong_call(const char* function, const char*) noexcept {
 }
 
 }  // namespace arms
-}  // namespace thimble::faces
+}  // namespace thimble::compat

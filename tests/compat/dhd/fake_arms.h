@@ -8,7 +8,7 @@
 #include "compat/core/arm_access.h"
 #include "thimble/driver/safety_gate.h"
 
-namespace thimble::faces::fake {
+namespace thimble::compat::fake {
 
 // Arms in place of those of `thimble exec`, for tests of a face alone: a mass in a viscous hand
 // behind the driver's own safety gate, in time that passes only while somebody waits for a tick.
@@ -41,4 +41,4 @@ std::vector<std::string> wrong_calls();
 /// Returns the Jacobian of all arms, m/rad.
 Eigen::Matrix3d jacobian();
 
-}  // namespace thimble::faces::fake
+}  // namespace thimble::compat::fake

@@ -4,7 +4,7 @@
 
 #include "compat/dhd/dhd_test.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 std::array<int, DHD_MAX_STATUS> status(char id = -1) {
@@ -230,4 +230,4 @@ TEST_F(DhdFace, WhatAnArmOfOursDoesNotNeedIsTakenAndTold) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

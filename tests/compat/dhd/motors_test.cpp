@@ -7,7 +7,7 @@
 #include "compat/exec_rig.h"
 #include "drdc.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 using Eigen::Vector3d;
@@ -102,4 +102,4 @@ TEST(FaceDhdMotors, HoldTheTipWhereRegulationHasIt) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

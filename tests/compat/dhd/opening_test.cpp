@@ -3,7 +3,7 @@
 
 #include "compat/dhd/dhd_test.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 TEST_F(DhdFace, OpensArmsByNumberTypeAndSerialNumber) {
@@ -109,4 +109,4 @@ TEST_F(DhdFace, SaysSoWhenTheRunHasEnded) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

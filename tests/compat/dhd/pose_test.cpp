@@ -6,7 +6,7 @@
 #include "compat/dhd/dhd_test.h"
 #include "support/seed.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -191,4 +191,4 @@ TEST_F(DhdFace, TorquesAtTheEdgeOfReachMakeNoForce) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -8,7 +8,7 @@
 #include "compat/dhd/straight_path.h"
 #include "support/seed.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 Eigen::Vector3d tip() {
@@ -199,4 +199,4 @@ TEST_F(DhdFace, RegulationEndsWithTheRun) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -17,7 +17,7 @@
 #include "compat/dhd/wrong_calls.h"
 #include "support/seed.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 TEST_F(DhdFace, ANullPointerIsAnErrorAndIsCounted) {
@@ -204,4 +204,4 @@ TEST_F(DhdFace, AnyOrderOfCallsFromAnyThreadEndsWell) {
 }
 
 }  // namespace
-}  // namespace thimble::faces
+}  // namespace thimble::compat

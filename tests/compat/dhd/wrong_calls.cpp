@@ -6,7 +6,7 @@
 
 #include "drdc.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 namespace {
 
 double number[40];
@@ -222,4 +222,4 @@ std::vector<Call> all_calls() {
   return all;
 }
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -6,7 +6,7 @@
 
 #include "drdc.h"
 
-namespace thimble::faces {
+namespace thimble::compat {
 
 // A call with one null pointer or one wrong number; the number of the arm is the caller's.
 struct Call {
@@ -24,4 +24,4 @@ std::vector<Call> calls_of_an_arm();
 // All of them.
 std::vector<Call> all_calls();
 
-}  // namespace thimble::faces
+}  // namespace thimble::compat

@@ -11,7 +11,7 @@
 #include "support/random.h"
 #include "support/run_hash.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using Gap = GapTheta;
@@ -127,4 +127,4 @@ TEST(GapModel, SlidesTheTipLikeABodyWithDryFriction) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -14,7 +14,7 @@
 #include "support/scratch.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 ArmConstants some_constants() {
@@ -134,4 +134,4 @@ TEST(IdentifiedFile, RefusesAFormThatItCannotChange) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

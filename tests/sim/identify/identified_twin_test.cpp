@@ -15,7 +15,7 @@
 #include "support/scratch.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -207,4 +207,4 @@ TEST(IdentifyForce, OfTheWatchdogsPushIsWithinItToo) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

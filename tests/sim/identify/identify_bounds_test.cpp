@@ -14,7 +14,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -225,4 +225,4 @@ TEST(IdentifyBounds, AreKeptWhateverTheArmItsHandAndItsFaultsAre) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -25,7 +25,7 @@
 #include "usb/simulated_falcon.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::HiddenArm;
@@ -206,4 +206,4 @@ TEST(IdentifyBuilds, WritesAFileThatMakesTheHiddenArm) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

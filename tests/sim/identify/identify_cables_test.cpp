@@ -12,7 +12,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::cabled_arm;
@@ -161,4 +161,4 @@ TEST(LineForces, AreOddMultiplesOfWhichNoTwoAreAlikeAndStaySmall) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 #include "support/identify/identified_arm.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::Random;
@@ -87,4 +87,4 @@ TEST(Encoders, OfASimulatedArmCountByOnesAndAreQuietAtRest) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -11,7 +11,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -97,4 +97,4 @@ TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -10,7 +10,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm_of;
@@ -91,4 +91,4 @@ TEST(IdentifyLateTicks, AreNamedAsTheCause) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -16,7 +16,7 @@
 #include "support/identify/recorded_motion.h"
 #include "support/long_form.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::cabled_arm;
@@ -162,4 +162,4 @@ TEST(IdentifyJointFriction, NamesTheJointThatRubsFarMoreThanAllElse) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -13,7 +13,7 @@
 #include "bringup/identify/smooth_bump.h"
 #include "support/identify/rigid_links.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::LinkBody;
@@ -177,4 +177,4 @@ TEST(LinkEquations, AtTheTipAreTheMassMatrixOfTheirBodies) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -13,7 +13,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -148,4 +148,4 @@ TEST(WatchdogTime, SaysWhyItIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

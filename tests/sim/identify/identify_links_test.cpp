@@ -25,7 +25,7 @@
 #include "support/refuses.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::HiddenArm;
@@ -289,4 +289,4 @@ TEST(IdentifiedLinks, AreNotInventedForAnArmWithout) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

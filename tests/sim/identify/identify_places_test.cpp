@@ -13,7 +13,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -178,4 +178,4 @@ TEST(IdentifyPlaces, EndWithZeroForceWhenTheyAreStopped) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -13,7 +13,7 @@
 #include "support/long_form.h"
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::HiddenArm;
@@ -147,4 +147,4 @@ TEST(IdentifyPlay, IsWrittenWithItsInterval) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

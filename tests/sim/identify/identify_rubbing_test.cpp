@@ -14,7 +14,7 @@
 #include "support/identify/rigid_rubbing_arm.h"
 #include "support/long_form.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::HiddenArm;
@@ -155,4 +155,4 @@ TEST(IdentifyRubbing, NamesTheJointThatSticks) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -19,7 +19,7 @@
 #include "support/long_form.h"
 #include "support/refuses.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -341,4 +341,4 @@ TEST(Identify, EndsWithZeroForceWhenItIsStopped) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

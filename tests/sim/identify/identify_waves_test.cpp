@@ -20,7 +20,7 @@
 #include "support/random.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using support::hidden_arm;
@@ -315,4 +315,4 @@ TEST(IdentifyWaves, StandInTheTableMotorByMotor) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

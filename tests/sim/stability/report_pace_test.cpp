@@ -39,19 +39,20 @@ scene::ArmFile arm_at(const Pace& pace) {
 /// Returns whether the tip's oscillation on a two-sided spring grows in the simulator.
 bool grows(const scene::ArmFile& arm, const Pace& pace, double stiffness) {
   constexpr double kDuration = 1.6, kEarly = 0.3, kWindow = 0.4;  // s
-  app::WallCase wall{.direction = app::direction_at_home(arm, Eigen::Vector3d::UnitX()).value(),
-                     .tip = arm.simulated.plant,
-                     .hand = arm.simulated.hand,
-                     .stiffness = stiffness,
-                     .damping = pace.damping,
-                     .period_ns = std::llround(1e9 / pace.rate),
-                     .own_wire = true,
-                     .gaps_ns = {},
-                     .pull = 0.05,
-                     .pull_start = 0.1,
-                     .duration = kDuration,
-                     .give_up = 0.02};
-  const auto run = app::run_wall(arm, wall).value();
+  stability::WallCase wall{
+      .direction = stability::direction_at_home(arm, Eigen::Vector3d::UnitX()).value(),
+      .tip = arm.simulated.plant,
+      .hand = arm.simulated.hand,
+      .stiffness = stiffness,
+      .damping = pace.damping,
+      .period_ns = std::llround(1e9 / pace.rate),
+      .own_wire = true,
+      .gaps_ns = {},
+      .pull = 0.05,
+      .pull_start = 0.1,
+      .duration = kDuration,
+      .give_up = 0.02};
+  const auto run = stability::run_wall(arm, wall).value();
   if (run.gave_up) return true;
   const auto swing = [&run](double from) {
     double low = 1e9, high = -1e9;
@@ -71,7 +72,8 @@ bool grows(const scene::ArmFile& arm, const Pace& pace, double stiffness) {
 void expect_edge(const Pace& pace) {
   const scene::ArmFile arm = arm_at(pace);
   const double law =
-      app::carried_by(arm, app::loop_times(arm, pace.rate), 1000, pace.damping).stiffness_exact;
+      stability::carried_by(arm, stability::loop_times(arm, pace.rate), 1000, pace.damping)
+          .stiffness_exact;
   const std::string cell =
       std::to_string(pace.rate) + " Hz, reports " + std::to_string(pace.report_ns) + " ns, wire " +
       std::to_string(pace.delay_in_ns) + " + " + std::to_string(pace.delay_out_ns) +
@@ -118,7 +120,7 @@ TEST(ReportPace, LawHoldsForWallsWithDamping) {
 TEST(ReportPace, FasterLoopGainsNothingBeyondTheReports) {
   const scene::ArmFile arm = arm_at({.report_ns = 1'000'000, .delay_out_ns = 1'000'000});
   const auto edge = [&arm](double rate) {
-    return app::carried_by(arm, app::loop_times(arm, rate), 1000, 0).stiffness_exact;
+    return stability::carried_by(arm, stability::loop_times(arm, rate), 1000, 0).stiffness_exact;
   };
   EXPECT_NEAR(edge(10'000) / edge(1000), 1, 1e-6);
 }

@@ -6,28 +6,28 @@
 
 #include "studies/stability/study_stability.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 TEST(DriveTrainWalls, AreThoseOfTheLinearLoopAndOfTheLaw) {
-  const auto setup = stability_setup({.arm_file = "vintage_phantom", .direction = {}});
+  const auto setup = studies::stability_setup({.arm_file = "vintage_phantom", .direction = {}});
   ASSERT_TRUE(setup.ok()) << setup.error().message;
-  using enum StabilityPart;
+  using enum studies::StabilityPart;
   // A lag; a cable whose tip rubs the more; one with a motor that only its damping holds; one that
   // is all but stiff.
-  for (const StabilityCell& cell : {StabilityCell{.part = kLagEdge, .a = 0.001},
-                                    {.part = kCableEdge, .a = 6.8e3, .b = 3},
-                                    {.part = kCableEdge, .a = 3.2e4, .b = 0.3},
-                                    {.part = kCableEdge, .a = 3e5, .b = 1}}) {
-    const SampledWall linear = drive_train_wall(*setup, cell);
-    const double exact = stiffness_edge(linear);
-    const auto found = drive_train_edge(*setup, cell);
+  for (const studies::StabilityCell& cell : {studies::StabilityCell{.part = kLagEdge, .a = 0.001},
+                                             {.part = kCableEdge, .a = 6.8e3, .b = 3},
+                                             {.part = kCableEdge, .a = 3.2e4, .b = 0.3},
+                                             {.part = kCableEdge, .a = 3e5, .b = 1}}) {
+    const stability::SampledWall linear = studies::drive_train_wall(*setup, cell);
+    const double exact = stability::stiffness_edge(linear);
+    const auto found = studies::drive_train_edge(*setup, cell);
     ASSERT_TRUE(found.ok()) << found.error().message;
     // Near its edge the motor grows slowly beside a tip that dies slowly.
     EXPECT_NEAR(*found / exact, 1, 0.04) << cell.a << " " << cell.b;
-    EXPECT_NEAR(limit_by_phase(linear) / exact, 1, 0.03) << cell.a << " " << cell.b;
+    EXPECT_NEAR(stability::limit_by_phase(linear) / exact, 1, 0.03) << cell.a << " " << cell.b;
   }
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::twin

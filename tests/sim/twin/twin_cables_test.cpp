@@ -17,7 +17,7 @@
 #include "twin/twin_forces.h"
 #include "twin/twin_motion.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 using support::cabled_arm;
@@ -105,4 +105,4 @@ TEST(TwinCables, NameTheConstantThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -11,7 +11,7 @@
 #include "support/identify/hidden_arm.h"
 #include "support/identify/rigid_rubbing_arm.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 using support::hidden_arm;
@@ -27,11 +27,11 @@ TwinMotion motion_of(const HiddenArm& arm, bool hold_it) {
   recording.info.device = "sim";
   recording.info.rate = 1000;
   recording.complete = true;
-  auto bench = simulated_bench(arm.file, 0, hold_it);
+  auto bench = bringup::simulated_bench(arm.file, 0, hold_it);
   EXPECT_TRUE(bench.ok());
   (*bench)->watch([&](const driver::TickRecord& tick) { recording.ticks.push_back(tick); });
   const std::atomic<bool> never{false};
-  const auto ran = record_motion(**bench, arm.file, {.seconds = 5, .seed = 1}, never);
+  const auto ran = bringup::record_motion(**bench, arm.file, {.seconds = 5, .seed = 1}, never);
   EXPECT_TRUE(ran.ok()) << ran.error().message;
   return twin_motion(recording, arm.file).value();
 }
@@ -87,4 +87,4 @@ TEST(TwinForces, SayThatAConstantIsWrongWhereItIsNoHand) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::twin

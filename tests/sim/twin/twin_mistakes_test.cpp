@@ -14,7 +14,7 @@
 #include "twin/twin_files.h"
 #include "twin/unseen_constants.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 /// What `thimble identify --record` writes of the shipped PHANTOM.
@@ -30,11 +30,11 @@ const session::Recording& recorded_phantom() {
     made.info.rate = 1000;
     made.complete = true;
     const scene::ArmFile file = scene::load_arm("vintage_phantom").value();
-    auto bench = simulated_bench(file, 0);
+    auto bench = bringup::simulated_bench(file, 0);
     EXPECT_TRUE(bench.ok());
     (*bench)->watch([&](const driver::TickRecord& tick) { made.ticks.push_back(tick); });
     const std::atomic<bool> never{false};
-    EXPECT_TRUE(record_motion(**bench, file, {.seconds = 6, .seed = 3}, never).ok());
+    EXPECT_TRUE(bringup::record_motion(**bench, file, {.seconds = 6, .seed = 3}, never).ok());
     return made;
   }();
   return recording;
@@ -115,4 +115,4 @@ TEST(TwinMistakes, ComparisonNamesWrongCounts) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -28,7 +28,7 @@
 #include "support/refuses.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 using support::hidden_arm;
@@ -44,22 +44,22 @@ struct HiddenAndTwin {
 
 driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t seed,
                                          double seconds = 15) {
-  const OpenBench open = [&](bool loaded) {
-    return simulated_bench(hidden.file, loaded ? kKnownMass : 0);
+  const bringup::OpenBench open = [&](bool loaded) {
+    return bringup::simulated_bench(hidden.file, loaded ? kKnownMass : 0);
   };
   // What cogs is not known.
   scene::ArmFile named = hidden.file;
   named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
-  const auto found =
-      identify(open, named, {.seconds = seconds, .known_mass = kKnownMass, .seed = seed}, never);
+  const auto found = bringup::identify(
+      open, named, {.seconds = seconds, .known_mass = kKnownMass, .seed = seed}, never);
   if (!found) return found.error();
   if (!found->against.empty()) return driver::Error{found->against.front()};
-  const IdentifiedMark mark{.date = "2026-11-25", .arm = "hidden"};
+  const bringup::IdentifiedMark mark{.date = "2026-11-25", .arm = "hidden"};
   const auto first =
-      identified_text(support::text_of_arm("vintage_phantom"), found->constants, mark);
+      bringup::identified_text(support::text_of_arm("vintage_phantom"), found->constants, mark);
   if (!first) return first.error();
-  const auto text = further_text(*first, *found, mark);
+  const auto text = bringup::further_text(*first, *found, mark);
   if (!text) return text.error();
   auto yaml = scene::YamlFile::parse(*text, "arm file");
   if (!yaml) return yaml.error();
@@ -78,10 +78,10 @@ driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t 
 
 /// Of the torque that is asked for, what each motor of an arm gets: strong ones get less.
 Eigen::Vector3d probed_share(const scene::ArmFile& file) {
-  auto bench = simulated_bench(file, 0);
+  auto bench = bringup::simulated_bench(file, 0);
   const std::atomic<bool> never{false};
   if (!bench) return Eigen::Vector3d::Zero();
-  const auto motion = record_motion(**bench, file, {.seconds = 1, .lead = 0}, never);
+  const auto motion = bringup::record_motion(**bench, file, {.seconds = 1, .lead = 0}, never);
   EXPECT_TRUE(motion.ok()) << motion.error().message;
   return motion ? motion->share : Eigen::Vector3d::Zero();
 }
@@ -91,18 +91,18 @@ Eigen::Vector3d probed_share(const scene::ArmFile& file) {
 std::vector<Eigen::Vector3d> free_motion(const scene::ArmFile& file, const Eigen::Vector3d& share,
                                          std::uint64_t seed) {
   std::vector<Eigen::Vector3d> p_BT;
-  auto bench = simulated_bench(file, 0);
+  auto bench = bringup::simulated_bench(file, 0);
   if (!bench) {
     ADD_FAILURE() << bench.error().message;
     return p_BT;
   }
   const std::atomic<bool> never{false};
-  const auto motions =
-      record_places(**bench, file, {.seconds = 10, .lead = 0, .seed = seed, .share = share},
-                    {file.workspace.middle()}, never);
+  const auto motions = bringup::record_places(
+      **bench, file, {.seconds = 10, .lead = 0, .seed = seed, .share = share},
+      {file.workspace.middle()}, never);
   EXPECT_TRUE(motions.ok()) << motions.error().message;
   if (!motions) return p_BT;
-  for (const MotionSample& sample : motions->front().samples) p_BT.push_back(sample.p_BT);
+  for (const bringup::MotionSample& sample : motions->front().samples) p_BT.push_back(sample.p_BT);
   return p_BT;
 }
 
@@ -253,8 +253,8 @@ TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
   const auto& wire = arm.simulated.wire;
   const double latency = 0.0005 + 1e-9 * static_cast<double>(wire.delay_in_ns + wire.delay_out_ns);
   for (const double stiffness : {100.0, 300.0, 1000.0}) {
-    const DropTrial trial{.stiffness = stiffness, .falls = 40};
-    const auto bounce = drop_on_wall(arm, trial);
+    const stability::DropTrial trial{.stiffness = stiffness, .falls = 40};
+    const auto bounce = stability::drop_on_wall(arm, trial);
     ASSERT_TRUE(bounce.ok()) << bounce.error().message;
     // What the late wall gives and friction takes is (K L - b) v^2 all along the contact. The pull
     // bends the oscillation's middle into the wall, so that it begins and ends before its sides by
@@ -273,18 +273,19 @@ TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
 
 TEST(DropTrial, SaysWhenNothingFallsOrBounces) {
   scene::ArmFile arm = scene::load_arm("vintage_phantom").value();
-  DropTrial trial;
+  stability::DropTrial trial;
   trial.pull = 0.5 * arm.simulated.plant.coulomb;
-  EXPECT_TRUE(support::refuses(drop_on_wall(arm, trial), "does not fall"));
+  EXPECT_TRUE(support::refuses(stability::drop_on_wall(arm, trial), "does not fall"));
   trial = {};
   trial.damping = 20;
   trial.stiffness = 100;
-  EXPECT_TRUE(support::refuses(drop_on_wall(arm, trial), "does not leave the wall"));
+  EXPECT_TRUE(support::refuses(stability::drop_on_wall(arm, trial), "does not leave the wall"));
   trial = {};
   trial.height = 0.5;
-  EXPECT_TRUE(support::refuses(drop_on_wall(arm, trial), "out of the arm's reach"));
-  EXPECT_TRUE(support::refuses(drop_on_wall(scene::load_arm("falcon").value(), {}), "board"));
+  EXPECT_TRUE(support::refuses(stability::drop_on_wall(arm, trial), "out of the arm's reach"));
+  EXPECT_TRUE(
+      support::refuses(stability::drop_on_wall(scene::load_arm("falcon").value(), {}), "board"));
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::twin

@@ -19,7 +19,7 @@
 #include "twin/twin_files.h"
 #include "twin/twin_motion.h"
 
-namespace thimble::app {
+namespace thimble::twin {
 namespace {
 
 using support::hidden_arm;
@@ -50,14 +50,15 @@ session::Recording recording_of(const scene::ArmFile& file, const char* arm, std
   recording.info.device = "sim";
   recording.info.rate = 1000;
   recording.complete = true;
-  auto bench = simulated_bench(file, 0, hold_it);
+  auto bench = bringup::simulated_bench(file, 0, hold_it);
   if (!bench) {
     ADD_FAILURE() << bench.error().message;
     return recording;
   }
   (*bench)->watch([&](const driver::TickRecord& tick) { recording.ticks.push_back(tick); });
   const std::atomic<bool> never{false};
-  const auto motion = record_motion(**bench, file, {.seconds = seconds, .seed = seed}, never);
+  const auto motion =
+      bringup::record_motion(**bench, file, {.seconds = seconds, .seed = seed}, never);
   EXPECT_TRUE(motion.ok()) << motion.error().message;
   return recording;
 }
@@ -183,8 +184,8 @@ TEST(Twin, TellsHowManyPercentOfTheMotionItMisses) {
   }
   EXPECT_GT(low, 100 * high);
   const auto figures = twin_figures(found, 90);
-  EXPECT_NE(unmet_line(figures).find("fit_x"), std::string::npos);
-  EXPECT_TRUE(unmet_line(twin_figures(found, 50)).empty());
+  EXPECT_NE(report::unmet_line(figures).find("fit_x"), std::string::npos);
+  EXPECT_TRUE(report::unmet_line(twin_figures(found, 50)).empty());
   EXPECT_NE(twin_table(found).find("simulation.tip.mass reduces the error most"),
             std::string::npos);
 }
@@ -277,4 +278,4 @@ TEST(Twin, RefusesWhatItCannotCompare) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::twin

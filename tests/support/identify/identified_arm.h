@@ -20,13 +20,13 @@ namespace thimble::support {
 inline constexpr double kKnownMass = 0.025;  // kg
 
 /// Returns constants as they are found behind cables that stretch, for what is written of them.
-inline app::ArmConstants constants_behind_cables() {
-  app::ArmConstants found;
+inline bringup::ArmConstants constants_behind_cables() {
+  bringup::ArmConstants found;
   found.mass = {0.075, 1e-3};
-  found.gain = {app::Estimate{1, 0.01}, {1, 0.01}, {1, 0.01}};
+  found.gain = {bringup::Estimate{1, 0.01}, {1, 0.01}, {1, 0.01}};
   found.delay = {0.001, 1e-5};
   found.cables.emplace();
-  for (app::CableConstants& cable : *found.cables) {
+  for (bringup::CableConstants& cable : *found.cables) {
     cable.inertia = {2e-4, 1e-5};
     cable.stiffness = {50, 1};
     cable.damping = {0.02, 1e-3};
@@ -36,21 +36,21 @@ inline app::ArmConstants constants_behind_cables() {
 
 /// Identifies one, whose file names no periods of cogging; `hold_it` leaves the hand on it that its
 /// file names.
-inline driver::Result<app::Identified> identified(const HiddenArm& arm,
-                                                  const app::IdentifyOptions& options,
-                                                  bool hold_it = false) {
-  const app::OpenBench open = [&](bool loaded) {
-    return app::simulated_bench(arm.file, loaded ? options.known_mass : 0, hold_it);
+inline driver::Result<bringup::Identified> identified(const HiddenArm& arm,
+                                                      const bringup::IdentifyOptions& options,
+                                                      bool hold_it = false) {
+  const bringup::OpenBench open = [&](bool loaded) {
+    return bringup::simulated_bench(arm.file, loaded ? options.known_mass : 0, hold_it);
   };
   scene::ArmFile named = arm.file;
   named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
-  return app::identify(open, named, options, never);
+  return bringup::identify(open, named, options, never);
 }
 
 /// Returns whether what was not identified names this.
-inline bool leaves_open(const app::Identified& found, const std::string& what) {
-  const auto sentences = app::not_identified(found);
+inline bool leaves_open(const bringup::Identified& found, const std::string& what) {
+  const auto sentences = bringup::not_identified(found);
   return std::any_of(sentences.begin(), sentences.end(),
                      [&](const std::string& one) { return one.find(what) != std::string::npos; });
 }
@@ -63,7 +63,7 @@ struct Score {
   int held = 0, all = 0;
   int missed = 0;  // neither within `most` of the truth nor with it in the interval
 
-  void add(const app::Estimate& estimate, double truth, bool relative = true) {
+  void add(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);
     worst = std::max(worst, off);
     ++all;
@@ -72,7 +72,7 @@ struct Score {
   }
 
   /// Counts how far it is off only where its interval does not say so.
-  void add_beside_interval(const app::Estimate& estimate, double truth, bool relative = true) {
+  void add_beside_interval(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double before = worst;
     add(estimate, truth, relative);
     if (estimate.holds(truth)) worst = before;

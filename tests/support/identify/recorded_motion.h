@@ -36,14 +36,15 @@ inline session::Recording recorded_motion(const scene::ArmFile& file, const char
   recording.info.device = "sim";
   recording.info.rate = 1000;
   recording.complete = true;
-  auto bench = app::simulated_bench(file, 0, hold_it);
+  auto bench = bringup::simulated_bench(file, 0, hold_it);
   if (!bench) {
     ADD_FAILURE() << bench.error().message;
     return recording;
   }
   (*bench)->watch([&](const driver::TickRecord& tick) { recording.ticks.push_back(tick); });
   const std::atomic<bool> never{false};
-  const auto motion = app::record_motion(**bench, file, {.seconds = seconds, .seed = seed}, never);
+  const auto motion =
+      bringup::record_motion(**bench, file, {.seconds = seconds, .seed = seed}, never);
   EXPECT_TRUE(motion.ok()) << motion.error().message;
   return recording;
 }

@@ -10,7 +10,7 @@
 
 #include "support/seed.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 std::vector<std::string> texts(const AxisTicks& ticks) {
@@ -87,4 +87,4 @@ TEST(AxisTicks, TellValuesInTheUnitThatIsReadBest) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

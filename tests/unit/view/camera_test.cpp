@@ -7,7 +7,7 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using Eigen::Vector2d;
@@ -78,4 +78,4 @@ TEST(Camera, NeverTurnsOver) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

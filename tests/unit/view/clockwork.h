@@ -6,7 +6,7 @@
 
 #include "view/touch_source.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// A source whose time alone moves; scene, moment and run are what a test makes them.
 class Clockwork final : public TouchSource {
@@ -44,4 +44,4 @@ class Clockwork final : public TouchSource {
   std::vector<std::string> about_;
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kSharp = 0.87;
@@ -70,4 +70,4 @@ TEST(CreasedMesh, MakesNoNormalOfTrianglesWithoutAreaOrOfSpikes) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using Eigen::Vector3d;
@@ -127,4 +127,4 @@ TEST(DentSurface, DrawsNothingOfAPatchThatNamesWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -11,7 +11,7 @@
 #include "support/meshes/shapes.h"
 #include "view/scene_painter.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using support::difference;
@@ -80,4 +80,4 @@ TEST(FirstTouch, ChangesNoShade) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

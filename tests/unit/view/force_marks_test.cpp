@@ -7,7 +7,7 @@
 #include "view/overlays/legend.h"
 #include "view/overlays/tip_trail.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 driver::TickRecord tick_at(double seconds, double x, double force) {
@@ -115,4 +115,4 @@ TEST(ForceMarks, DrawATrailAlongItsPointsWithoutCollapsing) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

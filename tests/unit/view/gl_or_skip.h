@@ -13,8 +13,8 @@ namespace thimble::support {
 
 /// Opens OpenGL without a screen. Where there is none, says so loudly and gives nullptr; in CI,
 /// which has it by app/setup.sh, that is a failure.
-inline std::unique_ptr<app::view::OffscreenContext> open_gl() {
-  auto context = app::view::OffscreenContext::open();
+inline std::unique_ptr<view::OffscreenContext> open_gl() {
+  auto context = view::OffscreenContext::open();
   if (context) return std::move(context).value();
   if (std::getenv("CI") != nullptr) {
     ADD_FAILURE() << context.error().message;

@@ -5,7 +5,7 @@
 #include "view/gl/scene_programs.h"
 #include "view/gl/shaders.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using support::refuses;
@@ -35,4 +35,4 @@ TEST(ScenePrograms, AreAllTakenByADriver) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

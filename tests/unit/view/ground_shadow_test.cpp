@@ -6,7 +6,7 @@
 
 #include "view/camera.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 const Eigen::Vector2i kSize(960, 640);
@@ -81,4 +81,4 @@ TEST(GroundShadow, IsEmptyWithoutShadowsAndAllWhereTheGroundGoesBehindTheEye) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

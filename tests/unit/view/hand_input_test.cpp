@@ -10,7 +10,7 @@
 
 #include "view/input/space_mouse.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using Eigen::Vector3d;
@@ -196,4 +196,4 @@ TEST(HandSources, AreThoseThatTheProgramNames) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -6,7 +6,7 @@
 #include "support/meshes/shapes.h"
 #include "view/scene_painter.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// A ball above another; a moment says where they are.
@@ -81,4 +81,4 @@ TEST(ClosedSurfaces, AreSeenFromWithinAsFromWithout) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 // A moment whose every part tells its time.
@@ -112,4 +112,4 @@ TEST(MomentRing, KeepsFewerSecondsWhereMomentsAreLarge) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 TEST(NumberText, IsAsWideWhateverTheNumber) {
@@ -32,4 +32,4 @@ TEST(NumberText, IsInTheUnitThatIsReadBest) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -18,7 +18,7 @@ struct PictureDifference {
       0;  ///< Share of blocks of 8 x 8 pixels whose mean brightness differs by > 10.
 };
 
-inline PictureDifference difference(const app::view::Picture& a, const app::view::Picture& b) {
+inline PictureDifference difference(const view::Picture& a, const view::Picture& b) {
   PictureDifference result;
   if (a.width != b.width || a.height != b.height) return {255, 255, 1};
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {

@@ -14,7 +14,7 @@
 #include "view/gl/animated_picture_file.h"
 #include "view/gl/colour_table.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// Makes a picture with slopes and a few spots, as a shaded scene has.
@@ -190,4 +190,4 @@ TEST(PictureFile, TellsWhereNothingCanBeWrittenOrRead) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

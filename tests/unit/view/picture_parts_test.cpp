@@ -5,7 +5,7 @@
 #include "gl_or_skip.h"
 #include "view/gl/shaders.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr int kWidth = 96;
@@ -70,4 +70,4 @@ TEST(PaintApart, PaintsEveryPixelOnceAndThoseOfTheBoxWithin) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

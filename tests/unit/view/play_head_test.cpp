@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 TEST(PlayHead, OfARecordingPlaysAtItsSpeedAndStandsStillAtTheEnd) {
@@ -77,4 +77,4 @@ TEST(PlayHead, OfARunIsLiveAgainWhenItHasCaughtUp) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

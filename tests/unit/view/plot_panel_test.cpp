@@ -5,7 +5,7 @@
 
 #include "screenless.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// A recording of 10 s in plots, and a mouse over them.
@@ -103,4 +103,4 @@ TEST_F(PlotPanelUsed, FollowsARunUnlessOneLooksBack) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -9,7 +9,7 @@
 
 #include "support/seed.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 driver::TickRecord tick(double time, double force) {
@@ -92,4 +92,4 @@ TEST(Plots, ZoomAboutTheMouseWithinWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -14,7 +14,7 @@
 #include "support/scratch.h"
 #include "view/shot.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -226,4 +226,4 @@ TEST(RecordingView, SaysWhatAFileIsNot) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "support/scratch.h"
 #include "view/scene_menu.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ TEST(RunButtons, AreDrawnForAnyRunAndTellWhyAPhysicalArmRefuses) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

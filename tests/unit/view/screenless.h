@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace thimble::app::view {
+namespace thimble::view {
 
 /// ImGui without a screen: what a person would do with the mouse is written into its state.
 class Screenless : public ::testing::Test {
@@ -36,4 +36,4 @@ class Screenless : public ::testing::Test {
   }
 };
 
-}  // namespace thimble::app::view
+}  // namespace thimble::view

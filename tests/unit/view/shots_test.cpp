@@ -15,7 +15,7 @@
 #include "view/gl/picture_file.h"
 #include "view/shot.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -207,4 +207,4 @@ TEST(Shots, AreTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

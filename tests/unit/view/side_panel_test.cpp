@@ -15,7 +15,7 @@
 #include "clockwork.h"
 #include "screenless.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 class SidePanel : public Screenless {
@@ -168,4 +168,4 @@ TEST_F(SidePanel, CutsNothingOffInWindowsOfAnyUsualSize) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

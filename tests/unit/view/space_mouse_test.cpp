@@ -6,7 +6,7 @@
 
 #include "support/mock/fake_hidapi.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 /// A program that has no other HID device.
@@ -64,4 +64,4 @@ TEST_F(SpaceMouseTest, TellsNothingMoreWhenItIsPulledOut) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

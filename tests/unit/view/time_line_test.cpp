@@ -7,7 +7,7 @@
 #include "clockwork.h"
 #include "screenless.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 class TimeLineUsed : public Screenless {
@@ -68,4 +68,4 @@ TEST_F(TimeLineUsed, TakesItsKeysAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

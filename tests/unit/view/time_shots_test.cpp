@@ -17,7 +17,7 @@
 #include "view/playback/recording_view.h"
 #include "view/shot.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ TEST(TimeShots, OfPlotsLookAsTheyDid) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -8,7 +8,7 @@
 
 #include "support/meshes/shapes.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 using Eigen::Vector3d;
@@ -82,4 +82,4 @@ TEST(TouchMarks, ShowTheNormalAndWhatOfTheForceLiesAlongTheSurface) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "support/scratch.h"
 #include "view/feedback/rumble.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 driver::TickRecord touching(double force, std::int64_t ms = 0) {
@@ -174,4 +174,4 @@ TEST(Rumble, SaysWhatToDoWhereNoGamepadCan) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -15,7 +15,7 @@
 #include "support/scratch.h"
 #include "view/feedback/wav_file.h"
 
-namespace thimble::app::view {
+namespace thimble::view {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -196,4 +196,4 @@ TEST(WavFile, IsWhatOthersRead) {
 }
 
 }  // namespace
-}  // namespace thimble::app::view
+}  // namespace thimble::view

@@ -12,7 +12,7 @@
 #include "bringup/identify/weak_form/clustered_fit.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // Wald's statistic of a wave's two factors, above which it is believed [chosen: no arm without
@@ -208,4 +208,4 @@ driver::Result<MotorWaves> find_waves(const ArmMotion& motion, const PerMass& he
   return WavesOfMotion(motion, periods, ratio, held.delay.value).find(fitted);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

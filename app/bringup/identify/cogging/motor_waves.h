@@ -11,7 +11,7 @@
 #include "bringup/identify/motion_fit.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Cogging or ripple of one motor, a sine over its angle (device_sim::DriveTrainSettings).
 struct MotorWave {
@@ -65,4 +65,4 @@ ArmMotion freed_of_waves(const ArmMotion& motion, const MotorWaves& waves);
 driver::Result<MotorWaves> find_waves(const ArmMotion& motion, const PerMass& held,
                                       const Eigen::Vector3d& ratio, double named);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "bringup/identify/acting_tick.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr double kEndsOfAngles =
@@ -82,4 +82,4 @@ Eigen::MatrixXd WaveRows::columns(const Phases& phases, std::size_t stride, int 
   return all;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

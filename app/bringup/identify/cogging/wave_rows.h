@@ -8,7 +8,7 @@
 
 #include "bringup/identify/weak_form/fitted_motion.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What waves over the motors' angles do to the equations of a fitted motion: cogging, a torque
 /// that is a sine of the motor's angle, and ripple, a torque constant that is. Both are linear in
@@ -49,4 +49,4 @@ class WaveRows {
 /// over the tick about it, N m at the joints. Real-time: never from the servo thread.
 std::vector<Eigen::Vector3d> acting_torques(const ArmMotion& motion, double delay);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // For a first look one bump in two, and of its ticks one in two: bumps overlap fourfold, and at
@@ -165,4 +165,4 @@ WavePeriods find_periods(const FittedMotion& motion, const WaveRows& rows, doubl
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 
 #include "bringup/identify/cogging/wave_rows.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Numbers of periods in a turn that motors may have. Cogging has the least common multiple of
 /// slots and poles [M Zhu and Howe 2000], from 6 (3 slots, 2 poles) to 264 (24 and 22, of flat
@@ -29,4 +29,4 @@ struct WavePeriods {
 /// never from the servo thread.
 WavePeriods find_periods(const FittedMotion& motion, const WaveRows& rows, double named);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "gravity_terms.h"
 #include "plant/link_mechanics.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // What is written, by what is seen: mass, inertias, yaws and moment_b as in LinkFit, weight.
@@ -121,4 +121,4 @@ device_sim::LinkSettings settings_of(const LinkConstants& links) {
   return is;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

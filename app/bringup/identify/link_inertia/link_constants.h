@@ -7,7 +7,7 @@
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Tip and links as an arm file names them.
 struct TipAndLinks {
@@ -26,4 +26,4 @@ driver::Result<TipAndLinks> tip_and_links(const LinkFit& fit, const Eigen::Vecto
 /// Returns the values as the simulated arm takes them, without gravity.
 device_sim::LinkSettings settings_of(const LinkConstants& links);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

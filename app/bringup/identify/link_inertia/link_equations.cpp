@@ -7,7 +7,7 @@
 #include "gravity_terms.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr int kRateTicks = 10;  // ticks to either side, as MotionEquations has it for the tip
@@ -116,4 +116,4 @@ Eigen::Matrix3d links_at_tip(const LinkEquations::Row& links, const MotionSample
   return sample.G.transpose() * inertia.asDiagonal() * sample.G;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -9,7 +9,7 @@
 #include "bringup/identify/weak_form/motion_equations.h"
 #include "thimble/driver/serial_arm.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What the constants of a serial arm's links multiply, in the weak form: the equations of motion
 /// of device_sim::LinkSettings, whose sources it names, drawn to the tip by G^T. Motion cannot tell
@@ -60,4 +60,4 @@ class LinkEquations {
 /// kg. Real-time: never from the servo thread.
 Eigen::Matrix3d links_at_tip(const LinkEquations::Row& links, const MotionSample& sample);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -12,7 +12,7 @@
 #include "bringup/identify/weak_form/motion_equations.h"
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr int kLinkConstants = LinkRows::kConstants, kLinkColumns = LinkRows::kCount;
@@ -252,4 +252,4 @@ driver::Result<LinkFit> fit_links(const driver::SerialArm& arm,
   return LinkSearch(arm, motions).run();
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -11,7 +11,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/driver/serial_arm.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Constants of a serial arm with links, by its motion at several places:
 ///
@@ -74,4 +74,4 @@ struct LinkFit {
 driver::Result<LinkFit> fit_links(const driver::SerialArm& arm,
                                   const std::vector<ArmMotion>& motions);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

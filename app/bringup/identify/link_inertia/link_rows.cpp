@@ -7,7 +7,7 @@
 #include "bringup/identify/arm_constants.h"
 #include "gravity_terms.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 LinkRows::LinkRows(const std::vector<ArmMotion>& motions) : motions_(motions) {
   equations_.reserve(motions.size());
@@ -111,4 +111,4 @@ LinkRows::Columns LinkRows::least(const Eigen::MatrixXd& rows, const Eigen::Vect
   return scale.cwiseProduct(Columns(normal.ldlt().solve(sum)));
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

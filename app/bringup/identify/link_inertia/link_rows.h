@@ -9,7 +9,7 @@
 #include "bringup/identify/link_inertia/link_fit.h"
 #include "bringup/identify/weak_form/motion_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// The equations of several motions in one table, for least squares: the motors' forces by the arm
 /// file on one side, what they do on the other. Gains are seen by two differences of them, their
@@ -74,4 +74,4 @@ class LinkRows {
   bool loaded_ = false;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

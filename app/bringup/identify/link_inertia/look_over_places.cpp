@@ -2,7 +2,7 @@
 
 #include "bringup/identify/link_inertia/link_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 driver::Result<LinkFit> fit_over(const OverPlaces& over, const scene::ArmFile& file) {
@@ -75,4 +75,4 @@ ArmMotion freed_of_links(const ArmMotion& motion, const LinkFit& fit) {
   return freed;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

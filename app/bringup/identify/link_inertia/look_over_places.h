@@ -14,7 +14,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What an arm's motion over its workspace says of its links.
 struct OverPlaces {
@@ -50,4 +50,4 @@ driver::Result<void> add_loaded(OverPlaces& over, const ArmMotion& loaded,
 /// is that of the tip. Precondition: the fit has links and a mass above zero.
 ArmMotion freed_of_links(const ArmMotion& motion, const LinkFit& fit);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "bringup/identify/record_motion.h"
 #include "plant/link_mechanics.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 std::vector<PlaceMass> masses_at_places(const LinkFit& fit, const scene::ArmFile& file) {
   std::vector<PlaceMass> all;
@@ -77,4 +77,4 @@ std::string range_text(const LinkFit& fit, const scene::ArmFile& file) {
       1e3 * range.most.plus_minus);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

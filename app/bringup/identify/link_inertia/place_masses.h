@@ -8,7 +8,7 @@
 #include "bringup/identify/link_inertia/link_fit.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Apparent mass of the tip at a place.
 struct PlaceMass {
@@ -38,4 +38,4 @@ std::string range_text(const LinkFit& fit, const scene::ArmFile& file);
 /// Returns all as a table that people read.
 std::string place_table(const LinkFit& fit, const scene::ArmFile& file);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

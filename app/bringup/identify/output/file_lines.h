@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// The lines of a YAML text in which the rest of a line can be exchanged, from where a value
 /// stands; all other lines stay as they are. Real-time: never from the servo thread.
@@ -66,4 +66,4 @@ class FileLines {
   std::vector<std::pair<std::size_t, std::string>> added_;
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

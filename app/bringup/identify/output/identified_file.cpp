@@ -18,7 +18,7 @@
 #include "system/regular_file.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 driver::Error bad_form(std::string_view key) {
@@ -313,4 +313,4 @@ driver::Result<void> write_identified(const std::filesystem::path& arm_file,
   return write_new(new_file, head + *whole);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// When and on which arm constants were identified.
 struct IdentifiedMark {
@@ -44,4 +44,4 @@ driver::Result<void> write_identified(const std::filesystem::path& arm_file,
                                       const std::filesystem::path& new_file,
                                       const Identified& found, const IdentifiedMark& mark);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -14,7 +14,7 @@
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 // Width over RMS of what is evenly spread.
@@ -234,4 +234,4 @@ driver::Result<std::string> further_text(const std::string& text, const Identifi
   return written;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/identify/output/identified_file.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Returns the text that `identified_text` made with what else was found of the arm, each with its
 /// mark: period of the reports, watchdog of the firmware, saturation of the amplifiers, cogging and
@@ -16,4 +16,4 @@ namespace thimble::app {
 driver::Result<std::string> further_text(const std::string& text, const Identified& found,
                                          const IdentifiedMark& mark);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

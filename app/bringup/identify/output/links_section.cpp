@@ -9,7 +9,7 @@
 
 #include "bringup/identify/link_inertia/link_constants.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 /// The keys of a section with their values, each marked.
@@ -91,4 +91,4 @@ bool reads_links(const device_sim::LinkSettings& read, const ArmConstants& found
   return right;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Puts the links that were seen into the section `links` of `simulation`, or adds it before `tip`.
 /// Where links were sought and none seen, a section that is there says so and names none. Fails if
@@ -20,4 +20,4 @@ driver::Result<void> put_links(const YAML::Node& simulation, const ArmConstants&
 /// the servo thread.
 bool reads_links(const device_sim::LinkSettings& read, const ArmConstants& found);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 /// A friction joint by joint; none has any below zero, and what was not seen is zero, its interval
@@ -57,4 +57,4 @@ bool reads_rubbing(const device_sim::DriveTrainSettings& read, const Identified&
   return true;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

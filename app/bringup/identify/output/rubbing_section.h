@@ -9,7 +9,7 @@
 #include "bringup/identify/output/train_section.h"
 #include "thimble/device_sim/settings.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Returns what is written of the friction of a rigid arm's joints. Where it was looked for and
 /// none was seen, a file whose `train` names some says zero. Real-time: never from the servo
@@ -21,4 +21,4 @@ std::vector<TrainKey> rubbing_keys(const YAML::Node& train, const Identified& fo
 /// thread.
 bool reads_rubbing(const device_sim::DriveTrainSettings& read, const Identified& found);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

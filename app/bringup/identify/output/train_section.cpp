@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 TrainKey TrainKey::of(const std::string& name, const std::string& unit,
                       const std::array<Estimate, 3>& values, const IdentifiedMark& mark) {
@@ -48,4 +48,4 @@ bool put_train_keys(const YAML::Node& simulation, const std::vector<TrainKey>& k
   return false;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

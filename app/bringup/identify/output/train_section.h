@@ -10,7 +10,7 @@
 #include "bringup/identify/output/file_lines.h"
 #include "bringup/identify/output/identified_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// One key of the section `drive_train`: its value, and what stands behind it.
 struct TrainKey {
@@ -26,4 +26,4 @@ struct TrainKey {
 bool put_train_keys(const YAML::Node& simulation, const std::vector<TrainKey>& keys,
                     FileLines& lines);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 /// One key of the section: a value for each motor.
@@ -80,4 +80,4 @@ bool reads_waves(const device_sim::DriveTrainSettings& read, const Identified& f
   return right;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -9,7 +9,7 @@
 #include "bringup/identify/output/train_section.h"
 #include "thimble/device_sim/settings.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Returns what is written of cogging and ripple of the motors: those that were seen. Where they
 /// were looked for and none was seen, a file whose `train` names some says zero. Real-time: never
@@ -21,4 +21,4 @@ std::vector<TrainKey> wave_keys(const YAML::Node& train, const Identified& found
 /// thread.
 bool reads_waves(const device_sim::DriveTrainSettings& read, const Identified& found);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -5,7 +5,7 @@
 
 #include "math/elementary.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 /// The sums of a fit, with an equation of its own for each column of zeros.
@@ -64,4 +64,4 @@ FurtherColumns fit_further(const Eigen::MatrixXd& rows, const Eigen::VectorXd& r
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Returns the covariance of least squares whose residuals hang together within clusters, by the
 /// sandwich of their scores. A column of zeros was not asked for: its variance is zero.
@@ -28,4 +28,4 @@ struct FurtherColumns {
 FurtherColumns fit_further(const Eigen::MatrixXd& rows, const Eigen::VectorXd& rest,
                            const Eigen::MatrixXd& further, const std::vector<int>& clusters);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

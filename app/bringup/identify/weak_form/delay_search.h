@@ -4,7 +4,7 @@
 
 #include "bringup/identify/weak_form/motion_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// Finds roughly where `residual_at(delay)` is least, s: in steps of half a millisecond.
 template <class Residual>
@@ -37,4 +37,4 @@ double refined_delay(double about, double within, const Residual& residual_at) {
   return 0.5 * (low + high);
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

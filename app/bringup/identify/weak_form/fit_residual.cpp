@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 FitResidual residual_of(const MotionEquations& equations, const PerMass& fit) {
   constexpr double kStep = 2e-5;  // s, of a central difference
@@ -29,4 +29,4 @@ FitResidual residual_of(const MotionEquations& equations, const PerMass& fit) {
   return found;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -6,7 +6,7 @@
 #include "bringup/identify/motion_fit.h"
 #include "bringup/identify/weak_form/motion_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// What a fit leaves of each equation, and how that hangs on its constants.
 struct FitResidual {
@@ -20,4 +20,4 @@ struct FitResidual {
 /// Returns what the constants and the delay of `fit` leave. Real-time: never from the servo thread.
 FitResidual residual_of(const MotionEquations& equations, const PerMass& fit);
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -5,7 +5,7 @@
 #include "bringup/identify/weak_form/fit_residual.h"
 #include "bringup/identify/weak_form/motion_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// A motion, the constants that were fitted to it, and what these leave: what further constants are
 /// looked for in. The motion must outlive it. Real-time: never from the servo thread.
@@ -23,4 +23,4 @@ struct FittedMotion {
   const ArmMotion& motion() const { return equations.motion(); }
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 
 #include "bringup/identify/link_inertia/link_equations.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr int kHop = 15;         // ticks between bumps
@@ -220,4 +220,4 @@ double MotionEquations::noise() const {
   return std::sqrt(curvature * at_tip / 12) / area_;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

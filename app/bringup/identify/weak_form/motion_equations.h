@@ -10,7 +10,7 @@
 #include "bringup/identify/smooth_bump.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 /// A motion in the weak form: both sides of the law of PerMass integrated against smooth bumps of
 /// 60 ms, an equation for each bump and axis of the base in which the axis did not stand. The
@@ -148,4 +148,4 @@ class MotionEquations {
   std::size_t whole_ = 0, torn_ = 0;  // pieces of motion without and with ticks that saw no report
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

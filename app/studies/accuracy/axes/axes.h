@@ -2,7 +2,7 @@
 
 #include "studies/accuracy/accuracy_axis.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// How far a wall gives that is felt as rigid (24 N/mm), mm/N: below it no hand tells one from
 /// another, so every diagram of the stiffest wall is shaded there [PHYSICS 6, after Tan et al.].
@@ -43,4 +43,4 @@ AccuracyAxis safety_noise_axis();
 AccuracyAxis effects_axis();
 AccuracyAxis float_axis();
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

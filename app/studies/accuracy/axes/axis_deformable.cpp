@@ -8,7 +8,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/integrators/membrane.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using render::SpringScheme;
@@ -193,4 +193,4 @@ AccuracyAxis deformable_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

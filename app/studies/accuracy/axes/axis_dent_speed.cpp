@@ -8,7 +8,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/cost/cost_subjects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -135,4 +135,4 @@ AccuracyAxis dent_speed_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

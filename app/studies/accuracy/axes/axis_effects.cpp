@@ -9,7 +9,7 @@
 #include "studies/accuracy/stroked_ring.h"
 #include "studies/cost/cost_subjects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // The subjects are the program's own; one that is refused is a mistake of theirs.
@@ -92,4 +92,4 @@ AccuracyAxis effects_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "studies/accuracy/velocity_estimates.h"
 #include "studies/friction/friction_cases.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kTick = 1e-3;      // s
@@ -123,7 +123,7 @@ AccuracyAxis encoder_friction_axis() {
     }
     AccuracyLine line{.name = which.name, .title = which.title, .order = {}, .points = {}};
     for (const double um : kSteps) {
-      FrictionRigSettings rig;
+      stability::FrictionRigSettings rig;
       rig.encoder_step = 1e-6 * um;
       line.points.push_back(
           {.name = std::to_string(static_cast<int>(um)) + "um",
@@ -139,4 +139,4 @@ AccuracyAxis encoder_friction_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -8,7 +8,7 @@
 #include "studies/accuracy/stroked_ring.h"
 #include "studies/cost/cost_subjects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -127,4 +127,4 @@ AccuracyAxis float_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -5,7 +5,7 @@
 #include "studies/accuracy/friction_work.h"
 #include "studies/friction/friction_cases.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kForce = 0.5;  // N, what Coulomb's friction gives
@@ -91,4 +91,4 @@ AccuracyAxis friction_stiction_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "studies/accuracy/stiffest_wall.h"
 #include "studies/accuracy/stroked_ring.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kTick = 1e-3;      // s
@@ -50,7 +50,7 @@ AccuracyPoint point_of(const std::string& name, const Times& times, Felt felt) {
                         .delay = times.delay,
                         .period_of = times.period_of};
     point.error = [impact] { return 100 * (mean_restitution(impact) - 1); };
-    point.law = 100 * (restitution(kStiffness, kViscous, impact.mass, latency) - 1);
+    point.law = 100 * (stability::restitution(kStiffness, kViscous, impact.mass, latency) - 1);
   } else {
     RestedWall wall;
     wall.period = times.period;
@@ -58,7 +58,7 @@ AccuracyPoint point_of(const std::string& name, const Times& times, Felt felt) {
     wall.duration = 4;
     if (times.period_of) wall.period_of = [times](int k) { return times.period_of(0, k); };
     point.error = [wall] { return 1e3 / stiffest(wall); };
-    point.law = 1e3 / late_stiffness_limit(wall.viscous, latency, wall.mass);
+    point.law = 1e3 / stability::late_stiffness_limit(wall.viscous, latency, wall.mass);
   }
   return point;
 }
@@ -143,4 +143,4 @@ AccuracyAxis latency_stiffness_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "studies/accuracy/stroked_ring.h"
 #include "studies/cost/cost_subjects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kStrokeMs = 1000;
@@ -82,7 +82,9 @@ AccuracyAxis loop_rate_axis() {
       point.ticks = kStrokeMs;
       point.is_default = khz == 1 && one.delay_ticks == 0 && one.stiffness == 800;
       point.fits = khz >= 4;
-      point.law = 100 * (restitution(impact.stiffness, impact.viscous, impact.mass, latency) - 1);
+      point.law =
+          100 *
+          (stability::restitution(impact.stiffness, impact.viscous, impact.mass, latency) - 1);
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));
@@ -123,7 +125,7 @@ AccuracyAxis loop_rate_stiffness_axis() {
       point.is_default = khz == 1 && line.name == "hand";
       point.fits = khz >= 2 && khz <= 16;
       const double latency = scene::latency_of({.period = wall.period, .delay = wall.delay});
-      point.law = 1e3 / late_stiffness_limit(wall.viscous, latency, wall.mass);
+      point.law = 1e3 / stability::late_stiffness_limit(wall.viscous, latency, wall.mass);
       line.points.push_back(std::move(point));
     }
     axis.lines.push_back(std::move(line));
@@ -131,4 +133,4 @@ AccuracyAxis loop_rate_stiffness_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

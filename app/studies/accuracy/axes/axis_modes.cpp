@@ -11,7 +11,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/integrators/membrane.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kFrameTime = 1e-3;  // s
@@ -187,4 +187,4 @@ AccuracyAxis modes_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "studies/cost/cost_subjects.h"
 #include "track/edge_blending.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using render::BlendingChoice;
@@ -169,4 +169,4 @@ AccuracyAxis profile_rate_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/free_spin.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Matrix3d;
@@ -185,4 +185,4 @@ AccuracyAxis rigid_body_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

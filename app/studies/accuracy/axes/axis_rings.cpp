@@ -6,7 +6,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/cost/cost_subjects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -112,4 +112,4 @@ AccuracyAxis rings_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -10,7 +10,7 @@
 #include "studies/accuracy/hand_signal.h"
 #include "studies/accuracy/held_motion.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using driver::EnergyStage;
@@ -187,4 +187,4 @@ AccuracyAxis safety_noise_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

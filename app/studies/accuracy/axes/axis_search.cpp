@@ -11,7 +11,7 @@
 #include "studies/cost/cost_subjects.h"
 #include "thimble/render/contact_choice.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -111,4 +111,4 @@ AccuracyAxis search_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

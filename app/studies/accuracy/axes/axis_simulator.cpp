@@ -8,7 +8,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/pushed_arm.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Arm = PushedArm;
@@ -236,4 +236,4 @@ AccuracyAxis simulator_smooth_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -7,7 +7,7 @@
 #include "studies/accuracy/axes/axes.h"
 #include "studies/accuracy/stroked_ring.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using render::BlendingChoice;
@@ -148,4 +148,4 @@ AccuracyAxis tessellation_jump_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

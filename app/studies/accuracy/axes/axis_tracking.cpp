@@ -16,7 +16,7 @@
 #include "studies/accuracy/follower.h"
 #include "studies/cost/cost_subjects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -40,7 +40,7 @@ const double kFelt = 0.02 / kCostSpring.stiffness;
 const FollowedSurface& surface() {
   static const FollowedSurface one = [] {
     render::TriangleMesh mesh = kCostRing.mesh(2 * kAcross, kAcross);
-    Draw draw(17);
+    stability::Draw draw(17);
     for (Vector3d& p : mesh.vertices) p += draw.uniform(-kHills, kHills) * kCostRing.normal(p);
     FollowedSurface found;
     found.mesh = std::make_shared<const render::ContactMesh>(
@@ -220,4 +220,4 @@ AccuracyAxis tracking_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

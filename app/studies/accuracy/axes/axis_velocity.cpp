@@ -10,7 +10,7 @@
 #include "studies/accuracy/stiffest_wall.h"
 #include "studies/accuracy/velocity_estimates.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr double kTick = 1e-3;      // s
@@ -153,4 +153,4 @@ AccuracyAxis velocity_stiffness_axis() {
   return axis;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

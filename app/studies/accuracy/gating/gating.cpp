@@ -15,7 +15,7 @@
 #include "thimble/scene/shared_meshes.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 constexpr int kRounds = 5;
@@ -46,8 +46,8 @@ double compare(std::span<const driver::TickRecord> full, std::span<const driver:
     if (!is_felt(full[i]) && !is_felt(some[i])) continue;
     std::array<double, 3> off{};
     for (std::size_t k = 0; k < 3; ++k) off[k] = some[i].f_sent_W[k] - full[i].f_sent_W[k];
-    squares += length_of(off) * length_of(off);
-    size += length_of(full[i].f_sent_W) * length_of(full[i].f_sent_W);
+    squares += report::length_of(off) * report::length_of(off);
+    size += report::length_of(full[i].f_sent_W) * report::length_of(full[i].f_sent_W);
   }
   return size > 0 ? std::sqrt(squares / size) : 0;
 }
@@ -156,4 +156,4 @@ bool probe_gating(const std::string& subject) {
   return true;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "studies/accuracy/gating/gating_rules.h"
 #include "thimble/driver/result.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// What the decisions come to.
 struct GatingReport {
@@ -29,9 +29,9 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
 /// Lays the report out as text, with a decision per line.
 std::string gating_text(const GatingReport& report);
 /// Returns it as figures.
-std::vector<Figure> figures_of(const GatingReport& report);
+std::vector<session::Figure> figures_of(const GatingReport& report);
 
 /// Runs the scene of `full/FILE` or `reduced/FILE` once, for callgrind; false if that is no scene.
 bool probe_gating(const std::string& subject);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "report/picture_style.h"
 #include "scene_effects.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // [PHYSICS 6 and 8]
@@ -19,7 +19,7 @@ constexpr double kLatencyShare = 0.05;
 }  // namespace
 
 bool is_felt(const driver::TickRecord& row) {
-  return row.in_contact || length_of(row.f_sent_W) > 0;
+  return row.in_contact || report::length_of(row.f_sent_W) > 0;
 }
 
 SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick) {
@@ -28,13 +28,13 @@ SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick) {
   double squares = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (!is_felt(rows[i])) continue;
-    const double f = length_of(rows[i].f_sent_W);
+    const double f = report::length_of(rows[i].f_sent_W);
     squares += f * f;
     seen.force_max = std::max(seen.force_max, f);
     seen.depth_max = std::max(seen.depth_max, rows[i].depth);
     std::array<double, 3> change{};
     for (std::size_t k = 0; k < 3; ++k) change[k] = rows[i].v_WT[k] - rows[i - 1].v_WT[k];
-    accelerations.push_back(length_of(change) / tick);
+    accelerations.push_back(report::length_of(change) / tick);
   }
   if (accelerations.empty()) return seen;
   seen.force_rms = std::sqrt(squares / static_cast<double>(accelerations.size()));
@@ -113,4 +113,4 @@ void leave_out(const std::string& name, scene::Scene& scene) {
   if (name == "coulomb") simulated.plant.coulomb = 0;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

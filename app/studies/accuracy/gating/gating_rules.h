@@ -8,7 +8,7 @@
 #include "thimble/driver/tick_record.h"
 #include "thimble/scene/scene_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 /// The share by which a force may change unnoticed: half of 7 % [PHYSICS 6].
 inline constexpr double kShareFelt = 0.035;
@@ -45,4 +45,4 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
 /// thread.
 void leave_out(const std::string& name, scene::Scene& scene);
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

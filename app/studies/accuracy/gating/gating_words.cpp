@@ -5,7 +5,7 @@
 #include "studies/accuracy/axis_words.h"
 #include "studies/accuracy/gating/gating.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 
 std::string gating_text(const GatingReport& report) {
   std::string text;
@@ -34,8 +34,8 @@ std::string gating_text(const GatingReport& report) {
   return text + ".\n";
 }
 
-std::vector<Figure> figures_of(const GatingReport& report) {
-  std::vector<Figure> figures;
+std::vector<session::Figure> figures_of(const GatingReport& report) {
+  std::vector<session::Figure> figures;
   for (const GateDecision& one : report.decisions) {
     figures.push_back({.name = one.effect + ": may be left out",
                        .value = one.left_out ? 1.0 : 0.0,
@@ -69,4 +69,4 @@ std::vector<Figure> figures_of(const GatingReport& report) {
   return figures;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -11,7 +11,7 @@
 #include "support/scratch.h"
 #include "thimble/scene/real_arm.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 scene::ArmFile vintage() {
@@ -256,4 +256,4 @@ TEST_F(CalibrationTest, FeelCheckSaysThatAnArmHasNoWatchdog) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 #include "support/mock/fake_usb.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 /// A machine on which all is well, with a WoodenHaptics arm; each test breaks one thing.
@@ -251,4 +251,4 @@ TEST(DoctorLog, SaysWhereTheLogIsAndWhetherItCanBeWritten) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -12,7 +12,7 @@
 #include "thimble/scene/scene_file.h"
 #include "user_folders.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using driver::ArmKind;
@@ -149,4 +149,4 @@ TEST_F(FeelCheckRecordTest, OfAFalconHoldsForTheImageThatIsNamed) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -9,7 +9,7 @@
 
 #include "thimble/scene/arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 scene::ArmFile shipped(const std::string& name) {
@@ -162,4 +162,4 @@ TEST(FeelCheck, SeesAMissingWatchdogBehindHighFriction) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

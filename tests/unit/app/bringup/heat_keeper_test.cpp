@@ -11,7 +11,7 @@
 
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 constexpr driver::HeatSettings kSettings{.continuous_current = {1, 1, 1},
@@ -85,4 +85,4 @@ TEST_F(HeatKeeperTest, TakesADamagedFileForHotAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -13,7 +13,7 @@
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/real_arm_terms.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using driver::BoardKind;
@@ -142,4 +142,4 @@ TEST_F(LinkedArmTest, AFileOfSuchAnArmNamesNothingThatItsSoftwareKnows) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -4,7 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 TEST(LateTicks, AreManyAboveOneInAThousand) {
@@ -28,4 +28,4 @@ TEST(LoopPriority, GivesTheFormerPriorityBack) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

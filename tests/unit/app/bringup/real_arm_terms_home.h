@@ -13,7 +13,7 @@
 #include "support/scratch.h"
 #include "thimble/scene/real_arm_terms.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 
 namespace fs = std::filesystem;
 
@@ -105,4 +105,4 @@ class RealArmTermsTest : public ::testing::Test {
   const fs::path home_ = support::scratch_folder() / "terms";
 };
 
-}  // namespace thimble::app
+}  // namespace thimble::bringup

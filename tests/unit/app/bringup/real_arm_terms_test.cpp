@@ -17,7 +17,7 @@
 #include "thimble/session/session.h"
 #include "user_folders.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using driver::ArmKind;
@@ -354,4 +354,4 @@ TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

@@ -13,7 +13,7 @@
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/real_arm_file.h"
 
-namespace thimble::app {
+namespace thimble::bringup {
 namespace {
 
 using driver::ArmKind;
@@ -151,4 +151,4 @@ TEST_F(VendorLibraryTest, TheDoctorSaysHowAVendorsLibraryGetsToItsArm) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::bringup

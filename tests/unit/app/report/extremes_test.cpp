@@ -12,7 +12,7 @@
 
 #include "support/random.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -66,4 +66,4 @@ TEST(Extremes, ForgetRowsWhenCleared) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::report

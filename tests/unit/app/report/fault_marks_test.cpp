@@ -14,7 +14,7 @@
 #include "support/meshes/shapes.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 render::TriangleMesh open_box() {
@@ -75,4 +75,4 @@ TEST(FaultMarks, AreDrawnWithAMeshThatHasThem) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::report

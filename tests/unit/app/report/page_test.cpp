@@ -27,7 +27,7 @@
 #include "text_file.h"
 #include "thimble/render/object_touch.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using driver::TickRecord;
@@ -463,4 +463,4 @@ TEST(Page, HoldsWhatItIsMadeOfAndNoNameOfASceneGetsOut) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -16,7 +16,7 @@
 #include "report/picture_style.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 // A tetrahedron with a corner at the origin and legs of 50 mm, wound outwards.
@@ -245,4 +245,4 @@ TEST(MeshPicture, IsWrittenWhereItWasAskedFor) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -10,7 +10,7 @@
 #include "report/figure_output.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 using session::Figure;
@@ -253,4 +253,4 @@ TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::report

@@ -10,7 +10,7 @@
 #include "motion_watch_settings.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 const std::filesystem::path kArm =
@@ -270,4 +270,4 @@ TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

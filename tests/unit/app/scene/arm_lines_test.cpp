@@ -6,7 +6,7 @@
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
@@ -53,4 +53,4 @@ TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

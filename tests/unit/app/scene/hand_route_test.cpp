@@ -24,7 +24,7 @@
 #include "support/seed.h"
 #include "thimble/render/mesh/mesh_file.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 using Eigen::Vector3d;
@@ -330,4 +330,4 @@ TEST(PlaceText, HasNoNegativeZero) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

@@ -9,7 +9,7 @@
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/scene/scene_objects.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 using Eigen::Vector3d;
@@ -135,4 +135,4 @@ TEST(ObjectMesh, TellsWhenNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

@@ -12,7 +12,7 @@
 #include "support/mock/fake_usb.h"
 #include "thimble/scene/real_arm.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 scene::ArmFile file_of(const std::string& name) {
@@ -184,4 +184,4 @@ TEST_F(OpenSerialTest, AsksANamedBoardWhoItIsWithZeroCurrentsAlone) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

@@ -130,7 +130,8 @@ hand:
 std::filesystem::path ring_scene(int across, double stiffness, const std::string& more = "") {
   const std::filesystem::path folder = support::scratch_folder() / "quality";
   std::filesystem::create_directories(folder);
-  EXPECT_TRUE(render::save_mesh(app::kCostRing.mesh(2 * across, across), folder / "ring.off").ok());
+  EXPECT_TRUE(
+      render::save_mesh(studies::kCostRing.mesh(2 * across, across), folder / "ring.off").ok());
   std::ofstream(folder / "ring.yaml") << fmt::format(
       kScene,
       (std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml").string(),
@@ -159,8 +160,8 @@ TEST(Quality, AutoTakesTheCheapestPointAtWhichNothingWrongCanBeFelt) {
     EXPECT_NE(said[1].find(std::string(table.measured)), std::string::npos) << said[1];
     // On a ring of the table itself the choice can be looked up.
     const ContactPoint* best = nullptr;
-    const double turn =
-        typical_turn(render::ContactMesh::build(app::kCostRing.mesh(2 * across, across)).value());
+    const double turn = typical_turn(
+        render::ContactMesh::build(studies::kCostRing.mesh(2 * across, across)).value());
     for (const ContactPoint& point : table.contacts) {
       if (std::abs(point.turn / turn - 1) > 1e-3 || point.error > 1) continue;
       if (best == nullptr || point.ns < best->ns) best = &point;
@@ -200,11 +201,11 @@ TEST(Quality, AutoStepsADentSoThatItsMotionIsRightAndLeavesNamedTrackersAlone) {
 }
 
 TEST(Quality, TheStoredPointsErrAsTheStudyFindsThem) {
-  const app::AccuracyAxis axis = app::contact_points_axis();
+  const studies::AccuracyAxis axis = studies::contact_points_axis();
   const auto stored = quality_table().contacts;
   std::size_t next = 0;
-  for (const app::AccuracyLine& line : axis.lines) {
-    for (const app::AccuracyPoint& point : line.points) {
+  for (const studies::AccuracyLine& line : axis.lines) {
+    for (const studies::AccuracyPoint& point : line.points) {
       ASSERT_LT(next, stored.size());
       const ContactPoint& one = stored[next++];
       EXPECT_NEAR(one.turn / point.knob, 1, 1e-4) << line.name << ' ' << point.name;

@@ -7,7 +7,7 @@
 #include "arms/hfab/hfab_models.h"
 #include "support/mock/fake_usb.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 using driver::ArmKind;
@@ -239,4 +239,4 @@ TEST(RealArm, SpeaksTheWireOfItsKind) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

@@ -100,17 +100,17 @@ TEST_F(ScannedMeshes, AreLookedForInTheFolderOfTheEnvironmentAlone) {
 }
 
 TEST_F(ScannedMeshes, AreFoundByTheDoctorThatUnpacksNothing) {
-  using app::examine_scans;
-  const app::Finding none = examine_scans(places_);
-  EXPECT_EQ(none.health, app::Health::kAdvice);
+  using bringup::examine_scans;
+  const bringup::Finding none = bringup::examine_scans(places_);
+  EXPECT_EQ(none.health, bringup::Health::kAdvice);
   EXPECT_NE(none.mend.find("libcgal-demo"), std::string::npos);
   pack("elephant.off");
-  const app::Finding packed = examine_scans(places_);
-  EXPECT_EQ(packed.health, app::Health::kGood);
+  const bringup::Finding packed = bringup::examine_scans(places_);
+  EXPECT_EQ(packed.health, bringup::Health::kGood);
   EXPECT_NE(packed.what.find("on first use"), std::string::npos) << packed.what;
   EXPECT_FALSE(fs::exists(root_ / "cache"));
   write("second/elephant.off", "OFF\n");
-  const std::string said = examine_scans(places_).what;
+  const std::string said = bringup::examine_scans(places_).what;
   EXPECT_NE(said.find("are in " + (root_ / "second").string()), std::string::npos) << said;
   EXPECT_LT(said.find((root_ / "first").string()), said.find((root_ / "second (there)").string()))
       << said;

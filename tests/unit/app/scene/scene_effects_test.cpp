@@ -7,7 +7,7 @@
 
 #include "worst_direction.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 std::vector<std::string> names_of(const std::vector<render::EffectPlan>& plans) {
@@ -79,4 +79,4 @@ TEST(Surroundings, OfEveryArmThatComesAlongAreThoseOfADeskTopArm) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

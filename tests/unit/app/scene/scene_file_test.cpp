@@ -9,14 +9,14 @@
 
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 const std::filesystem::path kFolder = support::scratch_folder() / "thimble_scene";
 
 // Writes a scene beside an arm and a mesh that exist, and tells what was wrong with it.
-driver::Result<scene::Scene> read(const std::string& objects, const std::string& path,
-                                  const std::string& more = "") {
+driver::Result<scene::Scene> scene_from(const std::string& objects, const std::string& path,
+                                        const std::string& more = "") {
   std::filesystem::create_directories(kFolder / "meshes");
   std::filesystem::copy_file(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml",
@@ -32,13 +32,13 @@ const std::string kWait = "    - {t: 0, at: [0, 0, 0.05]}\n";
 
 std::string mistake(const std::string& objects, const std::string& path,
                     const std::string& more = "") {
-  const auto scene = read(objects, path, more);
+  const auto scene = scene_from(objects, path, more);
   return scene ? "" : scene.error().message;
 }
 
 TEST(SceneFile, ReadsObjectsAndTheHandsWay) {
   const auto scene =
-      read(kBall, kWait + "    - {t: 1, on: ball, near: [0, 0, 0.05], press: 0.004}\n");
+      scene_from(kBall, kWait + "    - {t: 1, on: ball, near: [0, 0, 0.05], press: 0.004}\n");
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->name, "test");
   EXPECT_EQ(scene->rate, 1000);
@@ -53,7 +53,8 @@ TEST(SceneFile, ReadsObjectsAndTheHandsWay) {
 }
 
 TEST(SceneFile, ReadsSeveralObjectsIfTheirNamesDiffer) {
-  const auto scene = read(kBall + "  - {name: b, mesh: cgal:ball.off, stiffness: 1}\n", kWait);
+  const auto scene =
+      scene_from(kBall + "  - {name: b, mesh: cgal:ball.off, stiffness: 1}\n", kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->objects.size(), 2U);
   EXPECT_NE(
@@ -63,7 +64,7 @@ TEST(SceneFile, ReadsSeveralObjectsIfTheirNamesDiffer) {
 }
 
 TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
-  const auto scene = read(
+  const auto scene = scene_from(
       "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: offset, blending: "
       "phong, normals: round, "
       "curved_depth: true, crease_degrees: 60}}\n",
@@ -89,10 +90,10 @@ TEST(SceneFile, NamesTheProfileOfABandAndOfNothingElse) {
   const auto with = [](const std::string& contact) {
     return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {" + contact + "}}\n";
   };
-  const auto smooth = read(with("blending: sized_band, profile: smooth"), kWait);
+  const auto smooth = scene_from(with("blending: sized_band, profile: smooth"), kWait);
   ASSERT_TRUE(smooth.ok()) << smooth.error().message;
   EXPECT_EQ(smooth->objects[0].contact.profile, render::BlendProfile::kSmooth);
-  EXPECT_FALSE(read(with("blending: sized_band"), kWait)->objects[0].contact.profile);
+  EXPECT_FALSE(scene_from(with("blending: sized_band"), kWait)->objects[0].contact.profile);
   EXPECT_NE(mistake(with("blending: fixed_band, profile: round"), kWait)
                 .find("profile: expected linear or smooth, found \"round\""),
             std::string::npos);
@@ -107,15 +108,16 @@ TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
   const auto with = [](const std::string& dent) {
     return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, body: {dent: {" + dent + "}}}\n";
   };
-  const auto plain = read(with(""), kWait);
+  const auto plain = scene_from(with(""), kWait);
   ASSERT_TRUE(plain.ok()) << plain.error().message;
   ASSERT_TRUE(plain->objects[0].body.dent);
   EXPECT_EQ(plain->objects[0].body.dent->step, 1e-3);
   EXPECT_EQ(plain->objects[0].body.dent->integrator, render::kDefaultScheme);
-  EXPECT_FALSE(
-      read("  - {name: b, mesh: cgal:ball.off, stiffness: 1}\n", kWait)->objects[0].body.dent);
-  const auto full =
-      read(with("mass: 0.002, stiffness: 30, rings: 2, integrator: verlet, pull: 0.5"), kWait);
+  EXPECT_FALSE(scene_from("  - {name: b, mesh: cgal:ball.off, stiffness: 1}\n", kWait)
+                   ->objects[0]
+                   .body.dent);
+  const auto full = scene_from(
+      with("mass: 0.002, stiffness: 30, rings: 2, integrator: verlet, pull: 0.5"), kWait);
   ASSERT_TRUE(full.ok()) << full.error().message;
   const render::DentSettings& dent = *full->objects[0].body.dent;
   EXPECT_EQ(dent.mass, 0.002);
@@ -151,7 +153,7 @@ TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {
 }
 
 TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
-  ASSERT_TRUE(read(kBall, kWait));  // writes the mesh
+  ASSERT_TRUE(scene_from(kBall, kWait));  // writes the mesh
   std::filesystem::remove(kFolder / "falcon");
   const auto with_arm = [](const std::string& arm) {
     std::ofstream(kFolder / "named.yaml") << "name: test\narm: " + arm +
@@ -194,7 +196,8 @@ TEST(SceneFile, RefusesStationsThatAreNeitherFreeNorOnAnObject) {
 }
 
 TEST(SceneFile, NamesAnEnergyStageInPlaceOfTheArms) {
-  const auto own = read(kBall, kWait), none = read(kBall, kWait, "gate: {energy: none}\n");
+  const auto own = scene_from(kBall, kWait),
+             none = scene_from(kBall, kWait, "gate: {energy: none}\n");
   ASSERT_TRUE(own.ok());
   ASSERT_TRUE(none.ok());
   EXPECT_FALSE(own->energy.has_value());
@@ -219,12 +222,12 @@ TEST(SceneFile, RefusesUnknownKeys) {
 
 TEST(SceneFile, ReadsRepairAndSheetsAndRefusesWhatDoesNotGoWithThem) {
   const std::string mesh = "  - {name: ball, mesh: cgal:ball.off, size: 0.1, stiffness: 500, ";
-  const auto scene = read(mesh + "repair: true, open: {thickness: 0.001}}\n", kWait);
+  const auto scene = scene_from(mesh + "repair: true, open: {thickness: 0.001}}\n", kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_TRUE(scene->objects[0].repair);
   EXPECT_EQ(scene->objects[0].sheet_thickness, 0.001);
   EXPECT_EQ(scene->objects[0].contact.tracker, render::TrackerChoice::kGodObject);
-  const auto plain = read(kBall, kWait);
+  const auto plain = scene_from(kBall, kWait);
   EXPECT_FALSE(plain->objects[0].repair);
   EXPECT_FALSE(plain->objects[0].sheet_thickness);
   EXPECT_NE(mistake(mesh + "open: {thickness: 0.001}, contact: {tracker: offset}}\n", kWait)
@@ -259,7 +262,7 @@ TEST(PlaceMesh, GivesTheBoxItsSizeAndCentre) {
 }
 
 TEST(SceneFile, ReadsShapesAndFieldsInPlaceOfMeshes) {
-  const auto scene = read(
+  const auto scene = scene_from(
       "  - {name: wall, plane: {normal: [0, 2, 0]}, position: [0, 0.01, 0], stiffness: 500}\n"
       "  - {name: ball, sphere: {radius: 0.02}, stiffness: 400, damping: 1, effects: [{texture: "
       "sandpaper, wavelength: 0.003}]}\n"
@@ -285,7 +288,7 @@ TEST(SceneFile, ReadsShapesAndFieldsInPlaceOfMeshes) {
 }
 
 TEST(SceneFile, DrawsShapesWhereTheyAre) {
-  const auto scene = read(
+  const auto scene = scene_from(
       "  - {name: ball, sphere: {radius: 0.02}, position: [0.01, 0, 0], stiffness: 400}\n"
       "  - {name: block, box: {sides: [0.01, 0.02, 0.03]}, rotate_degrees: [[x, 30]], stiffness: "
       "3}\n"
@@ -356,4 +359,4 @@ TEST(SceneFile, SaysWhatIsWrongWithAShapeOrAField) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

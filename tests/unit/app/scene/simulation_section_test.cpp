@@ -11,7 +11,7 @@
 #include "support/scratch.h"
 #include "thimble/scene/arm_simulation.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 const std::string kTrain =
@@ -160,4 +160,4 @@ TEST(SimulationSection, TellsTheFalconThatItsDriveTrainIsNotSimulated) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

@@ -15,7 +15,7 @@
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/scene_file.h"
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 std::filesystem::path file_of(const std::string& text) {
@@ -135,4 +135,4 @@ TEST(Trajectory, TouchesASceneInTheFrameOfAMeshOrOfTheWorld) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

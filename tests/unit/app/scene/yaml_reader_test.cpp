@@ -7,7 +7,7 @@
 #include <ctime>
 #include <string>
 
-namespace thimble::app {
+namespace thimble::scene {
 namespace {
 
 // Reads `text` as a small file with one number and one word, and tells what was wrong with it.
@@ -260,4 +260,4 @@ TEST(YamlReader, NeverThrowsOnCutOrScrambledFiles) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::scene

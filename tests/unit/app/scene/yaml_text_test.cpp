@@ -12,7 +12,7 @@ namespace thimble::scene {
 namespace {
 
 /// Reads a scene-like text and returns its mistakes.
-std::string mistakes_in(const std::string& text) {
+std::string mistakes_of_text(const std::string& text) {
   auto file = YamlFile::parse(text, "s.yaml");
   if (!file) return file.error().message;
   YamlMap& root = file->root();
@@ -29,18 +29,18 @@ std::string mistakes_in(const std::string& text) {
 }
 
 TEST(YamlText, Latin1IsNamedWithLineAndColumn) {
-  EXPECT_EQ(mistakes_in("rate: 7\nname: caf\xe9\n"),
+  EXPECT_EQ(mistakes_of_text("rate: 7\nname: caf\xe9\n"),
             "s.yaml:2:10: the byte 0xE9 is not UTF-8; save the file as UTF-8, it may be Latin-1 "
             "(iconv -f latin1 -t utf8).");
 }
 
 TEST(YamlText, ColumnsCountCharacters) {
-  EXPECT_NE(mistakes_in("name: \xc3\xa9\xf0\x9f\x98\x80\xff\n").find("s.yaml:1:9:"),
+  EXPECT_NE(mistakes_of_text("name: \xc3\xa9\xf0\x9f\x98\x80\xff\n").find("s.yaml:1:9:"),
             std::string::npos);
 }
 
 TEST(YamlText, InvalidUtf8IsFoundInComments) {
-  EXPECT_NE(mistakes_in("rate: 7 # 5 \xb5m\n").find("s.yaml:1:13: the byte 0xB5"),
+  EXPECT_NE(mistakes_of_text("rate: 7 # 5 \xb5m\n").find("s.yaml:1:13: the byte 0xB5"),
             std::string::npos);
 }
 
@@ -66,52 +66,52 @@ TEST(Utf8, OtherBytesAreReplaced) {
 TEST(YamlText, Utf16IsLeftToTheParser) {
   std::string wide = "\xff\xfe";
   for (const char c : std::string("rate: 7\n")) wide += std::string{c, '\0'};
-  EXPECT_EQ(mistakes_in(wide), "");
+  EXPECT_EQ(mistakes_of_text(wide), "");
 }
 
 TEST(YamlText, IndentingTabIsNamed) {
-  EXPECT_EQ(mistakes_in("object:\n\tstiffness: 7\n"),
+  EXPECT_EQ(mistakes_of_text("object:\n\tstiffness: 7\n"),
             "s.yaml:2:1: a tab cannot indent in YAML; write spaces instead.");
-  EXPECT_EQ(mistakes_in("object:\n  stiffness: 7\n \trate: 7\n"),
+  EXPECT_EQ(mistakes_of_text("object:\n  stiffness: 7\n \trate: 7\n"),
             "s.yaml:3:2: a tab cannot indent in YAML; write spaces instead.");
 }
 
 TEST(YamlText, IndentingNoBreakSpaceIsNamed) {
-  EXPECT_EQ(mistakes_in("object:\n\xc2\xa0 stiffness: 7\n"),
+  EXPECT_EQ(mistakes_of_text("object:\n\xc2\xa0 stiffness: 7\n"),
             "s.yaml:2:1: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
 }
 
 TEST(YamlText, NoBreakSpaceBehindAColonIsNamed) {
-  EXPECT_EQ(mistakes_in("name: a\nrate:\xc2\xa0"
-                        "7\n"),
+  EXPECT_EQ(mistakes_of_text("name: a\nrate:\xc2\xa0"
+                             "7\n"),
             "s.yaml:2:6: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
 }
 
 TEST(YamlText, NoBreakSpaceBehindANumberIsNamed) {
-  EXPECT_EQ(mistakes_in("rate: 7\xc2\xa0\n"),
+  EXPECT_EQ(mistakes_of_text("rate: 7\xc2\xa0\n"),
             "s.yaml:1:8: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
-  EXPECT_EQ(mistakes_in("rate: 7\xe2\x80\xaf# Hz\n"),
+  EXPECT_EQ(mistakes_of_text("rate: 7\xe2\x80\xaf# Hz\n"),
             "s.yaml:1:8: a narrow no-break space (U+202F) is no blank in YAML; write a space "
             "instead.");
 }
 
 TEST(YamlText, BlanksWithinTextsAreFree) {
-  EXPECT_EQ(mistakes_in("name: 5\xc2\xa0N\trate\nrate:\t7\t# 5\xc2\xa0Hz\n\t\n"), "");
-  EXPECT_EQ(mistakes_in("name: \"\xc2\xa0\"\nrate: 7\n"), "");
-  EXPECT_EQ(mistakes_in("{\n\t\"rate\": 7\n}\n"), "");
+  EXPECT_EQ(mistakes_of_text("name: 5\xc2\xa0N\trate\nrate:\t7\t# 5\xc2\xa0Hz\n\t\n"), "");
+  EXPECT_EQ(mistakes_of_text("name: \"\xc2\xa0\"\nrate: 7\n"), "");
+  EXPECT_EQ(mistakes_of_text("{\n\t\"rate\": 7\n}\n"), "");
 }
 
 TEST(YamlText, OtherMistakesKeepTheirSentence) {
-  EXPECT_EQ(mistakes_in("name: 5\xc2\xa0N\nrate: fast\n"),
+  EXPECT_EQ(mistakes_of_text("name: 5\xc2\xa0N\nrate: fast\n"),
             "s.yaml:2: rate: expected a number from 0 to 1000 Hz, found \"fast\".");
-  EXPECT_NE(mistakes_in("name: \"a\\\"\xc2\xa0: \"\nrate: [\n").find("is not proper YAML"),
+  EXPECT_NE(mistakes_of_text("name: \"a\\\"\xc2\xa0: \"\nrate: [\n").find("is not proper YAML"),
             std::string::npos);
 }
 
 TEST(YamlText, CutsFoundTextsBetweenCharacters) {
   std::string text = "rate: ";
   for (int i = 0; i < 30; ++i) text += "\xe2\x82\xac";
-  EXPECT_FALSE(find_invalid_utf8(mistakes_in(text + "\n")));
+  EXPECT_FALSE(find_invalid_utf8(mistakes_of_text(text + "\n")));
 }
 
 }  // namespace

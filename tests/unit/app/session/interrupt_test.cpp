@@ -9,7 +9,7 @@
 #include <ctime>
 #include <functional>
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -179,4 +179,4 @@ TEST(Interrupt, TakesCtrlZForARequestToLeaveWhereAnArmIsOpen) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

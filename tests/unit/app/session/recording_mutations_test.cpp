@@ -17,7 +17,7 @@
 #include "support/seed.h"
 #include "thimble/session/recording.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 using support::Random;
@@ -153,4 +153,4 @@ TEST(RecordingMutations, AreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -16,7 +16,7 @@
 #include "support/scratch.h"
 #include "thimble/session/recording.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 namespace fs = std::filesystem;
@@ -304,4 +304,4 @@ TEST(RecordingOrigin, FilesOfASceneThatArePipesAreRefused) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

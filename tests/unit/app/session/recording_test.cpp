@@ -24,7 +24,7 @@
 #include "support/seed.h"
 #include "thimble/session/recording.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 using driver::TickRecord;
@@ -611,4 +611,4 @@ TEST(Recording, AsksTheHeapForNothingPerTick) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

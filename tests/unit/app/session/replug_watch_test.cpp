@@ -10,7 +10,7 @@
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 using driver::Fault;
@@ -276,4 +276,4 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAgainBeforeItGotAForce) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -119,12 +119,12 @@ TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
 TEST(ExitCode, TellsHowARunEnded) {
   using driver::Fault;
   using driver::ServoEnd;
-  EXPECT_EQ(app::exit_code_of(ServoEnd::kDone, Fault::kNone, false), app::kExitDone);
-  EXPECT_EQ(app::exit_code_of(ServoEnd::kDone, Fault::kTransportLost, false), app::kExitFault)
+  EXPECT_EQ(cli::exit_code_of(ServoEnd::kDone, Fault::kNone, false), cli::kExitDone);
+  EXPECT_EQ(cli::exit_code_of(ServoEnd::kDone, Fault::kTransportLost, false), cli::kExitFault)
       << "a loop with a real arm outlives its faults";
-  EXPECT_EQ(app::exit_code_of(ServoEnd::kStopped, Fault::kNone, false), app::kExitInterrupted);
-  EXPECT_EQ(app::exit_code_of(ServoEnd::kStopped, Fault::kNone, true), app::kExitDone);
-  EXPECT_EQ(app::exit_code_of(ServoEnd::kFault, Fault::kOverSpeed, true), app::kExitFault);
+  EXPECT_EQ(cli::exit_code_of(ServoEnd::kStopped, Fault::kNone, false), cli::kExitInterrupted);
+  EXPECT_EQ(cli::exit_code_of(ServoEnd::kStopped, Fault::kNone, true), cli::kExitDone);
+  EXPECT_EQ(cli::exit_code_of(ServoEnd::kFault, Fault::kOverSpeed, true), cli::kExitFault);
 }
 
 }  // namespace

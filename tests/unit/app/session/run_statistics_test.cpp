@@ -9,7 +9,7 @@
 
 #include "support/seed.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 TEST(Histogram, FindsPercentilesWithinItsBinWidth) {
@@ -160,4 +160,4 @@ TEST(RunStatistics, KeepsTheFirstFault) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

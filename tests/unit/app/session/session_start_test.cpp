@@ -18,7 +18,7 @@
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 class SessionStart : public ::testing::Test {
@@ -212,4 +212,4 @@ TEST(CheckRealTime, RefusesARealArmWithoutPriorityUnlessTheUserSaysSo) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -12,7 +12,7 @@
 #include "support/heap_guard.h"
 #include "support/shipped_scene.h"
 
-namespace thimble::app {
+namespace thimble::report {
 namespace {
 
 // What a page makes of a step.
@@ -91,4 +91,4 @@ TEST(ShapeTrace, FindsRoomForALongRunWithoutTheHeap) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::report

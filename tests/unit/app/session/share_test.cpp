@@ -30,7 +30,7 @@
 #include "support/long_form.h"
 #include "support/seed.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 using driver::TickRecord;
@@ -1013,4 +1013,4 @@ TEST(KnobOrder, TurnsTheKnobItNamesAndTellsWhichThereAre) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

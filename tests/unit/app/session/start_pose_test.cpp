@@ -14,7 +14,7 @@
 #include "thimble/driver/wire_link.h"
 #include "thimble/scene/real_arm.h"
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 using driver::ArmKind;
@@ -217,4 +217,4 @@ TEST_F(WaitForStartPose, EndsWhenItIsToldToAndWhenTheArmGoes) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thimble::app {
+namespace thimble::session {
 namespace {
 
 void run(session::Trace& trace, std::uint64_t ticks) {
@@ -47,4 +47,4 @@ TEST(Trace, FillsItsRoomWhenTheLengthIsUnknown) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::session

@@ -13,7 +13,7 @@
 #include "thimble/scene/arm_simulation.h"
 #include "worst_direction.h"
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 TEST(RaisedEdge, IsBelowTheFirstWallThatDoesNotRestThoughStifferOnesRestAgain) {
@@ -69,4 +69,4 @@ TEST(RaisedEdge, OfASimulatedArmHasFewWallsBelowItThatDoNotRest) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::stability

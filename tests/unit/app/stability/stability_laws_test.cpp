@@ -10,7 +10,7 @@
 
 // The figures are those of [PHYSICS 1 and 2.3], which independent simulations have confirmed.
 
-namespace thimble::app {
+namespace thimble::stability {
 namespace {
 
 using support::passive_damping;
@@ -201,4 +201,4 @@ TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::stability

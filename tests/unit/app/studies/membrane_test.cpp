@@ -10,7 +10,7 @@
 #include "body/spring/spring_motion.h"
 #include "support/hard_case.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using render::SpringScheme;
@@ -105,4 +105,4 @@ TEST(HardCase31, ExplicitEulerDivergesOnAMembraneWhereItsBoundSaysSo) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::studies

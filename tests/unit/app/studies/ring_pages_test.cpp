@@ -19,7 +19,7 @@
 #include "support/random.h"
 #include "support/scratch.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -214,4 +214,4 @@ TEST(RingPages, SayWhenTheyCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::studies

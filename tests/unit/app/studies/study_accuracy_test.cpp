@@ -29,7 +29,7 @@
 #include "support/shipped_scenes.h"
 #include "thimble/session/histogram.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 // What takes long in a debug build is looked at once, by its shortest form.
@@ -232,7 +232,7 @@ TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
   AccuracyAxis product = axis_named("encoder");
   const MeasuredAxis whole = measure_axis(std::move(product), {.rounds = 0, .count = false});
   EXPECT_EQ(default_sentence(whole).rfind("No choice of a program: the step comes with", 0), 0U);
-  for (const Figure& figure : figures_of(whole)) {
+  for (const session::Figure& figure : figures_of(whole)) {
     EXPECT_EQ(figure.name.find("default"), std::string::npos) << figure.name;
   }
 }
@@ -488,4 +488,4 @@ INSTANTIATE_TEST_SUITE_P(ByName, GatingOfScene, ::testing::ValuesIn(support::sce
                          [](const auto& scene) { return scene.param; });
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -9,7 +9,7 @@
 #include "studies/cost/ring_surface.h"
 #include "thimble/render/effect/effect_table.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
@@ -61,4 +61,4 @@ TEST(CostSubjects, AreEveryWayOfContactAndEveryEffectOnceAndAllCanBeTouched) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::studies

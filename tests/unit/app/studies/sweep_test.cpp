@@ -15,7 +15,7 @@
 #include "support/scratch.h"
 #include "text_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 /// A folder of its own in that of this process.
@@ -177,4 +177,4 @@ TEST(Sweep, SaysWhatToDoAboutAFolderThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -21,7 +21,7 @@
 #include "support/seed.h"
 #include "text_file.h"
 
-namespace thimble::app {
+namespace thimble::studies {
 namespace {
 
 const std::filesystem::path kArm =
@@ -58,14 +58,14 @@ TEST(Trouble, DoesNotComeBackInTheWorstScenesOfALongSearch) {
 
 TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
   const auto file = support::scratch_folder() / "too_stiff.yaml";
-  ASSERT_TRUE(
-      write_text("name: too_stiff\narm: " + kArm.string() +
-                     "\nduration: 2\ngate: {energy: none}\n"
-                     "objects:\n  - {name: wall, plane: {normal: [0, 0, 1]}, stiffness: 9000}\n"
-                     "hand:\n  grip: {mass: 0.01, stiffness: 100, damping: 0.2, tremor: 0}\n"
-                     "  path:\n    - {t: 0, at: [0, 0, 0.02]}\n    - {t: 0.6, at: [0, 0, -0.01]}\n"
-                     "    - {t: 2, at: [0, 0, -0.01]}\n",
-                 file));
+  ASSERT_TRUE(report::write_text(
+      "name: too_stiff\narm: " + kArm.string() +
+          "\nduration: 2\ngate: {energy: none}\n"
+          "objects:\n  - {name: wall, plane: {normal: [0, 0, 1]}, stiffness: 9000}\n"
+          "hand:\n  grip: {mass: 0.01, stiffness: 100, damping: 0.2, tremor: 0}\n"
+          "  path:\n    - {t: 0, at: [0, 0, 0.02]}\n    - {t: 0.6, at: [0, 0, -0.01]}\n"
+          "    - {t: 2, at: [0, 0, -0.01]}\n",
+      file));
   const TroubleFound found = run_for_trouble(file, {});
   EXPECT_FALSE(found.refused);
   EXPECT_TRUE(found.bad());
@@ -77,19 +77,19 @@ TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
 // then leans on a wall that is too stiff for it.
 TEST(Trouble, IsSeenThoughMoreWasTakenBefore) {
   const auto file = support::scratch_folder() / "rubbed_before.yaml";
-  ASSERT_TRUE(
-      write_text("name: rubbed_before\narm: " + kArm.string() +
-                     "\nduration: 4\ngate: {energy: none}\nobjects:\n"
-                     "  - {name: rubber, plane: {normal: [0, 0, 1]}, stiffness: 400, damping: 2,\n"
-                     "     effects: [{friction: bristle, coefficient: 0.8}]}\n"
-                     "  - {name: wall, box: {sides: [0.1, 0.1, 0.1]}, position: [0.08, 0, 0.03], "
-                     "stiffness: 6000}\n"
-                     "hand:\n  grip: {mass: 0.01, stiffness: 300, damping: 1, tremor: 0}\n  path:\n"
-                     "    - {t: 0, at: [0, 0, 0.02]}\n    - {t: 0.3, at: [0, -0.03, -0.01]}\n"
-                     "    - {t: 0.8, at: [0, 0.03, -0.01]}\n    - {t: 1.3, at: [0, -0.03, -0.01]}\n"
-                     "    - {t: 1.8, at: [0, 0.03, -0.01]}\n    - {t: 2.3, at: [0.02, 0, 0.02]}\n"
-                     "    - {t: 2.8, at: [0.05, 0, 0.02]}\n    - {t: 4, at: [0.05, 0, 0.02]}\n",
-                 file));
+  ASSERT_TRUE(report::write_text(
+      "name: rubbed_before\narm: " + kArm.string() +
+          "\nduration: 4\ngate: {energy: none}\nobjects:\n"
+          "  - {name: rubber, plane: {normal: [0, 0, 1]}, stiffness: 400, damping: 2,\n"
+          "     effects: [{friction: bristle, coefficient: 0.8}]}\n"
+          "  - {name: wall, box: {sides: [0.1, 0.1, 0.1]}, position: [0.08, 0, 0.03], "
+          "stiffness: 6000}\n"
+          "hand:\n  grip: {mass: 0.01, stiffness: 300, damping: 1, tremor: 0}\n  path:\n"
+          "    - {t: 0, at: [0, 0, 0.02]}\n    - {t: 0.3, at: [0, -0.03, -0.01]}\n"
+          "    - {t: 0.8, at: [0, 0.03, -0.01]}\n    - {t: 1.3, at: [0, -0.03, -0.01]}\n"
+          "    - {t: 1.8, at: [0, 0.03, -0.01]}\n    - {t: 2.3, at: [0.02, 0, 0.02]}\n"
+          "    - {t: 2.8, at: [0.05, 0, 0.02]}\n    - {t: 4, at: [0.05, 0, 0.02]}\n",
+      file));
   const TroubleFound found = run_for_trouble(file, {});
   EXPECT_FALSE(found.refused);
   EXPECT_EQ(found.fault, 0);
@@ -140,11 +140,11 @@ TroubleFound run_seed(std::uint64_t seed, const std::string& what = "", const st
     if (at != std::string::npos) scene.text.replace(at, what.size(), by);
   }
   const auto file = folder / "scene.yaml";
-  EXPECT_TRUE(write_text(scene.text, file));
+  EXPECT_TRUE(report::write_text(scene.text, file));
   if (warnings != nullptr) {
     const auto read = scene::load_scene(file);
     EXPECT_TRUE(read);
-    if (read) *warnings = rest_causes(*read);
+    if (read) *warnings = stability::rest_causes(*read);
   }
   return run_for_trouble(file, scene);
 }
@@ -208,11 +208,11 @@ TEST(Trouble, LightBodyInTheGripOfAFrictionRests) {
 
 TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
   // Hollows of a cube: none; its texture and friction as a scene names them.
-  EXPECT_NEAR(quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3), 2 * 0.03 * std::sqrt(0.1 * 0.9),
-              1e-12);
-  EXPECT_EQ(quantisation_noise_of(2, 0, 3e-3, 0, 1e-3), 0);
+  EXPECT_NEAR(stability::quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3),
+              2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
+  EXPECT_EQ(stability::quantisation_noise_of(2, 0, 3e-3, 0, 1e-3), 0);
   const auto file = support::scratch_folder() / "wave.yaml";
-  ASSERT_TRUE(write_text(
+  ASSERT_TRUE(report::write_text(
       "name: wave\narm: " + kArm.string() +
           "\nduration: 1\nobjects:\n  - name: wall\n    plane: {normal: [0, 0, 1]}\n"
           "    stiffness: 500\n    effects:\n      - texture: sines\n"
@@ -223,8 +223,8 @@ TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
   const auto scene = scene::load_scene(file);
   ASSERT_TRUE(scene) << scene.error().message;
   const double exact = 1e-4 * std::pow(2 * std::numbers::pi / 0.004, 2);
-  EXPECT_NEAR(curvature_of(scene->objects[0].effects[0]) / exact, 0.99, 0.02);
-  EXPECT_NEAR(hold_of(scene->objects[0].effects[1]), 700, 1);
+  EXPECT_NEAR(stability::curvature_of(scene->objects[0].effects[0]) / exact, 0.99, 0.02);
+  EXPECT_NEAR(stability::hold_of(scene->objects[0].effects[1]), 700, 1);
 }
 
 TEST(RandomScene, IsDrawnAgainByItsSeedAndByNoOther) {
@@ -261,20 +261,20 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
 TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
   const auto arm = scene::load_arm(kArm);
   for (const double delay : {0.0, 0.001}) {
-    WallCase wall;
-    wall.direction = *worst_direction_at_home(*arm);
+    stability::WallCase wall;
+    wall.direction = *stability::worst_direction_at_home(*arm);
     wall.tip = {.mass = 0.075, .viscous = 1, .coulomb = 0};
     wall.delay_ns = static_cast<std::int64_t>(delay * 1e9);
     wall.duration = 4;
-    const double exact = stiffness_edge({.mass = 0.075, .viscous = 1, .delay = delay});
+    const double exact = stability::stiffness_edge({.mass = 0.075, .viscous = 1, .delay = delay});
     EXPECT_NEAR(linear_edge(*arm, wall, exact / 2, exact * 2).value() / exact, 1, 0.01) << delay;
   }
 }
 
 TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
   const auto arm = scene::load_arm(kArm);
-  WallCase wall;
-  wall.direction = *worst_direction_at_home(*arm);
+  stability::WallCase wall;
+  wall.direction = *stability::worst_direction_at_home(*arm);
   wall.stiffness = 1000;
   wall.step = 2e-4;
   wall.tip = {.mass = 0.075, .viscous = 1, .coulomb = 0};
@@ -290,12 +290,12 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
 
 TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
   const auto arm = scene::load_arm(kArm);
-  WallCase wall;
-  wall.direction = *worst_direction_at_home(*arm);
+  stability::WallCase wall;
+  wall.direction = *stability::worst_direction_at_home(*arm);
   wall.tip = {.mass = 0.075, .viscous = 0.005, .coulomb = 0};
   wall.stiffness = 1000;
   const Restitution found = throw_at_wall(*arm, wall, 50).value();
-  EXPECT_NEAR(found.mean, restitution(1000, 0.005, 0.075, 0.0005), 0.01);
+  EXPECT_NEAR(found.mean, stability::restitution(1000, 0.005, 0.075, 0.0005), 0.01);
   EXPECT_LE(found.least, found.mean);
   EXPECT_GE(found.most, found.mean);
 }
@@ -316,4 +316,4 @@ TEST(WallMeasures, MakeLateAndSpreadTicksOfTheMeanThatTheLawIsAsked) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::studies

@@ -13,7 +13,7 @@
 #include "mesh/contact_mesh.h"
 #include "share/shared_run.h"
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 class LiveFeedTest : public ::testing::Test {
@@ -236,4 +236,4 @@ TEST_F(LiveFeedTest, TellsNothingWhileNothingHappensAndTheEndOnce) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::web

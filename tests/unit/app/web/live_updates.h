@@ -11,7 +11,7 @@
 #include "share/shared_scene.h"
 #include "thimble/driver/tick_record.h"
 
-namespace thimble::app {
+namespace thimble::web {
 
 /// An update as a page reads it (web/live_feed.h).
 struct LiveUpdate {
@@ -88,4 +88,4 @@ inline session::SharedScene live_scene() {
   return scene;
 }
 
-}  // namespace thimble::app
+}  // namespace thimble::web

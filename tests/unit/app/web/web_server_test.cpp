@@ -25,7 +25,7 @@
 #include "share/shared_run.h"
 #include "web/request_guard.h"
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 namespace asio = boost::asio;
@@ -212,7 +212,7 @@ TEST_F(WebServerTest, ToldToNobodyWithoutTheTokenNorToAPageOfSomebodyElse) {
   EXPECT_EQ(open(own), 101U);
   EXPECT_EQ(read_ticks(own, 10).size(), 10U);
   const auto [status, body] = get({page});
-  if (read_page_libraries()) {
+  if (report::read_page_libraries()) {
     EXPECT_EQ(status, 200U);
     EXPECT_NE(body.find("connect-src ws://127.0.0.1:" + std::to_string(port_) + " ws://localhost:"),
               std::string::npos);
@@ -434,4 +434,4 @@ TEST(WebServer, APortThatIsTakenIsRefusedWithASentence) {
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::web

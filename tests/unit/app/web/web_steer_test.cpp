@@ -10,7 +10,7 @@
 #include "web/request_guard.h"
 #include "web/steer_run.h"
 
-namespace thimble::app {
+namespace thimble::web {
 namespace {
 
 /// A run that pages may ask for anything, unless `scene` says otherwise.
@@ -127,4 +127,4 @@ TEST(RequestGuard, LetsChangeTheRunWhoSendsTheTokenInAHeaderFromTheServedPageAlo
 }
 
 }  // namespace
-}  // namespace thimble::app
+}  // namespace thimble::web
