@@ -2,7 +2,8 @@
 # Tests the parts that can be left out (CMakeLists.txt).
 #   tests/core.sh [--each]
 #     (nothing)  configures a build without each part alone; builds the preset core in an empty folder, prints the
-#                seconds, touches a scene with it, asks for what it lacks, and builds programs on its installed libraries
+#                seconds, touches a scene with it, asks for what it lacks, and builds programs on its installed libraries;
+#                then the same with shared libraries (shared.sh)
 #     --each     also builds the program without each part alone (an hour)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -85,4 +86,5 @@ END
 quiet consumer cmake -S driver_only -B driver_only/build -D CMAKE_PREFIX_PATH="$work/usr"
 quiet consumer cmake --build driver_only/build
 driver_only/build/arms | grep -q '^arms: .' || fail "a program of the driver alone does not run"
+"$source/tests/shared.sh" "$work/core"
 echo "core: passed"

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::bag {
 
 /// Along which axes the vectors of a bag are told.
@@ -12,6 +14,6 @@ enum class BagAxes : std::uint8_t {
 };
 
 /// Returns a vector of a bag in the world's axes. Real-time: safe.
-Eigen::Vector3d in_world(BagAxes axes, const Eigen::Vector3d& v) noexcept;
+THIMBLE_EXPORT Eigen::Vector3d in_world(BagAxes axes, const Eigen::Vector3d& v) noexcept;
 
 }  // namespace thimble::bag

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bag/bag_messages.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::bag {
@@ -34,14 +35,14 @@ struct BagTopic {
 
 /// Returns whether a path means a bag: a folder that holds one, or a file of one by name or first
 /// bytes. Real-time: never from the servo thread.
-bool is_bag(const std::filesystem::path& path);
+THIMBLE_EXPORT bool is_bag(const std::filesystem::path& path);
 
 /// Reads a topic of a ROS 2 bag in SQLite: the folder with all its files, or one .db3 file. An
 /// empty `topic`: the only one of its kind, or else /pose or /wrench. Of messages with the same
 /// time the first counts. The error is a sentence with what to do; no bytes of a bag do worse.
 /// Real-time: never from the servo thread.
-driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind kind,
-                                  const std::string& topic = {},
-                                  BagClock clock = BagClock::kStamps);
+THIMBLE_EXPORT driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind kind,
+                                                 const std::string& topic = {},
+                                                 BagClock clock = BagClock::kStamps);
 
 }  // namespace thimble::bag

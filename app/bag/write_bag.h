@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bag/bag_messages.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::bag {
@@ -29,7 +30,7 @@ struct BagTrack {
 /// Writes a ROS 2 bag in SQLite as `ros2 bag play` of Humble reads it: a folder with metadata.yaml
 /// (version 5) and one .db3 file of the folder's name. The folder must not be there yet, or be
 /// empty. The error says what cannot be written. Real-time: never from the servo thread.
-driver::Result<void> write_bag(const std::filesystem::path& folder,
-                               const std::vector<BagTrack>& tracks);
+THIMBLE_EXPORT driver::Result<void> write_bag(const std::filesystem::path& folder,
+                                              const std::vector<BagTrack>& tracks);
 
 }  // namespace thimble::bag

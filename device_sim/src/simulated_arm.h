@@ -19,6 +19,7 @@
 #include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
@@ -38,7 +39,7 @@ namespace thimble::device_sim {
 /// point that the hand wants moves evenly; a corner of the path inside a sub-step is cut.
 /// Once it is made nothing allocates. All functions but `make` are Real-time: safe; how long
 /// advance_to takes grows with the time that passes.
-class SimulatedArm {
+class THIMBLE_EXPORT SimulatedArm {
  public:
   /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases,
   /// and which frames are late or lost and which edges are missed.

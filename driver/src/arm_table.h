@@ -10,6 +10,7 @@
 #include "thimble/driver/arm.h"
 #include "thimble/driver/arm_model.h"
 #include "thimble/driver/board.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::driver {
 
@@ -42,23 +43,23 @@ struct ShapeRow {
 };
 
 /// Lists all languages. Real-time: never from the servo thread.
-std::span<const ArmRow> arm_table() noexcept;
+THIMBLE_EXPORT std::span<const ArmRow> arm_table() noexcept;
 
 /// Returns the row of a kind, or null for kUnsupported. Real-time: never from the servo thread.
-const ArmRow* row_of(ArmKind kind) noexcept;
+THIMBLE_EXPORT const ArmRow* row_of(ArmKind kind) noexcept;
 
 /// Lists all builds, in the order of ArmGeometry. Real-time: never from the servo thread.
-std::span<const ShapeRow, std::variant_size_v<ArmGeometry>> arm_shapes() noexcept;
+THIMBLE_EXPORT std::span<const ShapeRow, std::variant_size_v<ArmGeometry>> arm_shapes() noexcept;
 
 /// Returns what a board speaks. Real-time: never from the servo thread.
 ArmKind kind_of(BoardKind board) noexcept;
 
 /// Makes the arm of a model that speaks a language; null if its link is its own
 /// (ArmRow::has_own_link). Precondition: not kUnsupported. Real-time: never from the servo thread.
-std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model);
+THIMBLE_EXPORT std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model);
 
 /// Makes the arm of a model with ideal encoders, as a simulated board has them
 /// (hfab::FineReportWire). Real-time: never from the servo thread.
-std::unique_ptr<const Arm> make_ideal_arm(const ArmModel& model);
+THIMBLE_EXPORT std::unique_ptr<const Arm> make_ideal_arm(const ArmModel& model);
 
 }  // namespace thimble::driver

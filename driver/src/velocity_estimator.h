@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// Estimates velocity from sampled positions: backward difference, then one low-pass pole.
@@ -9,7 +11,7 @@ namespace thimble::driver {
 /// The pole costs stability: it adds about T(1-a)/a, a = 1 - exp(-2 pi f T), to the loop's latency
 /// for damping forces [PHYSICS 1.1], and pays with less encoder noise in them (B * step / T
 /// without). All functions are Real-time: safe.
-class VelocityEstimator {
+class THIMBLE_EXPORT VelocityEstimator {
  public:
   /// Takes the corner frequency of the pole in Hz; 0 means the plain difference.
   explicit VelocityEstimator(double corner_frequency = 0) noexcept;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "disk_paging/paged_contact.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/object_touch.h"
 
@@ -11,8 +12,8 @@ namespace thimble::render {
 /// Builds the force law of one object whose mesh is on the disk. Whoever keeps `pages` starts its
 /// loader, or serves it between ticks. Its question `inside` reads the disk.
 /// Real-time: never from the servo thread.
-std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
-                                               const PagedPlace& place,
-                                               const SurfaceChoice& surface);
+THIMBLE_EXPORT std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
+                                                              const PagedPlace& place,
+                                                              const SurfaceChoice& surface);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
 #include "search/contact_search.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/contact_choice.h"
@@ -30,16 +31,15 @@ driver::Result<void> check_profile(const ContactChoice& choice);
 
 /// Checks a mesh (W, m) and prepares it for `choice`. The error says which stages do not go
 /// together, or is that of ContactMesh::build. Real-time: never from the servo thread.
-driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
-                                                   const ContactChoice& choice);
+THIMBLE_EXPORT driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
+                                                                  const ContactChoice& choice);
 
 /// Builds the force law of one object, as the function of that name does, over a surface that was
 /// prepared for the same `mesh_W` and `choice`. Precondition: no base point of it moves (`surface`
 /// names no shape). The error is that of BendablePolygon::build. Real-time: never from the servo
 /// thread.
-driver::Result<std::unique_ptr<ObjectTouch>> build_object_touch(const StillSurface& still,
-                                                                const TriangleMesh& mesh_W,
-                                                                const ContactChoice& choice,
-                                                                const SurfaceChoice& surface);
+THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> build_object_touch(
+    const StillSurface& still, const TriangleMesh& mesh_W, const ContactChoice& choice,
+    const SurfaceChoice& surface);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 
 #include "loop_latency.h"
 #include "thimble/driver/energy_guard.h"
+#include "thimble/driver/export.h"
 #include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
@@ -30,18 +31,18 @@ inline constexpr double kSureHandDamping = 1;
 /// reservoir what a spring of the declared stiffness holds at the declared force, for the slope the
 /// arm's own friction over the latency, b / L [PHYSICS 1.1]. Real-time: never from the servo
 /// thread.
-driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
-                                            std::optional<driver::EnergyStage> scene);
+THIMBLE_EXPORT driver::EnergyGuardSettings energy_settings(
+    const ArmFile& arm, double rate, std::optional<driver::EnergyStage> scene);
 
 /// Returns the delay from encoder to motors beyond the hold, s, as far as the arm's file tells;
 /// otherwise a frame for the report and one for the force, 1 ms [PHYSICS 5].
-double loop_delay(const ArmFile& arm);
+THIMBLE_EXPORT double loop_delay(const ArmFile& arm);
 
 /// Returns the times of a loop of `rate` (Hz) with the reports that this arm sends. The force
 /// changes with the first tick after each report, so `period` is the larger of both periods in the
 /// mean, `period_spread` what remains where neither divides the other, and `delay` what a report
 /// waits for its tick, on top of `loop_delay`. The first tick comes with the first report, as a run
 /// begins. The jitter of the wire is not in it. Real-time: never from the servo thread.
-LoopTimes loop_pace(const ArmFile& arm, double rate);
+THIMBLE_EXPORT LoopTimes loop_pace(const ArmFile& arm, double rate);
 
 }  // namespace thimble::scene

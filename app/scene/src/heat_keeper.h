@@ -5,6 +5,7 @@
 #include <string>
 
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/heat_guard.h"
 
 namespace thimble::scene {
@@ -25,7 +26,8 @@ struct KnownHeat {
 /// Returns the heat of an arm's motors at `now` (s since 1970), cooled by the time since it was
 /// kept; a clock that went back counts as no time. No file: cold. A file that cannot be understood,
 /// and a run that did not end properly: at the limit.
-KnownHeat load_heat(const std::string& name, const driver::HeatSettings& settings, double now);
+THIMBLE_EXPORT KnownHeat load_heat(const std::string& name, const driver::HeatSettings& settings,
+                                   double now);
 
 /// Keeps the heat of an arm's motors at `now` (s since 1970). `running` says that a run has begun
 /// and has not ended. The file is written whole or not at all. Returns whether it was written.
@@ -33,11 +35,11 @@ bool save_heat(const std::string& name, const std::array<double, 3>& heat, doubl
                bool running);
 
 /// Returns the time of the world, s since 1970.
-double world_time();
+THIMBLE_EXPORT double world_time();
 
 /// A keeper of an arm's heat for one run: it marks the run when it begins and keeps the heat when
 /// it ends.
-class HeatKeeper {
+class THIMBLE_EXPORT HeatKeeper {
  public:
   /// Takes an arm by name, and the device that must outlive it.
   HeatKeeper(std::string name, const driver::Device& device);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "thimble/driver/export.h"
+
 namespace thimble::scene {
 
 // What the gate of an arm needs of the laws in stability/stability_laws.h. Letters as there.
@@ -15,7 +17,7 @@ struct LoopTimes {
 };
 
 /// Sums up the latency budget L = E[T^2] / (2 E[T]) + delays + lags, s [PHYSICS 1.1].
-double latency_of(const LoopTimes& times);
+THIMBLE_EXPORT double latency_of(const LoopTimes& times);
 
 /// Finds the lag of a one-pole low-pass of corner frequency `corner` (Hz) at `period` (s):
 /// T (1 - a) / a with a = 1 - exp(-2 pi corner T). A corner of 0 means no filter and no lag.
@@ -23,6 +25,6 @@ double low_pass_lag(double corner, double period);
 
 /// Finds the stiffness up to which a free device is stable, (b + B) / L, N/m [PHYSICS 1.1].
 /// `damping` is b + B, N s/m. Holds for (b + B) T / m up to 0.1; beyond, see `stiffness_edge`.
-double stiffness_limit(double damping, double latency);
+THIMBLE_EXPORT double stiffness_limit(double damping, double latency);
 
 }  // namespace thimble::scene

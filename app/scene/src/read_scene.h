@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
@@ -15,6 +16,6 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
                                  const SceneReading& reading);
 
 /// Reads an arm from YAML that is already read. Errors and time: as `load_arm`.
-driver::Result<ArmFile> read_arm(YamlFile& yaml);
+THIMBLE_EXPORT driver::Result<ArmFile> read_arm(YamlFile& yaml);
 
 }  // namespace thimble::scene

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "yaml/key_log.h"
 
@@ -12,16 +13,16 @@ namespace thimble::scene {
 /// of object, effect, field and body, as if each key that may be left out were there once. Defaults
 /// that depend on the arm are those of `vintage_phantom` at 1 kHz. Fails where that is not
 /// installed. Takes tens of milliseconds; real-time: never from the servo thread.
-driver::Result<std::vector<KeyNote>> scene_keys();
+THIMBLE_EXPORT driver::Result<std::vector<KeyNote>> scene_keys();
 
 /// Returns every key of an arm file, over all wires and builds of the table of arms. Real-time:
 /// never from the servo thread.
-std::vector<KeyNote> arm_keys();
+THIMBLE_EXPORT std::vector<KeyNote> arm_keys();
 
 /// Returns keys as text, map by map; `only`: those of this name (empty: all).
-std::string key_text(const std::vector<KeyNote>& keys, const std::string& only);
+THIMBLE_EXPORT std::string key_text(const std::vector<KeyNote>& keys, const std::string& only);
 
 /// Returns keys as a page of the guide (Markdown), a table for each map.
-std::string key_page(const std::vector<KeyNote>& keys);
+THIMBLE_EXPORT std::string key_page(const std::vector<KeyNote>& keys);
 
 }  // namespace thimble::scene

@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::scene {
 
 // How the program leaves when it is told to by a signal. Every signal that ends a program and can
@@ -35,21 +37,21 @@ constexpr bool ends_at_once(std::int64_t since_first_ns, bool at_stake) noexcept
 /// is not the default stays. A program that still runs kHangingMost_ns after SIGTERM, with no
 /// LeavingGuard or WritingGuard alive, is ended by it: it hangs. Returns the flag. Real-time: never
 /// from the servo thread.
-const std::atomic<bool>& catch_interrupts();
+THIMBLE_EXPORT const std::atomic<bool>& catch_interrupts();
 
 /// Returns whether such a signal came, or `ask_to_stop` was called: for what takes its time while
 /// an arm is opened. Real-time: safe.
-bool stop_asked() noexcept;
+THIMBLE_EXPORT bool stop_asked() noexcept;
 
 /// Makes Ctrl-Z (SIGTSTP) such a signal too, and lets a background job that reads or writes its
 /// terminal get an error instead of being stopped: a program that is stopped sends no zero.
 /// For whoever opens a real arm. Real-time: never from the servo thread.
-void leave_rather_than_stop();
+THIMBLE_EXPORT void leave_rather_than_stop();
 
 /// The time in which an arm may hold a force, or a recording is not closed: from its construction
 /// to its destruction further signals are not obeyed at once (`ends_at_once`). Construct it before
 /// the arm is opened; destroy it after zero force was sent. Real-time: safe.
-class LeavingGuard {
+class THIMBLE_EXPORT LeavingGuard {
  public:
   LeavingGuard() noexcept;
   ~LeavingGuard();
@@ -59,7 +61,7 @@ class LeavingGuard {
 
 /// The time in which results are written after a run: a single SIGTERM does not cut it off, a
 /// second one ends the program. Real-time: safe.
-class WritingGuard {
+class THIMBLE_EXPORT WritingGuard {
  public:
   WritingGuard() noexcept;
   ~WritingGuard();
@@ -70,9 +72,9 @@ class WritingGuard {
 /// Lets a reader of our output that is gone, and a file that may not grow, be errors of the write
 /// that meets them: a process that dies of them leaves the arm to its own watchdog. Real-time:
 /// never from the servo thread.
-void outlive_trouble_with_files();
+THIMBLE_EXPORT void outlive_trouble_with_files();
 
 /// Sets that flag as a first Ctrl-C would. Real-time: safe.
-void ask_to_stop() noexcept;
+THIMBLE_EXPORT void ask_to_stop() noexcept;
 
 }  // namespace thimble::scene

@@ -4,13 +4,15 @@
 
 #include <string>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::scene {
 
 /// Keeps the computer awake while a real arm is in use: an inhibitor lock of logind against sleep,
 /// idle actions and the lid's switch, held by the program systemd-inhibit for as long as this
 /// lives, and no longer than this process. Where there is no logind, or it refuses, there is no
 /// lock, and the fault kSuspended is what remains. Real-time: never from the servo thread.
-class SleepLock {
+class THIMBLE_EXPORT SleepLock {
  public:
   /// Asks for the lock; waits up to 2 s for the answer.
   SleepLock();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
@@ -40,10 +41,10 @@ TipLimits tip_limits(const Eigen::Matrix3d& J_BT, const Eigen::Matrix3d& mass,
 std::optional<Eigen::Matrix3d> jacobian_at(const ArmFile& arm, const Eigen::Vector3d& p_WT);
 
 /// Returns a grid of `per_side`^3 points over the workspace, those that the arm reaches, m, world.
-std::vector<Eigen::Vector3d> points_of_workspace(const ArmFile& arm, int per_side);
+THIMBLE_EXPORT std::vector<Eigen::Vector3d> points_of_workspace(const ArmFile& arm, int per_side);
 
 /// Finds the worst directions over the workspace, of what the arm's file says of its tip (the same
 /// mass and friction in every direction) and of its encoders; ideal encoders have no step.
-TipLimits worst_over_workspace(const ArmFile& arm, int per_side = 7);
+THIMBLE_EXPORT TipLimits worst_over_workspace(const ArmFile& arm, int per_side = 7);
 
 }  // namespace thimble::scene

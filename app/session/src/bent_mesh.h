@@ -1,5 +1,6 @@
 #pragma once
 
+#include "thimble/driver/export.h"
 #include "thimble/render/body_patch.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_objects.h"
@@ -8,7 +9,8 @@ namespace thimble::session {
 
 /// Returns a mesh (m) with the patch of the object that begins at `place` in place of the triangles
 /// it stands for. Real-time: never from the servo thread.
-render::TriangleMesh bent(const render::TriangleMesh& mesh, const scene::MeshPlace& place,
-                          const render::BodyPatch& patch);
+THIMBLE_EXPORT render::TriangleMesh bent(const render::TriangleMesh& mesh,
+                                         const scene::MeshPlace& place,
+                                         const render::BodyPatch& patch);
 
 }  // namespace thimble::session

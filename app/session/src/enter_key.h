@@ -1,5 +1,7 @@
 #pragma once
 
+#include "thimble/driver/export.h"
+
 namespace thimble::session {
 
 /// What the user did at the terminal since the last look.
@@ -10,6 +12,6 @@ enum class EnterKey {
 };
 
 /// Looks, without waiting, whether the user pressed Enter. Real-time: never from the servo thread.
-EnterKey look_for_enter();
+THIMBLE_EXPORT EnterKey look_for_enter();
 
 }  // namespace thimble::session

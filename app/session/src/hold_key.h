@@ -9,6 +9,7 @@
 
 #include "terminal.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
@@ -17,7 +18,7 @@ class Session;
 
 /// Returns the enabling input of this name: "button" or "button1" to "button16", of the arm,
 /// or "key", the space bar of the terminal or a viewer; empty: none. The error lists the names.
-driver::Result<driver::HoldToRun> hold_named(const std::string& name);
+THIMBLE_EXPORT driver::Result<driver::HoldToRun> hold_named(const std::string& name);
 
 /// Whether the space bar is held down at a terminal, which reports presses only: a key that is held
 /// repeats. Held is a key that has come several times, evenly; one press is none. Times are
@@ -69,7 +70,7 @@ class ViewerKey {
 /// The space bar of the terminal, and of the windows of viewers, as the enabling input of all arms
 /// of a session (HoldToRun), for as long as this lives. Keys of the terminal do not wait for Enter
 /// then and are not shown. Real-time: never from the servo thread.
-class HoldKey {
+class THIMBLE_EXPORT HoldKey {
  public:
   /// Fails if standard input is no terminal.
   static driver::Result<void> check();

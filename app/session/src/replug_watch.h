@@ -9,6 +9,7 @@
 #include "start_pose.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/driver/tick_record.h"
 
@@ -65,7 +66,7 @@ ReplugWatch replug_watch_of(Session& session, std::size_t arm = 0,
 
 /// The watches over all arms of a run with a real one: who presses Enter presses it for each arm
 /// whose force is off. Real-time: never from the servo thread.
-class ReplugWatches {
+class THIMBLE_EXPORT ReplugWatches {
  public:
   /// Watches the arms of a session, which must outlive it. Precondition: as replug_watch_of.
   explicit ReplugWatches(Session& session, Terminal terminal = user_terminal());

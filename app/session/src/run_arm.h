@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/real_arm_terms.h"
 #include "thimble/session/session.h"
@@ -26,12 +27,12 @@ using FindArms = std::function<driver::Result<std::vector<driver::FoundArm>>()>;
 /// Chooses the arm of a run: `device` is "sim", for which nobody looks, "auto" or a name
 /// (scene::choose_arm). Boards that cannot be listed count as none. The error says what to do.
 /// Real-time: never from the servo thread.
-driver::Result<RunArm> choose_run_arm(
+THIMBLE_EXPORT driver::Result<RunArm> choose_run_arm(
     const std::string& device, const scene::RealArmRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 
 /// The arms that a run uses, of a scene with one or with several.
-struct RunArms {
+struct THIMBLE_EXPORT RunArms {
   RunArm one;                                                ///< Of a scene with one.
   std::map<std::string, std::optional<RealArmUse>> several;  ///< See SessionOptions::real_arms.
   std::vector<std::string> told;  ///< What the user must know, a sentence each.
@@ -43,7 +44,7 @@ struct RunArms {
 /// Chooses the arms of a run. `devices`: one word as `choose_run_arm` takes it, or NAME=WORD for
 /// each arm of a scene that shall not be simulated. The error says what to do, also where two names
 /// mean one arm. Real-time: never from the servo thread.
-driver::Result<RunArms> choose_run_arms(
+THIMBLE_EXPORT driver::Result<RunArms> choose_run_arms(
     const std::vector<std::string>& devices, const scene::RealArmRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 

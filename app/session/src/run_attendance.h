@@ -7,6 +7,7 @@
 
 #include "replug_watch.h"
 #include "share/viewer_request_handler.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/session.h"
 
@@ -27,12 +28,12 @@ class HeatWarning {
 
 /// Writes the seconds around the faults of all arms (Session::keep_black_boxes), and logs where a
 /// person finds them, or why not. Real-time: never from the servo thread.
-void keep_black_boxes(Session& session, bool run_is_over);
+THIMBLE_EXPORT void keep_black_boxes(Session& session, bool run_is_over);
 
 /// What is done beside the servo while a run goes on: a pulled arm is watched for, viewers are
 /// heard, the black box is emptied, and the user is told of heat and progress. Real-time: never
 /// from the servo thread.
-class RunAttendance {
+class THIMBLE_EXPORT RunAttendance {
  public:
   /// Attends a session; `watch` and `desk` may be null, and must outlive it. `on_terminal`: a
   /// person looks at standard error.

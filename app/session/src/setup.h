@@ -16,6 +16,7 @@
 #include "terminal.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/real_arm_terms.h"
@@ -66,7 +67,7 @@ struct ArmOfRun {
 };
 
 /// What a session runs: a scene with its objects, and the arms that touch them, on one clock.
-class Setup {
+class THIMBLE_EXPORT Setup {
  public:
   /// Does what takes time and needs no arm: reads the scene, its arm and its meshes, plans the
   /// simulated hand's path and builds the objects. The error names the file and what to mend.

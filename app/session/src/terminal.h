@@ -4,6 +4,7 @@
 #include <string>
 
 #include "enter_key.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::session {
 
@@ -17,6 +18,6 @@ struct Terminal {
 };
 
 /// Returns standard input and error. Real-time: never from the servo thread.
-Terminal user_terminal();
+THIMBLE_EXPORT Terminal user_terminal();
 
 }  // namespace thimble::session

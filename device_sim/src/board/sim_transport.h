@@ -2,13 +2,14 @@
 
 #include "simulated_arm.h"
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::device_sim {
 
 /// The wire to a simulated arm: moves the arm's time to the clock's time at each exchange. Keeps
 /// neither the clock nor the arm alive.
-class SimTransport final : public driver::Transport {
+class THIMBLE_EXPORT SimTransport final : public driver::Transport {
  public:
   SimTransport(driver::Clock& clock, SimulatedArm& arm) noexcept : clock_(clock), arm_(arm) {}
 

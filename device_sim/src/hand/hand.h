@@ -6,13 +6,14 @@
 
 #include "hand/hand_path.h"
 #include "hand/tremor.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::device_sim {
 
 /// Where the hand wants the tip over time: along a path that was planned, or led by somebody who
 /// drags it; with its tremor; and standing still while it is held. Frame B: base of the arm. All
 /// functions but the constructor are Real-time: safe.
-class Hand {
+class THIMBLE_EXPORT Hand {
  public:
   /// The fastest that a hand goes that is led, m/s. [chosen: a brisk move over a desk]
   static constexpr double kSpeedMax = 0.4;

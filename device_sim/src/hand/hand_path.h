@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
@@ -13,7 +14,7 @@ namespace thimble::device_sim {
 /// Where the hand wants to be over time: points joined by straight lines. Before the first point
 /// it waits at the first, after the last point at the last. Frame B: base of the arm. Copies share
 /// the points.
-class HandPath {
+class THIMBLE_EXPORT HandPath {
  public:
   /// One point of the path.
   struct Point {

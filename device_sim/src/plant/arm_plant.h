@@ -8,6 +8,7 @@
 #include "plant/plant.h"
 #include "plant/serial_pose.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/motor_currents.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/serial_arm.h"
@@ -23,7 +24,7 @@ namespace thimble::device_sim {
 /// velocity. That is the plant's one error of integration: second order in the sub-step, relative
 /// to the force about (v dt / length)^2, i.e. 1e-6 at 0.1 m/s and 1 ms. Each axis then moves
 /// exactly.
-class ArmPlant final : public Plant {
+class THIMBLE_EXPORT ArmPlant final : public Plant {
  public:
   /// The longest sub-step, ns.
   static constexpr std::int64_t kStepMax_ns = 1'000'000;

@@ -6,6 +6,7 @@
 
 #include "plant/axis_response.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
@@ -42,7 +43,7 @@ struct AxisCounters {
 ///
 /// One object serves any number of axes with the same constants; it keeps the maps of the last few
 /// step lengths. Used by one thread.
-class AxisDynamics {
+class THIMBLE_EXPORT AxisDynamics {
  public:
   /// The most events that one piece of a step may hold. A smooth drive has at most a few.
   static constexpr int kMaxEvents = 16;

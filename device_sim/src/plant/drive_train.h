@@ -6,6 +6,7 @@
 
 #include "plant/motor_heat.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/motor_currents.h"
 #include "thimble/driver/result.h"
 
@@ -14,7 +15,7 @@ namespace thimble::device_sim {
 /// What amplifiers, motors and cables make of currents: lag, saturation, cogging and ripple, heat,
 /// stretch and play. It holds currents and temperatures and no mechanics. All vectors go joint by
 /// joint.
-class DriveTrain {
+class THIMBLE_EXPORT DriveTrain {
  public:
   /// Makes one without current. Fails if a constant is out of range, if only some cables stretch,
   /// if a cable stretches without an inertia before it, or if cogging and ripple have no period.

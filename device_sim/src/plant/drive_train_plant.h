@@ -11,6 +11,7 @@
 #include "plant/point_tip.h"
 #include "plant/tip_kinematics.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/joint_model.h"
 #include "thimble/driver/linkage_arm.h"
 #include "thimble/driver/result.h"
@@ -41,7 +42,7 @@ struct DriveTrainState {
 /// Defined for SerialArm and LinkageArm, with links for SerialArm. All functions but `make` are
 /// Real-time: safe.
 template <class Geometry, class Tip = PointTip>
-class DriveTrainPlant final : public Plant {
+class THIMBLE_EXPORT DriveTrainPlant final : public Plant {
  public:
   /// The longest sub-step, ns.
   static constexpr std::int64_t kSubStep_ns = 25'000;

@@ -8,6 +8,7 @@
 #include "plant/plant.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/delta_arm.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/joint_model.h"
 #include "thimble/driver/linkage_arm.h"
 #include "thimble/driver/result.h"
@@ -20,7 +21,7 @@ namespace thimble::device_sim {
 /// itself). So it shares nothing with the Jacobian by which a driver turns forces into torques.
 /// Defined for DeltaArm and LinkageArm. All functions but the constructor are Real-time: safe.
 template <class Geometry>
-class InversePlant final : public Plant {
+class THIMBLE_EXPORT InversePlant final : public Plant {
  public:
   /// Makes the arm at rest at p_BT (m), with the hand wanting to be at p_BH (m). Fails if a
   /// constant is out of range or p_BT out of reach. Real-time: never from the servo thread.

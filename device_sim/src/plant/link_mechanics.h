@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/serial_arm.h"
 
@@ -27,7 +28,7 @@ struct LinkMotion {
 ///
 ///     M_AA = I_A + Y_B sin^2 B + Y_C sin^2 C + 2 K sin B sin C,
 ///     M_BB = I_B,  M_CC = I_C,  M_BC = K cos(B + C).
-class LinkMechanics {
+class THIMBLE_EXPORT LinkMechanics {
  public:
   /// Takes constants that `check_links` accepts. Real-time: safe.
   LinkMechanics(const driver::SerialArm& arm, const LinkSettings& links) noexcept
@@ -43,6 +44,6 @@ class LinkMechanics {
 
 /// Returns an error if links cannot be: a constant is not finite, or kinetic energy would be below
 /// zero in some pose. Real-time: never from the servo thread.
-driver::Result<void> check_links(const LinkSettings& links);
+THIMBLE_EXPORT driver::Result<void> check_links(const LinkSettings& links);
 
 }  // namespace thimble::device_sim

@@ -8,6 +8,7 @@
 #include "plant/link_mechanics.h"
 #include "plant/tip_kinematics.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/linkage_arm.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/serial_arm.h"
@@ -23,7 +24,7 @@ namespace thimble::device_sim {
 /// through the step, as the acceleration before says. Where an axis comes to rest or breaks loose
 /// within a step, friction acts as it does at its end (Moreau's rule), which is of first order: off
 /// by at most its momentum c dt. All functions but `make` are Real-time: safe.
-class LinkedTip {
+class THIMBLE_EXPORT LinkedTip {
  public:
   struct State {
     Eigen::Vector3d p{0, 0, 0};  ///< m

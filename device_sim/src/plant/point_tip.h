@@ -9,13 +9,14 @@
 #include "plant/axis_dynamics.h"
 #include "plant/tip_kinematics.h"
 #include "thimble/device_sim/settings.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
 
 /// A tip without links: a mass with friction, each axis of which moves by its exact map. Frame B:
 /// base. All functions but `make` are Real-time: safe.
-class PointTip {
+class THIMBLE_EXPORT PointTip {
  public:
   using State = std::array<AxisState, 3>;
 

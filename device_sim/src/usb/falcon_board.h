@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "arms/falcon/falcon_packet.h"
+#include "thimble/driver/export.h"
 #include "usb/ftdi_chip.h"
 
 namespace thimble::device_sim::usb {
@@ -33,7 +34,7 @@ enum class FalconHoming : std::uint8_t {
 /// answers a greeting at 9600 baud, echoes the firmware at 140 kbaud, and then the firmware, which
 /// answers each packet at 1.5 Mbaud with one packet. Encoders count from an arbitrary value until
 /// their leg passed its home in homing mode.
-class FalconBoard final : public SerialBoard {
+class THIMBLE_EXPORT FalconBoard final : public SerialBoard {
  public:
   /// What the boot loader and the firmware are doing.
   enum class Stage : std::uint8_t {

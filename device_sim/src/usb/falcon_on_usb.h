@@ -12,6 +12,7 @@
 #include "plant/inverse_plant.h"
 #include "plant/loaded_tip.h"
 #include "thimble/device_sim/usb/usb_arm.h"
+#include "thimble/driver/export.h"
 #include "usb/falcon_board.h"
 #include "usb/ftdi_chip.h"
 #include "usb/homing_hand.h"
@@ -23,7 +24,7 @@ namespace thimble::device_sim::usb {
 /// A simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
 /// What the host sends reaches the board at the line's rate, the board samples the encoders when a
 /// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
-class FalconOnUsb final : public UsbArm {
+class THIMBLE_EXPORT FalconOnUsb final : public UsbArm {
  public:
   /// Makes the arm at rest at the path's first point, with motors and encoders of `model`. Of the
   /// settings it takes plant, hand, weight and wiring; board and bus are its own. `image` is the

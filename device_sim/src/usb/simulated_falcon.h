@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
 #include "usb/falcon_on_usb.h"
@@ -16,7 +17,7 @@ namespace thimble::device_sim::usb {
 /// A simulated Falcon inside the program: the arm of `thimble plug falcon` with a host's bus in
 /// place of the kernel. It is booted, takes firmware and is homed by its own hand through the very
 /// bytes of a real one, before the path of the hand begins.
-class SimulatedFalcon {
+class THIMBLE_EXPORT SimulatedFalcon {
  public:
   /// Builds the arm, with motors and encoders of `model`, and brings it up; its hand then rests at
   /// the first point of `path`, with time 0 before it. Where `settings` has a hand without a

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "thimble/driver/export.h"
+
 namespace thimble::math {
 
 /// An angle, and by how much it may be wrong.
@@ -12,6 +14,6 @@ struct RoughAngle {
 /// and asks that one where this leaves open which number to take. The same bits on every processor.
 /// Nothing is known within 2^-60 rad of an axis, and where a number is not finite or out of 2^-900
 /// to 2^1000. Real-time: safe.
-RoughAngle rough_atan2(double y, double x) noexcept;
+THIMBLE_EXPORT RoughAngle rough_atan2(double y, double x) noexcept;
 
 }  // namespace thimble::math

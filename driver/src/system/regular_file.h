@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver {
@@ -13,7 +14,7 @@ namespace thimble::driver {
 /// A regular file, open for reading. Folders, pipes, sockets and devices are refused and never
 /// waited for: a path may come from a file of unknown origin. Real-time: never from the servo
 /// thread.
-class RegularFile {
+class THIMBLE_EXPORT RegularFile {
  public:
   /// Opens a file; follows symbolic links. The error is a sentence without the path, for the caller
   /// to complete ("there is no such file.").
@@ -43,14 +44,15 @@ class RegularFile {
 };
 
 /// Returns whether `path` is a regular file, without opening it.
-bool is_regular(const std::filesystem::path& path) noexcept;
+THIMBLE_EXPORT bool is_regular(const std::filesystem::path& path) noexcept;
 
 /// Reads a whole regular file of at most `max_bytes` bytes. Errors as of `RegularFile::open`.
 /// Real-time: never from the servo thread.
-Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t max_bytes);
+THIMBLE_EXPORT Result<std::string> read_file(const std::filesystem::path& path,
+                                             std::uint64_t max_bytes);
 
 /// Reads the first `bytes` bytes of a regular file; fewer if it is shorter, none if it cannot be
 /// read. Real-time: never from the servo thread.
-std::string read_head(const std::filesystem::path& path, std::size_t bytes);
+THIMBLE_EXPORT std::string read_head(const std::filesystem::path& path, std::size_t bytes);
 
 }  // namespace thimble::driver

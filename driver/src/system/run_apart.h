@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver {
@@ -20,7 +21,7 @@ struct ApartLimits {
 };
 
 /// Takes what work in a separate process returns.
-class ApartWriter {
+class THIMBLE_EXPORT ApartWriter {
  public:
   explicit ApartWriter(int file) noexcept : file_(file) {}
   /// Adds bytes. Returns false if there is no room for them; then nothing is returned.
@@ -45,7 +46,7 @@ class ApartWriter {
 };
 
 /// What work in a separate process returned: memory that nothing changes any longer.
-class ApartMemory {
+class THIMBLE_EXPORT ApartMemory {
  public:
   ApartMemory(const std::byte* at, std::size_t mapped, std::span<const std::byte> bytes) noexcept
       : at_(at), mapped_(mapped), bytes_(bytes) {}
@@ -101,10 +102,11 @@ class ApartReader {
 /// neither crashes nor hangs. What the child writes to standard output or error is lost; files and
 /// memory that it changes are its own. The error says in half a sentence how the child ended
 /// ("takes more than 10 s"). Real-time: never from the servo thread.
-Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
-                              const ApartLimits& limits);
+THIMBLE_EXPORT Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
+                                             const ApartLimits& limits);
 
 /// As above, for work that returns a text.
-Result<std::string> run_apart(const std::function<std::string()>& work, const ApartLimits& limits);
+THIMBLE_EXPORT Result<std::string> run_apart(const std::function<std::string()>& work,
+                                             const ApartLimits& limits);
 
 }  // namespace thimble::driver

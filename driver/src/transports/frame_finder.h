@@ -6,13 +6,14 @@
 #include <span>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::driver {
 
 /// Finds whole messages in a stream of bytes and keeps the newest. Total: any bytes in any pieces.
 /// All functions are Real-time: safe.
-class FrameFinder {
+class THIMBLE_EXPORT FrameFinder {
  public:
   explicit FrameFinder(const Framing& framing) noexcept;
 

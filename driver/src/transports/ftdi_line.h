@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
 #include "thimble/driver/transports.h"
@@ -11,7 +12,7 @@
 namespace thimble::driver {
 
 /// An arm behind an FTDI converter: a serial line for the set-up, then a transport.
-class FtdiLine : public SerialLine {
+class THIMBLE_EXPORT FtdiLine : public SerialLine {
  public:
   /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it,
   /// which only one program can. Fails with the name of the program that has it.

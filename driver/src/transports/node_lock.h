@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver {
@@ -18,8 +19,8 @@ struct NodeHolder {
 /// Returns another program that has a node open, from what the kernel tells under `root`/proc;
 /// empty if none is seen. Programs of other users are seen by root alone. Real-time: never from the
 /// servo thread.
-std::optional<NodeHolder> find_holder(const std::string& node,
-                                      const std::filesystem::path& root = "/");
+THIMBLE_EXPORT std::optional<NodeHolder> find_holder(const std::string& node,
+                                                     const std::filesystem::path& root = "/");
 
 /// Returns the sentence that an arm is in use, and by whom as far as that is seen.
 /// Real-time: never from the servo thread.

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// Returns the user whose process holds the other end of a TCP connection within this computer, as
@@ -16,6 +18,6 @@ std::optional<uid_t> user_of_peer(int socket);
 /// Returns why the other end of a connection is not trusted, as a phrase: "a process of user
 /// 65534". Empty if a process of this user or of root holds it. Real-time: never from the servo
 /// thread.
-std::string distrust_of_peer(int socket);
+THIMBLE_EXPORT std::string distrust_of_peer(int socket);
 
 }  // namespace thimble::driver

@@ -9,6 +9,7 @@
 
 #include "compact_mesh/large_pages.h"
 #include "mesh/contact_mesh.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -51,7 +52,7 @@ inline constexpr float kOctahedron = 32760;
 
 /// Packs a unit vector into two signed numbers of 16 bits: the octahedron |x| + |y| + |z| = 1
 /// unfolded onto a square [Meyer]. Wrong by at most 7e-5 rad. Real-time: safe.
-std::uint32_t pack_normal(const Eigen::Vector3d& n) noexcept;
+THIMBLE_EXPORT std::uint32_t pack_normal(const Eigen::Vector3d& n) noexcept;
 
 /// Gives back the packed unit vector. Real-time: safe.
 Eigen::Vector3d unpack_normal(std::uint32_t packed) noexcept;
@@ -71,7 +72,7 @@ struct PackedSurfaceOptions {
 /// faces is split at its creases. Two triangles that share a smooth edge hold the same bits for its
 /// two ends. Packed triangles are numbered by their place; `source` tells the triangle of the
 /// input.
-class PackedSurface {
+class THIMBLE_EXPORT PackedSurface {
  public:
   /// Takes a prepared mesh, of which everything has been checked. Positions move by up to 2^-32 of
   /// the longest side. Real-time: never from the servo thread.

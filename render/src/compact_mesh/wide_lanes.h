@@ -1,5 +1,7 @@
 #pragma once
 
+#include "thimble/driver/export.h"
+
 namespace thimble::render {
 
 /// Marks a function, with all that it calls, as made for AVX2: what it computes is the same to the
@@ -14,6 +16,6 @@ namespace thimble::render {
 /// (AVX2) and the compiler made code for it; THIMBLE_PLAIN_LANES in the environment says no, to
 /// compare. Answers are the same to the bit: no operation is fused, and lanes never mix. Real-time:
 /// safe after the first call.
-bool wide_lanes() noexcept;
+THIMBLE_EXPORT bool wide_lanes() noexcept;
 
 }  // namespace thimble::render

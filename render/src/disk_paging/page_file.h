@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compact_mesh/packed_surface.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::render {
@@ -83,7 +84,7 @@ struct Lattice {
 
 /// Writes a page file packed triangle by packed triangle, for surfaces that fit no memory.
 /// Real-time: never from the servo thread.
-class PageFileWriter {
+class THIMBLE_EXPORT PageFileWriter {
  public:
   /// Begins a file for `triangle_count` packed triangles (> 0). Fails, naming the file, if it
   /// cannot be written.
@@ -109,16 +110,16 @@ class PageFileWriter {
 
 /// Writes a whole surface. Fails, naming the file, if it cannot be written.
 /// Real-time: never from the servo thread.
-driver::Result<void> write_page_file(const PackedSurface& surface,
-                                     const std::filesystem::path& file);
+THIMBLE_EXPORT driver::Result<void> write_page_file(const PackedSurface& surface,
+                                                    const std::filesystem::path& file);
 
 /// Returns whether a file begins as a page file does; false if it cannot be read.
 /// Real-time: never from the servo thread.
-bool is_page_file(const std::filesystem::path& file);
+THIMBLE_EXPORT bool is_page_file(const std::filesystem::path& file);
 
 /// An open page file: what stands before the packed triangles, in memory.
 /// Real-time: never from the servo thread.
-class PageFile {
+class THIMBLE_EXPORT PageFile {
  public:
   /// Opens a file. Fails, with what to do, if it cannot be read, is no page file, is cut short, or
   /// holds numbers that cannot be.

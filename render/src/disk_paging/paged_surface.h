@@ -15,6 +15,7 @@
 #include "disk_paging/page_file.h"
 #include "disk_paging/page_tree.h"
 #include "search/contact_search.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/page/paging_counters.h"
@@ -36,7 +37,7 @@ struct PagingSettings {
 ///
 /// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick; a
 /// frame is reused only when a tick that could have seen its page is over.
-class PagedSurface {
+class THIMBLE_EXPORT PagedSurface {
  public:
   /// Opens a page file; nothing is in memory yet. Fails as PageFile::open does.
   /// Real-time: never from the servo thread.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/field/box.h"
 
@@ -16,7 +17,7 @@ namespace thimble::render {
 /// long as that is below the face's plane and within its outline, also beyond the back of a thin
 /// plate: nothing pops through. Contact ends above the plane, or where the tip leaves sideways; so
 /// a tip that comes out of another face is let go at once, without a pull.
-class EntryFaceContact {
+class THIMBLE_EXPORT EntryFaceContact {
  public:
   explicit EntryFaceContact(const Box& box) : box_(box) {}
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -17,7 +18,7 @@ using Adjacency = std::vector<std::array<std::int32_t, 3>>;
 /// Finds the neighbours of all triangles. The error says which edge has no second triangle, has a
 /// third one, or lies between triangles wound against each other, or which triangle does not name
 /// three vertices that exist. O(n log n). Real-time: never from the servo thread.
-driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh);
+THIMBLE_EXPORT driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh);
 
 /// Finds the neighbour of one triangle over the edge from corner `edge` to the next, in the cycle:
 /// no memory, one pass over the triangles at worst [BP 3.1, memory against time]. -1 if there is
@@ -25,7 +26,7 @@ driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh);
 /// find_adjacency has one. Looks at nearest numbers first, because files mostly list neighbours
 /// close together. Preconditions: `triangle` exists, `edge` is 0 to 2. Real-time: safe; time grows
 /// with the number of triangles.
-std::int32_t find_neighbour(const TriangleMesh& mesh, std::int32_t triangle,
-                            std::size_t edge) noexcept;
+THIMBLE_EXPORT std::int32_t find_neighbour(const TriangleMesh& mesh, std::int32_t triangle,
+                                           std::size_t edge) noexcept;
 
 }  // namespace thimble::render

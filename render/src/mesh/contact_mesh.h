@@ -10,6 +10,7 @@
 
 #include "mesh/adjacency.h"
 #include "mesh/repair/orient_mesh.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -90,7 +91,7 @@ struct EdgeSplit {
 /// normals [BP 3.1, Fig. 4b]. Points of it lie equally deep below both faces, so the depth does not
 /// jump when the active triangle changes. Both neighbours hold the same numbers with opposite
 /// signs: no rounding can make each send the tip to the other.
-class ContactMesh {
+class THIMBLE_EXPORT ContactMesh {
  public:
   /// Checks a mesh (W, m) and prepares it. The error joins the sentences about everything that
   /// keeps the mesh from being touched (see check_mesh). Real-time: never from the servo thread.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -21,10 +22,10 @@ struct EdgeUse {
 /// Lists the sides of all triangles, sorted so that the sides of one edge stand together, in the
 /// order of their triangles. Triangles that name a vertex which does not exist, or one vertex
 /// twice, are left out. Real-time: never from the servo thread.
-std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
+THIMBLE_EXPORT std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
 
 /// Finds the end of the group of sides that share the edge of side `begin`.
-std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin);
+THIMBLE_EXPORT std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin);
 
 /// Returns whether a triangle names three different vertices that exist.
 bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/contact_mesh.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/normal_weights.h"
 
 namespace thimble::render {
@@ -33,7 +34,7 @@ inline constexpr double kHollowCreaseAngleOfBands = std::numbers::pi / 9;
 /// vertices. So two triangles agree, to
 /// the bit, on the normals at both ends of an edge that is no crease, and nothing is ever averaged
 /// over a crease. W, unit length. 73 bytes per triangle.
-class SmoothNormals {
+class THIMBLE_EXPORT SmoothNormals {
  public:
   /// Finds the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in one
   /// plane are creases, at pi none are but those in hollows above `hollow_crease_angle`.

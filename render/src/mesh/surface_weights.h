@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "mesh/contact_mesh.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::render {
 
@@ -30,8 +31,8 @@ Eigen::Vector3d edge_plane_weights(const ContactMesh& mesh, std::int32_t triangl
 
 /// Finds the weights of the foot of the face's normal through a tip (W, m) [BP 4a]. Negative where
 /// the foot lies outside the triangle. Real-time: safe.
-Eigen::Vector3d projected_weights(const ContactMesh& mesh, std::int32_t triangle,
-                                  const Eigen::Vector3d& p_WT) noexcept;
+THIMBLE_EXPORT Eigen::Vector3d projected_weights(const ContactMesh& mesh, std::int32_t triangle,
+                                                 const Eigen::Vector3d& p_WT) noexcept;
 
 /// Brings weights back into the triangle: negative ones become 0, the others grow to sum 1.
 /// Real-time: safe.

@@ -3,18 +3,20 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
 
 /// Finds the angle (rad, 0 to pi) between two sides that leave a corner, exact for slivers too.
 /// 0 if a side has no length. Real-time: safe.
-double corner_angle(const Eigen::Vector3d& to_next, const Eigen::Vector3d& to_last) noexcept;
+THIMBLE_EXPORT double corner_angle(const Eigen::Vector3d& to_next,
+                                   const Eigen::Vector3d& to_last) noexcept;
 
 /// Finds unit normals at the vertices, in the mesh's frame: triangle normals weighted by the
 /// triangle's angle there [Thuermer], so that the answer does not depend on how a surface is cut
 /// up. Zero where a vertex has no triangle. Precondition: triangles name vertices that exist.
 /// Real-time: never from the servo thread.
-std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh);
+THIMBLE_EXPORT std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 #include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
 #include "search/contact_search.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/search/search_choice.h"
 
 namespace thimble::render {
@@ -13,8 +14,8 @@ namespace thimble::render {
 /// Builds the search that is named; if none is, a grid for fewer than 8,000 triangles that lie
 /// evenly (GridSearch), else a tree. Keeps a reference: the surface must outlive the search.
 /// Real-time: never from the servo thread.
-std::shared_ptr<const ContactSearch> make_search(const ContactMesh& mesh,
-                                                 std::optional<SearchChoice> choice = {});
+THIMBLE_EXPORT std::shared_ptr<const ContactSearch> make_search(
+    const ContactMesh& mesh, std::optional<SearchChoice> choice = {});
 std::shared_ptr<const ContactSearch> make_search(const PackedSurface& surface,
                                                  std::optional<SearchChoice> choice = {});
 

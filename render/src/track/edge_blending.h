@@ -6,6 +6,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/track/blend_profile.h"
 
 namespace thimble::render {
@@ -16,7 +17,7 @@ namespace thimble::render {
 // that is no crease (Flat excepted), and Real-time: safe.
 
 /// Leaves the face's own normal, which jumps over each edge by the angle there.
-struct Flat {
+struct THIMBLE_EXPORT Flat {
   static constexpr std::string_view kName = "flat";  ///< As scenes name it.
 
   Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,
@@ -39,7 +40,7 @@ struct Flat {
 /// b and what goes over along an edge run by 3 t^2 - 2 t^3, whose slope vanishes at both ends: over
 /// an edge, round a vertex and where bands begin or overlap the turning rate is continuous, however
 /// different the triangles are.
-struct FixedBand {
+struct THIMBLE_EXPORT FixedBand {
   static constexpr std::string_view kName = "fixed_band";  ///< As scenes name it.
 
   double width = 0;                              ///< m, >= 0; 0 is Flat.
@@ -63,7 +64,7 @@ struct SizedBand {
 };
 
 /// Weighs the normals of the corners, as Phong shading does.
-struct Phong {
+struct THIMBLE_EXPORT Phong {
   static constexpr std::string_view kName = "phong";  ///< As scenes name it.
 
   Eigen::Vector3d normal(const ContactMesh& mesh, const SmoothNormals& normals,

@@ -12,6 +12,7 @@
 #include "search/free_space.h"
 #include "search/make_search.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
@@ -43,7 +44,7 @@ struct GodObjectCounters {
 ///
 /// Frames: W world, T tip, P proxy; O, the mesh's own, is W. No length is compared with a constant
 /// in scene units.
-class GodObjectContact {
+class THIMBLE_EXPORT GodObjectContact {
  public:
   /// Takes a prepared mesh and how it is searched (make_search). Real-time: never from the servo
   /// thread.

@@ -12,6 +12,7 @@
 #include "search/make_search.h"
 #include "search/passed_through.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
@@ -28,7 +29,7 @@ namespace thimble::render {
 /// there for what each promises. The names MeshContact and OffsetContact below stand for the first
 /// two.
 template <class Tracker>
-class TrackedContact {
+class THIMBLE_EXPORT TrackedContact {
  public:
   /// Takes a prepared mesh, how it is searched (make_search), and what the tracker's constructor
   /// takes after mesh and search. Real-time: never from the servo thread.

@@ -7,6 +7,7 @@
 #include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
 #include "search/contact_search.h"
+#include "thimble/driver/export.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -22,7 +23,7 @@ namespace thimble::render {
 /// SurfaceTracker and OffsetTracker have neither fault. A walk that reaches `kHopsMax` continues
 /// from the nearest triangle, as OffsetTracker's. Real-time: safe; at worst twice `kHopsMax` cells
 /// and one question to the search.
-class NormalProjectionTracker {
+class THIMBLE_EXPORT NormalProjectionTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker. The search serves walks that reach
   /// `kHopsMax` alone; contact that is lost stays lost.

@@ -10,6 +10,7 @@
 #include "mesh/surface_weights.h"
 #include "mesh/triangle_foot.h"
 #include "search/contact_search.h"
+#include "thimble/driver/export.h"
 #include "track/surface_tracker.h"
 
 namespace thimble::render {
@@ -51,7 +52,7 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
 /// depth turns negative while the tip is inside, SurfaceTracker finds the contact again.
 /// Deterministic. All but the constructors is Real-time: safe; usually one or two feet per tick, at
 /// worst twice `kHopsMax`, one question to the search, and what SurfaceTracker needs.
-class OffsetTracker {
+class THIMBLE_EXPORT OffsetTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
   /// Real-time: never from the servo thread.

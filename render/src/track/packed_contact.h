@@ -12,6 +12,7 @@
 #include "mesh/triangle_set.h"
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
 #include "track/held_plane.h"
@@ -43,7 +44,7 @@ namespace thimble::render {
 /// the path later counts if it does not come out again, for nobody knows whether the tip went
 /// straight.
 template <PackedStore Store>
-class PackedContact {
+class THIMBLE_EXPORT PackedContact {
  public:
   /// Takes the store. Real-time: never from the servo thread.
   explicit PackedContact(Store store)

@@ -8,6 +8,7 @@
 #include "compact_mesh/packed_surface.h"
 #include "search/free_space.h"
 #include "search/make_search.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "track/packed_contact.h"
 
@@ -16,7 +17,7 @@ namespace thimble::render {
 /// A store that has all packed triangles in memory and a search over them: no question costs
 /// more than its answer. Asked by one thread at a time: it remembers the free space around the last
 /// path.
-class MemoryStore {
+class THIMBLE_EXPORT MemoryStore {
  public:
   static constexpr bool kComplete = true;
 
@@ -68,7 +69,7 @@ extern template class PackedContact<MemoryStore>;
 /// Finds what the tip touches on a smooth surface of any size that fits into memory. The `Contact`
 /// stage of Touch; the place of MeshContact where meshes are large or curved. How it follows and
 /// what it measures: packed_contact.h.
-class MemoryContact : public PackedContact<MemoryStore> {
+class THIMBLE_EXPORT MemoryContact : public PackedContact<MemoryStore> {
  public:
   /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
   /// the servo thread.

@@ -10,6 +10,7 @@
 #include "mesh/surface_weights.h"
 #include "mesh/triangle_foot.h"
 #include "search/contact_search.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::render {
 
@@ -56,7 +57,7 @@ struct TrackerStep {
 /// at the nearest point of edge or corner (concave_constraint.h). Deterministic. All but the
 /// constructor is Real-time: safe; usually one cell per tick, at worst `kHopsMax` cells, twice
 /// `kPatchMax` triangles and two questions to the search.
-class SurfaceTracker {
+class THIMBLE_EXPORT SurfaceTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
   SurfaceTracker(const ContactMesh& mesh, const ContactSearch& search) noexcept

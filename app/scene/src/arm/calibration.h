@@ -8,6 +8,7 @@
 
 #include "thimble/driver/arm.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
@@ -32,14 +33,15 @@ struct Calibration {
 
 /// Returns the file that holds the calibration of an arm of this name. Signs that do not belong
 /// into a file name become '_'.
-std::filesystem::path calibration_file(const std::string& name);
+THIMBLE_EXPORT std::filesystem::path calibration_file(const std::string& name);
 
 /// Returns the calibration of an arm; empty if it has none. Fails on a file that is wrong, with
 /// line.
 driver::Result<std::optional<Calibration>> load_calibration(const std::string& name);
 
 /// Keeps the calibration of an arm: written whole or not at all.
-driver::Result<void> save_calibration(const std::string& name, const Calibration& calibration);
+THIMBLE_EXPORT driver::Result<void> save_calibration(const std::string& name,
+                                                     const Calibration& calibration);
 
 /// Puts a calibration into an arm file's data.
 void apply(const Calibration& calibration, ArmFile& file);
@@ -48,8 +50,8 @@ void apply(const Calibration& calibration, ArmFile& file);
 /// moved the grip from there towards him (x), to his right (y), and up (z). Motors keep the
 /// direction that they have to their encoders in the file; `thimble feel-check` proves it. Fails if
 /// the movements were too small (below 20 mm) or did not tell one set of signs from another.
-driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKind kind,
-                                             const driver::ArmReading& home,
-                                             const std::array<driver::ArmReading, 3>& moved);
+THIMBLE_EXPORT driver::Result<Calibration> find_calibration(
+    const ArmFile& file, driver::ArmKind kind, const driver::ArmReading& home,
+    const std::array<driver::ArmReading, 3>& moved);
 
 }  // namespace thimble::scene

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/real_arm_file.h"
 
@@ -24,21 +25,21 @@ struct CheckedArm {
 
 /// Returns what a real arm is now. `arm` is its file with the calibration; `firmware` is the image
 /// that the user named, without which the firmware of a Falcon is not known.
-CheckedArm describe_checked(const driver::FoundArm& found, const RealArmFile& arm,
-                            const std::filesystem::path& firmware);
+THIMBLE_EXPORT CheckedArm describe_checked(const driver::FoundArm& found, const RealArmFile& arm,
+                                           const std::filesystem::path& firmware);
 
 /// Returns the file that holds the record of an arm of this name.
-std::filesystem::path feel_check_file(const std::string& name);
+THIMBLE_EXPORT std::filesystem::path feel_check_file(const std::string& name);
 
 /// Returns whether this arm, as it is, passed a feel check. A record that is damaged, of something
 /// else or of another user counts as none.
-bool has_passed(const CheckedArm& arm);
+THIMBLE_EXPORT bool has_passed(const CheckedArm& arm);
 
 /// Keeps that an arm passed: written whole or not at all. Fails, with a sentence, where its
 /// firmware is not known or the file cannot be written.
-driver::Result<void> keep_passed(const CheckedArm& arm);
+THIMBLE_EXPORT driver::Result<void> keep_passed(const CheckedArm& arm);
 
 /// Removes the record of an arm that failed. Fails if it is there and stays.
-driver::Result<void> forget_passed(const std::string& name);
+THIMBLE_EXPORT driver::Result<void> forget_passed(const std::string& name);
 
 }  // namespace thimble::scene

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -19,14 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns where the program lies, or the library, if this code is in one (Python's module).
+/// Returns whether a file is named as a shared library: module.so, libname.so.0.3.0.
+bool is_shared_library(const fs::path& file) {
+  const std::string name = file.filename();
+  return name.ends_with(".so") || name.find(".so.") != std::string::npos;
+}
+
+/// Returns where the program lies, or the library, if this code is in one (Python's module, a
+/// shared build).
 fs::path own_file() {
   std::error_code status;
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
     fs::path file = fs::canonical(info.dli_fname, status);
     // Of a program it is told as it was called: without a folder if the shell found it.
-    if (!status && file.extension() == ".so") return file;
+    if (!status && is_shared_library(file)) return file;
   }
   return fs::read_symlink("/proc/self/exe", status);
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::scene {
@@ -27,16 +28,16 @@ struct EditedScene {
 
 /// Returns a scene's text with numbers put where they belong; comments, order and all else stay as
 /// they are. The error says what is wrong with the text. Real-time: never from the servo thread.
-driver::Result<EditedScene> put_numbers(const std::string& text,
-                                        const std::vector<SceneNumber>& numbers);
+THIMBLE_EXPORT driver::Result<EditedScene> put_numbers(const std::string& text,
+                                                       const std::vector<SceneNumber>& numbers);
 
 /// Returns a scene's text for another folder: what names a file beside the scene, in `folder`,
 /// names it by its whole path then. As above.
-driver::Result<std::string> with_whole_paths(const std::string& text,
-                                             const std::filesystem::path& folder);
+THIMBLE_EXPORT driver::Result<std::string> with_whole_paths(const std::string& text,
+                                                            const std::filesystem::path& folder);
 
 /// Returns whether a scene came with Thimble: it lies in one of the folders where names are looked
 /// for (shipped_files.h) other than the user's own. Real-time: never from the servo thread.
-bool is_shipped_scene(const std::filesystem::path& file);
+THIMBLE_EXPORT bool is_shipped_scene(const std::filesystem::path& file);
 
 }  // namespace thimble::scene

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::scene {
@@ -22,9 +23,8 @@ struct SceneChange {
 /// content: the same text is the same file. The error names the place that a change does not find,
 /// or the line of what is no YAML; whether the scene is a good one is for whoever loads it.
 /// Real-time: never from the servo thread.
-driver::Result<std::filesystem::path> keep_scene(const std::string& text,
-                                                 const std::vector<SceneChange>& changes,
-                                                 const std::filesystem::path& beside,
-                                                 const std::filesystem::path& into);
+THIMBLE_EXPORT driver::Result<std::filesystem::path> keep_scene(
+    const std::string& text, const std::vector<SceneChange>& changes,
+    const std::filesystem::path& beside, const std::filesystem::path& into);
 
 }  // namespace thimble::scene

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::scene {
@@ -20,12 +21,12 @@ struct ScanPlaces {
 /// alone; else build/meshes of the sources that it was built in, meshes/ below each folder of
 /// `data_folders`, and $XDG_CACHE_HOME/thimble/meshes, into which the package's archive
 /// /usr/share/doc/libcgal-dev/data.tar.gz is unpacked. Real-time: never from the servo thread.
-ScanPlaces scan_places();
+THIMBLE_EXPORT ScanPlaces scan_places();
 
 /// Returns the file of a scan ("elephant.off"), after unpacking the archive if the scan is in no
 /// folder and nothing was unpacked before. The error says where it was looked for, what to install,
 /// and which scene needs none. Real-time: never from the servo thread.
-driver::Result<std::filesystem::path> find_scan(const std::string& name,
-                                                const ScanPlaces& places = scan_places());
+THIMBLE_EXPORT driver::Result<std::filesystem::path> find_scan(
+    const std::string& name, const ScanPlaces& places = scan_places());
 
 }  // namespace thimble::scene

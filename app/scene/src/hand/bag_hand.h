@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bag/bag_axes.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/hand_route.h"
 
@@ -14,8 +15,7 @@ namespace thimble::scene {
 /// least 10 ms apart, and the last one. Times count from the first message. `axes`: those of the
 /// bag. The error says what to mend, also where a position is beyond 2 m or the bag lasts for more
 /// than a day. Real-time: never from the servo thread.
-driver::Result<std::vector<HandWaypoint>> read_bag_hand(const std::filesystem::path& bag,
-                                                        const std::string& topic,
-                                                        bag::BagAxes axes);
+THIMBLE_EXPORT driver::Result<std::vector<HandWaypoint>> read_bag_hand(
+    const std::filesystem::path& bag, const std::string& topic, bag::BagAxes axes);
 
 }  // namespace thimble::scene

@@ -6,11 +6,13 @@
 #include <string>
 #include <string_view>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::scene {
 
 /// Standard error as the whole process shares it: whole lines, and below them one line of progress
 /// that stays the last one. From any thread. Real-time: never from the servo thread.
-class Console {
+class THIMBLE_EXPORT Console {
  public:
   /// Writes a line, above the progress if one is shown.
   void write(std::string_view line);
@@ -23,7 +25,7 @@ class Console {
 };
 
 /// Returns the one console of this process.
-Console& console();
+THIMBLE_EXPORT Console& console();
 
 /// What a logger says on the console, each message in lines of its own.
 class ConsoleSink final : public spdlog::sinks::base_sink<std::mutex> {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::scene {
@@ -18,15 +19,15 @@ namespace thimble::scene {
 
 /// Returns what speaks to the user: warnings and errors on the console ("thimble: ..."), and all
 /// of it in the file.
-spdlog::logger& logger();
+THIMBLE_EXPORT spdlog::logger& logger();
 
 /// Returns what a person at the terminal is asked and answers to: on the console word by word, and
 /// in the file.
-spdlog::logger& terminal();
+THIMBLE_EXPORT spdlog::logger& terminal();
 
 /// Returns a logger for what happens in a run called `run`: in the file, and on the console where
 /// the user wants to hear more.
-std::shared_ptr<spdlog::logger> run_logger(const std::string& run);
+THIMBLE_EXPORT std::shared_ptr<spdlog::logger> run_logger(const std::string& run);
 
 /// How much a person hears on the console.
 enum class Talk {
@@ -37,7 +38,7 @@ enum class Talk {
 };
 
 /// Returns how much a person hears on the console, as `begin_log` was asked.
-Talk talk();
+THIMBLE_EXPORT Talk talk();
 
 /// Where a process logs to.
 struct LogChoice {
@@ -48,9 +49,9 @@ struct LogChoice {
 
 /// Begins to log to a file as well. Fails if a file that the user named cannot be written; where
 /// the default one cannot be, he is told with the first message. Before other threads log.
-driver::Result<void> begin_log(const LogChoice& choice);
+THIMBLE_EXPORT driver::Result<void> begin_log(const LogChoice& choice);
 
 /// Returns the file that a process logs to unless it is told another: below the state folder.
-std::filesystem::path default_log_file();
+THIMBLE_EXPORT std::filesystem::path default_log_file();
 
 }  // namespace thimble::scene

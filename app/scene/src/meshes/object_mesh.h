@@ -5,6 +5,7 @@
 
 #include "meshes/object_size.h"
 #include "meshes/place_mesh.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"
@@ -24,6 +25,6 @@ struct ObjectMesh {
 /// that overlap or touch, are reported in the notes. An object without size and scale has the unit
 /// that its file names. The error names the file. Precondition: the object has a mesh file that is
 /// not in pages. Real-time: never from the servo thread.
-driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object);
+THIMBLE_EXPORT driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object);
 
 }  // namespace thimble::scene

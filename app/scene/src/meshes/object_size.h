@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/scene_file.h"
 
@@ -30,7 +31,7 @@ struct ObjectSize {
 double reach_of(const Scene& scene);
 
 /// Returns what to do about a format without a unit: "STL names no unit: set scale: 0.001 ...".
-std::string unit_advice(const std::string& kind);
+THIMBLE_EXPORT std::string unit_advice(const std::string& kind);
 
 /// Returns a sentence about an object that is far larger than the `reach` of the arm (m), empty if
 /// it is not or if the reach is 0. The error is that of an object that is too large: its file, how

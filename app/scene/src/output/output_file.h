@@ -5,13 +5,14 @@
 
 #include "output/output_kind.h"
 #include "output/output_path.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::output {
 
 /// A file that is being written: beside its target and locked, until it is complete. Devices and
 /// pipes are written directly. Real-time: never from the servo thread.
-class OutputFile {
+class THIMBLE_EXPORT OutputFile {
  public:
   /// Opens it, empty. `replace`: the user allows that an existing file of a kind that is not simply
   /// replaced (Existing::kReplaceForced) is. Fails if the folder does not exist or cannot be
@@ -63,8 +64,9 @@ class OutputFile {
 
 /// Fails if what exists under a name may not be replaced by an output of this kind, or is being
 /// written. `path` is the name as the user gave it.
-driver::Result<void> check_replaceable(const std::filesystem::path& path, const OutputPath& place,
-                                       const OutputKind& kind, bool replace);
+THIMBLE_EXPORT driver::Result<void> check_replaceable(const std::filesystem::path& path,
+                                                      const OutputPath& place,
+                                                      const OutputKind& kind, bool replace);
 
 /// Opens an output and keeps it for the writer in this process that opens it next. Returns the key
 /// for `release_output`. Fails as OutputFile::open.
@@ -75,7 +77,7 @@ driver::Result<std::filesystem::path> reserve_output(const std::filesystem::path
 void release_output(const std::filesystem::path& key);
 
 /// Writes a whole file. Fails as OutputFile::open, or says why it could not be written.
-driver::Result<void> write_file(const std::filesystem::path& path, const OutputKind& kind,
-                                std::string_view bytes);
+THIMBLE_EXPORT driver::Result<void> write_file(const std::filesystem::path& path,
+                                               const OutputKind& kind, std::string_view bytes);
 
 }  // namespace thimble::output

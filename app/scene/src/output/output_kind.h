@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::output {
 
 /// What may happen to an existing file of the same kind.
@@ -23,27 +25,27 @@ struct OutputKind {
 };
 
 // Recognised by their first bytes.
-extern const OutputKind kTable;         ///< CSV: a heading of several columns, or numbers.
-extern const OutputKind kSound;         ///< WAV
-extern const OutputKind kPng;           ///< PNG, animated or not.
-extern const OutputKind kSvg;           ///< SVG
-extern const OutputKind kFilm;          ///< MP4 or GIF
-extern const OutputKind kMesh;          ///< OFF
-extern const OutputKind kPageFile;      ///< Mesh for disk paging.
-extern const OutputKind kJson;          ///< JSON
-extern const OutputKind kXml;           ///< XML
-extern const OutputKind kWebPage;       ///< HTML made by Thimble.
-extern const OutputKind kArmFile;       ///< Arm file; no file is replaced by one.
-extern const OutputKind kQualityTable;  ///< Of `thimble study accuracy --table`.
-extern const OutputKind kMotionTrace;   ///< Of `thimble plug --trace`.
-extern const OutputKind kLogFile;       ///< Log; a message per line.
+THIMBLE_EXPORT extern const OutputKind kTable;  ///< CSV: a heading of several columns, or numbers.
+THIMBLE_EXPORT extern const OutputKind kSound;  ///< WAV
+THIMBLE_EXPORT extern const OutputKind kPng;    ///< PNG, animated or not.
+THIMBLE_EXPORT extern const OutputKind kSvg;    ///< SVG
+THIMBLE_EXPORT extern const OutputKind kFilm;   ///< MP4 or GIF
+THIMBLE_EXPORT extern const OutputKind kMesh;   ///< OFF
+THIMBLE_EXPORT extern const OutputKind kPageFile;      ///< Mesh for disk paging.
+THIMBLE_EXPORT extern const OutputKind kJson;          ///< JSON
+THIMBLE_EXPORT extern const OutputKind kXml;           ///< XML
+THIMBLE_EXPORT extern const OutputKind kWebPage;       ///< HTML made by Thimble.
+THIMBLE_EXPORT extern const OutputKind kArmFile;       ///< Arm file; no file is replaced by one.
+THIMBLE_EXPORT extern const OutputKind kQualityTable;  ///< Of `thimble study accuracy --table`.
+THIMBLE_EXPORT extern const OutputKind kMotionTrace;   ///< Of `thimble plug --trace`.
+THIMBLE_EXPORT extern const OutputKind kLogFile;       ///< Log; a message per line.
 /// Text with a name of ours in a folder that Thimble writes: scripts, notes, data of plots. Binary
 /// files are never replaced by it.
-extern const OutputKind kPlainText;
+THIMBLE_EXPORT extern const OutputKind kPlainText;
 /// Data of plots, in the subfolder that only Thimble writes.
 extern const OutputKind kPlotData;
 
 /// Returns the kind of a file in a folder of results, by the ending of its name.
-const OutputKind& kind_of_name(const std::filesystem::path& file);
+THIMBLE_EXPORT const OutputKind& kind_of_name(const std::filesystem::path& file);
 
 }  // namespace thimble::output

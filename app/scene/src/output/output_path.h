@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::output {
@@ -22,16 +23,17 @@ struct OutputPath {
 
 /// Resolves the name of an output. Fails if its folder does not exist, or if it names a kind of
 /// file that is not written (a socket, a disk). Real-time: never from the servo thread.
-driver::Result<OutputPath> resolve_output(const std::filesystem::path& path);
+THIMBLE_EXPORT driver::Result<OutputPath> resolve_output(const std::filesystem::path& path);
 
 /// Returns whether two names stand for one file, through any links. Two names that do not exist yet
 /// are one if folder and name are. A stream is the same as nothing.
 bool same_place(const OutputPath& a, const OutputPath& b);
 
 /// Returns the error of an output: "PATH cannot be written: WHY."
-driver::Error cannot_write(const std::filesystem::path& path, const std::string& why);
+THIMBLE_EXPORT driver::Error cannot_write(const std::filesystem::path& path,
+                                          const std::string& why);
 
 /// Returns the text of an errno.
-std::string error_text(int number);
+THIMBLE_EXPORT std::string error_text(int number);
 
 }  // namespace thimble::output

@@ -7,13 +7,14 @@
 #include "output/folder_lock.h"
 #include "output/output_kind.h"
 #include "output/output_path.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::output {
 
 /// The inputs and outputs of a command. It checks all of them before the work begins, and keeps the
 /// outputs locked until their writers open them. Real-time: never from the servo thread.
-class OutputPlan {
+class THIMBLE_EXPORT OutputPlan {
  public:
   OutputPlan() = default;
   OutputPlan(const OutputPlan&) = delete;

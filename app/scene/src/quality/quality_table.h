@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "mesh/contact_mesh.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/body/spring_scheme.h"
 #include "thimble/render/contact_choice.h"
 
@@ -49,11 +50,11 @@ struct QualityTable {
 };
 
 /// Returns the table that is built in. Real-time: safe.
-const QualityTable& quality_table();
+THIMBLE_EXPORT const QualityTable& quality_table();
 
 /// Returns the angle (rad) by which the faces of a mesh turn over an edge: that of nine edges in
 /// ten, of those that are no creases; 0 if all are. It is about the edges' length over the radius
 /// of curvature. Real-time: never from the servo thread.
-double typical_turn(const render::ContactMesh& mesh);
+THIMBLE_EXPORT double typical_turn(const render::ContactMesh& mesh);
 
 }  // namespace thimble::scene

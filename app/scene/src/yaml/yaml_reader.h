@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "yaml/key_log.h"
 #include "yaml/yaml_text.h"
@@ -220,7 +221,7 @@ class YamlMap {
 };
 
 /// One YAML file whose outermost value is a map.
-class YamlFile {
+class THIMBLE_EXPORT YamlFile {
  public:
   /// Reads a file. Fails on a file that cannot be read, that is empty or beyond 4 MB, that is not
   /// UTF-8 (with line and column), or that is not YAML (with line).

@@ -7,6 +7,7 @@
 #include "events/tick_event.h"
 #include "spsc_ring.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/session/tick_observer.h"
 
 namespace thimble::session {
@@ -28,7 +29,7 @@ class EventCounters {
 };
 
 /// The counters of a device, which must outlive it.
-class DeviceCounters final : public EventCounters {
+class THIMBLE_EXPORT DeviceCounters final : public EventCounters {
  public:
   explicit DeviceCounters(const driver::Device& device) noexcept : device_(device) {}
   std::uint64_t changes() const noexcept override;
@@ -42,7 +43,7 @@ class DeviceCounters final : public EventCounters {
 
 /// A watch over the ticks of a run that puts what happens into a ring, each event once: an activity
 /// when it begins and when it has been quiet for kQuiet_ns, not in every tick. Real-time: safe.
-class EventWatch final : public TickObserver {
+class THIMBLE_EXPORT EventWatch final : public TickObserver {
  public:
   /// How long an activity must be quiet to have ended, ns. [chosen: what comes and goes faster, as
   /// the rise limit on a rough surface, is one thing for a person]

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "events/tick_event.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::session {
 
@@ -18,10 +19,10 @@ spdlog::level::level_enum level_of(const TickEvent& event) noexcept;
 bool is_notice(const TickEvent& event) noexcept;
 
 /// Returns when something happened, as each line of a run begins.
-std::string at_tick(std::uint64_t tick, std::int64_t time_ns);
+THIMBLE_EXPORT std::string at_tick(std::uint64_t tick, std::int64_t time_ns);
 
 /// Returns an event as a line of the log, with its tick and its time. `objects` are the names of
 /// the scene's objects. Real-time: never from the servo thread.
-std::string words_of(const TickEvent& event, std::span<const std::string> objects);
+THIMBLE_EXPORT std::string words_of(const TickEvent& event, std::span<const std::string> objects);
 
 }  // namespace thimble::session

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/body_pose.h"
 #include "thimble/render/scene_touch.h"
@@ -14,7 +15,7 @@ namespace thimble::session {
 
 /// Where the objects of a run that move have been, often enough for a film of it. All memory is
 /// there and touched when it is made.
-class BodyTrace final : public session::TickObserver {
+class THIMBLE_EXPORT BodyTrace final : public session::TickObserver {
  public:
   /// Between two pictures, at least, ns: a screen's 60 a second.
   static constexpr std::int64_t kStep_ns = 16'000'000;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drawn_dent.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/tick_observer.h"
 
@@ -14,7 +15,7 @@ namespace thimble::session {
 
 /// The dents of a run as they were drawn (session::DentRecord), as many as there is room for. All
 /// memory is there and touched when it is made.
-class DentTrace final : public session::TickObserver {
+class THIMBLE_EXPORT DentTrace final : public session::TickObserver {
  public:
   /// Room for pictures, and for the points and triangles of all of them: 2.1 MB. [chosen]
   static constexpr std::size_t kFramesMost = 8192;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/session/recording.h"
 
@@ -11,6 +12,7 @@ namespace thimble::session {
 /// was; /wrench, the force that was sent; /wrench_wanted, what the scene asked for before the gate.
 /// A message per tick, stamped by the loop's clock. The error says what cannot be written.
 /// Real-time: never from the servo thread.
-driver::Result<void> export_bag(const Recording& recording, const std::filesystem::path& folder);
+THIMBLE_EXPORT driver::Result<void> export_bag(const Recording& recording,
+                                               const std::filesystem::path& folder);
 
 }  // namespace thimble::session

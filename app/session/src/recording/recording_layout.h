@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "output/output_file.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/recording.h"
@@ -13,7 +14,7 @@
 namespace thimble::session {
 
 /// Recordings as outputs: they are measurements, and can be read by their owner only.
-extern const output::OutputKind kRecordingOutput;
+THIMBLE_EXPORT extern const output::OutputKind kRecordingOutput;
 
 /// One HDF5 file of a recording, with room for a fixed number of ticks.
 ///

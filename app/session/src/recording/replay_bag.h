@@ -5,6 +5,7 @@
 
 #include "bag/bag_axes.h"
 #include "recording/replay_trajectory.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
@@ -26,7 +27,8 @@ struct BagReplay {
 /// Lets a probe go along the positions of a ROS bag and touch a scene, without arm or hand, and
 /// compares with the bag's forces, taken linearly between its messages. The error says what to
 /// mend. Real-time: never from the servo thread.
-driver::Result<BagReplay> replay_bag(const std::filesystem::path& bag, const BagTopics& topics,
-                                     const std::filesystem::path& scene_file);
+THIMBLE_EXPORT driver::Result<BagReplay> replay_bag(const std::filesystem::path& bag,
+                                                    const BagTopics& topics,
+                                                    const std::filesystem::path& scene_file);
 
 }  // namespace thimble::session

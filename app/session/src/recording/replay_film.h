@@ -7,12 +7,13 @@
 #include "observers/dent_record.h"
 #include "observers/dent_trace.h"
 #include "recording/replay_watch.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::session {
 
 /// Keeps what a replay must be shown with, and what its ticks do not tell: where the objects moved
 /// and how they were dented. Real-time: never from the servo thread.
-class ReplayFilm : public ReplayWatch {
+class THIMBLE_EXPORT ReplayFilm : public ReplayWatch {
  public:
   void begin(const scene::Scene& scene,
              std::shared_ptr<const scene::SceneObjects> objects) override;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recording/trajectory_file.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/scene/scene_objects.h"
 #include "thimble/session/recording.h"
@@ -52,9 +53,8 @@ driver::Result<TrajectoryReplay> touch_along(std::vector<TrajectoryPoint> trajec
 /// Reads a trajectory file and lets its probe touch a scene. `frame`: the object whose mesh file
 /// has the trajectory's frame and unit; "world" or empty: it is told in the world. The error says
 /// what to mend. Real-time: never from the servo thread.
-driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::path& file,
-                                                        TrajectoryForm form,
-                                                        const std::string& frame,
-                                                        const std::filesystem::path& scene_file);
+THIMBLE_EXPORT driver::Result<TrajectoryReplay> replay_trajectory_file(
+    const std::filesystem::path& file, TrajectoryForm form, const std::string& frame,
+    const std::filesystem::path& scene_file);
 
 }  // namespace thimble::session

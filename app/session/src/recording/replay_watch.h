@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/scene/scene_file.h"
@@ -25,7 +26,7 @@ class ReplayWatch {
 };
 
 /// Does what session::replay_together does while `watch` looks on.
-driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
-                                                    const std::string& scene, ReplayWatch* watch);
+THIMBLE_EXPORT driver::Result<std::vector<Replay>> replay_together(
+    std::span<const Recording> recordings, const std::string& scene, ReplayWatch* watch);
 
 }  // namespace thimble::session

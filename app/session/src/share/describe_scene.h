@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "share/shared_scene.h"
+#include "thimble/driver/export.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
@@ -19,7 +20,8 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
                            const std::string& device);
 
 /// As above, with all arms of the scene; `devices` are theirs, in order. Precondition: one each.
-SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
-                           const std::vector<std::string>& devices);
+THIMBLE_EXPORT SharedScene describe_scene(const scene::Scene& scene,
+                                          const scene::SceneObjects& objects,
+                                          const std::vector<std::string>& devices);
 
 }  // namespace thimble::session

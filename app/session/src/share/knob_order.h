@@ -6,6 +6,7 @@
 
 #include "share/shared_reader.h"
 #include "share/shared_scene.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
@@ -18,6 +19,6 @@ driver::Result<std::size_t> find_knob(const std::vector<SharedScene::Knob>& knob
 
 /// Turns the knob of an order "NAME=VALUE" of `thimble view --turn`. The error is that of
 /// `find_knob`. Real-time: never from the servo thread.
-driver::Result<void> turn_knob(SharedReader& reader, const std::string& order);
+THIMBLE_EXPORT driver::Result<void> turn_knob(SharedReader& reader, const std::string& order);
 
 }  // namespace thimble::session

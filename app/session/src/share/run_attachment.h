@@ -5,12 +5,13 @@
 #include <string>
 
 #include "share/shared_reader.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::session {
 
 /// Keeps a viewer attached: waits for a run, tells when it ends, and goes over to the next one of
 /// the same name. Used by one thread; Real-time: never from the servo thread.
-class RunAttachment {
+class THIMBLE_EXPORT RunAttachment {
  public:
   /// Watches runs of a name; if it is empty, of the newest run there is and then of its name.
   explicit RunAttachment(std::string name) : name_(std::move(name)) {}

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::session {
@@ -11,7 +12,7 @@ namespace thimble::session {
 /// the end `kept`, and two new ones behind all others, in the same order, have the end `lost`.
 /// False if the mesh has no such edge; then nothing has changed. Real-time: never from the servo
 /// thread.
-bool split_edge(render::TriangleMesh& mesh, std::uint32_t kept, std::uint32_t lost,
-                std::array<std::uint32_t, 2> triangles);
+THIMBLE_EXPORT bool split_edge(render::TriangleMesh& mesh, std::uint32_t kept, std::uint32_t lost,
+                               std::array<std::uint32_t, 2> triangles);
 
 }  // namespace thimble::session

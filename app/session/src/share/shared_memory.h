@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "share/bus_guard.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
@@ -20,7 +21,7 @@ namespace thimble::session {
 /// namespace: what belongs to a process is a byte of the file that its open file description has
 /// locked (byte_lock.h). The maker of memory holds kMakerByte; the users of the memory agree on the
 /// others.
-class SharedMemory {
+class THIMBLE_EXPORT SharedMemory {
  public:
   /// The byte that the maker of the memory has locked while it lives.
   static constexpr std::int64_t kMakerByte = 0;
@@ -115,7 +116,7 @@ struct RunningRun {
 
 /// Lists the runs of this user that share themselves, newest first; those that have died are not
 /// among them. Real-time: never from the servo thread.
-std::vector<RunningRun> running_runs();
+THIMBLE_EXPORT std::vector<RunningRun> running_runs();
 
 /// Removes what dead runs of this user have left. Real-time: never from the servo thread.
 void remove_dead_runs();

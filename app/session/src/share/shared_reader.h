@@ -13,6 +13,7 @@
 #include "share/shared_layout.h"
 #include "share/shared_memory.h"
 #include "share/shared_scene.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -22,7 +23,7 @@ namespace thimble::session {
 ///
 /// Whatever the memory holds, nothing here crashes, and what it hands out is within bounds and
 /// whole: from one tick, not from two. Used by one thread; Real-time: never from the servo thread.
-class SharedReader {
+class THIMBLE_EXPORT SharedReader {
  public:
   /// Attaches to a run by name, or to the newest one if `name` is empty. The error says what to
   /// do.

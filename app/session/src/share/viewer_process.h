@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
 
 /// Returns whether there is a screen to draw on: X11 or Wayland. Real-time: never from the servo
 /// thread.
-bool has_display();
+THIMBLE_EXPORT bool has_display();
 
 /// The viewer that a run has opened, a process of its own: nothing of the run depends on it.
 /// Real-time: never from the servo thread.

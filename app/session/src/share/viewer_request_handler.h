@@ -11,6 +11,7 @@
 #include "share/steer/next_run.h"
 #include "share/viewer_process.h"
 #include "share/viewer_watch.h"
+#include "thimble/driver/export.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
@@ -18,7 +19,7 @@ namespace thimble::session {
 
 /// Does beside the servo what viewers ask of a run: recordings begin and end, a hand that nobody
 /// leads any more is let go, the run ends. Real-time: never from the servo thread.
-class ViewerRequestHandler {
+class THIMBLE_EXPORT ViewerRequestHandler {
  public:
   /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
   /// any; with `ends_with_viewer` the run ends when that is closed. `next`: what begins it anew, or
@@ -74,7 +75,7 @@ constexpr bool opens_viewer(ViewerChoice choice, bool real_time, bool display,
 /// without, and returns the handler of all viewers; null if the run is not shared.
 /// `ends_with_viewer` and `next`: as for the handler; `arguments`: the viewer's, after its run.
 /// Real-time: never from the servo thread.
-std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
+THIMBLE_EXPORT std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
     Session& session, ViewerChoice choice, bool ends_with_viewer,
     const std::vector<std::string>& arguments = {}, NextRun* next = nullptr);
 

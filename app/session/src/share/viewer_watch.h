@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "share/shared_run.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::session {
 
 /// A watch over the viewers of a run at the side of the servo that logs who looks on and what they
 /// change. Real-time: never from the servo thread.
-class ViewerWatch {
+class THIMBLE_EXPORT ViewerWatch {
  public:
   /// Steps for which a knob must stand still until it counts as set: half a second of `step` as
   /// often as ViewerRequestHandler does. [chosen: a person who draws at a slider is not done

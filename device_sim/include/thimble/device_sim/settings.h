@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "thimble/driver/board.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim {
@@ -31,7 +32,7 @@ struct HandSettings {
 
 /// How a simulated hand turns the stylus: each axis of the gimbal to and fro, a third of a period
 /// after the one before. It is a script: no force turns the stylus.
-struct GimbalMotion {
+struct THIMBLE_EXPORT GimbalMotion {
   Eigen::Vector3d middle{0, 0, 0};     ///< Angles about which it turns to and fro, rad.
   Eigen::Vector3d amplitude{0, 0, 0};  ///< How far to each side, rad.
   double period = 2;                   ///< s. Must be > 0.
@@ -126,7 +127,7 @@ struct LinkSettings {
 
 /// Describes how encoders and motors are plugged into the board: a well-made arm has the defaults,
 /// anything else is a mistake for a check to find.
-struct WiringSettings {
+struct THIMBLE_EXPORT WiringSettings {
   /// Names the joint whose encoder is plugged into each input of the board.
   std::array<std::uint8_t, 3> encoder_of{0, 1, 2};
   /// 1 for an encoder that counts as it should, -1 for one that counts backwards, 0 for a dead

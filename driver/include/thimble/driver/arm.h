@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/motor_currents.h"
 
 namespace thimble::driver {
@@ -34,7 +35,7 @@ struct ArmPose {
 
 /// One kind of arm: its wire format and its geometry, both pure functions with no state. The
 /// driver talks to every arm through it. Adding an arm means implementing it under arms/NAME/.
-class Arm {
+class THIMBLE_EXPORT Arm {
  public:
   Arm() = default;
   Arm(const Arm&) = delete;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/motor_currents.h"
 #include "thimble/driver/safety_gate.h"
 
@@ -71,7 +72,7 @@ struct LinkWrite {
 ///
 /// Used by one thread at a time; neither allocates nor locks nor waits beyond a deadline after it
 /// was made. The destructor closes it; it is not called on the servo thread.
-class ArmLink {
+class THIMBLE_EXPORT ArmLink {
  public:
   ArmLink() = default;
   ArmLink(const ArmLink&) = delete;

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// Returns the time and waits for it; the servo loop runs on one. Times are nanoseconds since an
 /// arbitrary start that never jumps back.
-class Clock {
+class THIMBLE_EXPORT Clock {
  public:
   Clock() = default;
   Clock(const Clock&) = delete;
@@ -27,7 +29,7 @@ class Clock {
 
 /// Time that passes only when somebody waits for it: every run is repeatable to the bit, and
 /// seconds of touch take milliseconds. Used by one thread.
-class VirtualClock final : public Clock {
+class THIMBLE_EXPORT VirtualClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }
   void sleep_until_ns(std::int64_t time_ns) noexcept override {
@@ -45,7 +47,7 @@ class VirtualClock final : public Clock {
 /// The spin buys a median wake-up error below 1 us instead of tens of us [PHYSICS 5] and must
 /// stay short: the kernel throttles a SCHED_FIFO thread that keeps a core busy (950 ms of every
 /// second by default). The default of 60 us is 6 % of a 1 kHz tick.
-class WallClock final : public Clock {
+class THIMBLE_EXPORT WallClock final : public Clock {
  public:
   static constexpr std::int64_t kDefaultSpin_ns = 60'000;  ///< See above.
 

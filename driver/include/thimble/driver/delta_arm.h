@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// The geometry of a delta arm with three legs, each an upper link and a parallelogram that
@@ -22,7 +24,7 @@ namespace thimble::driver {
 /// The point where the leg ends lies on a torus around the elbow: distance along u, w minus (d + e)
 /// and distance along v make up b. Frame B: origin between the legs, z out of the arm towards the
 /// user. Joint vector q: one angle per leg, rad. All functions are Real-time: safe.
-struct DeltaArm {
+struct THIMBLE_EXPORT DeltaArm {
   double a = 0;                     ///< Upper link, m.
   double b = 0;                     ///< Parallelogram, m.
   double c = 0;                     ///< Leg's end to tip along u, m.

@@ -10,6 +10,7 @@
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/driver/motion_watch.h"
@@ -67,7 +68,7 @@ struct HoldToRun {
 };
 
 /// Sets how a device is placed and what it tolerates.
-struct DeviceSettings {
+struct THIMBLE_EXPORT DeviceSettings {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
   GateLimits limits;                                   ///< Of force, rise and speed.
@@ -124,7 +125,7 @@ enum class HomeCheck : std::uint8_t {
 /// (ArmTraits::zero_at_power_on) are wrong after every restart of the board, with a wire that was
 /// pulled or without. After a new link, a silence, or a jump of the position while no report came,
 /// forces therefore need the home pose again (`home_needed`).
-class Device {
+class THIMBLE_EXPORT Device {
  public:
   /// Takes the link to an arm; waits up to `timeout_ns` of `clock_now_ns` time for the first report
   /// by way of the link's deadline, and sends zero force meanwhile, because some arms speak only

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thimble/driver/board.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transports.h"
 
@@ -23,7 +24,7 @@ enum class Certainty : std::uint8_t {
 };
 
 /// A board that is plugged in and may belong to an arm.
-struct FoundArm {
+struct THIMBLE_EXPORT FoundArm {
   ArmKind kind = ArmKind::kUnsupported;  ///< What its board speaks (arm_table.h).
   std::string arm;                       ///< What it is ("WoodenHaptics").
   std::string bus;                       ///< How it is reached ("USB HID").
@@ -52,17 +53,17 @@ struct FoundArm {
 
 /// Returns whether a serial number is one that many boards carry, such as the 0123456789 of every
 /// mbed board, and so names none. Real-time: safe.
-bool is_placeholder(std::string_view serial) noexcept;
+THIMBLE_EXPORT bool is_placeholder(std::string_view serial) noexcept;
 
 /// Lists the boards on USB that may be arms (app/guide/pages/driver.md names the sources), from
 /// what the kernel tells under `root`/sys: ids, strings and report descriptors. Opens nothing and
 /// needs no right to. Of this computer ("/") it lists the arms behind vendors' services as well:
 /// those are listened to for half a second at most, on this computer alone, and told nothing. Fails
 /// if USB cannot be listed at all and there is no such arm. Real-time: never from the servo thread.
-Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
+THIMBLE_EXPORT Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
 
 /// Reads a small text file of the kernel without its newline; empty if it cannot be read.
 /// Real-time: never from the servo thread.
-std::string read_line(const std::filesystem::path& file);
+THIMBLE_EXPORT std::string read_line(const std::filesystem::path& file);
 
 }  // namespace thimble::driver

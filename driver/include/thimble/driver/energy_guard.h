@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// Names the stage of the gate that keeps the arm from giving more energy than it took.
@@ -59,7 +61,7 @@ struct EnergyFlow {
 /// In three dimensions power is f . v: one account for all directions, since a hand is hurt by the
 /// sum. Damping acts against the velocity, where a given force takes most energy.
 /// All functions are Real-time: safe.
-class PassivityObserver {
+class THIMBLE_EXPORT PassivityObserver {
  public:
   explicit PassivityObserver(const EnergyGuardSettings& settings) noexcept : settings_(settings) {}
 
@@ -116,6 +118,6 @@ class PassivityObserver {
 /// f.s
 /// + 2 c1 b |s|^2 / T, which is |f - c1 s|^2 when c1 = 2 b / T. Falling below is always allowed.
 /// Real-time: safe.
-double bounded_force(const EnergyFlow& flow, double slope) noexcept;
+THIMBLE_EXPORT double bounded_force(const EnergyFlow& flow, double slope) noexcept;
 
 }  // namespace thimble::driver

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// Names the reason why an arm's force is off and stays off until somebody activates it again.
@@ -30,10 +32,10 @@ inline constexpr Fault kLastFault = Fault::kOutsideWorkspace;
 
 /// Returns what a fault means and what to do, in one or two sentences for the user.
 /// Real-time: safe.
-std::string_view describe(Fault fault) noexcept;
+THIMBLE_EXPORT std::string_view describe(Fault fault) noexcept;
 
 /// Returns the short name of a fault as it stands in reports ("transport_lost").
 /// Real-time: safe.
-std::string_view name(Fault fault) noexcept;
+THIMBLE_EXPORT std::string_view name(Fault fault) noexcept;
 
 }  // namespace thimble::driver

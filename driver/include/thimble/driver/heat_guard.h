@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/motor_currents.h"
 
 namespace thimble::driver {
@@ -27,7 +28,7 @@ struct HeatSettings {
 /// the continuous current reaches in the end: the winding's limit. From the heat 0.8 on the largest
 /// current falls, down to the continuous one at 1, and h never passes 1 (proof: heat_guard.cpp).
 /// All functions are Real-time: safe.
-class HeatGuard {
+class THIMBLE_EXPORT HeatGuard {
  public:
   /// Heat from which on the user is warned and the largest current falls [chosen].
   static constexpr double kWarning = 0.8;

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// The geometry of the Polhem arm: a yaw, and in its plane two motors side by side that move the
@@ -17,7 +19,7 @@ namespace thimble::driver {
 ///
 /// Frame B: origin on the yaw axis between the motors, z up. Joint vector q = (yaw, q1, q2), rad,
 /// both link angles measured from the r axis. All functions are Real-time: safe.
-struct LinkageArm {
+struct THIMBLE_EXPORT LinkageArm {
   double length_0 = 0;  ///< Between the two motors, m.
   double length_1 = 0;  ///< Front motor to elbow, m.
   double length_2 = 0;  ///< Crank on the back motor, m.

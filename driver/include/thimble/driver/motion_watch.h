@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::driver {
@@ -34,7 +35,7 @@ struct MotionWatchSettings {
 /// What it cannot see: a constant force (a hand may hold it or throw against it), and a surface
 /// softer than the hand's grip, for which the reversed arm is stable and slow.
 /// All functions are Real-time: safe.
-class MotionWatch {
+class THIMBLE_EXPORT MotionWatch {
  public:
   explicit MotionWatch(const MotionWatchSettings& settings) noexcept;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/safety_gate.h"
 
 namespace thimble::driver {
@@ -20,7 +21,7 @@ struct MotorDrive {
 
 /// Holds motor currents that came through the safety gate. There is no way to make one but from a
 /// GatedForce, and no way to send anything else.
-class MotorCurrents {
+class THIMBLE_EXPORT MotorCurrents {
  public:
   /// Zero current in every motor.
   MotorCurrents() = default;

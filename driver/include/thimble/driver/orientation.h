@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// A rotation as a unit quaternion w, x, y, z in single precision: 6e-8 rad, below the step of any
@@ -12,10 +14,10 @@ namespace thimble::driver {
 using TipQuaternion = std::array<float, 4>;
 
 /// Returns the quaternion of a rotation, w >= 0; all zeros if it is not finite. Real-time: safe.
-TipQuaternion quaternion_of(const Eigen::Matrix3d& R) noexcept;
+THIMBLE_EXPORT TipQuaternion quaternion_of(const Eigen::Matrix3d& R) noexcept;
 
 /// Returns the rotation of a quaternion; the identity of one that is all zeros. Real-time: safe.
-Eigen::Matrix3d rotation_of(const TipQuaternion& q) noexcept;
+THIMBLE_EXPORT Eigen::Matrix3d rotation_of(const TipQuaternion& q) noexcept;
 
 /// An axis of a frame.
 enum class FrameAxis : std::uint8_t {
@@ -26,7 +28,7 @@ enum class FrameAxis : std::uint8_t {
 
 /// Returns the rotation about an axis by an angle (rad), anticlockwise as seen from the axis's end.
 /// Real-time: safe.
-Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept;
+THIMBLE_EXPORT Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept;
 
 /// A gimbal between the last link of an arm and the stylus that the hand holds: three axes, one
 /// behind the other, each with an encoder and no motor. Data of one model, no state.
@@ -35,7 +37,7 @@ Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept;
 ///
 /// Frame L: the last link, as each geometry's `last_link` tells it; T: the stylus, which has the
 /// axes of L when all angles are zero. All functions are Real-time: safe.
-struct Gimbal {
+struct THIMBLE_EXPORT Gimbal {
   /// Axes in the order from link to stylus, each in the frame that the ones before have turned.
   std::array<FrameAxis, 3> axes{FrameAxis::kX, FrameAxis::kY, FrameAxis::kX};
   std::array<double, 3> sign{1, 1, 1};        ///< +1 if counts grow with the angle, else -1.

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// What the kernel granted to the servo thread, and how to get what it refused.
@@ -16,13 +18,13 @@ struct RealTimeGrant {
 /// Asks the kernel to run the calling thread before all others (SCHED_FIFO at `priority`, 1 to 99)
 /// and to keep the process in memory. Refusal is no error: the loop runs, with more jitter, and
 /// says so. Real-time: never once the loop runs; call it first on the servo thread.
-RealTimeGrant enter_real_time(int priority = 80);
+THIMBLE_EXPORT RealTimeGrant enter_real_time(int priority = 80);
 
 /// A request to the kernel that no processor falls into a sleep from which it wakes late, for as
 /// long as the request lives (/dev/cpu_dma_latency, 0 us; the kernel forgets it when the file is
 /// closed [S kernel documentation, power/pm_qos_interface]). Without it a processor that rests
 /// between two ticks may take 100 us and more to come back. Real-time: never from the servo thread.
-class CpuLatencyRequest {
+class THIMBLE_EXPORT CpuLatencyRequest {
  public:
   /// Asks, below the folder `root`. Refusal is no error: `advice` says what to do.
   explicit CpuLatencyRequest(const std::filesystem::path& root = "/");

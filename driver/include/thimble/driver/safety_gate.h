@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "thimble/driver/energy_guard.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::driver {
@@ -97,7 +98,7 @@ class ProgramWatch;
 ///
 /// A fault latches: from then on the gate gives zero force until `restart`.
 /// All functions are Real-time: safe.
-class SafetyGate {
+class THIMBLE_EXPORT SafetyGate {
  public:
   /// Real-time: never from the servo thread.
   explicit SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy = {});

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// The geometry of a serial arm of the PHANTOM family: a yaw A and two links B and C that are
@@ -20,7 +22,7 @@ namespace thimble::driver {
 ///
 /// Frame B: origin on the yaw axis, x towards the user, y to the user's right, z up. Angles in rad.
 /// Joint vector q = (A, B, C). All functions are Real-time: safe.
-struct SerialArm {
+struct THIMBLE_EXPORT SerialArm {
   double height = 0;    ///< Height of the shoulder above the base's origin (Ln), m.
   double length_b = 0;  ///< Length of the first link (Lb), m.
   double length_c = 0;  ///< Length of the second link up to the tip (Lc), m.

@@ -9,6 +9,7 @@
 
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/tick_record.h"
 
@@ -61,7 +62,7 @@ enum class ServoEnd : std::uint8_t {
 };
 
 /// Returns how a report names an end ("done"). Real-time: safe.
-std::string_view name(ServoEnd end) noexcept;
+THIMBLE_EXPORT std::string_view name(ServoEnd end) noexcept;
 
 /// A servo loop, tick by tick, for whoever has something to do of his own between two ticks of
 /// virtual time. `run_servo` is nothing but all its ticks.
@@ -69,7 +70,7 @@ std::string_view name(ServoEnd end) noexcept;
 /// Each tick: wait (and let the law prepare itself), read, ask the law, write, tell the sink. Ticks
 /// are due at fixed times; after a gap the missed ones are skipped, not run in a burst. Used by one
 /// thread.
-class ServoLoop {
+class THIMBLE_EXPORT ServoLoop {
  public:
   /// Takes an activated device and what it runs with, all of which must outlive the loop. The first
   /// tick is due now. Real-time: safe.
@@ -102,7 +103,8 @@ class ServoLoop {
 /// Runs one force law on one device until the periods are used up, `stop` is set, or the device is
 /// in fault. Leaves the device idle (or in fault) with zero force sent.
 /// Real-time: safe; it is the servo thread.
-ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
-                   const ServoSettings& settings, const std::atomic<bool>& stop) noexcept;
+THIMBLE_EXPORT ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
+                                  const ServoSettings& settings,
+                                  const std::atomic<bool>& stop) noexcept;
 
 }  // namespace thimble::driver

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/fault.h"
 #include "thimble/driver/orientation.h"
 
@@ -35,7 +36,7 @@ enum class LinkState : std::uint8_t {
 inline constexpr LinkState kLastLinkState = LinkState::kLost;
 
 /// Returns the short name of a link state as it stands in reports ("lost"). Real-time: safe.
-std::string_view name(LinkState state) noexcept;
+THIMBLE_EXPORT std::string_view name(LinkState state) noexcept;
 
 /// Holds everything one tick did, as plain numbers: what the snapshot shows, the recorder keeps and
 /// reports are made of. Trivially copyable. Frames: W world, T tip, P proxy.
@@ -80,6 +81,6 @@ struct TickRecord {
 /// Returns what a tick is known by before its force went through the gate: what the device read and
 /// what the law answered. What was sent, stage, fault and heat are left as they begin.
 /// Real-time: safe.
-TickRecord record_of(const DeviceState& state, const ForceCommand& command) noexcept;
+THIMBLE_EXPORT TickRecord record_of(const DeviceState& state, const ForceCommand& command) noexcept;
 
 }  // namespace thimble::driver

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver {
 
 /// How one exchange over the wire ended.
@@ -34,7 +36,7 @@ struct Framing {
 ///
 /// Implementations neither allocate nor lock after they are opened. A transport is used by one
 /// thread at a time. Its destructor closes the wire.
-class Transport {
+class THIMBLE_EXPORT Transport {
  public:
   Transport() = default;
   Transport(const Transport&) = delete;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
 
@@ -27,15 +28,16 @@ namespace thimble::driver {
 /// has taken the message, one USB frame as a rule; the kernel itself waits up to 5 s for an arm
 /// that refuses messages without an answer, during which the loop stands still and the arm's own
 /// watchdog switches it off (Fault::kLoopStalled names it afterwards).
-Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
-                                                      std::size_t message_size, const Clock& clock);
+THIMBLE_EXPORT Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
+                                                                     std::size_t message_size,
+                                                                     const Clock& clock);
 
 /// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for this program alone
 /// (NodeLock). Nothing is sent. Neither allocates nor locks. A message that the port has no room
 /// for is refused, not waited for.
-Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
-                                                         const Framing& framing,
-                                                         const Clock& clock);
+THIMBLE_EXPORT Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
+                                                                        const Framing& framing,
+                                                                        const Clock& clock);
 
 /// Where the kernel put a USB device.
 struct UsbAddress {
@@ -45,6 +47,6 @@ struct UsbAddress {
 
 /// Returns the node of a USB device ("/dev/bus/usb/001/004"). Real-time: never from the servo
 /// thread.
-std::string usb_node(const UsbAddress& address);
+THIMBLE_EXPORT std::string usb_node(const UsbAddress& address);
 
 }  // namespace thimble::driver

@@ -6,13 +6,14 @@
 #include <optional>
 
 #include "thimble/driver/arm_link.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::driver {
 
 /// The link to an arm that is bytes on a wire (Transport) and a wire format with a geometry (Arm).
 /// A gated force becomes motor currents here, by tau = J_BT^T f.
-class WireLink final : public ArmLink {
+class THIMBLE_EXPORT WireLink final : public ArmLink {
  public:
   /// Takes an open wire and the arm at its other end. Real-time: never from the servo thread.
   WireLink(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm);

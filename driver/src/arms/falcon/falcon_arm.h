@@ -2,6 +2,7 @@
 
 #include "arms/falcon/falcon_packet.h"
 #include "thimble/driver/delta_arm.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/wire_arm.h"
 
 namespace thimble::driver::falcon {
@@ -24,12 +25,12 @@ using FalconArm = WireArm<PacketWire, DeltaArm>;
 
 /// Returns the geometry of the Falcon [S libnifalcon FalconGeometry.h]. Frame B as there: x to the
 /// user's right, y up, z out of the arm towards the user.
-DeltaArm falcon_geometry() noexcept;
+THIMBLE_EXPORT DeltaArm falcon_geometry() noexcept;
 
 /// Returns the Falcon's data: geometry, encoders (1280 counts per motor turn through 110 : 14.25,
 /// zero near 35 degrees [S]) and drives (limit 4096 motor values, what libnifalcon's users clamp
 /// to [S]).
-JointModel<DeltaArm> falcon_model() noexcept;
+THIMBLE_EXPORT JointModel<DeltaArm> falcon_model() noexcept;
 
 /// The radius of the ball around `falcon_geometry().p_BM` in which the arm works, m: the
 /// published workspace is about 4 inches wide [M]. All legs reach all of this ball, far from any

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "arms/falcon/falcon_packet.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "transports/serial_line.h"
 
@@ -43,7 +44,7 @@ struct UploadReport {
 
 /// Reads a firmware image that the user named. Fails on a file that cannot be read, is empty, or
 /// is larger than any such image (64 kB).
-Result<std::vector<std::byte>> read_firmware(const std::filesystem::path& file);
+THIMBLE_EXPORT Result<std::vector<std::byte>> read_firmware(const std::filesystem::path& file);
 
 /// Sets the line for running: latency timer 1 ms (16 ms would cost 33 times the stable stiffness
 /// [C PHYSICS 5]), 1.5 Mbaud, empty buffers.
@@ -60,13 +61,15 @@ Result<void> enter_boot_loader(SerialLine& line, const BootSettings& settings = 
 /// the boot loader may hold a wrong image: the loader is reset and the upload begins anew, up to
 /// `block_attempts_max` times ("works day 1, fails day 2" is the complaint of every user of the
 /// open driver, which gives up instead). Ends in run mode with the firmware answering.
-Result<UploadReport> upload_firmware(SerialLine& line, std::span<const std::byte> firmware,
-                                     const BootSettings& settings = {});
+THIMBLE_EXPORT Result<UploadReport> upload_firmware(SerialLine& line,
+                                                    std::span<const std::byte> firmware,
+                                                    const BootSettings& settings = {});
 
 /// Does all of it: run mode; if no firmware answers, boot loader and upload of `firmware_file`.
 /// Without a file (empty path) and without firmware in the arm the error says what to do.
-Result<UploadReport> prepare(SerialLine& line, const std::filesystem::path& firmware_file,
-                             const BootSettings& settings = {});
+THIMBLE_EXPORT Result<UploadReport> prepare(SerialLine& line,
+                                            const std::filesystem::path& firmware_file,
+                                            const BootSettings& settings = {});
 
 /// How far homing has come.
 struct HomingState {
@@ -79,7 +82,7 @@ struct HomingState {
 
 /// Exchanges one packet in homing mode with zero force: red light while a leg is not homed, green
 /// when all are. The user pulls the grip all the way out and pushes it in; call this until `done`.
-HomingState home_once(SerialLine& line, std::uint8_t homed_before,
-                      const BootSettings& settings = {});
+THIMBLE_EXPORT HomingState home_once(SerialLine& line, std::uint8_t homed_before,
+                                     const BootSettings& settings = {});
 
 }  // namespace thimble::driver::falcon

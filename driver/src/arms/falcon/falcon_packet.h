@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/transport.h"
 
 namespace thimble::driver::falcon {
@@ -62,10 +63,12 @@ struct ArmPacket {
 std::optional<ArmPacket> decode_arm_packet(std::span<const std::byte> bytes) noexcept;
 
 /// Encodes an answer (used by the simulated arm).
-std::array<std::byte, kPacketSize> encode_arm_packet(const ArmPacket& packet) noexcept;
+THIMBLE_EXPORT std::array<std::byte, kPacketSize> encode_arm_packet(
+    const ArmPacket& packet) noexcept;
 
 /// Decodes what the host sent (used by the simulated arm), as strictly.
-std::optional<HostPacket> decode_host_packet(std::span<const std::byte> bytes) noexcept;
+THIMBLE_EXPORT std::optional<HostPacket> decode_host_packet(
+    std::span<const std::byte> bytes) noexcept;
 
 /// Encodes what the host sends.
 std::array<std::byte, kPacketSize> encode_host_packet(const HostPacket& packet) noexcept;

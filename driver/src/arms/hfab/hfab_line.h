@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver::hfab {
 
 // The text lines of the Haptikfabriken boards on USB serial (Teensy, 16c0:048x): the host sends
@@ -50,18 +52,18 @@ struct HostLine {
 /// Decodes an answer. It must begin with '[', hold exactly eight decimal numbers that fit 32 bits
 /// and end with ']', which newline, carriage return or zero bytes may follow; anything else is
 /// empty.
-std::optional<ArmLine> decode_arm_line(std::span<const std::byte> bytes) noexcept;
+THIMBLE_EXPORT std::optional<ArmLine> decode_arm_line(std::span<const std::byte> bytes) noexcept;
 
 /// Encodes an answer (used by the simulated arm); returns its length.
-std::size_t encode_arm_line(const ArmLine& line,
-                            std::span<std::byte, kLineCapacity> bytes) noexcept;
+THIMBLE_EXPORT std::size_t encode_arm_line(const ArmLine& line,
+                                           std::span<std::byte, kLineCapacity> bytes) noexcept;
 
 /// Decodes what the host said (used by the simulated arm); strict like `decode_arm_line`, with
 /// three numbers.
-std::optional<HostLine> decode_host_line(std::span<const std::byte> bytes) noexcept;
+THIMBLE_EXPORT std::optional<HostLine> decode_host_line(std::span<const std::byte> bytes) noexcept;
 
 /// Encodes what the host says; returns its length.
-std::size_t encode_host_line(const HostLine& line,
-                             std::span<std::byte, kLineCapacity> bytes) noexcept;
+THIMBLE_EXPORT std::size_t encode_host_line(const HostLine& line,
+                                            std::span<std::byte, kLineCapacity> bytes) noexcept;
 
 }  // namespace thimble::driver::hfab

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "thimble/driver/arm.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/joint_model.h"
 #include "thimble/driver/linkage_arm.h"
 #include "thimble/driver/serial_arm.h"
@@ -15,7 +16,7 @@ namespace thimble::driver::hfab {
 // in the home pose.
 
 /// Returns the data of the Polhem (its third edition, "polhem_v3").
-JointModel<LinkageArm> polhem_model() noexcept;
+THIMBLE_EXPORT JointModel<LinkageArm> polhem_model() noexcept;
 
 /// Returns the data of the vintage PHANTOM refit ("vintage").
 JointModel<SerialArm> vintage_model() noexcept;
@@ -35,7 +36,7 @@ enum class WoodyBoard : std::uint8_t {
 /// Encoders B and C are reversed everywhere. Motors B and C are reversed as CHAI3D and hfabapi have
 /// them; haptikfabrikenapi drives them positive on the mbed board, so that sources contradict each
 /// other there and only `thimble feel-check` can tell. Real-time: safe.
-JointModel<SerialArm> woody_model(WoodyBoard board = WoodyBoard::kMbed) noexcept;
+THIMBLE_EXPORT JointModel<SerialArm> woody_model(WoodyBoard board = WoodyBoard::kMbed) noexcept;
 
 /// Makes the arm of a text line's model number, or nothing for a number that nobody knows.
 /// Real-time: never from the servo thread.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
 
@@ -12,6 +13,6 @@ namespace thimble::driver::woody {
 /// descriptor, and do something else. Succeeds after 20 reports in a row that are numbered so;
 /// fails after a second, with a sentence that says what came instead. Real-time: never from the
 /// servo thread.
-Result<void> listen_for_board(Transport& wire, const Clock& clock);
+THIMBLE_EXPORT Result<void> listen_for_board(Transport& wire, const Clock& clock);
 
 }  // namespace thimble::driver::woody

@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::driver::woody {
 
 // The 8-byte HID reports of the WoodenHaptics board (mbed LPC1768, 1234:0006), little endian [S
@@ -34,10 +36,10 @@ struct OutputReport {
 std::optional<InputReport> decode_input(std::span<const std::byte> bytes) noexcept;
 
 /// Encodes what the arm sends (used by the simulated arm).
-std::array<std::byte, kReportSize> encode_input(const InputReport& report) noexcept;
+THIMBLE_EXPORT std::array<std::byte, kReportSize> encode_input(const InputReport& report) noexcept;
 
 /// Decodes what the host sent (used by the simulated arm); empty unless it is 8 bytes.
-std::optional<OutputReport> decode_output(std::span<const std::byte> bytes) noexcept;
+THIMBLE_EXPORT std::optional<OutputReport> decode_output(std::span<const std::byte> bytes) noexcept;
 
 /// Encodes what the host sends.
 std::array<std::byte, kReportSize> encode_output(const OutputReport& report) noexcept;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver::dhd {
@@ -51,7 +52,7 @@ struct Library {
 /// Returns the library: the file that THIMBLE_DHD_LIBRARY names, else libdrd.so.3 and its other
 /// names where the linker and the vendor's own folder ($FDSDK) have them. It is opened once and
 /// stays. The error says what is missing. Real-time: never from the servo thread.
-Result<Library> library();
+THIMBLE_EXPORT Result<Library> library();
 
 /// Opens a library of a name, as `library` does; for tests.
 Result<Library> load(const std::string& file);

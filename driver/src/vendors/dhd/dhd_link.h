@@ -5,6 +5,7 @@
 
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "vendors/dhd/dhd_library.h"
 
@@ -27,11 +28,11 @@ namespace thimble::driver::dhd {
 /// Fails if there is no arm, or more than one: nothing says which of them is meant; and while
 /// another link of this program works.
 /// Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
-Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
+THIMBLE_EXPORT Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
 
 /// Lets the only arm of the library move by itself until it has found its zero. Only after a word
 /// of the user, who must let it go and keep away. Real-time: never from the servo thread; takes
 /// seconds.
-Result<void> find_zero(const Library& library);
+THIMBLE_EXPORT Result<void> find_zero(const Library& library);
 
 }  // namespace thimble::driver::dhd

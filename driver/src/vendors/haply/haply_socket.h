@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver::haply {
@@ -15,7 +16,7 @@ inline constexpr std::uint16_t kPort = 10001;
 
 /// Returns the port that THIMBLE_HAPLY_PORT names, else kPort: the service's own file of settings
 /// can move it. Real-time: never from the servo thread.
-std::uint16_t port_of_user();
+THIMBLE_EXPORT std::uint16_t port_of_user();
 
 /// What passes over a socket while it is served. All are called by the thread that serves.
 class Traffic {

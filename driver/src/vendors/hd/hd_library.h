@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::driver::hd {
@@ -61,7 +62,7 @@ struct Library {
 /// Returns the library: the file that THIMBLE_HD_LIBRARY names, else libHD.so where the linker has
 /// it. It is opened once and stays. The error says what is missing. Real-time: never from the servo
 /// thread.
-Result<Library> library();
+THIMBLE_EXPORT Result<Library> library();
 
 /// Opens a library of a name, as `library` does; for tests.
 Result<Library> load(const std::string& file);

@@ -5,6 +5,7 @@
 
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "vendors/hd/hd_library.h"
 
@@ -26,13 +27,13 @@ namespace thimble::driver::hd {
 /// writes are refused until a tenth of a second has passed without one; of the device or the
 /// communication the arm is lost; of anything else the report is rejected.
 /// Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
-Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
+THIMBLE_EXPORT Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
 
 /// Returns what the user must do before `calibrate`, by what the device asks for.
-Result<std::string> how_to_calibrate(const Library& library);
+THIMBLE_EXPORT Result<std::string> how_to_calibrate(const Library& library);
 
 /// Calibrates the default device, once the user has done what `how_to_calibrate` says. Real-time:
 /// never from the servo thread; takes seconds.
-Result<void> calibrate(const Library& library);
+THIMBLE_EXPORT Result<void> calibrate(const Library& library);
 
 }  // namespace thimble::driver::hd

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body/shape_choice.h"
@@ -27,8 +28,7 @@ struct SurfaceChoice {
 /// Builds the force law of one object (mesh in W, m) from just the stages that `choice` and
 /// `surface` name. The error is that of ContactMesh::build, or says which stages do not go
 /// together. Real-time: never from the servo thread.
-driver::Result<std::unique_ptr<ObjectTouch>> build_object_touch(const TriangleMesh& mesh_W,
-                                                                const ContactChoice& choice,
-                                                                const SurfaceChoice& surface);
+THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> build_object_touch(
+    const TriangleMesh& mesh_W, const ContactChoice& choice, const SurfaceChoice& surface);
 
 }  // namespace thimble::render

@@ -3,6 +3,7 @@
 #include <memory>
 #include <variant>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/field/box.h"
 #include "thimble/render/field/half_space.h"
@@ -20,7 +21,7 @@ using Primitive = std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox>;
 /// Builds the force law of one shape (W, m) from just the stages that `surface` names. Whoever
 /// fills in the shape sees to unit normals and sizes above 0.
 /// Real-time: never from the servo thread.
-std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
-                                                   const SurfaceChoice& surface);
+THIMBLE_EXPORT std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
+                                                                  const SurfaceChoice& surface);
 
 }  // namespace thimble::render

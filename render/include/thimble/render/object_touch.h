@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/body_patch.h"
 #include "thimble/render/body_pose.h"
@@ -20,7 +21,7 @@ class ContactMesh;
 
 /// The force law of one object of a scene, whatever stages it is made of: one indirect call per
 /// tick stands for all of them (see object_touch_of).
-class ObjectTouch {
+class THIMBLE_EXPORT ObjectTouch {
  public:
   ObjectTouch() = default;
   ObjectTouch(const ObjectTouch&) = delete;

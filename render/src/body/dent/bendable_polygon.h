@@ -9,6 +9,7 @@
 #include "body/dent/edge_point.h"
 #include "body/dent/patch_drawing.h"
 #include "mesh/contact_mesh.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body_patch.h"
@@ -33,7 +34,7 @@ namespace thimble::render {
 ///
 /// Frame: the one the mesh is given in, called W here. Where base points move, the vertices go with
 /// them.
-class BendablePolygon {
+class THIMBLE_EXPORT BendablePolygon {
  public:
   /// Makes a mesh (m) ready to dent; `mesh` is shared with who moves its base points. The error is
   /// that of DentMotion::build, or says that two triangles share two edges.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "body/dent/vertex_links.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body/network_bounds.h"
@@ -27,7 +28,7 @@ namespace thimble::render {
 /// cursor is. The implicit schemes are those of SpringMotion, scaled in the same way: whatever the
 /// rounds, without the cursor they never gain energy, and with it no more than it puts in. So the
 /// rounds may be few and in single precision; what is scaled is in double.
-class DentMotion {
+class THIMBLE_EXPORT DentMotion {
  public:
   using Vector = Eigen::Vector3d;  ///< In W.
   /// Most vertices that move at once: 8 rings of a regular mesh are 243.

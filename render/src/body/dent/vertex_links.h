@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/contact_mesh.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::render {
 
@@ -15,7 +16,7 @@ namespace thimble::render {
 /// An edge counts 12 / (valence of one end + valence of the other): so the springs around a vertex
 /// are about as strong as six of them at every valence, and a dent is as deep at a corner of four
 /// triangles as at one of eight.
-class VertexLinks {
+class THIMBLE_EXPORT VertexLinks {
  public:
   /// Finds the edges of a mesh. Real-time: never from the servo thread.
   explicit VertexLinks(const ContactMesh& mesh);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "body/motion/shared_body.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/motion_choice.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -14,10 +15,9 @@ namespace thimble::render {
 /// Lets an object move: wraps its force law, made for `mesh_W` (W, m; closed). The error says which
 /// number a body cannot have, or that the mesh encloses no volume.
 /// Real-time: never from the servo thread.
-driver::Result<std::unique_ptr<ObjectTouch>> move_object(std::unique_ptr<ObjectTouch> surface,
-                                                         const TriangleMesh& mesh_W,
-                                                         const MotionChoice& choice,
-                                                         const BodyCoupling& coupling);
+THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> move_object(
+    std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W, const MotionChoice& choice,
+    const BodyCoupling& coupling);
 
 /// An object that several hands touch: its force law on each of them, and the body that they share.
 struct SharedObject {
@@ -27,9 +27,8 @@ struct SharedObject {
 
 /// Lets several hands move one object: wraps its force laws, made for `mesh_W`, one for each hand.
 /// Errors and time: as `move_object`.
-driver::Result<SharedObject> move_shared_object(std::vector<std::unique_ptr<ObjectTouch>> surfaces,
-                                                const TriangleMesh& mesh_W,
-                                                const MotionChoice& choice,
-                                                const BodyCoupling& coupling);
+THIMBLE_EXPORT driver::Result<SharedObject> move_shared_object(
+    std::vector<std::unique_ptr<ObjectTouch>> surfaces, const TriangleMesh& mesh_W,
+    const MotionChoice& choice, const BodyCoupling& coupling);
 
 }  // namespace thimble::render

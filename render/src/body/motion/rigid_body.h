@@ -9,6 +9,7 @@
 
 #include "body/motion/free_turn.h"
 #include "body/motion/mass_properties.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/motion_choice.h"
 
@@ -33,7 +34,7 @@ struct RigidBodySettings {
 /// Momentum and angular momentum are what is stored, in W, so that nothing but forces changes them.
 /// It turns by `FreeTurn`: of order 4 in time, and the angular momentum is kept to rounding
 /// whatever the step is, so a body cannot spin itself up.
-class RigidBody {
+class THIMBLE_EXPORT RigidBody {
  public:
   static constexpr std::size_t kSupportMax = 64;  ///< Most points of its hull on the floor.
 

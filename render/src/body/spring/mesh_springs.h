@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "body/spring/spring_network.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -23,7 +24,7 @@ struct MeshSpringSettings {
 /// Joins the vertices of a mesh (m) along its edges, each vertex free in three directions. A
 /// vertex that no triangle names has its base spring alone. The error is that of
 /// SpringNetwork::build, or names an edge with no length. Real-time: never from the servo thread.
-driver::Result<SpringNetwork<3>> join_vertices(const TriangleMesh& mesh,
-                                               const MeshSpringSettings& settings);
+THIMBLE_EXPORT driver::Result<SpringNetwork<3>> join_vertices(const TriangleMesh& mesh,
+                                                              const MeshSpringSettings& settings);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 
 #include "body/spring/oscillator.h"
 #include "body/spring/spring_network.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::render {
@@ -15,7 +16,7 @@ namespace thimble::render {
 /// that are held over a step. A step costs some ns per mode; a push or a look at one node costs as
 /// much again.
 template <int kDof>
-class ModalMotion {
+class THIMBLE_EXPORT ModalMotion {
  public:
   using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "thimble/driver/export.h"
+
 namespace thimble::render {
 
 /// The exact way of a damped oscillator m x'' + b x' + k x = f over one step, f held:
@@ -8,7 +10,7 @@ namespace thimble::render {
 ///
 /// Exact at any stiffness, mass, damping and step, so it cannot diverge: the matrix is the flow of
 /// a system that loses energy [PHYSICS 4]. For one node on its base point, or one mode of a mesh.
-struct OscillatorStep {
+struct THIMBLE_EXPORT OscillatorStep {
   double xx = 1, xv = 0, xf = 0;  ///< 1, s, m/N
   double vx = 0, vv = 0, vf = 0;  ///< 1/s, 1, s/kg
 

@@ -8,6 +8,7 @@
 
 #include "body/spring/oscillator.h"
 #include "body/spring/spring_network.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/spring_scheme.h"
 
@@ -42,7 +43,7 @@ struct SpringMotionOptions {
 ///
 /// (insert A = M + hC + h^2 K, b = Mv + h(f - Ku), or the same with h/2, into the difference).
 template <int kDof>
-class SpringMotion {
+class THIMBLE_EXPORT SpringMotion {
  public:
   using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
 

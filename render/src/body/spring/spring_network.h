@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/network_bounds.h"
 
@@ -44,7 +45,7 @@ struct NetworkWeights {
 /// motion, clay, snap) changes the shape without straining it. K and C are symmetric and never
 /// negative, which is what the proofs about the integrators stand on (spring_motion.h).
 template <int kDof>
-class SpringNetwork {
+class THIMBLE_EXPORT SpringNetwork {
  public:
   using Vector = Eigen::Matrix<double, kDof, 1>;  ///< Numbers of a node.
 

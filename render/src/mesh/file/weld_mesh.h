@@ -1,5 +1,6 @@
 #pragma once
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -8,6 +9,6 @@ namespace thimble::render {
 /// place; NaN is nowhere and stays alone). The first one of each place keeps its order; triangles
 /// keep theirs. Takes 8 to 16 bytes of memory per vertex. Precondition: triangles name vertices
 /// that exist (load_mesh guarantees it). Real-time: never from the servo thread.
-TriangleMesh weld_mesh(TriangleMesh mesh);
+THIMBLE_EXPORT TriangleMesh weld_mesh(TriangleMesh mesh);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/mesh_edges.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -43,10 +44,10 @@ struct OrientReport {
 /// (open ones) keep that. A surface with one side only (a Moebius strip) has no right answer and
 /// stays as it is. Degenerate triangles take part; those that name no three vertices stay.
 /// O(n log n), and see check_mesh. Real-time: never from the servo thread.
-OrientReport orient_mesh(TriangleMesh& mesh);
+THIMBLE_EXPORT OrientReport orient_mesh(TriangleMesh& mesh);
 
 /// Returns an orientation as one sentence for the user ("5 triangles were turned round ..."); empty
 /// if nothing had to be turned and every component has two sides.
-std::string describe(const OrientReport& report);
+THIMBLE_EXPORT std::string describe(const OrientReport& report);
 
 }  // namespace thimble::render

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -22,7 +23,7 @@ using OutArray = std::vector<std::int8_t>;
 /// equally often, and along an axis the boxes of nearly all triangles are out of reach. The start
 /// is proven, without rounding, to lie above the triangle with nothing else between, and crossings
 /// at edges and vertices are counted once (see segment_crossing.h), so the answer is exact.
-class OutFinder {
+class THIMBLE_EXPORT OutFinder {
  public:
   /// Measures the mesh. Keeps a reference: the mesh must outlive the finder and keep its vertices
   /// within the sphere found now. Real-time: never from the servo thread.
@@ -44,6 +45,6 @@ class OutFinder {
 /// Finds the whole OUT array, with the answers of OutFinder. Triangles that name no three finite
 /// vertices get 0 and are not seen by rays. Triangles are sorted into columns along each axis, so
 /// that a ray meets few; about 1 us per triangle. Real-time: never from the servo thread.
-OutArray compute_out_array(const TriangleMesh& mesh);
+THIMBLE_EXPORT OutArray compute_out_array(const TriangleMesh& mesh);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -28,9 +29,9 @@ struct TouchingParts {
 /// no three finite vertices are left out. O(n) where no boxes of parts meet, else O(n log n) and
 /// the pairs of triangles whose boxes meet, up to a bound of about a second. Real-time: never from
 /// the servo thread.
-TouchingParts find_touching_parts(const TriangleMesh& mesh);
+THIMBLE_EXPORT TouchingParts find_touching_parts(const TriangleMesh& mesh);
 
 /// Returns the finding as a sentence for the user; empty if no parts touch.
-std::string describe(const TouchingParts& parts);
+THIMBLE_EXPORT std::string describe(const TouchingParts& parts);
 
 }  // namespace thimble::render

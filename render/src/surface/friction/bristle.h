@@ -5,6 +5,7 @@
 
 #include "surface/friction/friction_settings.h"
 #include "surface/friction/friction_stage.h"
+#include "thimble/driver/export.h"
 
 namespace thimble::render {
 
@@ -16,7 +17,7 @@ namespace thimble::render {
 /// by stiffness times step. Once it slides it holds with the sliding coefficient until it has bent
 /// back by half; then static friction holds again. The bristle's spring is the same at every load:
 /// one that stiffened with the load would make energy out of pressing.
-class BristleLaw {
+class THIMBLE_EXPORT BristleLaw {
  public:
   static constexpr std::string_view kName = "bristle";
 

@@ -6,6 +6,7 @@
 
 #include "math/elementary.h"
 #include "surface/friction/tangent_motion.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 
@@ -54,7 +55,7 @@ struct ViscousSettings {
 /// [PHYSICS 2.3], with a hand of 3 N s/m [PHYSICS 0]. Without known dry friction of the
 /// arm only the first bound is kept, and a flicker of a count at rest may remain.
 /// Real-time: never from the servo thread.
-double stick_stiffness_max(const EffectContext& context);
+THIMBLE_EXPORT double stick_stiffness_max(const EffectContext& context);
 
 /// Reads how stiff a friction holds: `stiffness` (N/m), or `z_max` (m), the way it gives before it
 /// slides where the arm pushes with all its force. Without either it is as stiff as the arm can

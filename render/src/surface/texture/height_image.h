@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::render {
@@ -12,7 +13,7 @@ namespace thimble::render {
 /// A grey picture read as heights that repeats in both directions. Between its pixels runs a
 /// cubic B-spline: smooth in value, slope and curvature, never above the brightest nor below the
 /// darkest pixel nearby. It rounds off what is finer than about three pixels.
-class HeightImage {
+class THIMBLE_EXPORT HeightImage {
  public:
   /// The most pixels that a side may have: 32 MB of heights. [chosen]
   static constexpr std::size_t kSideMax = 2048;

@@ -8,6 +8,7 @@
 #include "surface/texture/height_image.h"
 #include "surface/texture/texture_limits.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/effect_table.h"
 
 namespace thimble::render {
@@ -21,7 +22,7 @@ namespace thimble::render {
 /// tip. On flat faces that is conservative. Where a curved face turns from one axis to the next,
 /// the change of the parts is left out: about (height / radius of curvature) of the force. All
 /// textures: texture_height.h.
-class HeightMap {
+class THIMBLE_EXPORT HeightMap {
  public:
   static constexpr std::string_view kGroup = "texture";
   static constexpr std::string_view kName = "height_map";

@@ -5,6 +5,7 @@
 #include "surface/texture/texture_limits.h"
 #include "surface/texture/wave_sum.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/effect_table.h"
 
 namespace thimble::render {
@@ -15,7 +16,7 @@ namespace thimble::render {
 /// The height is a sum of plane waves in random directions with lengths in one octave around the
 /// wavelength, the same for the same seed on every machine. So it holds no waves shorter than
 /// wavelength / sqrt 2 and is smooth. All textures: texture_height.h.
-class Sandpaper {
+class THIMBLE_EXPORT Sandpaper {
  public:
   static constexpr std::string_view kGroup = "texture";
   static constexpr std::string_view kName = "sandpaper";

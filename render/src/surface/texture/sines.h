@@ -7,6 +7,7 @@
 #include "surface/texture/texture_limits.h"
 #include "surface/texture/wave_sum.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/effect_table.h"
 
 namespace thimble::render {
@@ -16,7 +17,7 @@ namespace thimble::render {
 ///
 /// Sliding at speed v along a wave of length L the force has a line at v / L with the amplitude
 /// stiffness * amplitude. All textures: texture_height.h.
-class Sines {
+class THIMBLE_EXPORT Sines {
  public:
   static constexpr std::string_view kGroup = "texture";
   static constexpr std::string_view kName = "sines";

@@ -13,6 +13,7 @@
 #include "thimble/driver/arm_model.h"
 #include "thimble/driver/board.h"
 #include "thimble/driver/energy_guard.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/heat_guard.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
@@ -92,6 +93,6 @@ struct ArmFile {
 /// line; a limit of the gate that protects nobody is one: force_max above the declared force,
 /// soft_start below 0.05 s, rise_max above 1e5 N/s, watchdog above 1 s, stall not below watchdog.
 /// Real-time: never from the servo thread.
-driver::Result<ArmFile> load_arm(const std::filesystem::path& arm);
+THIMBLE_EXPORT driver::Result<ArmFile> load_arm(const std::filesystem::path& arm);
 
 }  // namespace thimble::scene

@@ -9,6 +9,7 @@
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/transport.h"
 #include "thimble/scene/arm_file.h"
 #include "thimble/scene/hand_route.h"
@@ -26,14 +27,15 @@ namespace thimble::scene {
 
 /// Returns the joint angles (rad) that put the tip of a file's arm to a point of the world (m);
 /// empty if it does not reach it. Real-time: never from the servo thread.
-std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen::Vector3d& p_WT);
+THIMBLE_EXPORT std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file,
+                                                              const Eigen::Vector3d& p_WT);
 
 /// Returns an error that names the first point of the hand's path (s; m in the world) which is out
 /// of the arm's workspace or reach. Real-time: never from the servo thread.
-driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W);
+THIMBLE_EXPORT driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W);
 
 /// The simulated arm of an arm file, of whatever build, with the hand that leads it.
-class ArmSimulation {
+class THIMBLE_EXPORT ArmSimulation {
  public:
   ~ArmSimulation();
   ArmSimulation(const ArmSimulation&) = delete;

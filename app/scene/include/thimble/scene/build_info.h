@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::scene {
 
 /// Which build of Thimble this is.
@@ -14,10 +16,10 @@ struct BuildInfo {
 };
 
 /// Returns what this build is.
-BuildInfo build_info();
+THIMBLE_EXPORT BuildInfo build_info();
 
 /// Returns the same in one line: two programs with the same one feel the same to the bit on one
 /// machine, if neither was built from changed sources.
-std::string program_name();
+THIMBLE_EXPORT std::string program_name();
 
 }  // namespace thimble::scene

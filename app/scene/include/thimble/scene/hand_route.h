@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -46,7 +47,7 @@ struct NamedMesh {
 /// Fails, naming the times, if times do not grow, if a station is on an object that is not among
 /// `objects`, or if no path outside leads from one part of an object to another.
 /// Real-time: never from the servo thread.
-driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
-                                    const std::vector<NamedMesh>& objects);
+THIMBLE_EXPORT driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
+                                                   const std::vector<NamedMesh>& objects);
 
 }  // namespace thimble::scene

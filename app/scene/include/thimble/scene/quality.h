@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {
@@ -24,17 +25,17 @@ inline constexpr std::array<std::string_view, 4> kQualityNames{"draft", "normal"
                                                                "auto"};
 
 /// Returns the quality of a name; empty if there is none of that name.
-std::optional<Quality> quality_named(std::string_view name);
+THIMBLE_EXPORT std::optional<Quality> quality_named(std::string_view name);
 
 /// Returns the rate of the loop that a quality asks for, over the scene's own (SceneReading).
-double rate_factor_of(Quality quality);
+THIMBLE_EXPORT double rate_factor_of(Quality quality);
 
 /// Puts a scene on the points of a quality. Returns each choice, and why, in a sentence.
 /// `kNormal` changes nothing. What a scene names itself (a blending, a tracker) stays as it is.
 /// `budget`: ns per tick for all objects on the machine of the stored diagrams (quality_table.h),
 /// of kAuto alone; empty: as cheap as cannot be felt. The loop's rate is chosen when a scene is
 /// read. Real-time: never from the servo thread.
-std::vector<std::string> apply_quality(Quality quality, Scene& scene,
-                                       std::optional<double> budget = {});
+THIMBLE_EXPORT std::vector<std::string> apply_quality(Quality quality, Scene& scene,
+                                                      std::optional<double> budget = {});
 
 }  // namespace thimble::scene

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
 
@@ -38,7 +39,7 @@ struct RealArmSearch {
 /// The error says what to type: where nothing tells which arm it is, where a file from elsewhere
 /// differs, where a calibration belongs to another arm file, or where a file is wrong.
 /// Real-time: never from the servo thread.
-driver::Result<RealArmFile> find_real_arm_file(const driver::FoundArm& arm,
-                                               const RealArmSearch& search = {});
+THIMBLE_EXPORT driver::Result<RealArmFile> find_real_arm_file(const driver::FoundArm& arm,
+                                                              const RealArmSearch& search = {});
 
 }  // namespace thimble::scene

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/real_arm_file.h"
 
@@ -28,7 +29,7 @@ enum class FeelCheckState : std::uint8_t {
 };
 
 /// Returns how a report names a state ("passed").
-std::string_view name(FeelCheckState state);
+THIMBLE_EXPORT std::string_view name(FeelCheckState state);
 
 /// The terms on which a run may use a real arm: which file is the arm's, and how much force it may
 /// have.
@@ -48,14 +49,14 @@ struct RealArmRequest {
 
 /// Returns the terms for an arm. The error says what to type.
 /// Real-time: never from the servo thread.
-driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealArmRequest& request);
+THIMBLE_EXPORT driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm,
+                                                      const RealArmRequest& request);
 
 /// Puts the real arm of the terms in place of the scene's: its file, calibration and limits. Of
 /// what the scene itself says of limits (`gate:`, or an arm file of its own that is not installed)
 /// only what is tighter is kept. Returns a sentence for each value kept or ignored; fails if the
 /// scene's own arm file is wrong. Real-time: never from the servo thread.
-driver::Result<std::vector<std::string>> put_on_terms(Scene& scene,
-                                                      const std::filesystem::path& scene_file,
-                                                      const RealArmTerms& terms);
+THIMBLE_EXPORT driver::Result<std::vector<std::string>> put_on_terms(
+    Scene& scene, const std::filesystem::path& scene_file, const RealArmTerms& terms);
 
 }  // namespace thimble::scene

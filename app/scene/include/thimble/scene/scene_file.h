@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body/motion_choice.h"
@@ -59,7 +60,7 @@ struct SceneObject {
 };
 
 /// Where a scene puts one of several arms: turned about the vertical, then moved.
-struct ArmPlace {
+struct THIMBLE_EXPORT ArmPlace {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< By a multiple of 90 degrees.
   Eigen::Vector3d p{0, 0, 0};                       ///< m
 
@@ -120,7 +121,7 @@ struct SceneReading {
 /// app/scenes/elephant.yaml shows the form. Paths in it are relative to the file. The arm's file is
 /// read too: what is stable depends on the arm. The error lists the names that are known, or tells
 /// up to five mistakes of the file, one per line. Real-time: never from the servo thread.
-driver::Result<Scene> load_scene(const std::filesystem::path& scene,
-                                 const SceneReading& reading = {});
+THIMBLE_EXPORT driver::Result<Scene> load_scene(const std::filesystem::path& scene,
+                                                const SceneReading& reading = {});
 
 }  // namespace thimble::scene

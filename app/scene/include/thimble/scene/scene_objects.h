@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/page/paging_counters.h"
@@ -29,7 +30,7 @@ struct MeshPlace {
 };
 
 /// What stands in a scene, loaded and ready to be touched.
-class SceneObjects {
+class THIMBLE_EXPORT SceneObjects {
  public:
   /// Reads the meshes and builds the force law that the scene calls for. The error names the object
   /// and what to mend. Meshes, and what is built over them and no touch changes, are those of

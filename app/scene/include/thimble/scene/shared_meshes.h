@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -28,7 +29,7 @@ struct SceneObject;
 /// destroyed or `drop_unused`; who got something keeps that for itself. What dents, flows, moves or
 /// remembers a touch is never in it. Any thread may ask; one that asks for what another is making
 /// waits. Real-time: never from the servo thread, all of it.
-class SharedMeshes {
+class THIMBLE_EXPORT SharedMeshes {
  public:
   SharedMeshes();
   ~SharedMeshes();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::scene {
@@ -27,26 +28,26 @@ struct ShippedFile {
 };
 
 /// Returns the scenes that are known by name, each name once, in the order of the alphabet.
-std::vector<ShippedFile> shipped_scenes();
+THIMBLE_EXPORT std::vector<ShippedFile> shipped_scenes();
 /// Returns the arm files that are known by name, as above.
-std::vector<ShippedFile> shipped_arms();
+THIMBLE_EXPORT std::vector<ShippedFile> shipped_arms();
 
 /// Returns the installed arm files, each name once; the user's own replace those that came with the
 /// program.
-std::vector<ShippedFile> installed_arms();
+THIMBLE_EXPORT std::vector<ShippedFile> installed_arms();
 /// Returns whether an arm file is one of `installed_arms`. One that the user's own replaces is not.
-bool is_installed_arm(const std::filesystem::path& file);
+THIMBLE_EXPORT bool is_installed_arm(const std::filesystem::path& file);
 
 /// Returns what a scene or arm file says of itself under `description`; empty if it says nothing,
 /// or cannot be read.
-std::string description_of(const std::filesystem::path& file);
+THIMBLE_EXPORT std::string description_of(const std::filesystem::path& file);
 
 /// Returns the file of the scene that a user means. A word with a / is a path and is returned as it
 /// is, whether the file exists or not; a word with an extension is a file of the working folder if
 /// that exists; any other word is a name first, and a file of the working folder if none has that
 /// name. The error lists the names.
-driver::Result<std::filesystem::path> find_scene(const std::string& meant);
+THIMBLE_EXPORT driver::Result<std::filesystem::path> find_scene(const std::string& meant);
 /// Returns the arm file that a user means, as above.
-driver::Result<std::filesystem::path> find_arm_file(const std::string& meant);
+THIMBLE_EXPORT driver::Result<std::filesystem::path> find_arm_file(const std::string& meant);
 
 }  // namespace thimble::scene

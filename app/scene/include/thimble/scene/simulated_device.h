@@ -6,6 +6,7 @@
 
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/scene/arm_file.h"
@@ -24,7 +25,7 @@ struct SimulatedDeviceOptions {
 /// A simulated arm in a simulated hand, opened as a device on a virtual clock: an arm to try a
 /// force law on, without a scene. A device and its clock are all that differs from a real arm.
 /// Real-time: `run` is the servo loop; nothing else from the servo thread.
-class SimulatedDevice {
+class THIMBLE_EXPORT SimulatedDevice {
  public:
   /// Opens the arm of a file, idle: it gets zero force until `device().activate()`. The hand goes
   /// along `hand_W` (s; m in the world) and begins with the clock. The error says which number is

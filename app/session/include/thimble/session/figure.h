@@ -2,10 +2,12 @@
 
 #include <string>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::session {
 
 /// One number that a run, report, study or bench stands for, and what it should be.
-struct Figure {
+struct THIMBLE_EXPORT Figure {
   std::string name;  ///< In lower_snake_case.
   double value = 0;  ///< In `unit`.
   std::string unit;  ///< Empty for numbers of things.

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::session {
 
 /// Durations counted in bins that are 1 ns wide below 2048 ns and less than 0.1 % wide above, up to
 /// 10 s; longer ones count as 10 s, negative ones as 0. Its memory is fixed when it is made.
-class Histogram {
+class THIMBLE_EXPORT Histogram {
  public:
   static constexpr std::int64_t kMax_ns = 10'000'000'000;  ///< The longest that is told apart.
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 
@@ -40,8 +41,8 @@ struct RecordingInfo {
 
 /// Returns where the recording of one of several arms lies that is asked for as `path`: beside it,
 /// with the arm's name (touch_left.h5); of a single arm, which has no name, `path` itself.
-std::filesystem::path file_of_arm(const std::filesystem::path& path,
-                                  const std::string& arm_in_scene);
+THIMBLE_EXPORT std::filesystem::path file_of_arm(const std::filesystem::path& path,
+                                                 const std::string& arm_in_scene);
 
 /// A recording in memory.
 struct Recording {
@@ -52,7 +53,7 @@ struct Recording {
 };
 
 /// One column of a recording: one number or some of each tick.
-struct RecordingColumn {
+struct THIMBLE_EXPORT RecordingColumn {
   /// What a number is in the file: unsigned, signed or floating, and its bits.
   enum class Type : std::uint8_t { kU8, kU16, kI16, kI32, kI64, kU64, kF32, kF64 };
 
@@ -75,21 +76,23 @@ struct RecordingColumn {
 };
 
 /// Returns all columns: every field of driver::TickRecord is in one.
-std::span<const RecordingColumn> recording_columns() noexcept;
+THIMBLE_EXPORT std::span<const RecordingColumn> recording_columns() noexcept;
 
 /// Reads a recording, complete or cut off. The error says what the file is not, or which part of it
 /// makes no sense.
-driver::Result<Recording> read_recording(const std::filesystem::path& path);
+THIMBLE_EXPORT driver::Result<Recording> read_recording(const std::filesystem::path& path);
 
 /// Writes a whole recording at once, as complete. `overwrite`: an existing recording of that name
 /// is replaced; a file of another kind never is. The error says what cannot be written.
-driver::Result<void> write_recording(const std::filesystem::path& path, const RecordingInfo& info,
-                                     std::span<const driver::TickRecord> ticks,
-                                     bool overwrite = false);
+THIMBLE_EXPORT driver::Result<void> write_recording(const std::filesystem::path& path,
+                                                    const RecordingInfo& info,
+                                                    std::span<const driver::TickRecord> ticks,
+                                                    bool overwrite = false);
 
 /// Writes a recording as a table: a line that names the columns with their units
 /// ("p_WT.x [m]"), then one per tick, numbers so that they read back to the bit.
-driver::Result<void> write_csv(const Recording& recording, const std::filesystem::path& path);
+THIMBLE_EXPORT driver::Result<void> write_csv(const Recording& recording,
+                                              const std::filesystem::path& path);
 
 /// How the forces of a replayed run compare with the recorded ones: what the scene asked of the
 /// arm, tick by tick.
@@ -109,17 +112,19 @@ struct Replay {
 /// Lets a recorded hand touch a scene again, in virtual time: each tick's state of the arm, to the
 /// bit, is given to the scene's force law. `scene`: file or name; empty: that of the recording. The
 /// arm file is the recording's. The error names the file and what to mend.
-driver::Result<Replay> replay(const Recording& recording, const std::string& scene = {});
+THIMBLE_EXPORT driver::Result<Replay> replay(const Recording& recording,
+                                             const std::string& scene = {});
 
 /// Lets the recorded hands of a scene with several arms touch it again together, a recording each,
 /// in any order. The replays come in the order of the recordings. The error also says which arm is
 /// missing, or that the recordings are not of one run. Real arms' files are not put in place of the
 /// scene's.
-driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
-                                                    const std::string& scene = {});
+THIMBLE_EXPORT driver::Result<std::vector<Replay>> replay_together(
+    std::span<const Recording> recordings, const std::string& scene = {});
 
 /// Fails with what keeps a replay from being the same to the bit: another scene, arm file or build,
 /// or ticks that the recording lacks. `scene` as for `replay`.
-driver::Result<void> check_repeatable(const Recording& recording, const std::string& scene = {});
+THIMBLE_EXPORT driver::Result<void> check_repeatable(const Recording& recording,
+                                                     const std::string& scene = {});
 
 }  // namespace thimble::session

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thimble/driver/device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/fault.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/safety_gate.h"
@@ -62,9 +63,9 @@ struct RunFigures {
 };
 
 /// Returns the figures that a run stands for, with their goals: what figures.json holds.
-std::vector<Figure> figures_of(const RunFigures& run);
+THIMBLE_EXPORT std::vector<Figure> figures_of(const RunFigures& run);
 
 /// Returns a run in plain words, about ten lines, for somebody who sees it for the first time.
-std::string summary(const RunFigures& run);
+THIMBLE_EXPORT std::string summary(const RunFigures& run);
 
 }  // namespace thimble::session

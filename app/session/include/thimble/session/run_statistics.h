@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/histogram.h"
 #include "thimble/session/tick_observer.h"
@@ -11,7 +12,7 @@
 namespace thimble::session {
 
 /// The sums of a run, tick by tick. Its memory is fixed when it is made.
-class RunStatistics final : public TickObserver {
+class THIMBLE_EXPORT RunStatistics final : public TickObserver {
  public:
   /// A gap in a contact shorter than this is a break in one touch, not two: a hand that lifts off
   /// and comes back takes longer. [chosen: half the fastest finger tap, about 10 Hz]

@@ -4,6 +4,7 @@
 #include <memory>
 #include <thread>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/servo_loop.h"
@@ -15,7 +16,7 @@ class Session;
 /// The thread on which a run's servo loop runs. It asks for real-time priority when it is made, so
 /// that what the kernel grants is known before an arm is opened, and waits for the run.
 /// Real-time: never from the servo thread, all of it.
-class ServoThread {
+class THIMBLE_EXPORT ServoThread {
  public:
   /// Starts the thread and waits until it has asked. Without `real_time` it asks for nothing.
   explicit ServoThread(bool real_time);
@@ -51,6 +52,7 @@ class ServoThread {
 /// Returns the error that a run with a real arm must end with before the arm is opened: without
 /// real-time priority any other program can hold the loop up while a motor pulls. `allowed`: the
 /// user said --no-real-time.
-driver::Result<void> check_real_time(const driver::RealTimeGrant& grant, bool allowed);
+THIMBLE_EXPORT driver::Result<void> check_real_time(const driver::RealTimeGrant& grant,
+                                                    bool allowed);
 
 }  // namespace thimble::session

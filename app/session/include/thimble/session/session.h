@@ -15,6 +15,7 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/result.h"
@@ -136,7 +137,7 @@ inline const std::atomic<bool> kNeverStopped{false};
 /// One run of a scene: what is run, the loop over it, and the observers of its ticks. The servo
 /// runs on the thread that calls `run` or `step`; another thread may read `newest` meanwhile, all
 /// else before or after the run, or between two steps.
-class Session {
+class THIMBLE_EXPORT Session {
  public:
   /// Loads a scene and opens its arm, ready to run. `scene`: file or name (scene::find_scene). For
   /// callers that can ask nobody: a real arm whose tip is not where it must be is an error. The

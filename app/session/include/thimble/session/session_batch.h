@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/session.h"
@@ -17,7 +18,7 @@ namespace thimble::session {
 /// Many runs of one scene side by side, in virtual time and on the caller's thread. Each has an
 /// arm, a hand and a touch of its own and is, to the bit, the session of its seed alone; the scene
 /// is read once, and its meshes are there once.
-class SessionBatch {
+class THIMBLE_EXPORT SessionBatch {
  public:
   /// Opens `count` runs (> 0) of a scene, a file or a name. The first has the seed of `options`, or
   /// else the scene's; each that follows has one more. Refuses what one run alone can have: real

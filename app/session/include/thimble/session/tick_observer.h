@@ -1,5 +1,6 @@
 #pragma once
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/tick_record.h"
 
 namespace thimble::session {
@@ -10,7 +11,7 @@ namespace thimble::session {
 /// `take` runs on the servo's thread and belongs to its tick: no heap, lock, file or waiting, and a
 /// time that does not grow with the run. What it keeps for others it hands on without waiting
 /// (driver::Snapshot, an atomic), or is looked at after the run.
-class TickObserver {
+class THIMBLE_EXPORT TickObserver {
  public:
   virtual ~TickObserver() = default;
 

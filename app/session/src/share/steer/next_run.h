@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "share/steer/file_watch.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/session/session.h"
@@ -19,7 +20,7 @@ namespace thimble::session {
 /// What comes after a run of simulated arms: the same scene from its first tick, or another one, as
 /// viewers ask, as its files change, or as the run comes to its end. What is next is prepared
 /// beside the run, which goes on where that fails. Real-time: never from the servo thread.
-class NextRun {
+class THIMBLE_EXPORT NextRun {
  public:
   /// Prepares a session of a scene's file that nobody sees yet, and records nothing.
   using Prepare =

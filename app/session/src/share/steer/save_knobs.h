@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "share/shared_reader.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::session {
@@ -16,7 +17,7 @@ struct KnobsFile {
 };
 
 /// A scene that was written.
-struct SavedKnobs {
+struct THIMBLE_EXPORT SavedKnobs {
   std::filesystem::path file;
   std::vector<std::string> written;  ///< "ball: stiffness = 300 N/m"
   std::vector<std::string> absent;   ///< Knobs that were turned and have no key in the file.
@@ -30,6 +31,7 @@ struct SavedKnobs {
 /// came with Thimble goes to the user's own scenes. What is written is read once before it takes
 /// its name. The error says what to do: no knob was turned, a file is there already, the scene came
 /// with Thimble, or the values make no scene. Real-time: never from the servo thread.
-driver::Result<SavedKnobs> save_knobs(const SharedReader& reader, const KnobsFile& where = {});
+THIMBLE_EXPORT driver::Result<SavedKnobs> save_knobs(const SharedReader& reader,
+                                                     const KnobsFile& where = {});
 
 }  // namespace thimble::session

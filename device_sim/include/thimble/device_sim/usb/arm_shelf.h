@@ -12,6 +12,7 @@
 #include "thimble/device_sim/settings.h"
 #include "thimble/device_sim/usb/usb_arm.h"
 #include "thimble/driver/arm_model.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -58,7 +59,7 @@ inline constexpr std::array<ShelfEntry, 4> kShelf{{
 /// build than the board drives. The hand moves for ten minutes, then
 /// rests. That of a Falcon homes it whenever the arm is asked to home and is not (homing_hand.h).
 /// Real-time: never from the servo thread.
-driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
-                                                     const ShelfOptions& options);
+THIMBLE_EXPORT driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
+                                                                    const ShelfOptions& options);
 
 }  // namespace thimble::device_sim::usb

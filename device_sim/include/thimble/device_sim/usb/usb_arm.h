@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "thimble/device_sim/usb/usb_device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -26,7 +27,7 @@ struct ArmTruth {
 };
 
 /// A simulated arm on a USB plug.
-class UsbArm : public UsbDevice {
+class THIMBLE_EXPORT UsbArm : public UsbDevice {
  public:
   /// Shows what is true. Real-time: safe.
   virtual ArmTruth truth() const noexcept = 0;

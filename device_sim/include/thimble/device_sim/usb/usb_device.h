@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::device_sim::usb {
 
 struct SetupPacket;
@@ -29,7 +31,7 @@ struct PacketResult {
 ///
 /// Nothing here allocates after construction. All functions but the constructors are Real-time:
 /// safe.
-class UsbDevice {
+class THIMBLE_EXPORT UsbDevice {
  public:
   /// The largest packet of a full-speed bus, bytes.
   static constexpr std::size_t kPacketMax = 64;

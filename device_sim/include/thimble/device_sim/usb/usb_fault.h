@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "thimble/device_sim/usb/usb_device.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -28,7 +29,7 @@ enum class FaultKind : std::uint8_t {
 inline constexpr std::size_t kFaultKinds = 10;
 
 /// Returns the name of a fault in scripts ("bit_errors"). Real-time: safe.
-std::string_view name(FaultKind kind) noexcept;
+THIMBLE_EXPORT std::string_view name(FaultKind kind) noexcept;
 
 /// Orders one fault for some frames.
 struct FaultOrder {
@@ -47,11 +48,11 @@ struct FaultOrder {
 ///
 /// with the defaults of FaultOrder. Fails with a sentence that says what is wrong.
 /// Real-time: never from the servo thread.
-driver::Result<FaultOrder> parse_fault(std::string_view line);
+THIMBLE_EXPORT driver::Result<FaultOrder> parse_fault(std::string_view line);
 
 /// A device whose packets go wrong on demand. Control requests pass untouched. Faults of one
 /// direction exclude each other: the one ordered last counts.
-class FaultyDevice final : public UsbDevice {
+class THIMBLE_EXPORT FaultyDevice final : public UsbDevice {
  public:
   /// How many orders may be open; more push out the oldest.
   static constexpr std::size_t kOrders = 16;

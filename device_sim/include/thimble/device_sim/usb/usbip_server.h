@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thimble/device_sim/usb/usb_fault.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -40,7 +41,7 @@ struct UsbipServerSettings {
 /// long what it asked for, is disconnected; meanwhile a bounded number of bytes is kept for it. If
 /// all places are taken, a new client gets the place of the one that has asked for nothing the
 /// longest.
-class UsbipServer {
+class THIMBLE_EXPORT UsbipServer {
  public:
   /// How long a client may ask for nothing, or read nothing, ns of the bus. [chosen]
   static constexpr std::int64_t kPatience_ns = 5'000'000'000;

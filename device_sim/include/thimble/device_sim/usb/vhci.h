@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::device_sim::usb {
@@ -15,13 +16,13 @@ inline constexpr const char* kVhciFolder = "/sys/devices/platform/vhci_hcd.0";
 
 /// Finds the first free port for a full-speed device in the kernel's table of ports; empty if there
 /// is none. Total: any text. Real-time: never from the servo thread.
-std::optional<int> find_free_port(std::string_view status);
+THIMBLE_EXPORT std::optional<int> find_free_port(std::string_view status);
 
 /// Attaches a device of a USB/IP server on this machine to this kernel: imports it over TCP and
 /// hands the socket to the virtual host, which keeps it. Needs root and the module vhci-hcd.
 /// Returns the host's port. Fails with a sentence that says what to do. Waits for the server, which
 /// must run on another thread. Real-time: never from the servo thread.
-driver::Result<int> attach_to_kernel(std::uint16_t port, const std::string& bus_id,
-                                     const std::filesystem::path& vhci = kVhciFolder);
+THIMBLE_EXPORT driver::Result<int> attach_to_kernel(
+    std::uint16_t port, const std::string& bus_id, const std::filesystem::path& vhci = kVhciFolder);
 
 }  // namespace thimble::device_sim::usb

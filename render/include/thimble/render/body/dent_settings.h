@@ -1,5 +1,6 @@
 #pragma once
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/spring_scheme.h"
 #include "thimble/render/effect/effect_context.h"
@@ -9,7 +10,7 @@ namespace thimble::render {
 
 /// Sets how the surface of an object dents under the cursor [BP 4.2]: every vertex hangs on its
 /// base point by a spring and a damper, and on its neighbours by others.
-struct DentSettings {
+struct THIMBLE_EXPORT DentSettings {
   double mass = 1e-3;               ///< Of each vertex, kg, > 0.
   double stiffness = 200;           ///< Of a vertex to its base point, N/m, > 0.
   double damping = 0.2;             ///< Of the same, N s/m, >= 0.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -30,7 +31,7 @@ struct Grip {
 };
 
 /// The motion of one object. The object is at rest where its mesh stands unless said.
-struct MotionChoice {
+struct THIMBLE_EXPORT MotionChoice {
   MotionKind kind = MotionKind::kTranslate;                ///< How it moves.
   double mass = 0.1;                                       ///< kg, > 0
   Eigen::Vector3d gravity_W{0, 0, 0};                      ///< m/s^2

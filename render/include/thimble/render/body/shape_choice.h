@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/effect/settings_reader.h"
 
@@ -11,7 +12,7 @@ namespace thimble::render {
 struct SnapSettings;
 
 /// Sets how an object keeps what it gave way [BP 4.3].
-struct ClayChoice {
+struct THIMBLE_EXPORT ClayChoice {
   double yield_force = 1;  ///< N, >= 0: what presses harder moves the base points.
   /// m/s, > 0: how fast they flow at most [BP 4.3: the time variable made small].
   double flow_rate = std::numeric_limits<double>::infinity();
@@ -35,7 +36,7 @@ struct ClayChoice {
 };
 
 /// Sets how the wall of an object snaps [BP 4.3, the tin can].
-struct SnapChoice {
+struct THIMBLE_EXPORT SnapChoice {
   double force = 3;       ///< N, > 0: past it the wall jumps.
   double depth = 6e-3;    ///< m, > 0: how far in its second shape lies.
   double radius = 15e-3;  ///< m, > 0: of the panel that goes in together; more than half the depth.

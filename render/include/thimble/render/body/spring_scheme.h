@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/network_bounds.h"
 
@@ -30,12 +31,12 @@ inline constexpr std::array kSpringSchemes{
     SpringScheme::kModal};
 
 /// Returns the name of a scheme as scenes spell it ("implicit_euler"). Real-time: safe.
-std::string_view name_of(SpringScheme scheme) noexcept;
+THIMBLE_EXPORT std::string_view name_of(SpringScheme scheme) noexcept;
 
 /// Finds the largest step (s) at which the scheme stays bounded on a network with these bounds;
 /// infinity for the schemes that always are. Sufficient for any springs and dampers; also
 /// necessary where there are no dampers or, for symplectic Euler, where the fastest mode is the
 /// most damped one too (all springs alike). 0: never. Real-time: safe.
-double largest_step(SpringScheme scheme, const NetworkBounds& bounds) noexcept;
+THIMBLE_EXPORT double largest_step(SpringScheme scheme, const NetworkBounds& bounds) noexcept;
 
 }  // namespace thimble::render

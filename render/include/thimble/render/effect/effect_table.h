@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/effect/stage_list.h"
@@ -54,6 +55,6 @@ constexpr EffectKind effect_kind() {
 }
 
 /// Returns every effect that a scene can name. To add one: write its file, add its line here.
-std::span<const EffectKind> effect_table();
+THIMBLE_EXPORT std::span<const EffectKind> effect_table();
 
 }  // namespace thimble::render

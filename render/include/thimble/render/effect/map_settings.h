@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/settings_reader.h"
 
 namespace thimble::render {
@@ -12,7 +13,7 @@ namespace thimble::render {
 /// Answers an effect's questions from values in code, for programs and tests that need no scene,
 /// and keeps its complaints. Vectors, files and lists cannot be given. Real-time: never from the
 /// servo thread.
-class MapSettings final : public SettingsReader {
+class THIMBLE_EXPORT MapSettings final : public SettingsReader {
  public:
   MapSettings() = default;
   /// Takes numbers (SI) and words by their keys.

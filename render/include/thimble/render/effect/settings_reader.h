@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::render {
 
 /// Which numbers a setting takes.
@@ -23,7 +25,7 @@ struct NumberLimits {
 /// tests and programs answer by hand. So an effect names its settings once, and knows no file
 /// format. A wrong answer is noted by the reader, which leaves a harmless value and goes on.
 /// Real-time: never from the servo thread.
-class SettingsReader {
+class THIMBLE_EXPORT SettingsReader {
  public:
   SettingsReader() = default;
   SettingsReader(const SettingsReader&) = delete;

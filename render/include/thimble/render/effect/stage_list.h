@@ -5,13 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/live_settings.h"
 #include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
 /// A surface stage whose kind is known only when a scene has been read.
-class AnyStage {
+class THIMBLE_EXPORT AnyStage {
  public:
   AnyStage() = default;
   AnyStage(const AnyStage&) = delete;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/field/field_touch.h"
@@ -37,6 +38,6 @@ constexpr FieldKind field_kind() {
 }
 
 /// Returns every field that a scene can name. To add one: write its file, add its line here.
-std::span<const FieldKind> field_table();
+THIMBLE_EXPORT std::span<const FieldKind> field_table();
 
 }  // namespace thimble::render

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -71,10 +72,10 @@ struct MeshFindings {
 /// component is inside out is told by how many others it lies in: a component in another one is a
 /// cavity and has its normals towards its own middle. O(n log n) plus O(n) per component that lies
 /// in another one's box. Real-time: never from the servo thread.
-MeshFindings check_mesh(const TriangleMesh& mesh);
+THIMBLE_EXPORT MeshFindings check_mesh(const TriangleMesh& mesh);
 
 /// Returns a fault as one sentence ("3 edges belong to only one triangle, so the mesh has a hole;
 /// ...").
-std::string describe(const MeshFault& fault);
+THIMBLE_EXPORT std::string describe(const MeshFault& fault);
 
 }  // namespace thimble::render

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -42,20 +43,21 @@ struct MeshFileInfo {
 /// glTF, 3MF and what the Assimp library reads (DAE, AMF, 3DS) are read in a separate process
 /// with limits of time and memory, so that no file can crash or hang this one. Real-time: never
 /// from the servo thread.
-driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,
-                                       MeshFileInfo* info = nullptr);
+THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,
+                                                      MeshFileInfo* info = nullptr);
 
 /// Places a mesh from its own frame O in the world W: p_WV = R_WO * (scale * p_OV) + p_WO for each
 /// vertex V. `scale` turns the file's unit into m and must be finite and not 0; `R_WO` is a
 /// rotation; `p_WO` is in m. A negative scale mirrors the mesh, so triangles are turned round to
 /// keep their outer side outside. Real-time: never from the servo thread.
-TriangleMesh placed(const TriangleMesh& mesh, double scale, const Eigen::Matrix3d& R_WO,
-                    const Eigen::Vector3d& p_WO);
+THIMBLE_EXPORT TriangleMesh placed(const TriangleMesh& mesh, double scale,
+                                   const Eigen::Matrix3d& R_WO, const Eigen::Vector3d& p_WO);
 
 /// Writes a mesh as an OFF file with 17 digits per coordinate, so that load_mesh gives the same
 /// numbers back to the bit. An existing file is replaced only once the new one is complete. The
 /// error names the file: another ending than .off, or a folder that cannot be written to.
 /// Real-time: never from the servo thread.
-driver::Result<void> save_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);
+THIMBLE_EXPORT driver::Result<void> save_mesh(const TriangleMesh& mesh,
+                                              const std::filesystem::path& file);
 
 }  // namespace thimble::render

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -57,9 +58,10 @@ struct RepairedMesh {
 /// than the tolerance. Sheets, fins and one-sided surfaces remain; check_mesh tells what is left,
 /// and thicken_sheets makes it touchable. Lengths in the mesh's unit;
 /// scaling a mesh scales the answer. O(n log n). Real-time: never from the servo thread.
-RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
+THIMBLE_EXPORT RepairedMesh repair_mesh(const TriangleMesh& mesh,
+                                        const RepairOptions& options = {});
 
 /// Returns a change as one sentence ("12 vertices were joined with ones within ...").
-std::string describe(const RepairChange& change);
+THIMBLE_EXPORT std::string describe(const RepairChange& change);
 
 }  // namespace thimble::render

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "thimble/driver/export.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
@@ -31,9 +32,9 @@ struct ThickenedMesh {
 /// of curvature). Preconditions: triangles name three different finite vertices and have an area
 /// (repair_mesh drops others); `thickness` > 0. Lengths in the mesh's unit. O(n log n). Real-time:
 /// never from the servo thread.
-ThickenedMesh thicken_sheets(const TriangleMesh& mesh, double thickness);
+THIMBLE_EXPORT ThickenedMesh thicken_sheets(const TriangleMesh& mesh, double thickness);
 
 /// Returns the report as one sentence; empty if there was no sheet. `unit`: of the mesh's lengths.
-std::string describe(const SheetReport& report, const std::string& unit = "m");
+THIMBLE_EXPORT std::string describe(const SheetReport& report, const std::string& unit = "m");
 
 }  // namespace thimble::render

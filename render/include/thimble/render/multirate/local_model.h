@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "thimble/driver/export.h"
+
 namespace thimble::render {
 
 /// What the tip of an arm feels near one place, as a simulation that is too slow for the servo
@@ -39,14 +41,14 @@ enum class ModelFlaw : std::uint8_t {
 
 /// Finds what is wrong with a model; the tolerances are a millionth of its largest number.
 /// Real-time: safe.
-ModelFlaw flaw_of(const LocalModel& model) noexcept;
+THIMBLE_EXPORT ModelFlaw flaw_of(const LocalModel& model) noexcept;
 
 /// Returns what a flaw means and what to do, in a sentence. Real-time: safe.
-std::string_view describe(ModelFlaw flaw) noexcept;
+THIMBLE_EXPORT std::string_view describe(ModelFlaw flaw) noexcept;
 
 /// Returns the symmetric matrix nearest to `stiffness` (N/m) that has no negative eigenvalue: its
 /// symmetric part without what pushes away. A matrix that is not finite stays as it is. Real-time:
 /// never from the servo thread.
-Eigen::Matrix3d without_negative(const Eigen::Matrix3d& stiffness);
+THIMBLE_EXPORT Eigen::Matrix3d without_negative(const Eigen::Matrix3d& stiffness);
 
 }  // namespace thimble::render

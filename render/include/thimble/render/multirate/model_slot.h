@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/snapshot.h"
 #include "thimble/render/multirate/local_model.h"
@@ -10,7 +11,7 @@ namespace thimble::render {
 
 /// Where a slow simulation leaves its newest model for the servo: one writer, any number of
 /// readers, no lock. It holds no pointer, so it may lie in memory that two processes share.
-class ModelSlot {
+class THIMBLE_EXPORT ModelSlot {
  public:
   /// Publishes a model. Fails, and the one before stays, if it has a flaw. From one thread.
   /// Real-time: never from the servo thread, for the sake of the sentence that it makes.

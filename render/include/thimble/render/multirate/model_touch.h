@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/multirate/local_model.h"
 #include "thimble/render/multirate/model_slot.h"
@@ -42,7 +43,7 @@ enum class ModelAge : std::uint8_t {
 };
 
 /// Returns the name of an age as it stands in reports ("fading"). Real-time: safe.
-std::string_view name(ModelAge age) noexcept;
+THIMBLE_EXPORT std::string_view name(ModelAge age) noexcept;
 
 /// Counts what models went through.
 struct ModelCounters {
@@ -67,7 +68,7 @@ struct ModelCounters {
 /// behind a tip that is inside begins where the tip is: nobody is thrown out.
 ///
 /// Silence is told by `age()`. Real-time: safe, but for the constructor.
-class ModelTouch final : public ObjectTouch {
+class THIMBLE_EXPORT ModelTouch final : public ObjectTouch {
  public:
   /// Makes one. Fails if a setting is not finite, or not above 0 where it must be. Keeps a
   /// reference to the slot. Real-time: never from the servo thread.
