@@ -15,7 +15,7 @@
 #include "mesh/file/off_text.h"
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/touching_parts.h"
-#include "meshes/object_size.h"
+#include "meshes/object_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
 #include "report/pictures.h"

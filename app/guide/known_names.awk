@@ -36,6 +36,7 @@ BEGIN {
   know("surface() const", "Shows the surface. Real-time: safe.")
   know("tracker() const", "Shows what follows the surface. Real-time: safe.")
   know("stages() const", "Shows its stages. Real-time: safe.")
+  know("law() const", "Shows its force law. Real-time: safe.")
   know("stage() const", "Shows its stage. Real-time: safe.")
   know("settings() const", "Tells what it was made with. Real-time: safe.")
   know("motion() const", "Shows the motion. Real-time: safe.")

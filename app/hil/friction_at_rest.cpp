@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bringup/hold_place.h"
-#include "scene_effects.h"
+#include "object_sections.h"
 #include "stability/friction_rig.h"
 #include "stability/rest_trial.h"
 #include "stability/signal.h"

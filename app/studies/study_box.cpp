@@ -9,8 +9,8 @@
 #include "field/primitive_contact.h"
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 
 namespace thimble::studies {
 namespace {
@@ -32,7 +32,7 @@ driver::DeviceState at(const Vector3d& p_WT) {
 /// Finds the force at a place that is reached on the straight way from another.
 template <class Contact>
 Vector3d force_after(const Contact& contact, const Vector3d& from, const Vector3d& to) {
-  render::Touch touch{contact, render::SpringDamper{kStiffness, 0}};
+  render::ContactForceLaw touch{contact, render::SpringDamper{kStiffness, 0}};
   touch(at(from));
   return touch(at(to)).f_T_W;
 }
@@ -41,7 +41,7 @@ Vector3d force_after(const Contact& contact, const Vector3d& from, const Vector3
 /// if that does not happen up to kForceMax.
 template <class Contact>
 double pops_at(const Contact& contact, double half_thickness) {
-  render::Touch touch{contact, render::SpringDamper{kStiffness, 0}};
+  render::ContactForceLaw touch{contact, render::SpringDamper{kStiffness, 0}};
   double largest = 0;
   for (double z = 2 * half_thickness; kStiffness * (half_thickness - z) < kForceMax; z -= 1e-6) {
     const double push = touch(at({0, 0, z})).f_T_W.z();

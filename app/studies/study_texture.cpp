@@ -15,8 +15,8 @@
 #include "surface/texture/sandpaper.h"
 #include "surface/texture/sines.h"
 #include "thimble/render/field/half_space.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 
 namespace thimble::studies {
 namespace {

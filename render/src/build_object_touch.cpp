@@ -7,10 +7,10 @@
 
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/dented_touch.h"
+#include "build_surface_touch.h"
 #include "mesh/smooth_normals.h"
 #include "shape_object.h"
 #include "still_surface.h"
-#include "touch_of.h"
 #include "track/blended.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
@@ -57,13 +57,14 @@ template <class Contact>
 Built tracked_touch(Contact contact, const ChosenShading& shading, bool curved,
                     const Normals& normals, const SurfaceChoice& surface) {
   if (curved) {
-    return touch_of(
+    return build_surface_touch(
         Blended<Contact, ChosenShading, CurvedDepth>(std::move(contact), shading, normals),
         surface);
   }
-  if (shading.blending == BlendingChoice::kFlat) return touch_of(std::move(contact), surface);
-  return touch_of(Blended<Contact, ChosenShading, MeshDepth>(std::move(contact), shading, normals),
-                  surface);
+  if (shading.blending == BlendingChoice::kFlat)
+    return build_surface_touch(std::move(contact), surface);
+  return build_surface_touch(
+      Blended<Contact, ChosenShading, MeshDepth>(std::move(contact), shading, normals), surface);
 }
 
 template <class Contact>
@@ -95,9 +96,9 @@ Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
     case TrackerChoice::kOffset:
       return mesh_touch<OffsetContact>(still, choice, surface);
     case TrackerChoice::kGodObject:
-      return touch_of(GodObjectContact(still.mesh, still.search), surface);
+      return build_surface_touch(GodObjectContact(still.mesh, still.search), surface);
     case TrackerChoice::kPacked:
-      return touch_of(MemoryContact(still.packed, still.search), surface);
+      return build_surface_touch(MemoryContact(still.packed, still.search), surface);
   }
   return mesh_touch<MeshContact>(still, choice, surface);
 }

@@ -2,14 +2,14 @@
 
 #include <utility>
 
-#include "touch_of.h"
+#include "build_surface_touch.h"
 
 namespace thimble::render {
 
 std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
                                                const PagedPlace& place,
                                                const SurfaceChoice& surface) {
-  return touch_of(PagedContact(std::move(pages), place), surface);
+  return build_surface_touch(PagedContact(std::move(pages), place), surface);
 }
 
 }  // namespace thimble::render

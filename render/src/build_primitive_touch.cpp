@@ -2,9 +2,9 @@
 
 #include <type_traits>
 
+#include "build_surface_touch.h"
 #include "field/entry_face_contact.h"
 #include "field/primitive_contact.h"
-#include "touch_of.h"
 
 namespace thimble::render {
 
@@ -14,9 +14,9 @@ std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
       [&surface](const auto& shape) {
         using Shape = std::decay_t<decltype(shape)>;
         if constexpr (std::is_same_v<Shape, EntryFaceBox>) {
-          return touch_of(EntryFaceContact(shape), surface);
+          return build_surface_touch(EntryFaceContact(shape), surface);
         } else {
-          return touch_of(PrimitiveContact<Shape>(shape), surface);
+          return build_surface_touch(PrimitiveContact<Shape>(shape), surface);
         }
       },
       shape_W);

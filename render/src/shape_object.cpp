@@ -8,7 +8,7 @@
 
 #include "body/shape/body_shape.h"
 #include "body/shape/shaped_touch.h"
-#include "touch_of.h"
+#include "build_surface_touch.h"
 #include "track/blended.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
@@ -34,9 +34,9 @@ Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceCho
         std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
   };
   StageList stages = stage_list(surface);
-  if (!stages.needs_foot()) return built(Touch(std::move(moving), std::move(stages)));
+  if (!stages.needs_foot()) return built(ContactForceLaw(std::move(moving), std::move(stages)));
   moving.keep_material();
-  return built(Touch(std::move(moving), FootStageList(std::move(stages))));
+  return built(ContactForceLaw(std::move(moving), FootStageList(std::move(stages))));
 }
 
 // Tells up to how many triangles a mesh grows; 0 if it does not.

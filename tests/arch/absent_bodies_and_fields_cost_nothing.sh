@@ -47,7 +47,7 @@ expect() {
     bad=1
   fi
 }
-expect 'ForceLaw<thimble::render::SceneTouch>(thimble::render::SceneTouch&)::{lambda' 'ObjectTouchOf::update'
+expect 'ForceLaw<thimble::render::SceneTouch>(thimble::render::SceneTouch&)::{lambda' 'ObjectTouchAdapter::update'
 expect 'TickSink<thimble::session::RunLoop>(thimble::session::RunLoop&)::{lambda' \
   'BlackBox::take LatestTick::take RecordingSwitch::take RunStatistics::take Trace::take'
 

@@ -16,8 +16,8 @@
 #include "support/random.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/snapshot.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
@@ -29,7 +29,7 @@
 namespace thimble {
 namespace {
 
-using MeshTouch = render::Touch<render::MeshContact, render::SpringDamper>;
+using MeshTouch = render::ContactForceLaw<render::MeshContact, render::SpringDamper>;
 
 std::vector<render::EffectPlan> effects_of(const std::string& scene) {
   const auto read =

@@ -18,12 +18,12 @@
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/scene_file.h"
 #include "track/mesh_contact.h"
-#include "track/proxy_filter.h"
+#include "track/path_bounded.h"
 
 // The demo's whole stroke on the virtual clock, checked tick by tick against plain geometry that
 // shares no code with the library: inside or outside by winding number, the cells of the paper's
 // Fig. 4b from the mesh's vertices, force from depth and velocity. What the contact stage found is
-// asked of a bare one on the same path; what is felt is in the rows (proxy_filter.h).
+// asked of a bare one on the same path; what is felt is in the rows (path_bounded.h).
 
 namespace thimble {
 namespace {

@@ -13,9 +13,9 @@
 #include "thimble/driver/wire_link.h"
 #include "thimble/render/field/field_touch.h"
 #include "thimble/render/field/half_space.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 
 // Walls and fields from the wire up: simulated arm, codec, kinematics, gate.
 
@@ -83,8 +83,8 @@ double restitution(double stiffness, double damping, std::int64_t period_ns, std
   const double tick = 1e-9 * static_cast<double>(period_ns);
   // Some 20 mm/s after 20 ms of push; the wall stands farther off by a share of a tick's way.
   const double off = 0.0012 + 0.02 * tick * phase;
-  render::Touch wall{render::PrimitiveContact(render::HalfSpace{.p_WO = {0, 0, -off}}),
-                     render::SpringDamper{stiffness, damping}};
+  render::ContactForceLaw wall{render::PrimitiveContact(render::HalfSpace{.p_WO = {0, 0, -off}}),
+                               render::SpringDamper{stiffness, damping}};
   double in = 0, out = 0;
   bool touched = false, came_out = false;
   const auto law = [&](const driver::DeviceState& state) noexcept {

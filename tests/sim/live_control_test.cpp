@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "hand/hand.h"
+#include "run_law.h"
 #include "run_records.h"
 #include "setup.h"
 #include "share/describe_scene.h"
@@ -437,6 +438,8 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
   session::LiveControl control(session->scene(), copy.objects->touch(), nullptr, true);
   std::atomic<bool> never{false};
   control.join(*session->shared(), false, never);
+  session::SceneLaw law(copy.objects->touch());
+  law.set_viewers(control, true);
   // A tip that has come into the ball from above and rests there.
   driver::DeviceState state;
   state.dt = 1e-3;
@@ -445,7 +448,7 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
     state.p_WT = {0, 0, z};
     ++state.tick;
     driver::TickRecord record;
-    const driver::ForceCommand command = control(state);
+    const driver::ForceCommand command = law(state);
     record.in_contact = command.touch.in_contact;
     record.depth = command.touch.depth;
     control.take(record);
@@ -464,6 +467,30 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
     EXPECT_EQ(before, pause ? 0 : full);
     EXPECT_EQ(reader->state(), pause ? session::RunState::kPaused : session::RunState::kRunning);
   }
+}
+
+// The other arms fade by the pause that the first one leads.
+TEST(LiveControl, PauseIsLedByAnArmInFaultAsWell) {
+  SessionOptions options;
+  options.share = true;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  Copy copy(session->scene());
+  session::LiveControl control(session->scene(), copy.objects->touch(), nullptr, true);
+  std::atomic<bool> never{false};
+  control.join(*session->shared(), false, never);
+  session::RunLaw law(copy.objects->touch(), session->scene().arms.front().arm);
+  law.scene().set_viewers(control, true);
+  law.stop_in_fault(session->device());
+  session->device().trip(driver::Fault::kOverSpeed);
+  reader->ask_pause(true);
+  driver::DeviceState state;
+  state.dt = 1e-3;
+  for (int i = 0; i < 310; ++i) {
+    control.take({});
+    law(state);
+  }
+  EXPECT_EQ(control.gain(), 0);
 }
 
 TEST(LiveControl, APauseInRealTimeLetsTheHandStandStillWithoutForce) {

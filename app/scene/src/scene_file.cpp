@@ -19,10 +19,8 @@
 #include "hand/read_hand.h"
 #include "hand/scene_arms.h"
 #include "loop_latency.h"
+#include "object_sections.h"
 #include "read_scene.h"
-#include "scene_body.h"
-#include "scene_effects.h"
-#include "scene_shapes.h"
 #include "yaml/yaml_reader.h"
 #include "yaml/yaml_words.h"
 

@@ -12,8 +12,6 @@
 #include "disk_paging/paged_surface.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
-#include "meshes/object_size.h"
-#include "meshes/place_mesh.h"
 #include "still_surface.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"

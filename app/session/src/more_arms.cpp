@@ -22,40 +22,40 @@ LoggedRun logged_run(const Setup& setup, std::size_t arm) {
   return run;
 }
 
-ArmRun::ArmRun(const Setup& setup) : records(setup.ticks(), setup.scene().rate, setup.keep()) {
+ArmRun::ArmRun(const Setup& setup, std::size_t arm)
+    : records(setup.ticks(), setup.scene().rate, setup.keep()),
+      law(setup.objects().touch(arm), setup.arm_file(arm)) {
   records.join(loop);
   loop.add(records.recording);
 }
 
 MoreArms::MoreArms(Setup& setup) : setup_(setup) {
-  for (std::size_t i = 1; i < setup.arms(); ++i) runs_.push_back(std::make_unique<ArmRun>(setup));
+  for (std::size_t i = 1; i < setup.arms(); ++i) {
+    runs_.push_back(std::make_unique<ArmRun>(setup, i));
+  }
 }
 
 void MoreArms::share(SharedRun& shared, LiveControl& control) {
-  if (empty()) return;
-  control_ = &control;
   for (std::size_t i = 1; i < setup_.arms(); ++i) {
     control.add_simulation(setup_.simulation(i));
+    run(i).law.scene().set_viewers(control, false);
     sharing_.push_back(std::make_unique<OtherArmSharing>(shared, i));
     run(i).loop.add(*sharing_.back());
   }
 }
 
 void MoreArms::open(bool log) {
-  if (empty()) return;
-  for (std::size_t i = 0; i < setup_.arms(); ++i) {
-    laws_.push_back({setup_.objects().touch(i), setup_.device(i), control_, i == 0});
-    if (i == 0 || !log) continue;
+  for (std::size_t i = 1; log && i < setup_.arms(); ++i) {
     run(i).event_log = std::make_unique<EventLog>(logged_run(setup_, i), setup_.device(i));
     run(i).loop.add(*run(i).event_log);
   }
 }
 
-void MoreArms::begin(RunLoop& first, const driver::ServoSettings& settings) noexcept {
-  for (std::size_t i = 0; i < laws_.size(); ++i) {
-    RunLoop& loop = i == 0 ? first : run(i).loop;
-    loop.carry(setup_.arm_file(i));
-    loop.begin(setup_.device(i), setup_.clock(), driver::ForceLaw(laws_[i]), settings);
+void MoreArms::begin(const driver::ServoSettings& settings) noexcept {
+  for (std::size_t i = 1; i < setup_.arms(); ++i) {
+    ArmRun& arm = run(i);
+    arm.law.stop_in_fault(setup_.device(i));
+    arm.loop.begin(setup_.device(i), setup_.clock(), arm.law.law(), settings);
   }
 }
 

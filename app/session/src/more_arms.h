@@ -7,49 +7,25 @@
 #include <vector>
 
 #include "events/event_log.h"
+#include "run_law.h"
 #include "run_loop.h"
 #include "run_records.h"
 #include "setup.h"
 #include "share/live_control.h"
 #include "share/run_sharing.h"
 #include "thimble/driver/device.h"
-#include "thimble/driver/device_state.h"
-#include "thimble/driver/force_law.h"
 #include "thimble/driver/servo_loop.h"
-#include "thimble/render/scene_touch.h"
 
 namespace thimble::session {
 
-/// The force law of one of several arms: the scene's while the arm is without a fault. A hand whose
-/// arm is in fault feels nothing and gives nothing, so what other hands hold is not pulled by it.
-struct ArmLaw {
-  render::SceneTouch& touch;
-  const driver::Device& device;
-  LiveControl* control = nullptr;  ///< What viewers ask for; null if nobody sees the run.
-  bool first = false;              ///< It asks for what viewers ask for, once in a tick.
-
-  /// Finds the force of the scene on this arm's hand. Real-time: safe.
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    if (device.fault() != driver::Fault::kNone) return {};
-    if (control == nullptr) return touch(state);
-    if (first) return (*control)(state);
-    driver::ForceCommand command = touch(state);
-    if (const double gain = control->gain(); gain < 1) scale(command, gain);
-    return command;
-  }
-
-  /// Reads what the scene will need in a tick like this (driver::ForceLaw::prepare).
-  /// Real-time: safe.
-  void prepare(const driver::DeviceState& expected) const noexcept { touch.prepare(expected); }
-};
-
 /// The loop over one of several arms after the first, and the observers of its ticks.
 struct ArmRun {
-  /// Makes room for the run of a setup. Real-time: never from the servo thread.
-  explicit ArmRun(const Setup& setup);
+  /// Makes room for the run of an arm, counted from 1. Real-time: never from the servo thread.
+  ArmRun(const Setup& setup, std::size_t arm);
 
   RunRecords records;                   ///< Of this arm alone; no dents and poses.
   std::unique_ptr<EventLog> event_log;  ///< Once the arm is open, if the run is logged.
+  RunLaw law;                           ///< On this arm's hand.
   RunLoop loop;                         ///< Over this arm.
 };
 
@@ -67,14 +43,15 @@ class MoreArms {
   /// Returns the run of an arm, counted from 1.
   ArmRun& run(std::size_t arm) noexcept { return *runs_[arm - 1]; }
 
-  /// Makes the laws, and the logs if the run is logged, of arms that are open. Real-time: never
-  /// from the servo thread.
+  /// Makes the logs of arms that are open, if the run is logged. Real-time: never from the servo
+  /// thread.
   void open(bool log);
   /// Lets viewers see the arms after the first, and do what `control` does for the first; both must
-  /// outlive the run. Before `open`. Real-time: never from the servo thread.
+  /// outlive the run. Real-time: never from the servo thread.
   void share(SharedRun& shared, LiveControl& control);
-  /// Begins all loops, that of the first arm as well. Precondition: `open`. Real-time: safe.
-  void begin(RunLoop& first, const driver::ServoSettings& settings) noexcept;
+  /// Begins the loops of all arms after the first. Precondition: the arms are open. Real-time:
+  /// safe.
+  void begin(const driver::ServoSettings& settings) noexcept;
   /// Runs the rest of a tick, after that of the first arm, which returned `end`. A loop that ends
   /// ends the run, with zero force for all in this very tick; faults that arms outlive
   /// (FaultRule::kApart) end none. Real-time: safe.
@@ -88,9 +65,7 @@ class MoreArms {
   void take_all_forces() noexcept;
 
   Setup& setup_;
-  LiveControl* control_ = nullptr;
   std::vector<std::unique_ptr<OtherArmSharing>> sharing_;
-  std::vector<ArmLaw> laws_;  // of all arms, the first as well
   std::vector<std::unique_ptr<ArmRun>> runs_;
   std::optional<driver::ServoEnd> end_;
 };

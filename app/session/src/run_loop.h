@@ -1,11 +1,9 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "carry/carried_force.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/force_law.h"
@@ -22,22 +20,10 @@ class RunLoop {
   /// Real-time: never from the servo thread.
   void add(TickObserver& observer) { observers_.push_back(&observer); }
 
-  /// Lets the loop carry what an arm's file says of its weight beside what its law asks for; of
-  /// none it does nothing. Precondition: the loop has not begun. Real-time: never from the servo
-  /// thread.
-  void carry(const scene::ArmFile& file) noexcept { carried_.take(file); }
-  /// Returns how often the force that carries the arm was taken away because the tip moved with it
-  /// (CarriedTrust). Any thread.
-  std::uint64_t carry_withdrawn() const noexcept { return carried_.withdrawn(); }
-
   /// Begins the loop; its first tick is due now. All parts must outlive it, and it may not be moved
   /// from then on. Real-time: safe.
   void begin(driver::Device& device, driver::Clock& clock, driver::ForceLaw law,
              const driver::ServoSettings& settings) noexcept {
-    if (carried_.any()) {
-      carried_.put_before(law);
-      law = driver::ForceLaw(carried_);
-    }
     loop_.emplace(device, clock, law, driver::TickSink(*this), settings);
   }
   /// Returns whether the loop has begun.
@@ -58,7 +44,6 @@ class RunLoop {
   }
 
  private:
-  CarriedForce carried_;
   std::vector<TickObserver*> observers_;
   std::optional<driver::ServoLoop> loop_;
   std::optional<driver::ServoEnd> end_;

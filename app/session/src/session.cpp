@@ -14,6 +14,7 @@
 #include "print.h"
 #include "recording/recording_layout.h"
 #include "recording/write_black_box.h"
+#include "run_law.h"
 #include "run_loop.h"
 #include "run_records.h"
 #include "setup.h"
@@ -36,6 +37,7 @@ struct Session::Parts {
   explicit Parts(std::unique_ptr<Setup> prepared)
       : setup(std::move(prepared)),
         records(setup->ticks(), setup->scene().rate, setup->keep()),
+        law(setup->objects().touch(), setup->arm_file(0)),
         more_arms(*setup) {}
 
   void add_records();
@@ -43,7 +45,6 @@ struct Session::Parts {
   driver::Result<void> share(const SessionOptions& options, SharedRun* before = nullptr);
   void record_changes() noexcept;
   void begin(const std::atomic<bool>& stop) noexcept;
-  driver::ForceLaw own_law() noexcept;
   RunRecords& records_of(std::size_t arm) noexcept {
     return arm == 0 ? records : more_arms.run(arm).records;
   }
@@ -56,9 +57,9 @@ struct Session::Parts {
   std::unique_ptr<RunSharing> sharing;   // if it is shared, as is control
   std::unique_ptr<LiveControl> control;  // what viewers ask for
   std::unique_ptr<HeldKnobs> knobs;      // that who holds the session turns
-  std::optional<driver::ForceLaw> law;   // in place of the scene's
   bool log = false;                      // what happens in the run goes into the log
   std::unique_ptr<EventLog> event_log;   // once the arm is open, if so
+  RunLaw law;                            // of the first arm
   RunLoop loop;
   MoreArms more_arms;  // after the first
 };
@@ -85,6 +86,7 @@ void Session::Parts::add_records() {
 
 void Session::Parts::add_knobs() {
   knobs = std::make_unique<HeldKnobs>(setup->scene(), setup->objects().touch());
+  law.scene().set_program_knobs(*knobs);
   loop.add(*knobs);
 }
 
@@ -98,6 +100,7 @@ driver::Result<void> Session::Parts::share(const SessionOptions& options, Shared
   if (!made) return made.error();
   shared = std::move(made).value();
   control = std::move(own);
+  law.scene().set_viewers(*control, true);
   sharing = std::make_unique<RunSharing>(
       *shared, RunSharing::Moving{.dent = records.dents ? &records.dents->drawn() : nullptr,
                                   .poses = records.poses ? &records.poses->now() : nullptr,
@@ -112,12 +115,7 @@ driver::Result<void> Session::Parts::share(const SessionOptions& options, Shared
 }
 
 void Session::Parts::record_changes() noexcept {
-  static constexpr LawChange kOtherLaw{
-      .setting = driver::TickRecord::kOtherLaw, .value = 0, .gain = 1};
-  const LawChange* change = law       ? &kOtherLaw
-                            : control ? &control->change()
-                            : knobs   ? &knobs->change()
-                                      : nullptr;
+  const LawChange* change = law.change();
   if (change == nullptr) return;
   for (std::size_t i = 0; i < setup->arms(); ++i) records_of(i).recording.watch(*change);
 }
@@ -135,14 +133,9 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
       .ticks = setup->ticks(),
       .outlive_faults = setup->any_real() || setup->endless() || go_on_with_the_others,
       .prepare_ns = setup->real_time() ? driver::ServoSettings::kPrepare_ns : 0};
-  loop.carry(setup->arm_file(0));
-  if (!more_arms.empty()) return more_arms.begin(loop, settings);
-  loop.begin(setup->device(), setup->clock(), law.value_or(own_law()), settings);
-}
-
-driver::ForceLaw Session::Parts::own_law() noexcept {
-  if (control) return driver::ForceLaw(*control);
-  return knobs ? driver::ForceLaw(*knobs) : driver::ForceLaw(setup->objects().touch());
+  if (setup->arms() > 1) law.stop_in_fault(setup->device());
+  loop.begin(setup->device(), setup->clock(), law.law(), settings);
+  more_arms.begin(settings);
 }
 
 void Session::Parts::end() noexcept {
@@ -234,12 +227,12 @@ driver::Result<void> Session::set_servo_law(driver::ForceLaw law) {
   if (parts_->loop.begun()) {
     return driver::Error{"The run has begun with another force law; begin a new one."};
   }
-  parts_->law = law;
+  parts_->law.set_caller(law);
   return {};
 }
 
 driver::ForceLaw Session::own_law() noexcept {
-  return parts_->own_law();
+  return parts_->law.scene().law();
 }
 
 driver::Result<void> Session::add_observer(TickObserver& observer, std::size_t arm) {
@@ -326,7 +319,7 @@ std::uint64_t Session::stride() const noexcept {
   return parts_->records.kept ? parts_->records.kept->trace.stride() : 1;
 }
 std::uint64_t Session::carry_withdrawn(std::size_t arm) const noexcept {
-  return (arm == 0 ? parts_->loop : parts_->more_arms.run(arm).loop).carry_withdrawn();
+  return (arm == 0 ? parts_->law : parts_->more_arms.run(arm).law).carry_withdrawn();
 }
 const RunStatistics& Session::statistics() const noexcept {
   static const RunStatistics kNone;
@@ -339,7 +332,7 @@ RunFigures Session::figures(const driver::RealTimeGrant& grant, std::size_t arm)
   // The loop that comes to its end first stops the others.
   if (parts_->more_arms.end() == driver::ServoEnd::kDone) end = driver::ServoEnd::kDone;
   RunFigures figures = figures_of(*parts_->setup, arm, parts_->records_of(arm), end, grant);
-  figures.carry_withdrawn = loop.carry_withdrawn();
+  figures.carry_withdrawn = carry_withdrawn(arm);
   return figures;
 }
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "scene_effects.h"
+#include "object_sections.h"
 #include "surface/texture/height_map.h"
 #include "thimble/render/build_object_touch.h"
 #include "yaml/yaml_reader.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "gate/program_watch.h"
-#include "gate/rise_limit.h"
 
 namespace thimble::driver {
 
@@ -16,6 +15,51 @@ namespace {
 GateLimits with_gap(GateLimits limits) noexcept {
   limits.watchdog_ns = std::min(limits.watchdog_ns, 5 * std::max<std::int64_t>(limits.stall_ns, 1));
   return limits;
+}
+
+/// Returns the point on the way from one force to another that is at most `rise` away.
+Eigen::Vector3d towards(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                        double rise) noexcept {
+  const Eigen::Vector3d way = to - from;
+  const double length = way.norm();
+  if (length <= rise) return to;
+  return from + rise / length * way;
+}
+
+/// Returns the force that may follow `f_last_W` when `f_W` is wanted: at most `rise` (N, >= 0) is
+/// added to what is left of the old force, in whatever direction. All forces in N, in the world;
+/// `v_WT` in m/s. All must be finite.
+///
+/// As a rule the old force is held: shortened to the wanted length, which is never slowed, it moves
+/// towards the wanted force by at most `rise`. Holding must not push a hand on: a slow limit on the
+/// fall of a force makes a passive wall active [PHYSICS 1.6]. So where the held force gives the
+/// hand more power than the wanted one, the old force is dropped as far as it does not help: to the
+/// point of it (between none and all) that is nearest to the wanted force, and at most `rise` is
+/// added to that. The one of both that gives less power is sent. At a speed up to `speed_floor`
+/// (m/s), which a flickering encoder count can feign, the old force is held.
+///
+/// What is sent f' has these properties, whatever is wanted:
+/// - its distance from the segment between 0 and `f_last_W` is at most `rise`: a part of the old
+///   force may go at once, and no more than `rise` comes;
+/// - |f'| <= |f_last_W| + rise, which follows, and |f'| <= |f_W|: both ways end in the ball about 0
+///   through f_W, the first because it is convex, the second because it is the nearest point to f_W
+///   of a convex set with 0 in it;
+/// - f'.v <= f_W.v, or f'.v is no more than that of the second way.
+///
+/// tests/unit/driver/gate/rise_limit_test.cpp holds them. Real-time: safe.
+Eigen::Vector3d limit_rise(const Eigen::Vector3d& f_W, const Eigen::Vector3d& f_last_W,
+                           const Eigen::Vector3d& v_WT, double rise, double speed_floor) noexcept {
+  const double square_now = f_W.squaredNorm();
+  const double square_last = f_last_W.squaredNorm();
+  const double kept = square_now < square_last ? std::sqrt(square_now / square_last) : 1;
+  const Eigen::Vector3d held = towards(kept * f_last_W, f_W, rise);
+  const double power_held = held.dot(v_WT);
+  if (!(power_held > f_W.dot(v_WT)) || !(v_WT.squaredNorm() > speed_floor * speed_floor)) {
+    return held;
+  }
+  const double share = square_last > 0 ? std::clamp(f_W.dot(f_last_W) / square_last, 0.0, 1.0) : 0;
+  const Eigen::Vector3d dropped = towards(share * f_last_W, f_W, rise);
+  return dropped.dot(v_WT) < power_held ? dropped : held;
 }
 
 }  // namespace

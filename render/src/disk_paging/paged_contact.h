@@ -67,8 +67,8 @@ struct PagedPlace {
 };
 
 /// Finds what the tip touches on a surface of which only the volumes around the tip are in memory
-/// [BP 4.1]. The `Contact` stage of Touch for meshes that fit no memory; what it measures is what
-/// MemoryContact would.
+/// [BP 4.1]. The `Contact` stage of ContactForceLaw for meshes that fit no memory; what it measures
+/// is what MemoryContact would.
 ///
 /// The servo never waits for the disk. What it lacks is held (packed_contact.h), and the depth that
 /// is felt never grows faster than the tip sinks in, by more than `kRiseSpeed`: a tip that came in

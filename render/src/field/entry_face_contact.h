@@ -11,7 +11,8 @@
 namespace thimble::render {
 
 /// Finds what the tip touches on a box whose force depends on the path: the face through which the
-/// tip came in pushes it back, however deep it is [BP Fig. 2a]. The `Contact` stage of Touch.
+/// tip came in pushes it back, however deep it is [BP Fig. 2a]. The `Contact` stage of
+/// ContactForceLaw.
 ///
 /// The face is found on the straight way since the last tick, however fast. It holds the tip as
 /// long as that is below the face's plane and within its outline, also beyond the back of a thin

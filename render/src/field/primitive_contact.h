@@ -26,8 +26,8 @@ concept PrimitiveShape = requires(const Shape& shape, const Eigen::Vector3d& p_W
   noexcept->std::same_as<bool>;
 };
 
-/// Finds what the tip touches on an analytic shape: the `Contact` stage of Touch in place of
-/// MeshContact, so that every texture and friction works on it. `ContactState::triangle` is the
+/// Finds what the tip touches on an analytic shape: the `Contact` stage of ContactForceLaw in place
+/// of MeshContact, so that every texture and friction works on it. `ContactState::triangle` is the
 /// number of the face.
 ///
 /// Such a shape knows no past: a tip that passes through a thin one feels the far side [BP 2,

@@ -15,8 +15,8 @@
 
 namespace thimble::render {
 
-/// Smooths what a contact stage finds: a `Contact` stage of Touch around another one, joined at
-/// compile time, as in `Touch<Blended<MeshContact, FixedBand>, SpringDamper>`.
+/// Smooths what a contact stage finds: a `Contact` stage of ContactForceLaw around another one,
+/// joined at compile time, as in `ContactForceLaw<Blended<MeshContact, FixedBand>, SpringDamper>`.
 ///
 /// `Contact` is any TrackedContact. `Shading` says which normal is felt (edge_blending.h), `Depth`
 /// how deep the tip is (curved_depth.h). Over OffsetContact the result is continuous over smooth

@@ -34,7 +34,7 @@ struct GodObjectCounters {
 };
 
 /// Finds what the tip touches with a god-object: a proxy that follows the tip and never enters the
-/// mesh [ZS]. The `Contact` stage of Touch, in place of MeshContact.
+/// mesh [ZS]. The `Contact` stage of ContactForceLaw, in place of MeshContact.
 ///
 /// While the tip is inside, the proxy slides over the surface to the point that is nearest to the
 /// tip among all around it: one face holds it, or two in a concave edge, or three and more in a

@@ -23,7 +23,7 @@
 namespace thimble::render {
 
 /// Finds what the tip touches on one mesh: a search along the tip's path while it is free, tracking
-/// over the surface while it touches [BP 3.1]. The `Contact` stage of Touch.
+/// over the surface while it touches [BP 3.1]. The `Contact` stage of ContactForceLaw.
 ///
 /// `Tracker` is how it is followed: SurfaceTracker, OffsetTracker or NormalProjectionTracker; see
 /// there for what each promises. The names MeshContact and OffsetContact below stand for the first

@@ -22,7 +22,7 @@
 
 namespace thimble::render {
 
-/// The `Contact` stage of Touch over a surface that changes shape: another contact stage
+/// The `Contact` stage of ContactForceLaw over a surface that changes shape: another contact stage
 /// (MeshContact, OffsetContact, Blended over either, GodObjectContact) made over a MovingMesh, with
 /// the one door through which the surface moves. Frame W, m.
 ///

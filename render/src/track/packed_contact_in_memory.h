@@ -67,8 +67,8 @@ class THIMBLE_EXPORT MemoryStore {
 extern template class PackedContact<MemoryStore>;
 
 /// Finds what the tip touches on a smooth surface of any size that fits into memory. The `Contact`
-/// stage of Touch; the place of MeshContact where meshes are large or curved. How it follows and
-/// what it measures: packed_contact.h.
+/// stage of ContactForceLaw; the place of MeshContact where meshes are large or curved. How it
+/// follows and what it measures: packed_contact.h.
 class THIMBLE_EXPORT MemoryContact : public PackedContact<MemoryStore> {
  public:
   /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from

@@ -2,22 +2,108 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
-#include "track/proxy_filter.h"
 
 namespace thimble::render {
+
+/// The far end of the spring that the hand feels, in the frame of the surface: it follows the place
+/// to which a contact stage pushes the tip, but never faster than the tip's path allows.
+///
+/// A contact stage pushes the tip p towards the place g = p + depth n. Where cells of a surface
+/// meet deep inside, and where a tracked foot is found anew, g jumps while p hardly moves, and a
+/// force K (g - p) would jump with it. This anchor a follows g by at most `kPathRatio` times the
+/// tip's path, and what is felt is K (a - p). So from one tick to the next, at any depth, |df| <= K
+/// (1 + kPathRatio) |dp|: a jump of g is caught up over the path that follows, and not at all while
+/// the hand rests. While g does not jump the anchor is g, and what was found is felt to the bit.
+///
+/// While the anchor lags behind g it gives the hand no energy that the hand has not put in:
+/// - It may go nearer to the tip freely. Farther away, which tightens the spring, only as far as is
+///   paid for by what it lost before by going nearer, and by `kGift` of the found force over its
+///   path. What is not paid for is missing from the depth, never added to it. A surface that comes
+///   towards the tip by itself puts in what that takes.
+/// - What counts is the tip's way out of a ball that the tip drags along, as wide as the lag and
+///   not wider than the tip has gone: a tip that goes to and fro about an edge moves the anchor
+///   once and then has it standing still, as a god-object stands in a crease. Otherwise the anchor,
+///   always late, would push the tip on from side to side.
+class ProxyFilter {
+ public:
+  /// Path of the anchor per path of the tip. Over convex surfaces the exact foot needs 1, over the
+  /// smooth cells of a torus 1.2, of a bumpy ball 2.3 (1 + the greatest |dn| L / |dp| of
+  /// render/README.md): 4 leaves these as they are. [chosen]
+  static constexpr double kPathRatio = 4;
+  /// Share of the found force, along the anchor's path, that is given to a spring that has become
+  /// too short, so that a depth that is missing returns. At 2 N it is 0.04 N: what the dry friction
+  /// of a PHANTOM takes out again. [chosen; friction M, app/arms/vintage_phantom.yaml]
+  static constexpr double kGift = 0.02;
+
+  /// Takes in where the tip is (m, in the frame of the surface) and what has been found there.
+  /// Returns true if that is what is felt; false if `felt` is. A position that is NaN forgets the
+  /// path; the next contact then begins without force. Real-time: safe; some ns.
+  bool follow(const Eigen::Vector3d& p_WT, const ContactState& found) noexcept {
+    const Eigen::Vector3d path = p_WT - p_WT_;
+    if (!found.touching) {
+      lagging_ = false;
+      surface_path_ = 0;
+      p_WT_ = p_WT;
+      p_WA_ = p_WT;
+      return true;
+    }
+    const Eigen::Vector3d goal = p_WT + found.depth * found.n_W;
+    const double reach_squared = kPathRatio * kPathRatio * path.squaredNorm();
+    const double rounding = kRounding * found.depth;
+    // Written so that NaN takes the other way.
+    if (!lagging_ && (goal - p_WA_).squaredNorm() <= reach_squared + rounding * rounding) {
+      surface_path_ = 0;
+      p_WT_ = p_WT;
+      p_WA_ = goal;
+      return true;
+    }
+    return lag(p_WT, path, goal, found);
+  }
+
+  /// Takes in that the surface itself has moved near the tip by up to `path` (m) since the last
+  /// `follow`: that counts like path of the tip. Real-time: safe.
+  void surface_moved(double path) noexcept { surface_path_ += path; }
+
+  /// Returns what is felt in a tick in which `follow` gave false. Real-time: safe.
+  const ContactState& felt() const noexcept { return felt_; }
+
+  /// Returns the number of ticks in which the anchor was behind. Real-time: safe.
+  std::uint64_t ticks_behind() const noexcept { return ticks_behind_; }
+
+ private:
+  // Of the depth: so much a place that did not move may differ by rounding.
+  static constexpr double kRounding = 1e-10;  // [chosen: 10^5 roundings of a depth, 1e-9 N at 10 N]
+
+  bool lag(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& path, const Eigen::Vector3d& goal,
+           const ContactState& found) noexcept;
+  double advance(const Eigen::Vector3d& p_WT, double way_behind) noexcept;
+
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Vector3d p_WT_ = Eigen::Vector3d::Constant(kUnknown);  // tip at the last tick
+  Eigen::Vector3d p_WA_ = Eigen::Vector3d::Constant(kUnknown);  // anchor; the tip while free
+  double surface_path_ = 0;
+  // While it lags.
+  bool lagging_ = false;
+  Eigen::Vector3d p_WC_{0, 0, 0};  // centre of the ball that the tip drags along
+  double radius_ = 0;              // of that ball, m
+  double credit_ = 0;              // energy per stiffness that tightening may still take, m^2
+  std::uint64_t ticks_behind_ = 0;
+  ContactState felt_;
+};
 
 /// A stage says that a copy of it costs a few pointers.
 template <class Contact>
 concept CopiesCheaply = Contact::kCopiesCheaply;
 
-/// A `Contact` stage of Touch around another one, of any kind: what is felt changes by no more than
-/// the tip's path implies, at any depth (proxy_filter.h). Depth, normal and proxy are those that
-/// are felt; triangle and hops are those that were found.
+/// A `Contact` stage of ContactForceLaw around another one, of any kind: what is felt changes by no
+/// more than the tip's path implies, at any depth (ProxyFilter). Depth, normal and proxy are those
+/// that are felt; triangle and hops are those that were found.
 ///
 /// Contact begins and ends with the stage inside. It begins without a step of the force, however
 /// deep it is found; where it ends the force is zero at once.

@@ -1,6 +1,9 @@
 #include "meshes/object_mesh.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mesh/repair/orient_mesh.h"
@@ -22,6 +25,80 @@ constexpr render::RepairOptions kCleanedOnly{.tolerance = 0,
                                              .orient = true};
 
 }  // namespace
+
+MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& object) {
+  // The box of the mesh as it lies in its file gives the size: turning an object must not change
+  // it.
+  Eigen::AlignedBox3d file_box;
+  Eigen::AlignedBox3d turned_box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    file_box.extend(vertex);
+    turned_box.extend(object.R_WO * vertex);
+  }
+  const double largest = file_box.sizes().maxCoeff();
+  const double scale =
+      object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
+  return {.scale = scale, .p_WM = object.p_WO - scale * turned_box.center()};
+}
+
+render::TriangleMesh place_mesh(const render::TriangleMesh& mesh, const SceneObject& object) {
+  const MeshPlacement place = placement_of(mesh, object);
+  return render::placed(mesh, place.scale, object.R_WO, place.p_WM);
+}
+
+render::PagedPlace place_pages(const render::PageFile& file, const SceneObject& object) {
+  Eigen::Vector3d low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[static_cast<Eigen::Index>(axis)] = double{file.whole().min[axis]};
+    high[static_cast<Eigen::Index>(axis)] = double{file.whole().max[axis]};
+  }
+  const double step = file.lattice().step;
+  const Eigen::Vector3d center = file.lattice().origin + step * 0.5 * (low + high);
+  const double largest = step * (high - low).maxCoeff();
+  const double scale =
+      object.size && largest > 0 ? *object.size / largest : object.scale.value_or(1);
+  return {
+      .scale = scale, .R_WM = object.R_WO, .p_WM = object.p_WO - scale * (object.R_WO * center)};
+}
+
+double side_of_pages(const render::PageFile& file, const render::PagedPlace& place) {
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, double{file.whole().max[axis]} - double{file.whole().min[axis]});
+  }
+  return std::abs(place.scale) * file.lattice().step * largest;
+}
+
+double reach_of(const Scene& scene) {
+  const auto side = [](const ArmFile& arm) {
+    return (arm.workspace.max_W - arm.workspace.min_W).maxCoeff();
+  };
+  double reach = 0;
+  for (const SceneArm& arm : scene.arms) reach = std::max(reach, side(arm.arm));
+  return reach;
+}
+
+std::string unit_advice(const std::string& kind) {
+  return kind + " names no unit: set scale: 0.001 if it counts in mm, or size (m).";
+}
+
+driver::Result<std::string> judge_size(const SceneObject& object, const ObjectSize& size,
+                                       double reach) {
+  if (!(reach > 0)) return std::string();
+  const double reaches = size.side / reach;
+  const bool stated = object.size || object.scale || size.has_unit;
+  const double most = stated ? kStatedReachesMax : kReachesMax;
+  // Written so that NaN is too large.
+  if (reaches <= (stated ? most : kReachesReported)) return std::string();
+  const std::string sentence =
+      fmt::format("{}: {:.4g} m large, {:.0f} times the reach of the arm ({:.3g} m); ",
+                  object.mesh_file.string(), size.side, reaches, reach);
+  if (reaches <= most) return sentence + unit_advice(size.kind);
+  if (!stated) return driver::Error{sentence + unit_advice(size.kind)};
+  return driver::Error{sentence +
+                       fmt::format("at most {:.0f} times are supported. Set a smaller {}.", most,
+                                   object.size ? "size (m)" : "scale")};
+}
 
 driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
   const auto about = [&object](const std::string& sentence) {

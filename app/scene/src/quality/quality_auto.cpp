@@ -11,7 +11,7 @@
 
 #include "math/elementary.h"
 #include "mesh/repair/orient_mesh.h"
-#include "meshes/place_mesh.h"
+#include "meshes/object_mesh.h"
 #include "quality/quality_table.h"
 #include "thimble/render/mesh/mesh_file.h"
 

@@ -11,11 +11,10 @@
 
 namespace thimble::session {
 
-/// Gravity compensation: a force law that carries the arm's own weight beside what another law asks
-/// for, so that a free tip stays where it is: a weight at the tip, and the links of a
-/// serial arm by their pose, as far as the motion lets it be trusted. What it adds is part of the
-/// requested force, so that the gate's soft start, limits and faults hold for the sum. Made only
-/// for an arm whose file names a weight: a run without one calls its law itself.
+/// Gravity compensation: the force that carries the arm's own weight, so that a free tip stays
+/// where it is: a weight at the tip, and the links of a serial arm by their pose, as far as the
+/// motion lets it be trusted. It is part of the requested force, so that the gate's soft start,
+/// limits and faults hold for the sum. The last stage of RunLaw.
 class CarriedForce {
  public:
   /// Takes what an arm file says of it. Real-time: never from the servo thread.
@@ -25,12 +24,9 @@ class CarriedForce {
   }
   /// Returns whether there is anything to carry. Real-time: safe.
   bool any() const noexcept { return f_weight_W_.z() > 0 || links_.most > 0; }
-  /// Takes the law, which must outlive it. Real-time: safe.
-  void put_before(driver::ForceLaw law) noexcept { law_ = law; }
 
-  /// Returns the law's force and the one that carries. Real-time: safe if the law is.
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    driver::ForceCommand command = law_(state);
+  /// Adds the force that carries the arm in a tick to what the law requests. Real-time: safe.
+  void add_to(driver::ForceCommand& command, const driver::DeviceState& state) noexcept {
     Eigen::Vector3d f_W = f_weight_W_;
     double energy = -f_weight_W_.dot(state.p_WT);  // J, of what is carried: its height
     if (links_.most > 0) {
@@ -40,24 +36,13 @@ class CarriedForce {
     const double share = trust_.share(state, f_W, !command.f_T_W.isZero(0));
     command.f_T_W += share * f_W;
     command.stored += share * energy;
-    return command;
   }
-
-  /// Lets the law read what it will need.
-  void prepare(const driver::DeviceState& expected) const noexcept { law_.prepare(expected); }
 
   /// Returns how often the force was taken away because the tip moved with it. Any thread.
   /// Real-time: safe.
   std::uint64_t withdrawn() const noexcept { return trust_.withdrawn(); }
 
  private:
-  /// The law until there is one.
-  struct NoForce {
-    driver::ForceCommand operator()(const driver::DeviceState&) const noexcept { return {}; }
-  };
-  static inline NoForce no_force;
-
-  driver::ForceLaw law_{no_force};
   Eigen::Vector3d f_weight_W_{0, 0, 0};  // N
   scene::LinkGravity links_;
   CarriedTrust trust_;

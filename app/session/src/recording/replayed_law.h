@@ -45,7 +45,7 @@ class ReplayedLaw final : private KnobRequests {
   std::optional<LiveKnobs> knobs_;  // if any was turned
   std::vector<std::optional<double>> wanted_;
   bool turning_ = false;
-  driver::TickRecord last_;
+  FeltTick last_;
   double weight_ = 0;                        // N
   std::optional<scene::LinkGravity> links_;  // if they are carried
 };

@@ -5,10 +5,7 @@
 namespace thimble::session {
 
 HeldKnobs::HeldKnobs(const scene::Scene& scene, render::SceneTouch& touch)
-    : touch_(touch),
-      knobs_(scene, touch),
-      described_(knobs_.described()),
-      states_(described_.size()) {
+    : knobs_(scene, touch), described_(knobs_.described()), states_(described_.size()) {
   for (std::size_t i = 0; i < described_.size(); ++i) {
     states_[i].wanted.store(described_[i].initial);
     states_[i].now.store(described_[i].initial);
@@ -37,16 +34,9 @@ std::optional<double> HeldKnobs::knob_wanted(std::size_t knob) const noexcept {
   return states_[knob].wanted.load(std::memory_order_relaxed);
 }
 
-driver::ForceCommand HeldKnobs::operator()(const driver::DeviceState& state) noexcept {
-  if (asked_.load(std::memory_order_relaxed)) {
-    turning_ = asked_.exchange(false, std::memory_order_acquire);
-  }
-  change_ = {};
-  if (turning_) {
-    turning_ = knobs_.step(*this, last_, state.dt);
-    change_ = knobs_.change();
-  }
-  return touch_(state);
+void HeldKnobs::move_knobs(double dt) noexcept {
+  turning_ = knobs_.step(*this, last_, dt);
+  change_ = knobs_.change();
 }
 
 }  // namespace thimble::session

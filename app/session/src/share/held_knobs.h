@@ -9,7 +9,6 @@
 #include "share/knob_requests.h"
 #include "share/live_knobs.h"
 #include "thimble/driver/device_state.h"
-#include "thimble/driver/force_law.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/render/scene_touch.h"
@@ -19,9 +18,8 @@
 
 namespace thimble::session {
 
-/// The knobs of a run that the program which holds the session turns, without shared memory: the
-/// force law of the run (Session::set_servo_law), and an observer of its ticks
-/// (Session::add_observer). For scenes of one arm.
+/// The knobs of a run that the program which holds the session turns, without shared memory: a
+/// stage of the force law of the run (RunLaw), and an observer of its ticks. For scenes of one arm.
 class HeldKnobs final : public TickObserver, public KnobRequests {
  public:
   /// Finds the knobs of a scene. Both must outlive it. Real-time: never from the servo thread.
@@ -33,13 +31,14 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
   /// error is that of `find_knob`. Any thread. Real-time: never from the servo thread.
   driver::Result<void> turn(const std::string& name, double value);
 
-  /// Finds the force of the scene, its knobs moved on (the servo loop's force law). Real-time:
-  /// safe.
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
-
-  /// Reads what the scene will need in a tick like this (driver::ForceLaw::prepare).
-  /// Real-time: safe.
-  void prepare(const driver::DeviceState& expected) const noexcept { touch_.prepare(expected); }
+  /// Moves the knobs by one tick, before the scene's force is found. Real-time: safe.
+  void turn_knobs(const driver::DeviceState& state) noexcept {
+    if (asked_.load(std::memory_order_relaxed)) {
+      turning_ = asked_.exchange(false, std::memory_order_acquire);
+    }
+    change_ = {};
+    if (turning_) move_knobs(state.dt);
+  }
 
   /// Takes one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override { last_ = record; }
@@ -51,18 +50,19 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
   }
 
  private:
+  void move_knobs(double dt) noexcept;
+
   struct State {
     std::atomic<double> wanted{0}, now{0};
   };
 
-  render::SceneTouch& touch_;
   LiveKnobs knobs_;
   std::vector<SharedScene::Knob> described_;
   std::vector<State> states_;
   std::atomic<bool> asked_{false};  // somebody has turned a knob since the last tick
   bool turning_ = false;
   LawChange change_;
-  driver::TickRecord last_;
+  FeltTick last_;
 };
 
 }  // namespace thimble::session

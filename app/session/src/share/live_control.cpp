@@ -9,7 +9,7 @@ namespace thimble::session {
 
 LiveControl::LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
                          scene::ArmSimulation* simulation, bool real_time)
-    : touch_(touch), simulation_(simulation), real_time_(real_time), knobs_(scene, touch) {
+    : simulation_(simulation), real_time_(real_time), knobs_(scene, touch) {
   hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // equals nothing that is asked for
 }
 
@@ -26,20 +26,16 @@ void LiveControl::join(SharedRun& shared, bool hand_by_mouse, const std::atomic<
   pace_ = pace;
 }
 
-driver::ForceCommand LiveControl::operator()(const driver::DeviceState& state) noexcept {
+void LiveControl::begin_tick(const driver::DeviceState& state) noexcept {
   change_ = {};
   if (!several_) {
     knobs_.step(*shared_, last_, state.dt);
     change_ = knobs_.change();
   }
-  driver::ForceCommand command = touch_(state);
-  if (real_time_) {
-    const double way = state.dt / kFade;
-    gain_ = std::clamp(gain_ + (paused_ ? -way : way), 0.0, 1.0);
-    if (gain_ < 1) scale(command, gain_);
-    change_.gain = gain_;
-  }
-  return command;
+  if (!real_time_) return;
+  const double way = state.dt / kFade;
+  gain_ = std::clamp(gain_ + (paused_ ? -way : way), 0.0, 1.0);
+  change_.gain = gain_;
 }
 
 void LiveControl::take(const driver::TickRecord& record) noexcept {

@@ -18,8 +18,8 @@
 
 namespace thimble::session {
 
-/// What viewers ask for, done on the servo's thread: knobs, pause, and the hand that the mouse
-/// leads. It is the force law of a run that is shared; one that is not has none of it.
+/// Requests of viewers, carried out on the servo's thread: knobs, pause, and the hand that the
+/// mouse leads. Two stages of the force law of a shared run (RunLaw).
 ///
 /// Pause in real time: the loop goes on, the force fades out within kFade, the simulated hand
 /// stands still; afterwards the force fades in again. In virtual time, paced or not, the loop
@@ -44,14 +44,13 @@ class LiveControl final : public TickObserver {
   void join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop,
             SpeedClock* pace = nullptr);
 
-  /// Finds the force of the scene, less while it is paused (the servo loop's force law).
-  /// Real-time: safe.
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
-
-  /// Reads what the scene will need in a tick like this (driver::ForceLaw::prepare).
-  /// Real-time: safe.
-  void prepare(const driver::DeviceState& expected) const noexcept { touch_.prepare(expected); }
-
+  /// Turns the knobs of the scene and moves the pause by one tick, before the scene's force is
+  /// found. Real-time: safe.
+  void begin_tick(const driver::DeviceState& state) noexcept;
+  /// Reduces the force of the scene while the run is paused. Real-time: safe.
+  void fade(driver::ForceCommand& command) const noexcept {
+    if (gain_ < 1) scale(command, gain_);
+  }
   /// Returns the share of the scene's force that is felt: less than 1 while it is paused.
   /// Real-time: safe.
   double gain() const noexcept { return gain_; }
@@ -66,7 +65,6 @@ class LiveControl final : public TickObserver {
   void lead_hand() noexcept;
   void wait_while_paused() noexcept;
 
-  render::SceneTouch& touch_;
   scene::ArmSimulation* simulation_;
   std::vector<scene::ArmSimulation*> others_;  // of the arms after the first
   bool real_time_;
@@ -80,7 +78,7 @@ class LiveControl final : public TickObserver {
   bool paused_ = false;
   double gain_ = 1;
   LawChange change_;
-  driver::TickRecord last_;
+  FeltTick last_;
   SharedHand hand_;
 };
 

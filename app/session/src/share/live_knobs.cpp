@@ -60,7 +60,7 @@ std::vector<SharedScene::Knob> LiveKnobs::described() const {
   return described;
 }
 
-bool LiveKnobs::step(KnobRequests& requests, const driver::TickRecord& last, double dt) noexcept {
+bool LiveKnobs::step(KnobRequests& requests, const FeltTick& last, double dt) noexcept {
   bool turning = false;
   change_ = {};
   for (std::size_t i = 0; i < knobs_.size(); ++i) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "law_change.h"
@@ -12,6 +14,22 @@
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
+
+/// The part of a tick on which the speed of a knob depends.
+struct FeltTick {
+  FeltTick() = default;
+  /// Takes the part of a record; implicit, so that a record can be passed. Real-time: safe.
+  FeltTick(const driver::TickRecord& record) noexcept
+      : depth(record.depth),
+        v_WT(record.v_WT),
+        f_wanted_W(record.f_wanted_W),
+        in_contact(record.in_contact) {}
+
+  double depth = 0;                    ///< m
+  std::array<double, 3> v_WT{};        ///< m/s
+  std::array<double, 3> f_wanted_W{};  ///< N
+  bool in_contact = false;             ///< Whether an object was touched.
+};
 
 /// Turns the settings of a scene that viewers or programs want otherwise, on the servo's thread
 /// between two ticks, without a step of force.
@@ -36,7 +54,7 @@ class LiveKnobs {
 
   /// Moves on by a tick of `dt` (s), towards what is wanted; `last` is the tick before. Returns
   /// whether a knob is still on its way. Real-time: safe; does next to nothing while no knob turns.
-  bool step(KnobRequests& requests, const driver::TickRecord& last, double dt) noexcept;
+  bool step(KnobRequests& requests, const FeltTick& last, double dt) noexcept;
 
   /// Returns the knob that `step` began to turn in the last tick, and to what: at most one a tick,
   /// so that a tick of a recording holds it. Real-time: safe.

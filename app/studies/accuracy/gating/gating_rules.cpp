@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "object_sections.h"
 #include "report/picture_style.h"
-#include "scene_effects.h"
 
 namespace thimble::studies {
 namespace {

@@ -51,7 +51,7 @@ struct GateLimits {
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force goes off and stays off, m/s.
   /// Fastest change of the force's vector, N/s. A fall of its length is never slowed, and an old
-  /// force that would push the hand on goes at once (rise_limit.h).
+  /// force that would push the hand on goes at once (limit_rise in gate/safety_gate.cpp).
   double rise_max = 0;
   double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
   /// The same after a gap, for somebody who is touching already, s; a hand feels a surface as gone

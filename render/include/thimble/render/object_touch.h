@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,9 @@
 #include "thimble/driver/force_law.h"
 #include "thimble/render/body_patch.h"
 #include "thimble/render/body_pose.h"
+#include "thimble/render/contact_state.h"
 #include "thimble/render/effect/live_settings.h"
+#include "thimble/render/surface/surface_response.h"
 
 namespace thimble::render {
 
@@ -20,7 +23,7 @@ class BodyShape;
 class ContactMesh;
 
 /// The force law of one object of a scene, whatever stages it is made of: one indirect call per
-/// tick stands for all of them (see object_touch_of).
+/// tick stands for all of them (see ObjectTouchAdapter).
 class THIMBLE_EXPORT ObjectTouch {
  public:
   ObjectTouch() = default;
@@ -72,36 +75,118 @@ class THIMBLE_EXPORT ObjectTouch {
   }
 };
 
-/// An ObjectTouch made of a Touch with its stages known at compile time. `Stages` is callable
-/// like Touch and has a `contact()` with `search()`.
-template <class Stages>
-class ObjectTouchOf final : public ObjectTouch {
+/// The force of one contact, through the surface stages that a scene names, joined at compile time:
+/// a stage that is not named costs nothing. The force law of an object, without the interface of
+/// ObjectTouch.
+///
+/// `Contact` finds what the tip touches: `const ContactState& update(const DeviceState&) noexcept`.
+/// The surface stages say how that feels, one after the other (surface_response.h). Real-time: safe
+/// if its stages are.
+template <class Contact, SurfaceStage... Stages>
+class ContactForceLaw {
  public:
-  explicit ObjectTouchOf(Stages stages) : stages_(std::move(stages)) {}
+  ContactForceLaw(Contact contact, Stages... stages)
+      : contact_(std::move(contact)), stages_(std::move(stages)...) {}
+
+  /// Finds the force of the object on the hand in this tick. Real-time: safe.
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
+    driver::ForceCommand command;
+    const ContactState& contact = contact_.update(state);
+    // Written so that a NaN depth means no contact and no force.
+    if (contact.touching && contact.depth > 0) {
+      SurfaceResponse response{.contact = contact};
+      feel(state, response);
+      command.f_T_W = response.f_T_W;
+      command.touch = {.in_contact = true,
+                       .object = 0,
+                       .feature = contact.triangle,
+                       .depth = response.contact.depth,
+                       .p_WP = response.contact.p_WP,
+                       .n_W = response.contact.n_W,
+                       .hops = contact.hops};
+      touching_ = true;
+    } else if (touching_) {
+      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
+      touching_ = false;
+    }
+    return command;
+  }
+
+  /// Reads what the contact will need in a tick like this (ForceLaw::prepare). Real-time: safe.
+  void prepare(const driver::DeviceState& expected) const noexcept {
+    if constexpr (requires { contact_.prepare(expected); }) contact_.prepare(expected);
+  }
+
+  /// Lists the stages' settings that can be changed between two ticks. Real-time: never from the
+  /// servo thread.
+  void list_settings(LiveSettings& settings) {
+    std::apply([&](auto&... stage) { (list_settings_of(stage, settings), ...); }, stages_);
+  }
+
+  const Contact& contact() const noexcept { return contact_; }
+  /// Returns the contact stage, for who moves its surface. Real-time: safe.
+  Contact& contact() noexcept { return contact_; }
+
+ private:
+  void feel(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
+    if constexpr ((FootStage<Stages> || ...)) {
+      const SurfaceFoot foot = foot_of(contact_, state.p_WT);
+      const auto run = [&](auto& stage) {
+        if constexpr (requires { stage.touch_at(foot, state, response); }) {
+          stage.touch_at(foot, state, response);
+        } else {
+          stage.touch(state, response);
+        }
+      };
+      std::apply([&](auto&... stage) { (run(stage), ...); }, stages_);
+    } else {
+      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+    }
+  }
+
+  Contact contact_;
+  [[no_unique_address]] std::tuple<Stages...> stages_;
+  bool touching_ = false;
+};
+
+/// The ObjectTouch of a force law that is known at compile time. `Law` is callable like
+/// ContactForceLaw and has a `contact()` with `search()`.
+template <class Law>
+class ObjectTouchAdapter final : public ObjectTouch {
+ public:
+  explicit ObjectTouchAdapter(Law law) : law_(std::move(law)) {}
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
-    return stages_(state);
+    return law_(state);
   }
   void prepare(const driver::DeviceState& expected) const noexcept override {
-    if constexpr (requires { stages_.prepare(expected); }) stages_.prepare(expected);
+    if constexpr (requires { law_.prepare(expected); }) law_.prepare(expected);
   }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
-    return stages_.contact().search().inside(p_W);
+    return law_.contact().search().inside(p_W);
   }
   const ContactMesh* mesh() const noexcept override {
-    if constexpr (requires { stages_.contact().mesh(); }) {
-      return &stages_.contact().mesh();
+    if constexpr (requires { law_.contact().mesh(); }) {
+      return &law_.contact().mesh();
     } else {
       return nullptr;
     }
   }
 
-  void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
+  void list_settings(LiveSettings& settings) override { list_settings_of(law_, settings); }
 
-  const Stages& stages() const noexcept { return stages_; }
+  const Law& law() const noexcept { return law_; }
 
  private:
-  Stages stages_;
+  Law law_;
 };
+
+/// The former name of ContactForceLaw.
+template <class Contact, SurfaceStage... Stages>
+using Touch [[deprecated("renamed to ContactForceLaw")]] = ContactForceLaw<Contact, Stages...>;
+
+/// The former name of ObjectTouchAdapter.
+template <class Law>
+using ObjectTouchOf [[deprecated("renamed to ObjectTouchAdapter")]] = ObjectTouchAdapter<Law>;
 
 }  // namespace thimble::render

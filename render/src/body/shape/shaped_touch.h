@@ -16,9 +16,9 @@ namespace thimble::render {
 
 /// The force law of an object whose base points move by themselves: clay, a tin can.
 ///
-/// `Stages` is a Touch over a MovingContact. The force of a tick is that of the surface as it
-/// stands; then the surface gives way, and the next tick finds it there. So what gives way takes
-/// energy and never gives any.
+/// `Stages` is a ContactForceLaw over a MovingContact. The force of a tick is that of the surface
+/// as it stands; then the surface gives way, and the next tick finds it there. So what gives way
+/// takes energy and never gives any.
 template <class Stages>
 class ShapedTouch final : public ObjectTouch {
  public:

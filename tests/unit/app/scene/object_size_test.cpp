@@ -1,4 +1,4 @@
-#include "meshes/object_size.h"
+#include "meshes/object_mesh.h"
 
 #include <gtest/gtest.h>
 

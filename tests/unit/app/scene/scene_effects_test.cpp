@@ -1,4 +1,4 @@
-#include "scene_effects.h"
+#include "object_sections.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "thimble/scene/scene_file.h"
-#include "meshes/place_mesh.h"
+#include "meshes/object_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "meshes/place_mesh.h"
+#include "meshes/object_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "recording/trajectory_file.h"
 #include "support/scratch.h"

@@ -12,7 +12,7 @@
 #include "thimble/render/field/box.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/field/sphere.h"
-#include "thimble/render/touch.h"
+#include "thimble/render/object_touch.h"
 
 namespace thimble::render {
 namespace {
@@ -40,7 +40,7 @@ TEST(HalfSpace, PushesWithKxPlusBv) {
   support::Random random(1);
   for (int i = 0; i < 1000; ++i) {
     const HalfSpace wall{.n_W = random.direction(), .p_WO = random.in_box(0.1)};
-    Touch touch{PrimitiveContact(wall), SpringDamper{1234.5, 6.7}};
+    ContactForceLaw touch{PrimitiveContact(wall), SpringDamper{1234.5, 6.7}};
     const Vector3d aside = wall.n_W.cross(random.direction());
     const double x = random.uniform(0, 0.01);
     const double v = random.uniform(-0.5, 0.5);
@@ -57,7 +57,7 @@ TEST(Sphere, PushesAwayFromItsCentreByTheDepth) {
   support::Random random(2);
   for (int i = 0; i < 1000; ++i) {
     const Sphere ball{.p_WO = random.in_box(0.1), .radius = random.uniform(0.01, 0.05)};
-    Touch touch{PrimitiveContact(ball), SpringDamper{1000, 0}};
+    ContactForceLaw touch{PrimitiveContact(ball), SpringDamper{1000, 0}};
     const Vector3d outward = random.direction();
     const double share = random.uniform(0.01, 0.999);
     touch(at(ball.p_WO + 2 * ball.radius * outward));
@@ -80,7 +80,7 @@ TEST(Sphere, KeepsItsLastNormalAtTheVeryCentre) {
 template <class Contact>
 void expect_nothing_for_bad_numbers(Contact contact, const Vector3d& outside,
                                     const Vector3d& inside) {
-  Touch touch(std::move(contact), SpringDamper{1000, 1});
+  ContactForceLaw touch(std::move(contact), SpringDamper{1000, 1});
   for (const double bad : {kNan, kInfinity, -kInfinity, 1e300}) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       touch(at(outside));
@@ -110,9 +110,9 @@ TEST(PrimitiveContact, GivesNoForceForNaNOrInfinity) {
 }
 
 TEST(PrimitiveContact, DoesNotThrowOutATipThatBeginsInside) {
-  Touch sphere{PrimitiveContact(Sphere{.radius = 0.02}), SpringDamper{1000, 0}};
-  Touch wedges{PrimitiveContact(WedgeBox{kCube}), SpringDamper{1000, 0}};
-  Touch entry{EntryFaceContact(kCube), SpringDamper{1000, 0}};
+  ContactForceLaw sphere{PrimitiveContact(Sphere{.radius = 0.02}), SpringDamper{1000, 0}};
+  ContactForceLaw wedges{PrimitiveContact(WedgeBox{kCube}), SpringDamper{1000, 0}};
+  ContactForceLaw entry{EntryFaceContact(kCube), SpringDamper{1000, 0}};
   for (const double x : {0.005, 0.01, 0.0}) {
     EXPECT_FALSE(sphere(at({x, 0, 0})).touch.in_contact);
     EXPECT_FALSE(wedges(at({x, 0, 0})).touch.in_contact);
@@ -161,7 +161,7 @@ TEST(WedgeBox, KeepsTheForcesStrengthFromWedgeToWedge) {
 TEST(WedgeBox, PopsThroughAPlateAtStiffnessTimesHalfItsThickness) {
   // PHYSICS 3: a plate of 2 mm at 1 N/mm lets go at 1 N.
   const WedgeBox plate{{.half_sides = {0.05, 0.05, 0.001}}};
-  Touch touch{PrimitiveContact(plate), SpringDamper{1000, 0}};
+  ContactForceLaw touch{PrimitiveContact(plate), SpringDamper{1000, 0}};
   double largest = 0;
   bool popped = false;
   for (double z = 0.002; z > -0.002; z -= 1e-6) {
@@ -177,7 +177,7 @@ TEST(EntryFaceContact, HoldsTheTipBeforeAPlateHoweverDeepItIsPressed) {
   const Box plate{.half_sides = {0.05, 0.05, 0.0001}};  // case 23 of PHYSICS 7: 0.2 mm
   support::Random random(3);
   for (const double side : {1.0, -1.0}) {
-    Touch touch{EntryFaceContact(plate), SpringDamper{1000, 0}};
+    ContactForceLaw touch{EntryFaceContact(plate), SpringDamper{1000, 0}};
     touch(at({0, 0, side * 0.001}));
     for (int i = 0; i < 10000; ++i) {
       // Up to 8.5 mm deep, with a tremor far larger than any hand's.
@@ -238,7 +238,7 @@ TEST(EntryFaceContact, TakesTheFaceOfAFastPathEvenAtEdgesAndCorners) {
 }
 
 TEST(EntryFaceContact, LetsGoAboveItsFaceAndSidewaysWithoutAPull) {
-  Touch touch{EntryFaceContact(kCube), SpringDamper{1000, 0}};
+  ContactForceLaw touch{EntryFaceContact(kCube), SpringDamper{1000, 0}};
   touch(at({0.018, 0, 0.03}));
   EXPECT_EQ(touch(at({0.018, 0, 0.01})).touch.feature, kTop);
   EXPECT_EQ(touch(at({0.0199, 0, 0.01})).touch.feature, kTop);

@@ -9,7 +9,7 @@
 
 #include "support/meshes/shapes.h"
 #include "support/seed.h"
-#include "thimble/render/touch.h"
+#include "thimble/render/object_touch.h"
 #include "track/mesh_contact.h"
 
 namespace thimble::render {
@@ -55,10 +55,11 @@ TEST(SpringDamper, GivesNoForceForNaN) {
   EXPECT_EQ(spring.force(contact_at(0.001, {0, 0, 1}), state), Vector3d::Zero());
 }
 
-TEST(Touch, PushesBackWithStiffnessTimesDepthOnABox) {
+TEST(ContactForceLaw, PushesBackWithStiffnessTimesDepthOnABox) {
   auto contact = MeshContact::build(support::box({0.05, 0.05, 0.05}));
   ASSERT_TRUE(contact.ok());
-  Touch<MeshContact, SpringDamper> touch(std::move(contact).value(), SpringDamper{1000, 0});
+  ContactForceLaw<MeshContact, SpringDamper> touch(std::move(contact).value(),
+                                                   SpringDamper{1000, 0});
   driver::DeviceState state;
   for (const double z : {0.06, 0.051, 0.049, 0.047}) {
     state.p_WT = {0.011, 0.007, z};

@@ -16,8 +16,8 @@
 #include "support/physics.h"
 #include "surface/texture/sines.h"
 #include "thimble/render/field/half_space.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 
 namespace thimble::render {
 namespace {
@@ -33,7 +33,7 @@ driver::DeviceState tip_at(const Vector3d& p_WT, const Vector3d& v_WT = {0, 0, 0
 }
 
 TEST(PhysicsOfSurfaces, ASpringAndDamperPushBackByTheirLaw) {
-  Touch touch{PrimitiveContact(HalfSpace()), SpringDamper{800, 2}};
+  ContactForceLaw touch{PrimitiveContact(HalfSpace()), SpringDamper{800, 2}};
   touch(tip_at({0, 0, 1e-3}));
   expect_physics({"surface", "force 2 mm deep, 800 N/m, 2 N s/m, entering at 0.1 m/s", "k x + b v",
                   "N", 800 * 0.002 + 2 * 0.1, 1e-12},
@@ -47,7 +47,8 @@ TEST(PhysicsOfSurfaces, ATextureHasItsAmplitudeAndWavelength) {
   EffectContext known;
   known.force_max = 5;
   known.surface_stiffness = 800;
-  Touch touch{PrimitiveContact(HalfSpace()), Sines(settings, known), SpringDamper{800, 0}};
+  ContactForceLaw touch{PrimitiveContact(HalfSpace()), Sines(settings, known),
+                        SpringDamper{800, 0}};
   touch(tip_at({0, 0, 1e-3}));
   double low = HUGE_VAL, high = 0, first = -1, last = -1;
   int crossings = 0;

@@ -24,9 +24,9 @@
 #include "surface/texture/sines.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
 #include "thimble/render/surface/surface_response.h"
-#include "thimble/render/touch.h"
 #include "track/blended.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
@@ -275,8 +275,8 @@ TEST(TexturePlace, AddsWorkOverEdgePlanesOnlyWhereTheFeetOfTheTwoSidesLieApart) 
     using Contact = Blended<MeshContact, std::decay_t<decltype(shading)>>;
     const Contact contact(MeshContact(mesh, search), shading,
                           std::make_shared<const SmoothNormals>(*mesh));
-    Touch bare(contact, spring);
-    Touch rough(contact, Sines(waves(5e-5), {}), spring);
+    ContactForceLaw bare(contact, spring);
+    ContactForceLaw rough(contact, Sines(waves(5e-5), {}), spring);
     const OpenLoop around = open_loop(bare, rough, outside, way);
     EXPECT_TRUE(around.felt);
     return around;

@@ -17,8 +17,8 @@
 #include "surface/texture/sines.h"
 #include "thimble/render/field/half_space.h"
 #include "thimble/render/field/sphere.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 
 namespace thimble::render {
 namespace {
@@ -80,7 +80,7 @@ HeightMap::Settings egg_box_map(TextureForm form, HeightMap::Along along) {
 // The force on the tip at a place, after one tick outside.
 template <class Shape, class Stage>
 Vector3d force_at(const Shape& shape, const Stage& stage, const Vector3d& p_W) {
-  Touch touch{PrimitiveContact(shape), stage, SpringDamper{kStiffness, 0}};
+  ContactForceLaw touch{PrimitiveContact(shape), stage, SpringDamper{kStiffness, 0}};
   touch(at({0.3, 0.4, 0.9}));
   return touch(at(p_W)).f_T_W;
 }
@@ -279,10 +279,11 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
 
 TEST(Textures, AskTheHeapForNothing) {
   const EffectContext known = context();
-  Touch touch{PrimitiveContact(HalfSpace()), Sines(two_waves(TextureForm::kConservative), known),
-              Sandpaper({}, known),
-              HeightMap(egg_box_map(TextureForm::kConservative, HeightMap::Along::kAll), known),
-              SpringDamper{kStiffness, 0}};
+  ContactForceLaw touch{
+      PrimitiveContact(HalfSpace()), Sines(two_waves(TextureForm::kConservative), known),
+      Sandpaper({}, known),
+      HeightMap(egg_box_map(TextureForm::kConservative, HeightMap::Along::kAll), known),
+      SpringDamper{kStiffness, 0}};
   touch(at({0, 0, 0.01}));
   driver::ForceCommand command;
   EXPECT_EQ(support::heap_calls_of([&] { command = touch(at({0, 0, -0.004})); }), 0);
@@ -296,7 +297,7 @@ TEST(Sines, GiveTheForceTheLinesOfTheirWaves) {
       {.amplitude = 0.0001, .wavelength = 0.002, .direction = {1, 0, 0}, .phase = 0.4},
       {.amplitude = 0.00004, .wavelength = 0.001, .direction = {1, 0, 0}, .phase = 2}};
   const Sines waves(settings, EffectContext{});
-  Touch touch{PrimitiveContact(HalfSpace()), waves, SpringDamper{kStiffness, 0}};
+  ContactForceLaw touch{PrimitiveContact(HalfSpace()), waves, SpringDamper{kStiffness, 0}};
   touch(at({0, 0, 0.01}));
   constexpr int kTicks = 1000;
   std::vector<double> push, aside;

@@ -11,8 +11,8 @@
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"
 #include "support/meshes/smooth_surfaces.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 #include "track/blended.h"
 #include "track/mesh_contact.h"
 
@@ -328,9 +328,10 @@ TEST(Blended, BeginsContactWithoutAForceStepWhereTheSurfaceIsCurved) {
 }
 
 TEST(Blended, PushesAlongTheBlendedNormalAndAsksTheHeapForNothing) {
-  Touch touch(Blended<MeshContact, FixedBand>(
-                  MeshContact::build(support::icosphere(3, 0.05)).value(), FixedBand{0.001}),
-              SpringDamper{1000, 0});
+  ContactForceLaw touch(
+      Blended<MeshContact, FixedBand>(MeshContact::build(support::icosphere(3, 0.05)).value(),
+                                      FixedBand{0.001}),
+      SpringDamper{1000, 0});
   driver::DeviceState state;
   state.p_WT = {0.06, 0.001, 0.002};
   touch(state);

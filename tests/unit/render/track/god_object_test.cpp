@@ -10,8 +10,8 @@
 #include "support/heap_guard.h"
 #include "support/seed.h"
 #include "thimble/render/mesh/mesh_file.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 
 namespace thimble::render {
 namespace {
@@ -293,7 +293,7 @@ TEST(GodObject, AsksTheHeapForNothing) {
 }
 
 TEST(GodObject, TakesTheContactStageOfTouch) {
-  Touch<GodObjectContact, SpringDamper> touch(
+  ContactForceLaw<GodObjectContact, SpringDamper> touch(
       GodObjectContact::build(support::box({1, 1, 1})).value(), {.stiffness = 500, .damping = 0});
   driver::DeviceState state;
   state.p_WT = {0.1, 0.2, 1.1};

@@ -22,8 +22,8 @@
 #include "support/random.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 #include "track/blended.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
@@ -426,7 +426,7 @@ TriangleMesh grooved(double deep) {
 // mm and a tick of delay; gives the oscillation of the force across the groove, N, after 5 s.
 template <class Contact>
 double oscillation_in_groove(Contact contact, double deep) {
-  Touch touch(std::move(contact), SpringDamper{500, 0});
+  ContactForceLaw touch(std::move(contact), SpringDamper{500, 0});
   support::Random random(3);
   const Vector3d from(0.001, 0, 0.005), to(0, 0, -deep - 0.009);
   Vector3d p = from, v(0, 0, 0), delayed(0, 0, 0);

@@ -16,8 +16,8 @@
 #include "support/meshes/smooth_surfaces.h"
 #include "support/meshes/surface_nets.h"
 #include "thimble/render/mesh/check_mesh.h"
+#include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
-#include "thimble/render/touch.h"
 #include "track/blended.h"
 #include "track/mesh_contact.h"
 
@@ -44,7 +44,7 @@ struct Errors {
 // what the renderer answers with f.
 template <class Contact, class Surface>
 Errors replay(Contact contact, const Surface& surface, Vector3d s, double reach) {
-  Touch touch(std::move(contact), SpringDamper{kStiffness, 0});
+  ContactForceLaw touch(std::move(contact), SpringDamper{kStiffness, 0});
   const ContactMesh& mesh = touch.contact().mesh();
   support::Random random(5);
   Errors errors;

@@ -14,7 +14,7 @@ struct SurfaceResponse {
   Eigen::Vector3d f_T_W{0, 0, 0};  ///< Force on the hand so far, N in W.
 };
 
-/// A stage of Touch after the contact: a texture, the spring of the surface, a friction.
+/// A stage of ContactForceLaw after the contact: a texture, the spring of the surface, a friction.
 ///
 /// `touch` runs once in every tick of contact and changes `response`; `leave` runs once when a
 /// contact has ended and forgets what belongs to it. Both are Real-time: safe.
@@ -56,8 +56,8 @@ inline SurfaceFoot flat_foot(const ContactState& contact) noexcept {
           .fall_W = contact.n_W};
 }
 
-/// Returns the foot that a `Contact` stage of Touch tells of, or the flat one if it tells of none.
-/// Precondition: its last `update` was at `p_WT` (W, m) and touches. Real-time: safe.
+/// Returns the foot that a `Contact` stage of ContactForceLaw tells of, or the flat one if it tells
+/// of none. Precondition: its last `update` was at `p_WT` (W, m) and touches. Real-time: safe.
 template <class Contact>
 SurfaceFoot foot_of(const Contact& contact, const Eigen::Vector3d& p_WT) noexcept {
   if constexpr (requires { contact.foot(p_WT); }) {
@@ -67,8 +67,8 @@ SurfaceFoot foot_of(const Contact& contact, const Eigen::Vector3d& p_WT) noexcep
   }
 }
 
-/// A SurfaceStage that depends on the place of the surface: a texture. Touch finds the foot for
-/// such stages, and for no others.
+/// A SurfaceStage that depends on the place of the surface: a texture. ContactForceLaw finds the
+/// foot for such stages, and for no others.
 template <class Stage>
 concept FootStage = requires(Stage stage, const SurfaceFoot& foot, const driver::DeviceState& state,
                              SurfaceResponse& response) {
@@ -81,7 +81,7 @@ concept FootStage = requires(Stage stage, const SurfaceFoot& foot, const driver:
 ///
 /// Where cells of a surface meet deep inside, the foot jumps, and a height would jump with it. This
 /// place follows it by at most `kPathRatio` times the path of tip and surface, as the felt depth
-/// does (track/proxy_filter.h). While it is behind it does not depend on the tip's place, so its
+/// does (track/path_bounded.h). While it is behind it does not depend on the tip's place, so its
 /// slope is 0 and nothing pushes aside. All Real-time: safe.
 class FootFollower {
  public:

@@ -6,7 +6,7 @@
 
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/effect/stage_list.h"
-#include "thimble/render/touch.h"
+#include "thimble/render/object_touch.h"
 #include "track/path_bounded.h"
 
 namespace thimble::render {
@@ -27,21 +27,24 @@ inline StageList stage_list(const SurfaceChoice& surface) {
   return StageList(std::move(stages));
 }
 
-template <class Stages>
-std::unique_ptr<ObjectTouch> object_of(Stages stages) {
-  return std::make_unique<ObjectTouchOf<Stages>>(std::move(stages));
+/// Puts a law that is known at compile time behind the interface of ObjectTouch.
+template <class Law>
+std::unique_ptr<ObjectTouch> adapt_law(Law law) {
+  return std::make_unique<ObjectTouchAdapter<Law>>(std::move(law));
 }
 
 /// Builds the force law of one object from a contact stage and a surface. Every contact is bounded
 /// by the tip's path (path_bounded.h). Real-time: never from the servo thread.
 template <class Contact>
-std::unique_ptr<ObjectTouch> touch_of(Contact contact, const SurfaceChoice& surface) {
+std::unique_ptr<ObjectTouch> build_surface_touch(Contact contact, const SurfaceChoice& surface) {
   PathBounded bounded(std::move(contact));
   // A bare surface, by far the most frequent, is joined wholly at compile time.
-  if (surface.effects.empty()) return object_of(Touch(std::move(bounded), surface.spring));
+  if (surface.effects.empty())
+    return adapt_law(ContactForceLaw(std::move(bounded), surface.spring));
   StageList stages = stage_list(surface);
-  if (!stages.needs_foot()) return object_of(Touch(std::move(bounded), std::move(stages)));
-  return object_of(Touch(std::move(bounded), FootStageList(std::move(stages))));
+  if (!stages.needs_foot())
+    return adapt_law(ContactForceLaw(std::move(bounded), std::move(stages)));
+  return adapt_law(ContactForceLaw(std::move(bounded), FootStageList(std::move(stages))));
 }
 
 }  // namespace thimble::render

@@ -1,18 +1,60 @@
-#include "scene_shapes.h"
+#include "object_sections.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "energy_guard_settings.h"
 #include "math/elementary.h"
+#include "surface/friction/friction_settings.h"
+#include "worst_direction.h"
+#include "yaml/yaml_settings.h"
 
 namespace thimble::scene {
 namespace {
 
 using Eigen::Vector3d;
+
+/// Gives the groups of the table, each once, in its order.
+std::vector<std::string_view> group_names() {
+  std::vector<std::string_view> groups;
+  for (const render::EffectKind& kind : render::effect_table()) {
+    if (std::find(groups.begin(), groups.end(), kind.group) == groups.end()) {
+      groups.push_back(kind.group);
+    }
+  }
+  return groups;
+}
+
+/// Finds which effect an entry of the list names; nullptr if none, and notes why.
+const render::EffectKind* named_effect(YamlMap& entry) {
+  const render::EffectKind* found = nullptr;
+  std::string known;
+  for (const std::string_view group : group_names()) {
+    known += (known.empty() ? "" : " or ") + std::string(group) + ": NAME";
+    if (!entry.has(group)) continue;
+    if (found != nullptr) {
+      entry.refuse(group, "stands beside another effect; begin a list entry of its own");
+      return nullptr;
+    }
+    std::vector<const render::EffectKind*> kinds;
+    std::vector<std::string_view> names;
+    for (const render::EffectKind& kind : render::effect_table()) {
+      if (kind.group != group) continue;
+      kinds.push_back(&kind);
+      names.push_back(kind.name);
+    }
+    found = kinds[entry.require_choice(group, names)];
+  }
+  if (found == nullptr) entry.refuse("", "expected " + known);
+  return found;
+}
 
 constexpr double kSideMin = 1e-4, kSideMax = 2;  // m, as the size of meshes
 constexpr int kAround = 96;  // sides of a drawn sphere: its facets lie within 0.03 % of the radius
@@ -110,12 +152,83 @@ SceneShape read_box(YamlMap map, const Eigen::Matrix3d& R_WO, const Vector3d& p_
 
 }  // namespace
 
+render::EffectContext effect_context_of(const ArmFile& arm, double rate) {
+  render::EffectContext context;
+  context.tick = 1 / rate;
+  context.delay = loop_delay(arm);
+  context.force_max = arm.limits.force_max;
+  context.tip_mass = arm.simulated.plant.mass;
+  context.tip_damping = arm.simulated.plant.viscous;
+  context.tip_coulomb = arm.simulated.plant.coulomb;
+  context.encoder_step = worst_over_workspace(arm).encoder_step;
+  return context;
+}
+
+std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesystem::path& folder,
+                                             const render::EffectContext& context) {
+  std::vector<render::EffectPlan> plans;
+  for (YamlMap& entry : object.require_maps("effects")) {
+    const render::EffectKind* kind = named_effect(entry);
+    if (kind == nullptr) continue;
+    entry.set_place("effects[] " + std::string(kind->group) + ": " + std::string(kind->name));
+    YamlSettings settings(entry, folder);
+    plans.push_back({kind, kind->read(settings, context)});
+    settings.finish();
+  }
+  std::stable_sort(plans.begin(), plans.end(),
+                   [](const auto& a, const auto& b) { return a.kind->order < b.kind->order; });
+  return plans;
+}
+
+render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,
+                                const render::EffectContext& context) {
+  std::vector<std::string_view> names;
+  for (const render::FieldKind& kind : render::field_table()) names.push_back(kind.name);
+  const render::FieldKind& kind = render::field_table()[object.require_choice("field", names)];
+  object.set_place("objects[] field: " + std::string(kind.name));
+  YamlSettings settings(object, folder);
+  render::FieldBuilder build = kind.read(settings, context);
+  settings.finish();
+  return build;
+}
+
 std::optional<SceneShape> read_shape(YamlMap& object, const Eigen::Matrix3d& R_WO,
                                      const Eigen::Vector3d& p_WO) {
   if (object.has("plane")) return read_plane(object.require_map("plane"), R_WO, p_WO);
   if (object.has("sphere")) return read_sphere(object.require_map("sphere"), p_WO);
   if (object.has("box")) return read_box(object.require_map("box"), R_WO, p_WO);
   return {};
+}
+
+SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
+                    const render::EffectContext& context) {
+  SceneBody body;
+  YamlMap map = object.require_map("body");
+  const auto read = [&](const char* key, auto read_settings) {
+    if (!map.has(key)) return;
+    YamlSettings settings(map.require_map(key), folder);
+    read_settings(settings);
+    settings.finish();
+  };
+  read("dent", [&](auto& settings) { body.dent.emplace().read(settings, context); });
+  read("plastic", [&](auto& settings) { body.shape.clay.emplace().read(settings); });
+  read("snap", [&](auto& settings) { body.shape.snap.emplace().read(settings); });
+  read("motion", [&](auto& settings) { body.motion.emplace().read(settings); });
+  body.shape.step = context.tick;
+  map.finish();
+  return body;
+}
+
+render::BodyCoupling coupling_of(const render::EffectContext& context, bool texture,
+                                 bool friction) {
+  render::BodyCoupling coupling{.stiffness = context.surface_stiffness,
+                                .damping = context.surface_damping,
+                                .step = context.tick};
+  if (texture) coupling.stiffness *= 2;
+  if (!friction) return coupling;
+  const double hold = render::stick_stiffness_max(context);
+  if (std::isfinite(hold)) coupling.stiffness = std::max(coupling.stiffness, hold);
+  return coupling;
 }
 
 }  // namespace thimble::scene

@@ -1,4 +1,4 @@
-#include "track/proxy_filter.h"
+#include "track/path_bounded.h"
 
 #include <algorithm>
 #include <cmath>
