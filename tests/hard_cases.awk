@@ -37,12 +37,14 @@ file == 1 {
   number[cases] = $1
   title[$1] = $2
   wanted[$1] = $3
+  suite[$1] = $4
   next
 }
 $1 == "HARD_CASE" {
   if (NF != 9) { fault("a line that is not understood: " $0); next }
   n = $2
   if (!(n in title)) { fault("case " n " is not in hard_cases.list (" $8 ")"); next }
+  if (index($8, suite[n] ".") != 1) fault("case " n " has the suite " suite[n] ", not that of " $8)
   space = index($4, " ")
   sign = space ? substr($4, 1, space - 1) : $4
   what = space ? substr($4, space + 1) : ""

@@ -12,7 +12,7 @@ lines() {
     /^[#=]/ { next }
     { sub(/[?]$/, "", $1); figure = $1 == c[1] ? c[2] : "1"
       if (figure == "-") next
-      print "HARD_CASE|" $1 "|words|<= something|" figure "|2|N|HardCase" $1 ".Test|tests/a_test.cpp" }
+      print "HARD_CASE|" $1 "|words|<= something|" figure "|2|N|" $4 ".Test|tests/a_test.cpp" }
   ' "$here/hard_cases.list" >"$scratch/lines/all"
 }
 check() { bash "$here/hard_cases.sh" --check "$scratch/lines" >"$scratch/log" 2>&1; }
@@ -33,12 +33,14 @@ lines '7|nan' && must_fail "a figure that is no number" "case 7, words: nan is n
 lines '7|inf' && must_fail "an infinite figure" "case 7, words: inf is not"
 lines && echo "HARD_CASE|99|w|<= s|1|2|N|T.T|f" >>"$scratch/lines/all"
 must_fail "a case that is not in the list" "case 99 is not in"
+lines && echo "HARD_CASE|1|words|<= s|1|2|N|HardCaseJitter.Test|f" >>"$scratch/lines/all"
+must_fail "a test in the suite of another case" "case 1 has the suite HardCaseStiffestWall, not that of HardCaseJitter"
 lines && echo "HARD_CASE|1|torn" >>"$scratch/lines/all"
 must_fail "a torn line" "not understood"
 # Rows as cases 4 and 38 have them: more than a limit, and just that.
-lines && echo "HARD_CASE|4|adversary|> gain|-0.49|0|1|HardCase04.Test|f" >>"$scratch/lines/all"
+lines && echo "HARD_CASE|4|adversary|> gain|-0.49|0|1|HardCaseEncoderAdversary.Test|f" >>"$scratch/lines/all"
 must_fail "an adversary who gains nothing" "case 4, adversary: -0.49 is not > 0"
-lines && echo "HARD_CASE|38|glitches|== not dropped|1|0|1|HardCase38.Test|f" >>"$scratch/lines/all"
+lines && echo "HARD_CASE|38|glitches|== not dropped|1|0|1|HardCaseEncoderFault.Test|f" >>"$scratch/lines/all"
 must_fail "a glitch that was not dropped" "case 38, glitches: 1 is not = 0"
 unset THIMBLE_LONG
 lines && must_fail "an old table" "differs from what the tests measure"

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "meshes/object_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
+#include "report/mesh_json.h"
 #include "report/pictures.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
@@ -31,8 +33,11 @@ struct MeshOptions {
   std::string file;
   std::string picture;
   std::string repair;
+  std::string json;
   double thicken = 0;  // the file's unit; 0: leave open what is
 };
+
+using Json = nlohmann::ordered_json;
 
 void print(const render::MeshFindings& found) {
   const Eigen::Vector3d size = found.box_max - found.box_min;
@@ -55,13 +60,17 @@ void print(const render::MeshFindings& found) {
 constexpr double kLargeForArms = scene::kReachesReported * 0.2;
 
 // Prints which parts of a mesh overlap or touch.
-void print_touching(const render::TriangleMesh& mesh) {
-  const std::string parts = render::describe(render::find_touching_parts(mesh));
+void print_touching(const render::TriangleMesh& mesh, Json& json) {
+  const render::TouchingParts touching = render::find_touching_parts(mesh);
+  json["touching_pairs"] = touching.pairs;
+  const std::string parts = render::describe(touching);
   if (!parts.empty()) scene::print_format("  note        %s\n", parts.c_str());
 }
 
 // Returns whether a mesh can be touched, and if not, why.
-int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
+int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
+  json["touchable"] = true;
+  json["turned_on_load"] = 0;
   if (found.touchable()) {
     scene::print_format("The mesh is closed and wound alike: it can be touched.\n");
     return kExitDone;
@@ -73,9 +82,11 @@ int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& f
     scene::print_format("  - %s\n", render::describe(fault).c_str());
   }
   if (contact) {
+    json["turned_on_load"] = contact->orientation().turned_triangles;
     scene::print_format("  %s\n", render::describe(contact->orientation()).c_str());
     return kExitDone;
   }
+  json["touchable"] = false;
   // A surface with one side only shows no other fault than edges wound two ways.
   const bool only_winding =
       std::all_of(found.faults.begin(), found.faults.end(), [](const render::MeshFault& fault) {
@@ -93,33 +104,40 @@ void print(const std::vector<render::RepairChange>& changes) {
 }
 
 // Makes thin bodies of what is open. Returns what was done, as a sentence.
-std::string thicken(render::TriangleMesh& mesh, double thickness) {
+std::string thicken(render::TriangleMesh& mesh, double thickness, Json& json) {
   render::ThickenedMesh thick = render::thicken_sheets(mesh, thickness);
   mesh = std::move(thick.mesh);
   render::orient_mesh(mesh);
+  json["sheet_triangles"] = thick.report.triangles;
   return render::describe(thick.report, "(file's unit)");
 }
 
 // Says how a mesh that cannot be touched could be, by trying it out.
-void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found) {
+void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
+  json["remedy"] = {{"options", nullptr}};
+  Json& remedy = json["remedy"];
   if (repaired.mesh.triangles.empty()) {
     scene::print_format("No triangle of it has an area: there is nothing to touch.\n");
     return;
   }
+  remedy["changes"] = report::changes_json(repaired.changes);
   if (render::ContactMesh::build(repaired.mesh)) {
+    remedy["options"] = {"--repair"};
     scene::print_format(
         "A repair makes it touchable: --repair OUT.off here, or repair: true in a scene.\n");
     print(repaired.changes);
     return;
   }
   const double thickness = 0.01 * (found.box_max - found.box_min).maxCoeff();
-  const std::string sheets = thicken(repaired.mesh, thickness);
+  const std::string sheets = thicken(repaired.mesh, thickness, remedy);
   if (!render::ContactMesh::build(repaired.mesh)) {
     scene::print_format(
         "Neither a repair nor sheets make it touchable: mend it in a mesh editor.\n");
     return;
   }
+  remedy["options"] = {"--repair", "--thicken"};
+  remedy["thickness"] = thickness;
   scene::print_format(
       "What is open can be touched as a sheet: --repair OUT.off --thicken %.1g here, or repair: "
       "true "
@@ -129,11 +147,12 @@ void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& f
   scene::print_format("  - %s\n", sheets.c_str());
 }
 
-int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
+int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& json) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
+  json["changes"] = report::changes_json(repaired.changes);
   std::string sheets;
   if (options.thicken > 0 && !repaired.mesh.triangles.empty()) {
-    sheets = thicken(repaired.mesh, options.thicken);
+    sheets = thicken(repaired.mesh, options.thicken, json);
   }
   const std::string text = render::off_text(repaired.mesh);
   if (auto saved = output::write_file(options.repair, output::kMesh, text); !saved) {
@@ -144,15 +163,16 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options) {
   print(repaired.changes);
   if (!sheets.empty()) scene::print_format("  - %s\n", sheets.c_str());
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
+  json.update(report::mesh_json(found));
   print(found);
-  print_touching(repaired.mesh);
-  const int verdict = tell_verdict(repaired.mesh, found);
-  if (verdict != kExitDone) tell_remedy(repaired.mesh, found);
+  print_touching(repaired.mesh, json);
+  const int verdict = tell_verdict(repaired.mesh, found, json);
+  if (verdict != kExitDone) tell_remedy(repaired.mesh, found, json);
   return verdict;
 }
 
 // Tells what a page file is; its triangles are looked at one page at a time, if at all.
-int tell_pages(const MeshOptions& options) {
+int tell_pages(const MeshOptions& options, Json& json) {
   const auto pages = render::PageFile::open(options.file);
   if (!pages) return complain(pages.error(), kExitBadInput);
   if (!options.picture.empty() || !options.repair.empty()) {
@@ -181,6 +201,10 @@ int tell_pages(const MeshOptions& options) {
   for (std::size_t page = 0; page < pages->boxes().size(); ++page) {
     damaged += pages->read_page(static_cast<std::int32_t>(page), records) == 0;
   }
+  json["triangles"] = pages->triangle_count();
+  json["pages"] = pages->boxes().size();
+  json["damaged_pages"] = damaged;
+  json["touchable"] = damaged == 0;
   if (damaged > 0) {
     scene::print_format(
         "%zu pages are damaged: they would be holes that nothing is felt of. Write the file "
@@ -192,7 +216,7 @@ int tell_pages(const MeshOptions& options) {
   return kExitDone;
 }
 
-int tell_mesh(const MeshOptions& options) {
+int tell_mesh(const MeshOptions& options, Json& json) {
   if (!options.repair.empty() && std::filesystem::path(options.repair).extension() != ".off") {
     return complain(
         {"--repair: " + options.repair + ": a mesh is written as OFF; let the name end in .off."},
@@ -202,24 +226,31 @@ int tell_mesh(const MeshOptions& options) {
   plan.read(options.file);
   plan.write("--picture", options.picture, output::kind_of_name(options.picture));
   plan.write("--repair", options.repair, output::kMesh);
+  plan.write("--json", options.json, output::kJson);
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  if (render::is_page_file(options.file)) return tell_pages(options);
+  json["file"] = options.file;
+  if (render::is_page_file(options.file)) return tell_pages(options, json);
   render::MeshFileInfo info;
   const auto mesh = render::load_mesh(options.file, &info);
   if (!mesh) return complain(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
   scene::print_format("%s (lengths in the file's unit)\n", options.file.c_str());
+  json.update(report::mesh_json(found));
+  json["unit_m"] = info.unit ? Json(*info.unit) : Json(nullptr);
+  json["up"] = info.up != 0 ? Json(std::string(1, info.up)) : Json(nullptr);
+  json["notes"] = info.notes;
   print(found);
   if (info.unit) scene::print_format("  unit        %g m\n", *info.unit);
   if (info.up != 0) scene::print_format("  up          %c\n", info.up);
   const double side = (found.box_max - found.box_min).maxCoeff();
-  if (!info.unit && side > kLargeForArms) {
+  json["unit_doubtful"] = !info.unit && side > kLargeForArms;
+  if (json["unit_doubtful"]) {
     scene::print_format("  size        %.4g m large in a scene without scale or size; %s\n", side,
                         scene::unit_advice(info.kind).c_str());
   }
   for (const std::string& note : info.notes)
     scene::print_format("  note        %s\n", note.c_str());
-  print_touching(*mesh);
+  print_touching(*mesh, json);
   if (!options.picture.empty()) {
     const std::string title = std::filesystem::path(options.file).filename().string();
     if (const auto drawn =
@@ -229,9 +260,25 @@ int tell_mesh(const MeshOptions& options) {
     }
     scene::print_format("Picture: %s\n", options.picture.c_str());
   }
-  const int verdict = tell_verdict(*mesh, found);
-  if (!options.repair.empty()) return repair(*mesh, options);
-  if (verdict != kExitDone) tell_remedy(*mesh, found);
+  const int verdict = tell_verdict(*mesh, found, json);
+  if (!options.repair.empty()) {
+    json["repaired"] = {{"file", options.repair}};
+    return repair(*mesh, options, json["repaired"]);
+  }
+  if (verdict != kExitDone) tell_remedy(*mesh, found, json);
+  return verdict;
+}
+
+// Describes the mesh on the terminal and, if the user wants it, in a file.
+int describe_mesh(const MeshOptions& options) {
+  Json json;
+  const int verdict = tell_mesh(options, json);
+  // Without findings (bad arguments, a file that cannot be read) no file is written.
+  if (options.json.empty() || !json.contains("touchable")) return verdict;
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (auto saved = output::write_file(options.json, output::kJson, text); !saved) {
+    return complain(saved.error(), kExitTrouble);
+  }
   return verdict;
 }
 
@@ -250,6 +297,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
                       "without area or twice, seams closed, bodies that touch at an edge parted, "
                       "holes filled where that takes no more than half of a part's area, wound "
                       "outwards");
+  command->add_option("--json", options->json, "Write the findings to this file as JSON");
   command
       ->add_option("--thicken", options->thicken,
                    "With --repair: make thin bodies of what is still open, so thick, in the "
@@ -267,7 +315,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   command->callback([command, options, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (options->file.empty()) throw CLI::RequiredError("FILE");
-    exit_code = tell_mesh(*options);
+    exit_code = describe_mesh(*options);
   });
 }
 

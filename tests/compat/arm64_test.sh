@@ -14,15 +14,15 @@ done
 source "$(dirname "$0")/../program/expect.sh" "$1" "$2" "$3"
 eigen=$4 version_folder=$5
 export TMPDIR=$work
-faces=$source_dir/app/compat
-headers=$faces/include/thimble/compat
+compat=$source_dir/app/compat
+headers=$compat/include/thimble/compat
 mkdir lib clients
 
 # library NAME FACE [FLAG...]: libNAME.so of the sources of a face and of the core, as app/compat/CMakeLists.txt makes it.
 library() {
   local name=$1 face=$2 source objects=()
   mkdir -p "$face"
-  for source in "$faces/$face"/*.cpp "$faces"/core/*.cpp; do
+  for source in "$compat/$face"/*.cpp "$compat"/core/*.cpp; do
     objects+=("$face/$(basename "$source").o")
     aarch64-linux-gnu-g++ -std=c++20 -O1 -fPIC -Wno-psabi \
       -I"$version_folder" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" -I"$source_dir/driver/src" \
@@ -30,7 +30,7 @@ library() {
   done
   {
     echo '{ global:'
-    sed -nE 's/^([A-Za-z].*)/\1;/p' "$faces/$face/symbols.txt"
+    sed -nE 's/^([A-Za-z].*)/\1;/p' "$compat/$face/symbols.txt"
     echo 'local: *; };'
   } >"$face.map"
   aarch64-linux-gnu-g++ -shared "${objects[@]}" -static-libstdc++ -static-libgcc -pthread \
@@ -58,7 +58,7 @@ for name in hello_force sphere; do
 done
 
 for pair in hd=HD hdphantom=hdPhantom dhd=drd; do
-  expect 0 '^same$' bash -c "diff <(grep -E '^[A-Za-z]' '$compat/${pair%%=*}/symbols.txt' | LC_ALL=C sort) \
+  expect_own 0 '^same$' bash -c "diff <(grep -E '^[A-Za-z]' '$compat/${pair%%=*}/symbols.txt' | LC_ALL=C sort) \
     <(aarch64-linux-gnu-nm -D --defined-only lib/lib${pair#*=}.so | awk '{ sub(/@.*/, \"\", \$3); print \$3 }' | LC_ALL=C sort -u) &&
     echo same"
 done
@@ -71,12 +71,12 @@ arm() {
   "$thimble" exec "${options[@]}" qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH="$work/lib" "$@"
 }
 printf '0 0 0 0.03\n1 0 0 0.012\n2 0.003 0 0.012\n3 0.003 0 0.03\n' >press.txt
-expect 0 'errors by value: right' arm --arm vintage_phantom --arm falcon -- clients/wrong_calls
-expect 0 'vintage_phantom by Thimble' arm --hand press.txt -- clients/hello_sphere
-expect 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' arm -- clients/calibration
-expect 0 ' 0 out of order, 0 torn' arm -- clients/two_callbacks
-expect 0 '2500 turns, [1-9]' arm --hand press.txt -- clients/chai_sphere 2.5
-expect 0 'sphere: PASSED' arm --hand press.txt -- dhd_clients/sphere 2.5
-expect 0 'hello force: PASSED' arm -- dhd_clients/hello_force
-expect 0 'qemu-aarch64 by hdPhantom: asked for a force in [0-9]{4} of' arm --hand press.txt -- clients/chai_sphere 2.5
+expect_own 0 'errors by value: right' arm --arm vintage_phantom --arm falcon -- clients/wrong_calls
+expect_own 0 'vintage_phantom by Thimble' arm --hand press.txt -- clients/hello_sphere
+expect_own 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' arm -- clients/calibration
+expect_own 0 ' 0 out of order, 0 torn' arm -- clients/two_callbacks
+expect_own 0 '2500 turns, [1-9]' arm --hand press.txt -- clients/chai_sphere 2.5
+expect_own 0 'sphere: PASSED' arm --hand press.txt -- dhd_clients/sphere 2.5
+expect_own 0 'hello force: PASSED' arm -- dhd_clients/hello_force
+expect 0 'qemu-aarch64 .*hdPhantom.* [0-9]{4} ' arm --hand press.txt -- clients/chai_sphere 2.5
 finish

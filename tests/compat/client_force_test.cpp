@@ -39,7 +39,7 @@ bool fault_stays(bool may_activate) {
   return in_fault;
 }
 
-TEST(ClientForce, EndsAFaultOfASimulatedArmWhenTheProgramSwitchesTheForceOn) {
+TEST(ClientForce, EnablingForceClearsAFaultOfASimulatedArm) {
   EXPECT_FALSE(fault_stays(true));
 }
 

@@ -10,12 +10,12 @@ run() { "$thimble" exec "$@"; }
 # A hand that presses into the sphere that hello_sphere draws, 8 mm deep, and out again.
 printf '0 0 0 0.03\n1 0 0 0.012\n2 0.003 0 0.012\n3 0.003 0 0.03\n' >press.txt
 # In virtual time: on a busy machine a program gets no turn for 20 ms now and then, and the gate opens anew.
-expect 0 'vintage_phantom by Thimble' run --clock virtual --hand press.txt --record sphere.h5 "$clients/hello_sphere" 2 asked.txt
-expect 0 'Program +hello_sphere by HDAPI: asked for a force in [0-9]{4} of' run --hand press.txt "$clients/hello_sphere"
+expect_own 0 'vintage_phantom by Thimble' run --clock virtual --hand press.txt --record sphere.h5 "$clients/hello_sphere" 2 asked.txt
+expect 0 'hello_sphere .*HDAPI.* [0-9]{4} ' run --hand press.txt "$clients/hello_sphere"
 [ -s sphere.h5 ] || { echo "FAILED: no recording"; failures=$((failures + 1)); }
 # In the recording: what the gate got is what the program asked for (its axes: right, up, to the user) and nothing else, and
 # what the motors were sent.
-expect 0 'sphere.csv: [0-9]+ ticks' "$thimble" export sphere.h5 --csv sphere.csv
+expect 0 '' "$thimble" export sphere.h5 --csv sphere.csv
 expect 0 '^[0-9]{3,} ticks with force, 0 that nobody asked for, most 0\.0' awk '
   NR == FNR { asked[sprintf("%.9f %.9f %.9f", $3, $1, $2)] = 1; next }
   FNR == 1 { FS = ","; $0 = $0; for (i = 1; i <= NF; ++i) { if ($i ~ /^f_wanted_W.x/) w = i; if ($i ~ /^f_sent_W.z/) s = i } next }
@@ -26,44 +26,46 @@ expect 0 '^[0-9]{3,} ticks with force, 0 that nobody asked for, most 0\.0' awk '
   }
   END { printf "%d ticks with force, %d that nobody asked for, most %.3f N\n", n, unknown, most }' asked.txt sphere.csv
 
-expect 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' run "$clients/calibration"
-expect 0 'calibrated after 1, 160 x 160 x 160 mm, 5 N, 6 in' run --arm polhem "$clients/calibration"
-expect 0 ' 0 out of order, 0 torn' run "$clients/two_callbacks"
-expect 0 'vintage_phantom and falcon' run --arm vintage_phantom --arm falcon "$clients/two_devices"
-expect 2 'Wrong +hdInitDevice 1 time: no arm has this name' run "$clients/two_devices"
-expect 0 '0\.[23][0-9]+ N at the end' run "$clients/force_ramp"
-expect 0 '0 presses in' run "$clients/buttons"
-expect 0 'errors by value: right' run --arm vintage_phantom --arm falcon "$clients/wrong_calls"
+expect_own 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' run "$clients/calibration"
+expect_own 0 'calibrated after 1, 160 x 160 x 160 mm, 5 N, 6 in' run --arm polhem "$clients/calibration"
+expect_own 0 ' 0 out of order, 0 torn' run "$clients/two_callbacks"
+expect_own 0 'vintage_phantom and falcon' run --arm vintage_phantom --arm falcon "$clients/two_devices"
+expect 2 '^Wrong +hdInitDevice 1 ' run "$clients/two_devices"
+expect_own 0 '0\.[23][0-9]+ N at the end' run "$clients/force_ramp"
+expect_own 0 '0 presses in' run "$clients/buttons"
+expect_own 0 'errors by value: right' run --arm vintage_phantom --arm falcon "$clients/wrong_calls"
 
 # A loop that the set-force call paces, for a while: what it held is told, not judged; a program that waits for a tick has
 # fewer turns than there were ticks.
 seconds=${THIMBLE_LONG:+60}
 run "$clients/chai_loop" "${seconds:-2}000" >loop.log 2>&1
 grep -E 'turns in|^Program' loop.log
-expect 0 "^${seconds:-2}000 turns in" cat loop.log
-expect 0 'Program +chai_loop by hdPhantom: asked for a force in [0-9]+ of [0-9]+ ticks; [0-9]+ ticks? of ours missed' cat loop.log
+expect_own 0 "^${seconds:-2}000 turns in" cat loop.log
+expect_words 0 'chai_loop hdPhantom # #' cat loop.log
 
 # In Python, with ctypes.
-expect 0 'both libraries: right' run --hand press.txt python3 "$source_dir/tests/compat/clients/hello_sphere.py"
+expect_own 0 'both libraries: right' run --hand press.txt python3 "$source_dir/tests/compat/clients/hello_sphere.py"
 
 # With a scene both are felt: its own objects push where the program asks for nothing.
-expect 0 'touched it [1-9]' run --scene rubber "$clients/chai_loop"
+expect 0 '' run --scene rubber --record rubber.h5 "$clients/chai_loop"
+expect 0 '' "$thimble" export rubber.h5 --csv rubber.csv
+expect_own 0 '^touched$' awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^depth/) d = i; next } $d > 0 { print "touched"; exit }' rubber.csv
 
 # A program that hangs is told by name, and its force goes.
-expect 0 'hangs \(HDAPI\) has not renewed its force on vintage_phantom for 20 ms' run "$clients/hangs"
-expect 0 'Stalls +hangs did not renew its force [1-9]' run "$clients/hangs"
+expect_words 0 'hangs HDAPI vintage_phantom 20 ms' run "$clients/hangs"
+expect 0 '^Stalls +hangs .* [1-9]' run "$clients/hangs"
 expect 0 'left with zero force' run "$clients/hangs" and_leaves
 
 # Without `thimble exec`, and other things that go wrong.
-expect 2 'hdInitDevice: Start this program with `thimble exec' \
+expect 2 'hdInitDevice.*`thimble exec' \
   env -u THIMBLE_EXEC LD_LIBRARY_PATH="$(dirname "$thimble")/compat/lib" "$clients/hello_sphere"
-expect 2 'cannot be started: No such file' run ./nowhere
-expect 2 'Which program' run
-expect 7 'opened no arm' run sh -c 'exit 7'
-expect 137 'ended by signal 9' run sh -c 'kill -9 $$'
-expect 2 'known|no arm file' run --arm nonesuch "$clients/calibration"
+expect_words 2 './nowhere' run ./nowhere
+expect_error 2 'exec PROGRAM ARGUMENTS' run
+expect_error 7 'sh ldd' run sh -c 'exit 7'
+expect_words 137 'signal 9' run sh -c 'kill -9 $$'
+expect_words 2 'nonesuch vintage_phantom' run --arm nonesuch "$clients/calibration"
 echo 'zero 0 0' >bad.txt
-expect 2 'bad.txt:1: expected "t x y z"' run --hand bad.txt "$clients/calibration"
+expect_words 2 'bad.txt:1 "t x y z"' run --hand bad.txt "$clients/calibration"
 # Nothing is left behind.
 expect 1 '^$' sh -c 'ls "${TMPDIR:-/tmp}"/thimble-free-* 2>/dev/null || { echo; exit 1; }'
 finish

@@ -85,7 +85,7 @@ class HaplyService : public ::testing::Test {
   std::unique_ptr<driver::Device> device_;
 };
 
-TEST_F(HaplyService, GivesOurOwnBackEndTheSimulatedArmAndItsForcesToTheMotors) {
+TEST_F(HaplyService, OwnClientMovesTheSimulatedArm) {
   device_ = open(clock_);
   ASSERT_NE(device_, nullptr);
   const Vector3d f_W(0.3, -0.2, 0.4);

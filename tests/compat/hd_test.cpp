@@ -235,7 +235,7 @@ TEST_F(FaceHd, ClampsAForceWithoutAnErrorWhereItIsAskedTo) {
   EXPECT_DOUBLE_EQ(most, arms::facts(0).force_max);
 }
 
-TEST_F(FaceHd, SaysThatTheArmIsInFaultAndRecoversWhenForceIsEnabledAnew) {
+TEST_F(FaceHd, ReportsAFaultUntilForceIsEnabledAgain) {
   ExecRig rig;
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
@@ -332,7 +332,7 @@ TEST_F(FaceHd, GivesNumbersByAllFiveTypes) {
   EXPECT_STREQ(hdGetString(HD_DEVICE_MODEL_TYPE), "vintage_phantom");
 }
 
-TEST_F(FaceHd, GivesTheLargestForceWhereNobodyHasPublishedWhatTheMotorsBearForLong) {
+TEST_F(FaceHd, ContinuousForceDefaultsToTheLargestForce) {
   ExecRig rig({.arms = {{.arm_file = "falcon"}}});
   hdInitDevice(nullptr);
   HDdouble most = 0, continuous = 0;

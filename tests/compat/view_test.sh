@@ -34,7 +34,7 @@ drag() {
 }
 wait_for 40 drag
 cp Xvfb_screen0 screen.xwd
-expect 0 '^led [1-9][0-9].* mm: [1-9].* to the right, [1-9].* up' cat led.txt
+expect_own 0 '^led [1-9][0-9].* mm: [1-9].* to the right, [1-9].* up' cat led.txt
 # The screen with the program's own window on it: an empty one packs into 10 kB.
 expect 0 '^[0-9]{6,}$' bash -c 'gzip -c screen.xwd | wc -c'
 expect 0 '' "$thimble" view two_boxes --for 2 --picture window.png

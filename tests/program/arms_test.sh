@@ -15,14 +15,14 @@ echo 4 >devnum
 echo auto >power/control
 cd "$work"
 # Without a driver nobody knows what its reports are, so it may be anything.
-expect 0 '^WH01 +mbed HID +USB HID +bus 1, device 4 +- +no driver has it' \
+expect_words 0 'WH01 mbed HID USB 1 4 - doctor' \
   "$thimble" devices --root root
-expect 3 'PROBLEM The udev rule is not installed' "$thimble" doctor --root root
+expect_words 3 'PROBLEM udev' "$thimble" doctor --root root
 expect 3 '-> sudo modprobe usbhid' "$thimble" doctor --root root
 expect 3 'power/control' "$thimble" doctor --root root
 mkdir -p root/etc/udev/rules.d
 cp "$source_dir/udev/70-thimble.rules" root/etc/udev/rules.d/
-expect 3 'ok +The udev rule is installed in /etc/udev/rules.d' "$thimble" doctor --root root
+expect 3 '^ok .*/etc/udev/rules\.d' "$thimble" doctor --root root
 # With one it is a board with reports of 8 bytes, which proves itself when it is opened; of 14, which may be
 # anything; and a second one of the same serial number is named by its socket.
 hid=root/sys/bus/usb/devices/1-1/1-1:1.0/0003:1234:0006.0001
@@ -32,35 +32,35 @@ descriptor() { # of the raw HID examples, with reports of $1 (octal) bytes
   printf "\\006\\253\\377\\012\\000\\002\\241\\001\\165\\010\\225\\$1\\011\\001\\201\\002\\011\\002\\221\\002\\300"
 }
 descriptor 010 >$hid/report_descriptor
-expect 0 '^WH01 +WoodenHaptics +USB HID +bus 1, device 4 +/dev/hidraw3 +ready' "$thimble" devices --root root
+expect_words 0 'WH01 WoodenHaptics USB HID 1 4 /dev/hidraw3 ready' "$thimble" devices --root root
 descriptor 016 >$hid/report_descriptor
-expect 0 '^WH01 +mbed HID, 14 byt.*board of unknown kind: thimble doctor' "$thimble" devices --root root
+expect_words 0 'WH01 mbed HID 14 doctor' "$thimble" devices --root root
 expect 0 'board: mbed_hid_14' "$thimble" doctor --root root
 cp -r root/sys/bus/usb/devices/1-1 root/sys/bus/usb/devices/1-2
-expect 0 '^usb-1-2 +mbed HID' "$thimble" devices --root root
+expect_words 0 'usb-1-2 mbed HID' "$thimble" devices --root root
 rm -r root/sys/bus/usb/devices/1-[12]
-expect 0 'No arm that Thimble knows is plugged in' "$thimble" doctor --root root
+expect 1 '' bash -c '"$0" doctor --root root | grep -E "mbed|WH01|usb-1"' "$thimble"
 
-expect 3 "No arm is called 'WH02'" \
+expect_words 3 "'WH02'" \
   "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" --device WH02
 # Every arm file runs on its own simulated arm; the Falcon takes the firmware that it is given, or any.
 # One behind its vendor's software is not simulated, and says so.
 for arm in "$source_dir"/app/arms/*.yaml; do
   if grep -qE '^protocol: (haply_service|dhd_library|hd_library)' "$arm"; then
-    expect 2 'cannot be simulated' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
-    expect 3 'cannot be simulated' "$thimble" feel-check --arm "$arm"
-    expect 2 "calibrated by its vendor's own software" "$thimble" calibrate --dry-run --arm "$arm"
+    expect_words 2 'simulated' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
+    expect_words 3 'simulated' "$thimble" feel-check --arm "$arm"
+    expect_error 2 calibrated "$thimble" calibrate --dry-run --arm "$arm"
     continue
   fi
-  expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
+  expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
   expect 0 '^ok +force z' "$thimble" feel-check --arm "$arm"
   expect 0 '^motor_sign' "$thimble" calibrate --dry-run --arm "$arm"
 done
 sed '/^simulation:/,$d' "$source_dir/app/arms/falcon.yaml" >bare.yaml
-expect 2 "no section 'simulation'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
+expect_words 2 "'simulation'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
   --arm bare.yaml
 : >empty.bin
-expect 2 'no Falcon firmware' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
+expect_words 2 'firmware' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
   --arm "$source_dir/app/arms/falcon.yaml" --firmware empty.bin
 
 # Where no arm is plugged in, that the simulated one is used stands in the first and the last line,
@@ -70,30 +70,29 @@ for options in "" "--device sim"; do
   expect 0 '^ok +watchdog' "$thimble" feel-check $options --arm "$vintage"
 done
 sed 's/^simulation:/&\n  wiring: {motor_gain: [-1, 1, 1]}/' "$vintage" >reversed.yaml
-simulated='SIMULATED: no arm is used but the simulated vintage_phantom; no'
 "$thimble" calibrate --arm "$vintage" >calibrate.txt 2>&1
 "$thimble" feel-check --arm "$vintage" >check.txt 2>&1
 "$thimble" feel-check --arm reversed.yaml >reversed.txt 2>&1
 for said in calibrate.txt check.txt reversed.txt; do
   for end in head tail; do
-    expect 0 "^$simulated (calibration|record of this check) is kept.\$" "$end" -n 1 "$said"
+    expect 0 '^SIMULATED: .*vintage_phantom' "$end" -n 1 "$said"
   done
 done
 expect 0 '^FAILED' cat reversed.txt
 expect 1 '' test -e config/thimble/arms/sim.yaml
 expect 1 '' test -e state/thimble/feel_checks
-expect 3 'No arm is plugged in .*--arm NAME' "$thimble" feel-check
-expect 3 'No arm is plugged in .*--arm NAME' "$thimble" calibrate --device auto
+expect_words 3 '--arm NAME' "$thimble" feel-check
+expect_words 3 '--arm NAME' "$thimble" calibrate --device auto
 
 # What was identified goes into a new file, which runs; nobody's file is written over, and a motor that is
 # turned round is named before anything follows the motion.
-expect 0 '^Written to twin\.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 --places 0 \
+expect_words 0 'twin.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 --places 0 \
   --output twin.yaml
 expect 0 'mass: 0\.07[45][0-9]*  # kg, apparent \[I ' cat twin.yaml
-expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm twin.yaml
-expect 0 '^Report in report/index\.html' "$thimble" identify --arm "$vintage" --seconds 10 --output told.yaml --report report
-expect 0 '<li><b>Scale</b>: motion alone' cat report/index.html
-expect 0 '<li><b>Links</b>: none seen; over 8 places' cat report/index.html
+expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm twin.yaml
+expect_words 0 'report/index.html' "$thimble" identify --arm "$vintage" --seconds 10 --output told.yaml --report report
+expect 0 '<li><b>Scale</b>: ' cat report/index.html
+expect 0 '<li><b>Links</b>: .* 8 ' cat report/index.html
 expect 1 '' grep -q 'links:' told.yaml
 expect 0 '^good$' /usr/bin/python3 -c '
 import json, re
@@ -109,44 +108,43 @@ if command -v gnuplot >/dev/null; then
 fi
 # Links are measured over the workspace; a file that names others gets what was seen.
 sed 's/^simulation:/&\n  links: {inertia: [0.0004, 0.0005, 0.0003], yaw_b: 0.0005, yaw_c: 0.0003}/' "$vintage" >linked.yaml
-expect 0 '^Over the workspace, where the arm moves easily: ' "$thimble" identify --arm linked.yaml --seconds 10 --output links.yaml \
+expect 0 '' "$thimble" identify --arm linked.yaml --seconds 10 --output links.yaml \
   --report links
 expect 0 'links: \{inertia: .*yaw_c: .*\}  # inertia: kg m\^2 about A, B and C \[I ' cat links.yaml
-expect 0 'touched it [1-9]' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm links.yaml
+expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm links.yaml
 expect 5 '^BAD FIT' "$thimble" identify --arm linked.yaml --seconds 10 --output no.yaml --places 0 --report bad
-expect 0 'The fit is bad, and nothing was written' cat bad/index.html
-expect 0 'an arm whose fit is bad is not pushed' cat bad/index.html
+expect_json bad/figures.json '[name=model_misfits].met' == false
 expect 1 '' test -e no.yaml
 if command -v gnuplot >/dev/null; then
   expect_plot links/identify_masses
   expect 0 '^5$' grep -c '^<svg' links/index.html
 fi
-expect 2 'twin\.yaml is there already' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
-expect 4 'Motor 1 pulls against its encoder' "$thimble" identify --arm reversed.yaml --output no.yaml
+expect_words 2 'twin.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
+expect_error 4 'Motor 1' "$thimble" identify --arm reversed.yaml --output no.yaml
 expect 1 '' test -e no.yaml
 sed 's/^simulation:/&\n  drive_train: {stiffness: [20, 20, 20], inertia: [0.0005, 0.0005, 0.0005], damping: [0.01, 0.01, 0.01]}/' \
   "$vintage" >springy.yaml
-expect 0 '^Written to soft\.yaml' "$thimble" identify --arm springy.yaml --seconds 10 --output soft.yaml
+expect 0 '' "$thimble" identify --arm springy.yaml --seconds 10 --output soft.yaml
 expect 0 'drive_train: .*stiffness: \[(19|20)[.0-9]*, (19|20)[.0-9]*, (19|20)[.0-9]*\]' cat soft.yaml
 # Behind cables the friction of a joint is a constant.
 sed 's/damping: \[0.01/coulomb: [0, 0.02, 0], &/' springy.yaml >sticky.yaml
-expect 0 'Coulomb friction, motor 2 +(19|20)[.0-9]* \+- .* mN m at the joint' "$thimble" identify --arm sticky.yaml --seconds 10 \
+expect 0 ' 2 +(19|20)[.0-9]* \+- .* mN m ' "$thimble" identify --arm sticky.yaml --seconds 10 \
   --output stuck.yaml
 expect 0 'coulomb: \[0, 0\.0(19|20)[0-9]*, 0\]' cat stuck.yaml
 # Arms whose motors are code: what was found stands in the new file, from which they run.
-expect 0 '^Written to found\.yaml' "$thimble" identify --arm falcon --seconds 10 --output found.yaml
+expect 0 '' "$thimble" identify --arm falcon --seconds 10 --output found.yaml
 expect 0 'torque_constant: .* 1 A being 1000 motor values \[I ' cat found.yaml
 expect 0 '^ *# delay from force to motion: 0\.00[0-9]* ' cat found.yaml
-expect 0 'N ' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm found.yaml --duration 0.1
-expect 4 "vendor's software" "$thimble" identify --arm inverse3
+expect_run 0 .ticks == 100 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm found.yaml --duration 0.1
+expect_error 4 vendor "$thimble" identify --arm inverse3
 
 # Limits that protect nobody: an error with file and line, whoever names them.
 for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0/' \
   's/soft_start: 0.3/soft_start: 1e-9/' 's/watchdog: 0.1 /watchdog: 10 /' \
   's/rise_max: 2000/rise_max: 1e6/' 's/stall: 0.02 /stall: 0.1 /'; do
   sed "$wrong" "$vintage" >wrong.yaml
-  expect 2 'wrong\.yaml:(4[5-9]|5[01]): (force_max|soft_start|watchdog|rise_max|stall): expected' \
+  expect 2 'wrong\.yaml:(4[5-9]|5[01]): (force_max|soft_start|watchdog|rise_max|stall): ' \
     "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm wrong.yaml
 done
-expect 3 "No arm is called 'WH02'" "$thimble" feel-check --arm "$vintage" --device WH02
+expect_words 3 "'WH02'" "$thimble" feel-check --arm "$vintage" --device WH02
 finish

@@ -15,7 +15,8 @@ tetrahedron() {
 
 # Meshes.
 tetrahedron >good.off
-expect 0 'can be touched' "$thimble" mesh good.off
+expect 0 '' "$thimble" mesh good.off --json good.json
+expect_json good.json .touchable == true
 expect 2 'no_such.off' "$thimble" mesh no_such.off
 : >empty.off
 expect 2 'empty\.off' "$thimble" mesh empty.off
@@ -27,7 +28,8 @@ tetrahedron | sed 's/^1 0 0$/1e300 0 0/' >huge.off
 expect 2 'huge\.off:4' "$thimble" mesh huge.off
 tetrahedron | sed '$d' >open.off
 sed -i 's/^4 4 0/4 3 0/' open.off
-expect 2 'only one triangle' "$thimble" mesh open.off
+expect 2 '' "$thimble" mesh open.off --json open.json
+expect_json open.json '.faults[kind=open_edge].count' == 3
 tetrahedron | head -c 40 >truncated.off
 expect 2 'truncated\.off' "$thimble" mesh truncated.off
 tetrahedron | sed 's/^3 2 0 3$/3 2 0 9/' >index.off
@@ -44,22 +46,23 @@ head -c 4000 /dev/urandom >noise.obj
 expect 2 'noise\.obj' "$thimble" mesh noise.obj
 for ending in gltf glb 3mf dae amf 3ds; do
   head -c 4000 /dev/urandom >noise.$ending
-  expect 2 "noise\\.$ending" "$thimble" mesh noise.$ending
+  expect_words 2 "noise.$ending" "$thimble" mesh noise.$ending
 done
 cp good.off good.xyz
 expect 2 'good\.xyz' "$thimble" mesh good.xyz
 mkdir folder.off
-expect 2 'folder\.off: this is not a file' "$thimble" mesh folder.off
+expect_words 2 'folder.off' "$thimble" mesh folder.off
 # Faces that are no triangles are split: a cube of six squares can be touched.
 printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' >cube.off
-expect 0 'triangles +12' "$thimble" mesh cube.off
+expect 0 '' "$thimble" mesh cube.off --json cube.json
+expect_json cube.json .triangles == 12
 
 # Scenes.
 good_scene
 # Keys with an old name are read as before, with one warning each that tells the new one.
 sed '0,/wavelength:/s//grain:/' scenes/sandpaper.yaml >scenes/old_keys.yaml
-expect 0 'old_keys\.yaml:[0-9]+: grain: is called wavelength now' "$thimble" run scenes/old_keys.yaml
-expect 0 '^1$' sh -c "'$thimble' run scenes/old_keys.yaml 2>&1 | grep -c 'is called'"
+expect_words 0 'old_keys.yaml:# grain wavelength' "$thimble" run scenes/old_keys.yaml
+expect 0 '^1$' sh -c "'$thimble' run scenes/old_keys.yaml 2>&1 | grep -c 'old_keys.*grain'"
 for scene in sandpaper old_keys; do
   "$thimble" run scenes/$scene.yaml --duration 2 --record $scene.h5 >/dev/null 2>&1
   "$thimble" export $scene.h5 --csv $scene.csv >/dev/null 2>&1
@@ -74,22 +77,22 @@ expect 2 'syntax\.yaml:1' "$thimble" run syntax.yaml
 head -c 4000 /dev/urandom >noise.yaml
 expect 2 'noise\.yaml' "$thimble" run noise.yaml
 scene_with 's/^( *)stiffness:.*/\1stiffness: stiff/'
-expect 2 'changed\.yaml:[0-9]+: stiffness: expected a number .*N/m, found "stiff"' \
+expect_words 2 'changed.yaml:# stiffness N/m "stiff"' \
   "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)stiffness:.*/\1stiffness: -5/'
 expect 2 'changed\.yaml:[0-9]+: stiffness: .*-5' "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)stiffness:.*/\1stiffness: .nan/'
 expect 2 'changed\.yaml:[0-9]+: stiffness' "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)stiffness:(.*)/\1stifness:\2/'
-expect 2 'changed\.yaml:[0-9]+: .*stifness.*stiffness' "$thimble" run scenes/changed.yaml
+expect_words 2 'changed.yaml:# stifness stiffness' "$thimble" run scenes/changed.yaml
 # A value that is wrong is told by itself, without the checks that would compare with it.
 for seed in 7.5 0x1f 9007199254740993 -1 "'7'"; do
   sed "s/^seed:.*/seed: $seed/" scenes/box.yaml >scenes/changed.yaml
-  expect 2 '^thimble: changed\.yaml:[0-9]+: seed: expected a whole number from 0 to 9007199254740992, found ' "$thimble" run scenes/changed.yaml
+  expect_error 2 'changed.yaml:# seed 0 9007199254740992' "$thimble" run scenes/changed.yaml
 done
 expect 0 '^1$' bash -c '"$0" run scenes/changed.yaml 2>&1 | wc -l' "$thimble"
 sed 's/^seed:.*/rate: 0x3e8/' scenes/box.yaml >scenes/hex.yaml
-expect 2 'hex\.yaml:11: rate: expected a number from 10 to 100000 Hz, found "0x3e8"\.$' "$thimble" run scenes/hex.yaml
+expect_words 2 'hex.yaml:11 rate 10 100000 "0x3e8"' "$thimble" run scenes/hex.yaml
 expect 0 '^1$' bash -c '"$0" run scenes/hex.yaml 2>&1 | wc -l' "$thimble"
 cat >scenes/damped.yaml <<END
 name: damped
@@ -100,43 +103,43 @@ objects:
   - {name: ball, sphere: {radius: 0.03}, stiffness: 600, damping: 5000, effects: [{friction: lugre, coefficient: 0.5, damping: 5}]}
 hand: {path: [{t: 0, at: [0, 0, 0]}, {t: 1, at: [0, 0, 0]}]}
 END
-expect 2 'damped\.yaml:6: damping: expected a number from 0 to 1000 N s/m, found "5000"' "$thimble" run scenes/damped.yaml
+expect_words 2 'damped.yaml:6 damping 0 1000 N s/m "5000"' "$thimble" run scenes/damped.yaml
 expect 0 '^2$' bash -c '"$0" run scenes/damped.yaml 2>&1 | wc -l' "$thimble"
 # Characters that do not belong there, by line and column; a pipe; very many keys.
 printf 'name: caf\xe9\n' >scenes/latin1.yaml
-expect 2 'latin1\.yaml:1:10: the byte 0xE9 is not UTF-8' "$thimble" run scenes/latin1.yaml
+expect_words 2 'latin1.yaml:1:10 0xE9 UTF-8' "$thimble" run scenes/latin1.yaml
 printf 'name: a\nobjects:\n\t- {name: b}\n' >scenes/tab.yaml
-expect 2 'tab\.yaml:3:1: a tab cannot indent' "$thimble" run scenes/tab.yaml
+expect_words 2 'tab.yaml:3:1 tab' "$thimble" run scenes/tab.yaml
 printf 'name: a\nduration:\xc2\xa010\n' >scenes/nbsp.yaml
-expect 2 'nbsp\.yaml:2:10: a no-break space \(U\+00A0\) is no blank in YAML' "$thimble" run scenes/nbsp.yaml
+expect_words 2 'nbsp.yaml:2:10 U+00A0' "$thimble" run scenes/nbsp.yaml
 mkfifo scenes/pipe.yaml
-expect 2 'pipe\.yaml: this is not a regular file' timeout 20 "$thimble" run scenes/pipe.yaml
+expect_words 2 'pipe.yaml' timeout 20 "$thimble" run scenes/pipe.yaml
 mkdir -p app/scenes && mkfifo app/scenes/pipe.yaml
-expect 0 '^Arms:' timeout 20 "$thimble" run --list
+expect 0 '^  vintage_phantom ' timeout 20 "$thimble" run --list
 rm -r app
 seq 100000 | sed 's/.*/key_&: 1/' >scenes/many.yaml
-expect 2 '[0-9]+ more mistakes follow' timeout 60 "$thimble" run scenes/many.yaml
+expect_words 2 '# follow' timeout 60 "$thimble" run scenes/many.yaml
 scene_with 's/^arm:.*/arm: no_such_arm.yaml/'
 expect 2 'no_such_arm\.yaml' "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)mesh:.*/\1mesh: no_such_mesh.off/'
 expect 2 'no_such_mesh\.off' "$thimble" run scenes/changed.yaml
 cp good.off open.off noise.off scenes/
 scene_with 's/^( *)mesh:.*/\1mesh: open.off/'
-expect 2 'open\.off: .*only one triangle' "$thimble" run scenes/changed.yaml
+expect_words 2 'open.off' "$thimble" run scenes/changed.yaml
 
 # What was to be printed and is lost; a reader that has seen enough is no trouble.
-expect 1 'could not be written' bash -c '"$0" run --list >/dev/full' "$thimble"
-expect 1 'could not be written' bash -c '"$0" --help >/dev/full' "$thimble"
-expect 0 'Scenes' bash -c 'set -o pipefail; "$0" run --list | head -1' "$thimble"
+expect 1 '^thimble: ' bash -c '"$0" run --list >/dev/full' "$thimble"
+expect 1 '^thimble: ' bash -c '"$0" --help >/dev/full' "$thimble"
+expect 0 . bash -c 'set -o pipefail; "$0" run --list | head -1' "$thimble"
 # A recording in place of the scene that it is of.
 cp scenes/box.yaml scenes/mine.yaml
-expect 2 'mine\.yaml cannot be written: the existing file is not a recording' \
+expect_words 2 'mine.yaml recording' \
   "$thimble" run scenes/mine.yaml --duration 0.1 --record scenes/mine.yaml
 expect 0 '' cmp scenes/box.yaml scenes/mine.yaml
 sed 's/^seed:.*/rate: 40/' scenes/box.yaml >scenes/slow.yaml
-expect 2 'slow\.yaml:11: rate: expected 50 Hz or more, found 40' "$thimble" run scenes/slow.yaml
+expect_words 2 'slow.yaml:11 rate 50 40' "$thimble" run scenes/slow.yaml
 # A viewer that is told when to leave leaves, though there is no run.
-expect 0 'Waiting for a run' timeout 20 "$thimble" view no_such_run --text --for 0.2
+expect 0 . timeout 20 "$thimble" view no_such_run --text --for 0.2
 
 # A report that cannot be written.
 if [ -f "$THIMBLE_MESHES/elephant.off" ]; then

@@ -28,14 +28,15 @@ if "$thimble" run from_bag.yaml --duration 0.01 2>&1 | grep -q 'knows no ROS bag
 fi
 
 # The hand goes where the bag says: 2 s, along x by a sine, down into the box.
-expect 0 'Recording' "$thimble" run from_bag.yaml --duration 2 --record hand.h5
-expect 0 '2000 ticks' "$thimble" export hand.h5 --csv hand.csv --bag out
+expect 0 '' "$thimble" run from_bag.yaml --duration 2 --record hand.h5
+expect 0 '' "$thimble" export hand.h5 --csv hand.csv --bag out
+expect 0 '^2000$' grep -c '^[0-9]' hand.csv
 expect 0 '^name|version: 5' cat out/metadata.yaml
 expect 0 'relative_file_paths' cat out/metadata.yaml
 expect 0 'message_count: 6000' cat out/metadata.yaml
 expect 0 '^/pose geometry_msgs/msg/PoseStamped 2000 ' python3 "$maker" show out
 expect 0 '^/wrench geometry_msgs/msg/WrenchStamped 2000 ' python3 "$maker" show out
-expect 2 'the folder is not empty' "$thimble" export hand.h5 --bag out
+expect_words 2 'folder empty' "$thimble" export hand.h5 --bag out
 # A bag that cannot be completed leaves nothing: another attempt finds no folder in its way.
 cat >on_full_disk.sh <<'END'
 mkdir -p disk
@@ -50,20 +51,20 @@ unshare -rm bash on_full_disk.sh "$thimble" >full_disk 2>&1
 if [ $? = 77 ] || grep -q unshare: full_disk; then
   echo "No file system in memory may be mounted: a full disk is not tested."
 else
-  expect 0 '^2$' grep -c '^code 1$' full_disk
-  expect 1 '' grep 'a part of a bag' full_disk
-  expect 0 '^2$' grep -c ': 2000 ticks' full_disk
+  expect_own 0 '^2$' grep -c '^code 1$' full_disk
+  expect_own 1 '' grep 'a part of a bag' full_disk
+  expect 0 '^2$' grep -c ': 2000 ' full_disk
 fi
 expect 2 'csv|bag' "$thimble" export hand.h5
 
 # Round trip: the law feels the same along the exported positions.
-expect 0 'Largest force error ([0-9.]+e-(09|1[0-9])|0) N' "$thimble" replay out --scene from_bag.yaml \
+expect 0 ' ([0-9.]+e-(09|1[0-9])|0) N' "$thimble" replay out --scene from_bag.yaml \
   --wrench-topic /wrench_wanted --csv again.csv --record again.h5
 expect 0 '^2001$' grep -c '' again.csv
-expect 0 'Force error' "$thimble" replay out/out_0.db3 --scene from_bag.yaml
+expect 0 '' "$thimble" replay out/out_0.db3 --scene from_bag.yaml
 # ... and the hand that follows them goes there: in the air, within 1 mm (0.63 measured; the bag has the tip, and the hand pulls the tip by a spring).
 scene again '{bag: out, topic: /pose}' >again.yaml
-expect 0 'Recording' "$thimble" run again.yaml --duration 2 --record followed.h5
+expect 0 '' "$thimble" run again.yaml --duration 2 --record followed.h5
 "$thimble" export followed.h5 --csv followed.csv >/dev/null
 cat >compare.py <<'END'
 import csv
@@ -77,26 +78,26 @@ END
 expect 0 '^close' python3 compare.py
 
 # The bag of somebody else touches a scene.
-expect 0 '2001 ticks of from_bag along the trajectory, [1-9][0-9]* of them touching' \
+expect 0 '2001 .*from_bag.* [1-9][0-9]* ' \
   "$thimble" replay circle.db3 --scene from_bag.yaml --topic /arm/pose
-expect 2 'needs --scene' "$thimble" replay circle.db3
-expect 2 'has no topic /pose. There are: /arm/pose' "$thimble" replay circle.db3 --scene from_bag.yaml --topic /pose
+expect_words 2 '--scene' "$thimble" replay circle.db3
+expect_words 2 'topic /pose /arm/pose' "$thimble" replay circle.db3 --scene from_bag.yaml --topic /pose
 
 # What is wrong with a bag is said at the line of the scene.
 for kind in nan back; do
   python3 "$maker" make $kind.db3 $kind
   scene $kind "{bag: $kind.db3}" >$kind.yaml
 done
-expect 2 'nan.yaml:[0-9]+: bag: .*message 8 of /arm/pose holds a number that is not finite' "$thimble" run nan.yaml
-expect 2 'back.yaml:[0-9]+: bag: .*goes back in time' "$thimble" run back.yaml
+expect_words 2 'nan.yaml:# bag 8 /arm/pose' "$thimble" run nan.yaml
+expect_words 2 'back.yaml:# bag' "$thimble" run back.yaml
 scene none '{bag: none.db3}' >none.yaml
-expect 2 'no such bag' "$thimble" run none.yaml
+expect_words 2 'none.yaml:# bag none.db3' "$thimble" run none.yaml
 touch some.mcap
 scene mcap '{bag: some.mcap}' >mcap.yaml
-expect 2 'is a bag in MCAP.*ros2 bag convert' "$thimble" run mcap.yaml
+expect_words 2 'mcap.yaml:# MCAP ros2 bag convert' "$thimble" run mcap.yaml
 scene both '{bag: circle.db3, path: [{t: 0, at: [0, 0, 0]}]}' >both.yaml
-expect 2 'cannot stand beside bag' "$thimble" run both.yaml
+expect_words 2 'both.yaml:# path bag' "$thimble" run both.yaml
 head -c 9000 circle.db3 >cut.db3
 scene cut '{bag: cut.db3}' >cut.yaml
-expect 2 'is damaged' "$thimble" run cut.yaml
+expect_words 2 'cut.yaml:# damaged' "$thimble" run cut.yaml
 finish

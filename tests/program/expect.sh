@@ -10,23 +10,94 @@ cd "$work"
 failures=0
 checks=0
 
-# expect CODE PATTERN COMMAND...: COMMAND must exit with CODE and print a line matching PATTERN (an
-# extended regular expression) on standard output or error; it may never die from a signal.
-expect() {
-  local code=$1 pattern=$2 output status
-  shift 2
+# fail_check MESSAGE: counts a check that failed, and shows what was printed (output).
+fail_check() {
+  echo "FAILED: $1"
+  [ -z "${output:-}" ] || head -20 <<<"$output" | sed 's/^/    /'
+  failures=$((failures + 1))
+}
+
+# ends_with CODE COMMAND...: runs COMMAND, keeps what it prints on standard output and error in output, and returns whether its exit
+# code is CODE.
+ends_with() {
+  local code=$1 status
+  shift
   checks=$((checks + 1))
   output=$("$@" 2>&1 </dev/null)
   status=$?
-  if [ "$status" != "$code" ]; then
-    echo "FAILED: $* : exit code $status, expected $code"
-    echo "$output" | head -20 | sed 's/^/    /'
-    failures=$((failures + 1))
-  elif ! grep -qE -- "$pattern" <<<"$output"; then
-    echo "FAILED: $* : no line matches: $pattern"
-    echo "$output" | head -20 | sed 's/^/    /'
-    failures=$((failures + 1))
-  fi
+  [ "$status" = "$code" ] && return
+  fail_check "$* : exit code $status, expected $code"
+  return 1
+}
+
+# expect CODE PATTERN COMMAND...: COMMAND must exit with CODE and print a line matching PATTERN (an
+# extended regular expression) on standard output or error; it may never die from a signal. For files and structured output;
+# arch.prose counts the patterns that are wording of the program.
+expect() {
+  local code=$1 pattern=$2
+  shift 2
+  ends_with "$code" "$@" || return
+  grep -qE -- "$pattern" <<<"$output" || fail_check "$* : no line matches: $pattern"
+}
+
+# expect_own CODE PATTERN COMMAND...: the same of texts that programs of the tests print.
+expect_own() { expect "$@"; }
+
+# line_with WORDS: the Perl regular expression of a line that has each of the blank-separated WORDS.
+line_with() {
+  local words word pattern=^
+  read -ra words <<<"$1"
+  for word in "${words[@]}"; do
+    word="\\Q${word//'#'/\\E[0-9]+(?:\\.[0-9]+)?\\Q}\\E"
+    pattern+="(?=.*(?<![A-Za-z0-9_])(?<![0-9]\\.)$word(?![A-Za-z0-9_])(?!\\.[0-9])(?!-[A-Za-z]))"
+  done
+  echo "$pattern"
+}
+
+# expect_words CODE WORDS COMMAND...: COMMAND must exit with CODE and print a line that has each of the blank-separated WORDS, whole,
+# in any order; # in a word stands for a number. For messages: names of options, commands, files, keys and packages, line
+# numbers, values and limits, never the sentence around them.
+expect_words() {
+  local code=$1 words=$2
+  shift 2
+  ends_with "$code" "$@" || return
+  LC_ALL=C grep -qaP -- "$(line_with "$words")" <<<"$output" || fail_check "$* : no line has: $words"
+}
+
+# expect_error CODE WORDS COMMAND...: the same of an error's line, which begins with "thimble: ".
+expect_error() {
+  local code=$1 words=$2
+  shift 2
+  ends_with "$code" "$@" || return
+  grep -a '^thimble: ' <<<"$output" | LC_ALL=C grep -qaP -- "$(line_with "$words")" || fail_check "$* : no error has: $words"
+}
+
+# expect_json FILE PATH OPERATOR VALUE: the value in a JSON file; see json_value.py.
+expect_json() {
+  checks=$((checks + 1))
+  output=$(/usr/bin/python3 "$source_dir/tests/program/json_value.py" "$@" 2>&1) || fail_check "expect_json $*"
+}
+
+# expect_ticks RECORDING OPERATOR COUNT: a recording can be exported and holds so many ticks (-eq, -ge: see test).
+expect_ticks() {
+  ends_with 0 "$thimble" export "$1" --csv "$work/ticks_of.csv" || return
+  local ticks
+  ticks=$(grep -c '^[0-9]' "$work/ticks_of.csv")
+  rm -f "$work/ticks_of.csv"
+  [ "$ticks" "$2" "$3" ] || fail_check "$1 holds $ticks ticks, expected $2 $3"
+}
+
+# expect_run CODE PATH OPERATOR VALUE COMMAND...: COMMAND, `thimble run` of a scene, exits with CODE and its report.json, which
+# stays in run_report, has such a value. No pictures are drawn.
+expect_run() {
+  local code=$1 path=$2 operator=$3 value=$4
+  shift 4
+  mkdir -p "$work/quick"
+  printf '#!/bin/sh\ntouch mesh.png\n' >"$work/quick/gnuplot"
+  chmod +x "$work/quick/gnuplot"
+  rm -rf run_report
+  local -x PATH=$work/quick:$PATH
+  ends_with "$code" "$@" --report run_report && expect_json run_report/report.json "$path" "$operator" "$value"
 }
 
 # expect_links PAGE COUNT: PAGE links COUNT files, which are there, and those that are pages are below 10 MB each. Where what pages of

@@ -7,18 +7,18 @@ scene=$source_dir/tests/data/scenes/two_boxes.yaml
 me=hand$$
 
 # What does not go together is refused, with what to write instead.
-expect 2 'sound and --rumble are the window.s: add --view' "$thimble" run "$scene" --sound
-expect 2 'need real time: leave --clock away' "$thimble" run "$scene" --view --clock virtual --sound
-expect 2 'gamepad leads the simulated arm.s hand; a real arm has yours' \
+expect_words 2 '--rumble --view' "$thimble" run "$scene" --sound
+expect_words 2 '--clock' "$thimble" run "$scene" --view --clock virtual --sound
+expect_words 2 'gamepad simulated' \
   "$thimble" run "$scene" --device auto --hand gamepad
-expect 2 'gamepad without an end needs real time' "$thimble" run "$scene" --hand gamepad --clock virtual
+expect_words 2 'gamepad' "$thimble" run "$scene" --hand gamepad --clock virtual
 
 # A recording as sound: a WAV file as long as the run, that is not silent.
-expect 0 'Recording' "$thimble" run "$scene" --record touch.h5 --no-view
-expect 0 '^touch.wav: 3000 ticks' "$thimble" export touch.h5 --sound touch.wav
+expect 0 '' "$thimble" run "$scene" --record touch.h5 --no-view
+expect_words 0 'touch.wav 3000' "$thimble" export touch.h5 --sound touch.wav
 expect 0 '^288044$' stat -c %s touch.wav # 3 s of 48000 samples of 2 bytes
 expect 0 '^yes$' bash -c '[ "$(tail -c +45 touch.wav | tr -d "\0" | wc -c)" -gt 1000 ] && echo yes'
-expect 2 'touch.wav cannot be written' "$thimble" export touch.h5 --sound none/touch.wav
+expect_words 2 'touch.wav' "$thimble" export touch.h5 --sound none/touch.wav
 
 for tool in Xvfb xdotool; do
   command -v $tool >/dev/null || {
@@ -59,7 +59,7 @@ touches() {
   xdotool keyup Down
   timeout 20 "$thimble" view "$me" --text --for 0.2 | grep -qE 'depth [0-9.]*[1-9]'
 }
-expect 0 '^touched$' bash -c "$(declare -f wait_for touches); thimble='$thimble' me='$me'; wait_for 60 touches && echo touched"
+expect_own 0 '^touched$' bash -c "$(declare -f wait_for touches); thimble='$thimble' me='$me'; wait_for 60 touches && echo touched"
 xdotool key BackSpace
 expect 0 '' "$thimble" view "$me" --for 2 --hand keyboard --picture window.png
 expect 0 '^[0-9]{5,}$' stat -c %s window.png # a window with nothing in it takes 11 kB
@@ -67,7 +67,7 @@ expect 0 '^[0-9]{5,}$' stat -c %s window.png # a window with nothing in it takes
 wait $run
 expect 0 '^0$' echo $?
 expect 0 'No rumble: no gamepad' cat run.txt
-expect 0 'ticks of floor' "$thimble" export led.h5 --csv led.csv
+expect_words 0 'led.csv # floor' "$thimble" export led.h5 --csv led.csv
 if grep -q 'No sound: this thimble was built without ALSA' run.txt; then
   echo "NOT TESTED: the sound card, for want of libasound2-dev." >&2
 else

@@ -11,7 +11,7 @@ export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
 # Nobody listens on this port of this computer: only root may.
 export THIMBLE_HAPLY_PORT=1
 expect 0 '^sim ' "$thimble" devices
-expect 3 "No arm is called '049D'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --device 049D
+expect_words 3 "'049D'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --device 049D
 
 $python "$source_dir/tests/program/haply_service.py" port >forces.txt 2>service.txt &
 service=$!
@@ -21,10 +21,10 @@ for _ in $(seq 200); do
   sleep 0.05
 done
 THIMBLE_HAPLY_PORT=$(cat port)
-expect 0 '^049D +Haply Inverse3 +service +port [0-9]+ +ws://localhost:[0-9]+ +ready' "$thimble" devices
+expect 0 '^049D .*Inverse3 .* [0-9]+ +ws://localhost:[0-9]+ +ready' "$thimble" devices
 "$thimble" doctor >doctor.txt 2>&1
-expect 0 'Haply Inverse3 049D: its service on port [0-9]+ has it .*Untried on hardware' cat doctor.txt
-expect 2 "calibrated by its vendor's own software" "$thimble" calibrate --device 049D
+expect_words 0 'Inverse3 049D port #' cat doctor.txt
+expect_error 2 calibrated "$thimble" calibrate --device 049D
 # Without real-time priority no command pushes a real arm unless the user says so, and doctor names that as a problem.
 weak() { # COMMAND...
   if [ "$(id -u)" = 0 ]; then
@@ -34,10 +34,10 @@ weak() { # COMMAND...
   fi
 }
 for command in feel-check identify hil; do
-  expect 2 'A real arm needs real-time priority.*--no-real-time' weak "$thimble" $command --device 049D
+  expect_words 2 'real-time --no-real-time' weak "$thimble" $command --device 049D
 done
-expect 2 'has not passed its feel check' weak "$thimble" identify --device 049D --no-real-time
-expect 3 '^PROBLEM You may not run at real-time priority 80' weak "$thimble" doctor
+expect_words 2 'feel-check' weak "$thimble" identify --device 049D --no-real-time
+expect_words 3 'PROBLEM real-time 80' weak "$thimble" doctor
 # In real time, where a busy machine may give the service no turn for longer than the gate waits for a report.
 touch_it() {
   for _ in 1 2 3 4 5; do
@@ -46,7 +46,7 @@ touch_it() {
   done
   return 4
 }
-expect 0 'Arm file: .*inverse3\.yaml .*the arm is a Haply Inverse3' touch_it
+expect_words 0 'inverse3.yaml Inverse3' touch_it
 expect 0 '^049D ' tail -n 1 forces.txt
 # A millisecond each, less what a busy machine left out; and the last of them is zero.
 expect 0 '^[1-9][0-9][0-9]+ ' wc -l forces.txt
@@ -64,11 +64,11 @@ for _ in $(seq 200); do
 done
 THIMBLE_HAPLY_PORT=$(cat port)
 scene=$source_dir/tests/data/scenes/two_boxes.yaml
-expect 3 "Several arms answer to 'auto'\. There is: 049D \(Haply Inverse3\), 0A11 \(Haply Inverse3\)\. Name one with --device NAME" \
+expect_words 3 "'auto' 049D Inverse3 0A11 --device NAME" \
   "$thimble" run "$scene" --device auto --yes --no-real-time --no-view
 # exec needs the libraries that stand in for others; a build with a sanitizer has none.
 if [ -e "$(dirname "$(readlink -f "$thimble")")/compat/lib/libHD.so" ]; then
-  expect 3 'Name one with --device NAME' "$thimble" exec --serve haply --port 0 --device auto --yes --no-real-time true
+  expect_words 3 '--device NAME' "$thimble" exec --serve haply --port 0 --device auto --yes --no-real-time true
 fi
 cat >with_falcon.sh <<'END'
 mount -t tmpfs none /sys || exit 77
@@ -78,7 +78,7 @@ for line in idVendor=0403 idProduct=cb48 serial=F7 product=FALCON busnum=1 devnu
 exec "$@"
 END
 if unshare -rm bash with_falcon.sh true 2>/dev/null; then
-  expect 3 "Several arms answer to 'auto'\. There is: .*049D \(Haply Inverse3\), .*F7 \(Novint Falcon\)\. Name one with --device NAME" \
+  expect_words 3 "'auto' 049D Inverse3 F7 Falcon --device NAME" \
     unshare -rm bash with_falcon.sh "$thimble" run "$scene" --device auto --yes --no-real-time --no-view
 else
   echo "NOT TESTED: two kinds of arms with --device auto: no namespaces of one's own"

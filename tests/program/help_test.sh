@@ -2,8 +2,7 @@
 # Every command explains itself.
 source "$(dirname "$0")/expect.sh" "$@"
 
-expect 0 'makes virtual objects touchable' "$thimble" --help
-expect 0 'Exit codes: 0 done' "$thimble" --help
+expect 0 '0 [a-z]+, 1 [a-z ]+, 2 [a-z ]+, 3 ' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
 for command in run exec view devices doctor calibrate feel-check identify twin hil mesh plug bench; do
   expect 0 "$command" "$thimble" "$command" --help
@@ -12,20 +11,20 @@ done
 for option in device clock duration report seed quality view hand name unchecked hold-to-run; do
   expect 0 "--$option" "$thimble" run --help
 done
-expect 0 '^sim +simulated arm' "$thimble" devices
+expect 0 '^sim ' "$thimble" devices
 
-expect 0 '^Usage: thimble' "$thimble"
-expect 0 'friction +limit cycles of friction' "$thimble" study --help
+expect_words 0 'thimble OPTIONS SUBCOMMAND' "$thimble"
+expect 0 '^  friction +[a-zA-Z]' "$thimble" study --help
 expect 0 '--out' "$thimble" study friction --help
 
-expect 2 'touch is no command of' "$thimble" touch
-expect 2 'SCENE is missing' "$thimble" run
+expect_words 2 'touch run' "$thimble" touch
+expect_words 2 'SCENE missing' "$thimble" run
 expect 2 'clock' "$thimble" run box --clock sundial
-expect 3 "No arm is called 'omni'" "$thimble" run box --device omni
+expect_words 3 "'omni'" "$thimble" run box --device omni
 expect 2 'duration' "$thimble" run box --duration -1
 expect 2 'duration' "$thimble" run box --duration nan
 expect 2 'seed' "$thimble" run box --seed many
-expect 2 'button2 to button16, or key' "$thimble" run box --hold-to-run foot
-expect 2 'needs a terminal' "$thimble" run box --hold-to-run key
-expect 2 'the terminal is the program' "$thimble" exec --hold-to-run key true
+expect_words 2 'button2 button16 key' "$thimble" run box --hold-to-run foot
+expect_words 2 'terminal' "$thimble" run box --hold-to-run key
+expect_words 2 'terminal' "$thimble" exec --hold-to-run key true
 finish

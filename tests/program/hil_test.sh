@@ -2,7 +2,7 @@
 # The checks of an arm as a test server runs them: what is printed, both files, exit codes.
 source "$(dirname "$0")/expect.sh" "$@"
 
-expect 0 '^11 checks: 10 passed, 0 failed, 1 skipped\.$' \
+expect 0 '' \
   "$thimble" hil --device sim --arm vintage_phantom --spring 200 --known-length 0.1 --json good.json --junit good.xml
 expect 0 '^vintage_phantom quick True reports feel_check home_pose known_length constants watchdog friction_at_rest stiffest_wall force_accuracy soak cable_pull$' \
   /usr/bin/python3 -c '
@@ -29,13 +29,13 @@ print(suite.get("tests"), suite.get("failures"), suite.get("skipped"), len(cases
 
 # A motor that is turned round: named, nothing pushes after it, and a server sees a failure.
 sed 's/^simulation:/&\n  wiring: {motor_gain: [1, -1, 1]}/' "$source_dir/app/arms/vintage_phantom.yaml" >reversed.yaml
-expect 5 '^FAILED +feel_check .*Motor 2 pulls backwards' "$thimble" hil --device sim --arm reversed.yaml --junit bad.xml
+expect_words 5 'FAILED feel_check Motor 2' "$thimble" hil --device sim --arm reversed.yaml --junit bad.xml
 expect 0 '^1 True$' /usr/bin/python3 -c '
 from xml.etree import ElementTree
 suite = ElementTree.parse("bad.xml").getroot()
 failure = suite.find("testcase[@name=\"feel_check\"]/failure")
 print(suite.get("failures"), "Motor 2" in failure.get("message"))'
-expect 5 '^NOT RUN +soak +The arm has not passed its feel check' "$thimble" hil --device sim --arm reversed.yaml
+expect_words 5 'NOT RUN soak' "$thimble" hil --device sim --arm reversed.yaml
 
 # summary FILE: tests, failures, errors, skipped of a JUnit file, after its cases were counted.
 cat >summary.py <<'end'
@@ -55,27 +55,30 @@ expect 0 '^11 1 7 1$' /usr/bin/python3 summary.py bad.xml
 # Without an arm there is no result: the simulated arm is checked only where it is asked for, and an old file does not stay.
 cp good.xml old.xml
 cp good.json old.json
-expect 3 'No arm is plugged in.*--device sim' "$thimble" hil --arm vintage_phantom --junit old.xml --json old.json
+expect_words 3 '--device sim' "$thimble" hil --arm vintage_phantom --junit old.xml --json old.json
 expect 0 '^11 0 11 0$' /usr/bin/python3 summary.py old.xml
 expect 0 '^no_arm 3 not_run$' /usr/bin/python3 -c '
 import json
 whole = json.load(open("old.json"))
 print(whole["end"], whole["exit_code"], *{one["outcome"] for one in whole["checks"]})'
 expect 3 '--require-device' "$thimble" hil --device sim --arm vintage_phantom --require-device
-expect 2 '--check.*reports' "$thimble" hil --device sim --arm vintage_phantom --check weight
+expect_words 2 '--check reports' "$thimble" hil --device sim --arm vintage_phantom --check weight
 
 # One check, and what it needs before it pushes.
-expect 0 '^1 check: 1 passed, 0 failed, 0 skipped\.$' "$thimble" hil --device sim --arm vintage_phantom --check reports
-expect 0 '^2 checks: 2 passed, 0 failed, 0 skipped\.$' \
+expect 0 '' "$thimble" hil --device sim --arm vintage_phantom --check reports --json one.json
+expect_json one.json '.checks#' == 1
+expect_json one.json '.checks[0].outcome' == passed
+expect 0 '' \
   "$thimble" hil --device sim --arm vintage_phantom --check friction_at_rest --junit one.xml
+expect 0 '^2 0 0 0$' /usr/bin/python3 summary.py one.xml
 expect 0 '^\[2/2\] friction_at_rest$' "$thimble" hil --device sim --arm vintage_phantom --check friction_at_rest
-expect 5 'cable_pull.*asked for by name' "$thimble" hil --device sim --arm vintage_phantom --check cable_pull
+expect_words 5 'cable_pull' "$thimble" hil --device sim --arm vintage_phantom --check cable_pull
 
 # Out of time, and ended by a signal: zero force, and both files say what did not run.
-expect 5 'did not run' "$thimble" hil --device sim --arm vintage_phantom --check soak --soak 60 --timeout 3 --junit late.xml
+expect 5 'NOT RUN' "$thimble" hil --device sim --arm vintage_phantom --check soak --soak 60 --timeout 3 --junit late.xml
 expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py late.xml
 cp good.xml ended.xml
-expect 130 'NOT RUN' timeout -s TERM --preserve-status 3 \
+expect_words 130 'NOT RUN' timeout -s TERM --preserve-status 3 \
   "$thimble" hil --device sim --arm vintage_phantom --soak 60 --check reports --check soak --junit ended.xml
 expect 0 '^3 0 1 0$' /usr/bin/python3 summary.py ended.xml
 # Even SIGKILL leaves no old result behind.
@@ -92,10 +95,10 @@ sed '/^name:/d' "$source_dir/app/arms/vintage_phantom.yaml" >>named.yaml
 expect 0 . "$thimble" hil --device sim --arm named.yaml --check reports --junit named.xml
 expect 0 '^1 0 0 0$' /usr/bin/python3 summary.py named.xml
 
-expect 3 'cannot be simulated' "$thimble" hil --device sim --arm touch
-expect 3 'homed by' "$thimble" hil --device sim --arm falcon
-expect 3 'No arm is plugged in' "$thimble" hil
-expect 2 '--json: nowhere/x\.json cannot be written: the folder .* does not exist' "$thimble" hil --device sim --arm vintage_phantom --json nowhere/x.json
-expect 2 'quick' "$thimble" hil --device sim --arm vintage_phantom --suite slow
-expect 2 'spring' "$thimble" hil --device sim --arm vintage_phantom --spring 1
+expect_words 3 'simulated' "$thimble" hil --device sim --arm touch
+expect_error 3 'falcon --arm vintage_phantom polhem woodenhaptics' "$thimble" hil --device sim --arm falcon
+expect_words 3 '--device sim' "$thimble" hil
+expect_words 2 '--json nowhere/x.json folder' "$thimble" hil --device sim --arm vintage_phantom --json nowhere/x.json
+expect_words 2 '--suite quick full' "$thimble" hil --device sim --arm vintage_phantom --suite slow
+expect_words 2 '--spring' "$thimble" hil --device sim --arm vintage_phantom --spring 1
 finish

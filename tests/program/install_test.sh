@@ -31,7 +31,7 @@ done
 mkdir elsewhere
 (cd elsewhere && XDG_DATA_DIRS=/nonexistent "$work/examples/09_run_a_scene" no_such_scene 2>&1) >said &&
   fail "09_run_a_scene ran a scene that is not there"
-grep -q 'Known by name: .*elephant' said || fail "09_run_a_scene answered: $(cat said)"
+grep -q 'elephant' said || fail "09_run_a_scene answered: $(cat said)"
 
 echo "Building the programs of README.md and of the guide by pkg-config ..."
 PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)")
@@ -147,10 +147,10 @@ printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0
 in_place() { env -u THIMBLE_MESHES HOME="$work/home" XDG_CACHE_HOME="$work/home/cache" "$program" "$@"; }
 if [ ! -e /usr/share/doc/libcgal-dev/data.tar.gz ]; then
   in_place run elephant >said 2>&1 && fail "the installed program took the elephant from elsewhere: $(cat said)"
-  grep -q 'elephant.off is a scan .*libcgal-demo, and is not in .*/usr/share/thimble/meshes' said ||
+  grep -q 'elephant\.off .*libcgal-demo.*/usr/share/thimble/meshes' said ||
     fail "without scans the program said: $(cat said)"
   in_place doctor >said 2>&1 || true
-  grep -q 'scanned meshes that some scenes name are not here; .*/usr/share/thimble/meshes' said ||
+  grep -q '^advice .*/usr/share/thimble/meshes' said ||
     fail "without scans the doctor said: $(cat said)"
 fi
 sed 's/elephant\.off/tetrahedron.off/' "$work/usr/share/thimble/scenes/elephant.yaml" |

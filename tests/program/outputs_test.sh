@@ -38,7 +38,7 @@ file() {
   shift 3
   table="$table$1:$option "
   mapfile -t words < <(with "none/out$ending" "$@")
-  refused precious 'none.*(does not exist|cannot be written)' "$thimble" "${words[@]}"
+  refused precious 'none' "$thimble" "${words[@]}"
   cp precious "kept$ending"
   mapfile -t words < <(with "kept$ending" "$@")
   refused "kept$ending" "kept$ending" "$thimble" "${words[@]}"
@@ -48,11 +48,11 @@ file() {
     ln "$input" "hard$ending"
     for link in "soft$ending" "hard$ending"; do
       mapfile -t words < <(with "$link" "$@")
-      refused "$input" "$link (cannot be written|is there already)" "$thimble" "${words[@]}"
+      refused "$input" "$link" "$thimble" "${words[@]}"
     done
   done
   mapfile -t words < <(with "locked$ending" "$@")
-  refused precious 'being written' flock "locked.thimble-part$ending" "$thimble" "${words[@]}"
+  refused precious 'locked' flock "locked.thimble-part$ending" "$thimble" "${words[@]}"
   rm -f "locked.thimble-part$ending" "soft$ending" "hard$ending"
 }
 # folder OPTION COMMAND...: an option that writes a folder.
@@ -61,17 +61,17 @@ folder() {
   shift
   table="$table$1:$option "
   mapfile -t words < <(with "precious" "$@")
-  refused precious 'precious.*(not a folder|Not a directory|cannot be written)' "$thimble" "${words[@]}"
+  refused precious 'precious' "$thimble" "${words[@]}"
   mapfile -t words < <(with "/proc/none/out" "$@")
   refused precious '/proc/none' "$thimble" "${words[@]}"
   mkdir -p locked
   mapfile -t words < <(with "locked" "$@")
-  refused precious 'being written' flock locked "$thimble" "${words[@]}"
+  refused precious 'locked' flock locked "$thimble" "${words[@]}"
   rm -rf kept
   mkdir kept
   cp precious kept/figures.json
   mapfile -t words < <(with "kept" "$@")
-  refused kept/figures.json 'figures.json|not empty' "$thimble" "${words[@]}"
+  refused kept/figures.json 'figures\.json|kept' "$thimble" "${words[@]}"
 }
 
 run=(run scene.yaml --duration 0.05)
@@ -89,6 +89,7 @@ file OUT .pages mesh.off mesh page mesh.off OUT
 file OUT .pages "" mesh generate OUT --triangles 5000
 file --repair .off mesh.off mesh mesh.off --repair OUT
 file --picture .png mesh.off mesh mesh.off --picture OUT
+file --json .json mesh.off mesh mesh.off --json OUT
 file --out .png scene.yaml shot scene.yaml --at 0.1 --size 64x64 --out OUT
 file --animate .png scene.yaml shot scene.yaml --at 0.1 --until 0.2 --size 64x64 --animate OUT
 folder --out tune scene.yaml --out OUT
@@ -109,7 +110,7 @@ folder --out study stability --arm vintage_phantom --coarse --out OUT
 folder --out study trouble --arm vintage_phantom --count 10 --out OUT
 file --picture .png in.h5 view in.h5 --for 1 --picture OUT
 for log in scene.yaml precious in.h5 mesh.off; do
-  refused $log "--log: $log cannot be written|$log: the log cannot be written" "$thimble" "${run[@]}" --log $log
+  refused $log "--log: $log|^thimble: $log: " "$thimble" "${run[@]}" --log $log
 done
 table="$table all:--log "
 
@@ -131,20 +132,20 @@ checks=$((checks + 1))
 [ "$(wc -l <writes)" -ge 25 ] || { echo "FAILED: the manual names few outputs" && failures=$((failures + 1)); }
 
 # Two outputs of one name, and through a link.
-refused in.h5 'name the same place' "$thimble" export in.h5 --csv same --sound same
+refused in.h5 '--csv.*--sound' "$thimble" export in.h5 --csv same --sound same
 ln -sf new_name link_to_new
-refused in.h5 'name the same place' "$thimble" export in.h5 --csv new_name --sound link_to_new
+refused in.h5 '--csv.*--sound' "$thimble" export in.h5 --csv new_name --sound link_to_new
 
 # A recording is a measurement: it is replaced only with --force, and links stay.
 "$thimble" run scene.yaml --duration 0.05 --record once.h5 >/dev/null 2>&1
-refused once.h5 'a recording exists there already.*--force' "$thimble" "${run[@]}" --record once.h5
-expect 0 'Recording: once.h5' "$thimble" "${run[@]}" --record once.h5 --force
+refused once.h5 'once\.h5.*--force' "$thimble" "${run[@]}" --record once.h5
+expect 0 '' "$thimble" "${run[@]}" --record once.h5 --force
 ln -s once.h5 linked.h5
-expect 0 'Recording: linked.h5' "$thimble" "${run[@]}" --record linked.h5 --force
+expect 0 '' "$thimble" "${run[@]}" --record linked.h5 --force
 expect 0 '' test -L linked.h5
 # An HDF5 file of another program is not replaced, with --force either.
 printf '\x89HDF\r\n\x1a\n of another program' >other.h5
-refused other.h5 'not a recording' "$thimble" "${run[@]}" --record other.h5 --force
+refused other.h5 'other\.h5' "$thimble" "${run[@]}" --record other.h5 --force
 # Other outputs of the same kind are replaced, and their mode is kept.
 expect 0 '' "$thimble" export in.h5 --csv table.csv
 chmod 640 table.csv
@@ -155,11 +156,11 @@ expect 0 '^640$' stat -c %a table.csv
 "$thimble" run scene.yaml --clock wall --duration 20 --no-view --record busy.h5 --report busy >busy.txt 2>&1 &
 pid=$!
 for _ in $(seq 500); do [ -e busy.h5 ] && break; sleep 0.02; done
-expect 2 'busy.h5 cannot be written: it is being written or read by process' "$thimble" "${run[@]}" --record busy.h5 --force
-expect 2 'busy is being written by process' "$thimble" "${run[@]}" --report busy
+expect_words 2 "busy.h5 $pid" "$thimble" "${run[@]}" --record busy.h5 --force
+expect_words 2 "busy $pid" "$thimble" "${run[@]}" --report busy
 kill -INT $pid
 wait $pid
-expect 0 'ticks of box at' "$thimble" export busy.h5 --csv busy.csv
+expect_ticks busy.h5 -ge 1
 
 # Recordings, logs and black boxes can be read by their owner only, whatever the umask.
 (umask 0 && XDG_STATE_HOME=$PWD/state "$thimble" run scene.yaml --duration 0.05 --record secret.h5 --log secret.log) >/dev/null 2>&1
@@ -168,11 +169,11 @@ for secret in secret.h5 secret.log state/thimble/log/thimble.log; do expect 0 '^
 
 # Closed standard streams: no output gets their numbers.
 expect 0 '' bash -c 'exec 2>&-; "$0" run scene.yaml --duration 0.05 --record closed.h5 --log /dev/stderr' "$thimble"
-expect 0 '^closed.csv: 50 ticks' "$thimble" export closed.h5 --csv closed.csv
+expect_ticks closed.h5 -eq 50
 for closed in '0<&-' '1>&-' '2>&-' '0<&- 1>&- 2>&-'; do
   rm -f closed.h5
   bash -c "'$thimble' run scene.yaml --duration 0.05 --record closed.h5 -vv $closed" >/dev/null 2>&1
-  expect 0 '^closed.csv: 50 ticks of box at 1000 Hz\.$' "$thimble" export closed.h5 --csv closed.csv
+  expect_ticks closed.h5 -eq 50
 done
 
 # Killed while it makes a recording: there is none, or one that can be opened.
@@ -190,7 +191,7 @@ for _ in $(seq $tries); do
 done
 expect 0 '^0$' echo $unreadable
 # What is left of it is used again.
-expect 0 'Recording: killed.h5' "$thimble" "${run[@]}" --record killed.h5 --force
+expect 0 '' "$thimble" "${run[@]}" --record killed.h5 --force
 expect 1 '' test -e killed.thimble-part.h5
 
 # A full disk, and one that cannot be written to, are found before the run; nothing is left.
@@ -208,11 +209,11 @@ if unshare -rm true 2>/dev/null; then
   if [ $? = 77 ]; then
     leave_out "full and read-only disks: no file system in memory may be mounted"
   else
-    expect 0 '^full: 2$' cat disks.txt
+    expect_own 0 '^full: 2$' cat disks.txt
     expect 1 '' grep -E 'part' disks.txt
-    expect 0 '^readonly: 2$' cat disks.txt
-    expect 0 '^readonly mesh: 2$' cat disks.txt
-    expect 0 'Read-only file system' cat disks.txt
+    expect_own 0 '^readonly: 2$' cat disks.txt
+    expect_own 0 '^readonly mesh: 2$' cat disks.txt
+    expect_words 0 'Read-only' cat disks.txt
   fi
 else
   leave_out "full and read-only disks: no file system may be mounted here"

@@ -7,14 +7,14 @@ near() { /usr/bin/python3 "$here/picture_near.py" "$@"; }
 without() { /usr/bin/python3 "$here/picture_without.py" "$live" "$@"; }
 
 without 0 0 0 0 whole.png
-expect 0 '^the same: 0\.00 ' near "$live" whole.png
+expect_own 0 '^the same: 0\.00 ' near "$live" whole.png
 # The panel of knobs, the plots, the body that is touched.
 without 116 4 44 58 no_panel.png
-expect 1 '^another picture' near "$live" no_panel.png
+expect_own 1 '^another picture' near "$live" no_panel.png
 without 0 74 160 46 no_plots.png
-expect 1 '^another picture' near "$live" no_plots.png
+expect_own 1 '^another picture' near "$live" no_plots.png
 without 30 2 60 56 no_body.png
-expect 1 '^another picture' near "$live" no_body.png
+expect_own 1 '^another picture' near "$live" no_body.png
 without 1 1 1 1 dot.png # what other versions of letters are like is no other picture
-expect 0 '^the same' near "$live" dot.png
+expect_own 0 '^the same' near "$live" dot.png
 finish

@@ -13,7 +13,7 @@ PATH=$PWD/tools:$PATH
 
 # begin: starts a recorded run on the wall clock; returns when it touches. Leaves its number in pid.
 begin() {
-  rm -rf report run.h5 out
+  rm -rf report run.h5 run.csv out
   "$thimble" run "$scene" --clock wall --duration 60 --no-view --report report --record run.h5 \
     >out 2>&1 </dev/null &
   pid=$!
@@ -36,15 +36,17 @@ left_well() {
   fi
   local said
   said=$("$thimble" export run.h5 --csv run.csv 2>&1)
+  local rows
+  rows=$(grep -c '^[0-9]' run.csv)
   # A busy machine may not have begun the run yet: then it is not begun, and there is no report.
-  if [ "$status" = 130 ] && [ ! -e report/report.json ] && grep -q '^run.csv: 0 ticks of' <<<"$said"; then
+  if [ "$status" = 130 ] && [ ! -e report/report.json ] && [ -s run.csv ] && [ "$rows" = 0 ]; then
     early=$((early + 1))
     return
   fi
   ticks=$(grep -oE '^  "ticks": [0-9]+' report/report.json 2>/dev/null | grep -oE '[0-9]+')
   if [ "$status" = $code ] && grep -q "$reason" report/report.json &&
     grep -qE '"motor_current_A": -?0(\.0)?,?$' report/report.json &&
-    grep -q "^run.csv: ${ticks:-none} ticks of" <<<"$said" && ! grep -q 'cut off' <<<"$said"; then
+    [ "$rows" = "${ticks:-none}" ] && ! grep -q ' cut ' <<<"$said"; then
     return
   fi
   echo "FAILED: $1: exit code $status, ${ticks:-no} ticks in the report; $said"
@@ -108,8 +110,8 @@ sleep 0.6
 kill -s TERM $pid
 wait $pid
 expect 0 '^143$' echo $?
-expect 0 'Recording: run.h5' cat out
-expect 0 'ticks of rubber at 1000 Hz[.]$' bash -c '"$0" export run.h5 --csv run.csv | head -1' "$thimble"
+expect 0 'run\.h5' cat out
+expect_words 0 'run.csv # rubber 1000' bash -c '"$0" export run.h5 --csv run.csv | head -1 | grep -v cut' "$thimble"
 [ $early = 0 ] || echo "NOTE: $early signals came before the run began; this machine is busy"
 expect 0 '' test "$early" -lt $((checks / 2))
 finish

@@ -7,7 +7,8 @@ plots() {  # plots STEM...: they are there, where there is something to draw wit
   ! command -v gnuplot >/dev/null || expect_plot "$@"
 }
 
-expect 0 '^sines_line_error +[0-9.e-]+ % +goal <= 0.1: met' "$thimble" study texture --out texture
+expect 0 '' "$thimble" study texture --out texture
+expect_json texture/figures.json '[name=sines_line_error].value' '<=' 0.1
 expect 1 '' grep -q '"met": false' texture/figures.json
 expect 0 '.' head -1 texture/spectra.csv
 expect 0 '.' head -1 texture/lines.csv
@@ -15,20 +16,22 @@ plots texture/texture_spectra
 
 # A plate of 2 mm and 1 N/mm lets a tip through at 1 N if it is felt in wedges, and never by the face
 # that the tip came in by.
-expect 0 'plate_2mm_pops_at_in_wedges +1(\.00[01]*)? N' "$thimble" study box --out box
+expect 0 '' "$thimble" study box --out box
+expect_json box/figures.json '[name=plate_2mm_pops_at_in_wedges].value' '>=' 0.9999995
+expect_json box/figures.json '[name=plate_2mm_pops_at_in_wedges].value' '<' 1.0012
 expect 1 '' grep -q '"met": false' box/figures.json
 expect 0 '^# x mm, z mm' head -1 box/box.csv
 plots box/box
 
 [ -n "${THIMBLE_LONG:-}" ] || finish
 
-expect 0 'order off by +[0-9.e-]+ +goal <= 0.2: met' "$thimble" study integrators --out integrators
+expect 0 ' <= 0\.2: met' "$thimble" study integrators --out integrators
 expect 1 '' grep -q '"met": false' integrators/figures.json
 expect 0 '.' head -1 integrators/integrators.csv
 plots integrators/integrators_membrane
 
 # How long a tick takes is told and never judged; instructions are counted where valgrind is.
-expect 0 ': force error +[0-9.e-]+ %' "$thimble" study cost --out cost
+expect 0 ': .* [0-9.e-]+ %' "$thimble" study cost --out cost
 expect 0 ': memory' cat cost/figures.json
 expect 0 '.' head -1 cost/cost.csv
 plots cost/cost_of_contact cost/cost_of_effects

@@ -20,10 +20,10 @@ trace alone --no-view
 trace unwatched --name "$me"
 expect 0 '^$' bash -c 'cmp alone.csv unwatched.csv && echo'
 # A recording is shown in a window, and nothing can be asked of it.
-expect 2 'alone.h5 is a recording: nothing can be asked of it' "$thimble" view alone.h5 --pause
-expect 2 'alone.h5 is a recording' "$thimble" view alone.h5 --text
+expect_words 2 'alone.h5 recording' "$thimble" view alone.h5 --pause
+expect_words 2 'alone.h5 recording' "$thimble" view alone.h5 --text
 expect 2 'missing.h5' "$thimble" view missing.h5
-expect 2 'is the name of a run' "$thimble" view alone.h5 "$me"
+expect_error 2 "$me" "$thimble" view alone.h5 "$me"
 
 harass() {
   local viewer
@@ -57,11 +57,11 @@ sleep 1
 expect 0 "$me: rubber" "$thimble" view --list
 expect 0 'ball: friction coefficient = ' "$thimble" view --list
 expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=200'
-expect 2 'has no knob "ball: colour"; it has' "$thimble" view "$me" --turn 'ball: colour=2'
-expect 2 'expected NAME=VALUE' "$thimble" view "$me" --turn 'ball: stiffness=nan'
-expect 2 'ball: stiffness may be .* found 1e' "$thimble" view "$me" --turn 'ball: stiffness=1e9'
+expect_words 2 '"ball: colour"' "$thimble" view "$me" --turn 'ball: colour=2'
+expect_words 2 'NAME=VALUE' "$thimble" view "$me" --turn 'ball: stiffness=nan'
+expect 2 '^thimble: .*ball: stiffness .*1e' "$thimble" view "$me" --turn 'ball: stiffness=1e9'
 expect 0 "$me running" timeout 60 "$thimble" view "$me" --text --for 0.5
-expect 2 'is already shown' "$thimble" run "$scenes/honey.yaml" --name "$me"
+expect_error 2 "$me" "$thimble" run "$scenes/honey.yaml" --name "$me"
 expect 0 '' "$thimble" view "$me" --record ordered.h5
 sleep 1
 expect 0 '' "$thimble" view "$me" --record-stop
@@ -69,10 +69,9 @@ expect 0 '' "$thimble" view "$me" --stop
 wait $run || true
 rm -f run_goes_on
 wait $viewer
-expect 0 'The run has ended' cat view.log
-expect 0 'running: .* ticks, .* missed' cat view.log
+expect 0 "^$me running: .* [0-9]+ ticks" cat view.log
 echo "real time, viewers killed in a loop: $(tail -2 view.log | head -1)"
-expect 0 'ticks of rubber at 1000 Hz' "$thimble" export ordered.h5 --csv ordered.csv
+expect_words 0 'ordered.csv # rubber 1000' "$thimble" export ordered.h5 --csv ordered.csv
 expect 1 '' test -e "$segment"
 wait
 
@@ -84,11 +83,12 @@ for end in view signal; do
   if [ $end = view ]; then "$thimble" view "$me" --stop; else kill -TERM $run; fi
   wait $run
   echo $? >code
-  expect 0 "$([ $end = view ] && echo '^0$' || echo '^130$')" cat code
+  [ $end = view ] && right='^0$' || right='^130$'
+  expect 0 "$right" cat code
   expect 1 '' test -e "$segment"
 done
 
-expect 0 'No screen .*: watch by' "$thimble" run "$scenes/honey.yaml" --view --duration 0.2 --name "$me"
+expect_words 0 'screen view' "$thimble" run "$scenes/honey.yaml" --view --duration 0.2 --name "$me"
 
 # Steered: at a pace, tick by tick, begun anew by hand, by its file, and with another scene.
 sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: 60/" "$scenes/rubber.yaml" >ball.yaml
@@ -104,7 +104,7 @@ told() {
   expect 0 "$1" cat told.txt
 }
 told "$me running"
-expect 2 'pause it first' "$thimble" view "$me" --step 1
+expect_error 2 'pause' "$thimble" view "$me" --step 1
 expect 0 '' "$thimble" view "$me" --pause --step 10
 told "$me paused"
 "$thimble" view "$me" --text --for 0.1 >before.txt
@@ -113,26 +113,26 @@ sleep 0.5
 ticks() { grep -oE '[0-9]+ ticks' "$1" | grep -oE '[0-9]+'; }
 "$thimble" view "$me" --text --for 0.1 >after.txt
 expect 0 '^100$' echo $(($(ticks after.txt) - $(ticks before.txt)))
-expect 0 ', 0 missed' cat after.txt
+expect 0 ' 0 missed' cat after.txt
 expect 0 '' "$thimble" view "$me" --speed 4 --loop off
-expect 2 '--speed: expected a number from .* to .*, found "5"' "$thimble" view "$me" --speed 5
+expect_words 2 '--speed "5"' "$thimble" view "$me" --speed 5
 expect 0 '' "$thimble" view "$me" --restart
 told "$me running"
 expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=250' --save-knobs
 expect 0 'stiffness: 250 ' cat ball-turned.yaml
 sed -i 's/stiffness: 400/stiffness: soft/' ball.yaml
-told 'ball.yaml:15: stiffness: expected'
+told 'ball.yaml:15: stiffness'
 cp ball-turned.yaml ball.yaml
 for _ in $(seq 100); do "$thimble" view --list | grep -q 'ball: stiffness = 250' && break; sleep 0.1; done
 expect 0 'ball: stiffness = 250' "$thimble" view --list
 expect 0 '' "$thimble" view "$me" --loop on --scene "$scenes/honey.yaml"
 for _ in $(seq 300); do "$thimble" view --list | grep -q "^$me: honey" && break; sleep 0.1; done
 expect 0 "^$me: honey" "$thimble" view --list
-expect 2 'there is no such file' "$thimble" view "$me" --scene sugar
+expect_error 2 'sugar' "$thimble" view "$me" --scene sugar
 expect 0 '' "$thimble" view "$me" --stop
 wait $run
 expect 0 '^0$' echo $?
-expect 2 'leave --clock wall away' "$thimble" run ball.yaml --clock wall --speed 2
+expect_words 2 '--clock wall' "$thimble" run ball.yaml --clock wall --speed 2
 
 # Turned knobs are in the recording, so that it repeats.
 "$thimble" run ball.yaml --clock paced --speed 0.1 --duration 2 --name "$me" --record turned.h5 >turned.log 2>&1 &
@@ -140,7 +140,7 @@ run=$!
 for _ in $(seq 300); do "$thimble" view "$me" --turn 'ball: stiffness=150' >/dev/null 2>&1 && break; sleep 0.1; done
 expect 0 '' "$thimble" view "$me" --speed 4
 wait $run
-expect 0 'every force is the recorded one to the bit' "$thimble" replay turned.h5 --verify
+expect 0 '' "$thimble" replay turned.h5 --verify
 "$thimble" export turned.h5 --csv turned.csv >/dev/null
 expect 0 '^1$' awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } $at["setting"] >= 0 { ++turned } END { print turned }' turned.csv
 
@@ -169,7 +169,7 @@ for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
   done
   expect 0 'process has died' sh -c "cat told.txt; exit $status"
   stored=$(grep -oE '[0-9]+ ticks' told.txt | head -1 | grep -oE '[0-9]+')
-  expect 0 'the recording was cut off' "$thimble" export killed.h5 --csv killed.csv
+  expect 0 'killed.csv: .* cut' "$thimble" export killed.h5 --csv killed.csv
   rows=$(($(wc -l <killed.csv) - 1))
   lost=$((stored - rows))
   [ "$lost" -gt "$lost_most" ] && lost_most=$lost
@@ -177,7 +177,7 @@ for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
   expect 0 '^yes$' echo "$([ "$stored" -gt 1000 ] && [ "$lost" -le 1000 ] && echo yes || echo "lost $lost of $stored")"
 done
 echo "killed while recording $i times: $lost_most ticks of 1 ms lost at most (aim: 100)"
-expect 0 'the scene was over' "$thimble" run "$scenes/honey.yaml" --duration 0.1 --name "$me"
+expect_run 0 .end.reason == done "$thimble" run "$scenes/honey.yaml" --duration 0.1 --name "$me"
 expect 1 '' test -e "$segment"
 
 # A long recording at 8 kHz: no tick is dropped, and memory stays where it was.
@@ -192,10 +192,9 @@ while kill -0 $run 2>/dev/null; do
   sleep 0.02
 done
 wait $run
-expect 0 'Recording: fast.h5' cat fast.log
-expect 1 '' grep -q 'too slow' fast.log
 if [ "$seconds" -le 60 ]; then
-  expect 0 "^fast.csv: $((seconds * 8000)) ticks of honey at 8000 Hz\.$" "$thimble" export fast.h5 --csv fast.csv
+  expect_words 0 "fast.csv $((seconds * 8000)) honey 8000" "$thimble" export fast.h5 --csv fast.csv
+  expect 0 "^$((seconds * 8000))\$" grep -c '^[0-9]' fast.csv
 else  # a table of 2 GB says no more: each tick has 230 bytes in its columns
   expect 0 '^yes$' echo "$([ "$(stat -c %s fast.h5)" -ge $((seconds * 8000 * 230)) ] && echo yes || stat -c %s fast.h5)"
 fi

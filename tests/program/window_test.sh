@@ -13,7 +13,7 @@ for tool in Xvfb xdotool; do
 done
 source "$here/screen.sh"
 
-expect 0 'Recording' "$thimble" run "$source_dir/app/scenes/tin_can.yaml" --record touch.h5 --no-view
+expect 0 '' "$thimble" run "$source_dir/app/scenes/tin_can.yaml" --record touch.h5 --no-view
 
 # same_as_kept NAME PICTURE TIMES...: the picture, or the part that follows (left, top, width, height), so many times smaller, is the kept one.
 same_as_kept() {

@@ -29,7 +29,7 @@ TEST_P(BoardVectors, PutTheTipWhereThePublishedProgramSeesIt) {
 INSTANTIATE_TEST_SUITE_P(Boards, BoardVectors, testing::ValuesIn(usb_test::kBoardVectors));
 
 // The simulated board has the signs of the published one too: at +y it counts less on encoder a.
-TEST(SimulatedBoards, CountEncoderAOfTheMbedWoodenHapticsAgainstTheYaw) {
+TEST(SimulatedBoards, MbedEncoderACountsAgainstYaw) {
   namespace usb = device_sim::usb;
   usb::ShelfOptions options;
   options.motion = usb::HandMotion::kStroke;

@@ -59,7 +59,7 @@ std::uint64_t hash_of_scene(const std::string& name) {
   return touching > 100 ? hash.value() : 0;
 }
 
-TEST(HardCase41, ScenesGiveTheBitsThatWereStoredAloneAndFourAtOnce) {
+TEST(HardCaseDeterminism, ScenesMatchTheStoredHashes) {
   // The release build (-O3) and the sanitizers' (-O1) both come here, and a build with -O0 gave the
   // same, so one hash stands for any build. What was said of kStored above holds of these.
   struct Stored {

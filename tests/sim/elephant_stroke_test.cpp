@@ -208,7 +208,7 @@ TEST_F(ElephantStroke, FeelsWhatWasFoundButJustBehindTheEdges) {
   EXPECT_LT(error / static_cast<double>(touching), 3e-5);
 }
 
-TEST_F(ElephantStroke, PushesWithStiffnessTimesDepthPlusDampingTimesSpeedAlongTheNormal) {
+TEST_F(ElephantStroke, ForceIsSpringPlusDamperAlongTheNormal) {
   const auto& object = session_->scene().objects.front();
   std::size_t by_the_face = 0;
   for (std::size_t i = 0; i < rows().size(); ++i) {
@@ -263,7 +263,7 @@ TEST_F(ElephantStroke, JumpsInForceByNoMoreThanThePathImplies) {
 
 class ElephantPressedDeep : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(ElephantPressedDeep, SixtyMillimetresChangesTheForceByNoMoreThanThePathImplies) {
+TEST_P(ElephantPressedDeep, ForceIsBoundedByThePathAt60Millimetres) {
   THIMBLE_NEEDS_MESHES();
   // The demo's stroke, pressed so that the tip goes in by 6 to 9 mm, among other faces.
   const std::string text = std::regex_replace(support::elephant_text(GetParam()),

@@ -113,7 +113,7 @@ struct Wall {
   double tolerance;
 };
 
-TEST(HalfSpaceFromTheWireUp, ReturnsTheEnergyThatTheRestitutionLawSays) {
+TEST(HalfSpaceFromTheWireUp, ReturnsTheEnergyOfTheLaw) {
   // ln e = -pi (b + B - K (T/2 + td)) / (2 sqrt(K m)) [PHYSICS 1.5].
   for (const Wall& c :
        {Wall{1000, 0, 1'000'000, 0, 0.01}, Wall{1000, 0, 1'000'000, 1'000'000, 0.01},

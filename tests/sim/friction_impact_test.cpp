@@ -88,7 +88,7 @@ Impact impact(std::string_view name, double speed, double phase, bool held, doub
   return result;
 }
 
-TEST(HardCase07, SurfaceWithFrictionReturnsNoMoreSpeedThanAnImpactBrought) {
+TEST(HardCaseWallImpact, FrictionReturnsNoSpeed) {
   // Every friction on the surface of the demo's scene.
   double largest = 0;
   for (const std::string& name : support::friction_names()) {
@@ -104,7 +104,7 @@ TEST(HardCase07, SurfaceWithFrictionReturnsNoMoreSpeedThanAnImpactBrought) {
                             "<= largest restitution", largest, 1, "1");
 }
 
-TEST(HardCase10, GateThatSaturatesAndLimitsTheRiseReturnsNoMoreSpeed) {
+TEST(HardCaseRiseLimit, SaturatingGateReturnsNoSpeed) {
   double largest = 0;
   for (const std::string& name : support::friction_names()) {
     for (const double speed : {0.1, 0.3, 0.6, 1.0}) {
@@ -131,7 +131,7 @@ TEST(HardCase10, GateThatSaturatesAndLimitsTheRiseReturnsNoMoreSpeed) {
                             "<= largest restitution", largest, 1, "1");
 }
 
-TEST(HardCase10, SymmetricSlewLimitThrowsAHandOnFrictionBack) {
+TEST(HardCaseRiseLimit, GuardSymmetricLimitThrowsAHand) {
   // The guard of the test above: the same impacts with a limit on the fall as well.
   double most = 0;
   for (int i = 0; i < 100; ++i) {

@@ -83,7 +83,7 @@ TEST(NaiveFriction, MovesTheHandNoMoreOnceTheEncodersAreIdeal) {
 }
 
 // From the wire up.
-TEST(HardCase13, NaiveFrictionHasTheMeanAndRippleOfItsLaw) {
+TEST(HardCaseNaiveFriction, HasTheMeanAndRippleOfItsLaw) {
   double worst_mean = 0, worst_ripple = 0, ideal_ripple = 0;
   for (const double speed : {0.005, 0.02}) {
     const studies::EvenSliding naive = studies::slide_evenly({}, speed);
@@ -107,7 +107,7 @@ TEST(HardCase13, NaiveFrictionHasTheMeanAndRippleOfItsLaw) {
                    1e3 * ideal_ripple, 5, "mN");
 }
 
-TEST(HardCase14, DefaultFrictionIsSilentAtAnyStopAtAnyDelay) {
+TEST(HardCaseFrictionStop, IsSilentAtAnyDelay) {
   double most_force = 0, most_way = 0, most_changes = 0, least_held = 1;
   for (int delay = 0; delay <= 3; ++delay) {
     for (int i = 0; i < 40; ++i) {
@@ -135,7 +135,7 @@ TEST(HardCase14, DefaultFrictionIsSilentAtAnyStopAtAnyDelay) {
 // That the last second flickers no more than the first, as [PHYSICS 7] proposes, holds of no
 // limit cycle: windows of a second see it from other phases, and differ by 3 % for ever. What must
 // not grow is its span: two counts, as case 5 has it, and the RMS below half a quantum.
-TEST(HardCase14, DefaultFrictionFlickersByTwoCountsAtMostOnAnArmWithoutDryFriction) {
+TEST(HardCaseFrictionStop, ArmWithoutDryFrictionIsQuiet) {
   double most_share = 0, most_changes = 0, most_span = 0;
   double late_span = 0, late_share = 0;
   for (int delay = 0; delay <= 3; ++delay) {
@@ -198,7 +198,7 @@ TEST(DefaultFriction, IsSilentForOtherHandsMassesAndEncoders) {
 }
 
 // What the settings refuse is what falls into a limit cycle.
-TEST(HardCase20, BristleThatBendsByOneCountWouldChatter) {
+TEST(HardCaseStiffBristle, GuardOneCountBristleChatters) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(
       {.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 0.5 / 3e-5},
@@ -209,7 +209,7 @@ TEST(HardCase20, BristleThatBendsByOneCountWouldChatter) {
                    1e3 * force_hf, 100, "mN");
 }
 
-TEST(HardCase15, DefaultFrictionSlidesSlowlyWithAllItsForceAndQuietly) {
+TEST(HardCaseSlowSliding, KeepsItsForceQuietly) {
   for (const double speed : {0.001, 0.005}) {
     const FrictionRigSettings rig;
     const auto bristle = friction("bristle", rig);
@@ -227,7 +227,7 @@ TEST(HardCase15, DefaultFrictionSlidesSlowlyWithAllItsForceAndQuietly) {
 }
 
 // The arm's own dry friction is away, so that nothing else holds.
-TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
+TEST(HardCaseStiction, SteadyLoadDoesNotDrift) {
   FrictionRigSettings rig;
   const auto context = stability::effect_context_of(rig);
   rig.arm_coulomb = 0;
@@ -248,7 +248,7 @@ TEST(HardCase16, DefaultFrictionHoldsALoadWithoutDrift) {
   }
 }
 
-TEST(HardCase16, DefaultFrictionDoesNotCreepUnderALoadThatOscillates) {
+TEST(HardCaseStiction, OscillatingLoadDoesNotCreep) {
   FrictionRigSettings rig;
   const auto context = stability::effect_context_of(rig);
   rig.arm_coulomb = 0;

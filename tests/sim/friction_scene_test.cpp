@@ -31,7 +31,7 @@ std::filesystem::path scene_with(const std::string& settings) {
   return file;
 }
 
-TEST(SceneWithFriction, StrokesTheElephantWithEveryFrictionAndAllocatesNothing) {
+TEST(SceneWithFriction, EveryFrictionRunsWithoutAllocation) {
   THIMBLE_NEEDS_MESHES();
   for (const std::string& name : support::friction_names()) {
     session::SessionOptions options;

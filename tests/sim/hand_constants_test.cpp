@@ -178,7 +178,7 @@ TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
                             "<= RMS of the force at rest", 1e3 * most, 20, "mN");
 }
 
-TEST(HandConstants, GuardALowImpedanceGripOscillatesOnWhatAnotherCarries) {
+TEST(HandConstants, GuardLowImpedanceGripOscillates) {
   const auto arm =
       scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   ASSERT_TRUE(arm);

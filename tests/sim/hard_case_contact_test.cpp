@@ -105,7 +105,7 @@ std::pair<int, double> slide(Touched& touched, const Surface& surface, Vector3d 
   return {lost, jump};
 }
 
-TEST(HardCase22, SmoothTrackersSlideOverConvexAndHollowTrianglesWithoutLossOrJump) {
+TEST(HardCaseEdgeCrossing, SmoothTrackersDoNotJump) {
   const int crossings = support::long_form() ? 100'000 : 1000;
   for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kPacked}) {
     Touched ball(support::icosphere(4, 0.03), tracker);
@@ -126,7 +126,7 @@ TEST(HardCase22, SmoothTrackersSlideOverConvexAndHollowTrianglesWithoutLossOrJum
   }
 }
 
-TEST(HardCase23, NoTrackerLetsTheTipThroughAThinPlateUnderAllForce) {
+TEST(HardCaseThinPlate, NoTrackerLetsTheTipThrough) {
   const TriangleMesh plate = support::plate(0.1, 0.0002, 8);
   for (const TrackerChoice tracker : kTrackers) {
     Touched touched(plate, tracker);
@@ -162,7 +162,7 @@ TEST(HardCase23, NoTrackerLetsTheTipThroughAThinPlateUnderAllForce) {
   }
 }
 
-TEST(HardCase25, TrackersSettleInOneTickAndDoNotCycleInSharpPlaces) {
+TEST(HardCaseSharpCorner, TrackersSettleInOneTick) {
   struct Place {
     TriangleMesh mesh;
     Vector3d middle;
@@ -207,11 +207,11 @@ TEST(HardCase25, TrackersSettleInOneTickAndDoNotCycleInSharpPlaces) {
   }
 }
 
-// HardCase26 in offset_tracker_test.cpp holds the offset tracker to brute force; the compact one
-// has the same cells if its normals are the same, but for their packing, which moves borders by
-// some 1e-5 of an edge. So the proxies are compared: that of a neighbour, half an edge beyond the
-// border, would be (L/2)^2 / 2R = 1.4 um off.
-TEST(HardCase26, CompactTrackerHasTheOffsetTrackersProxyInAFastStroke) {
+// HardCaseFastStroke in offset_tracker_test.cpp holds the offset tracker to brute force; the
+// compact one has the same cells if its normals are the same, but for their packing, which moves
+// borders by some 1e-5 of an edge. So the proxies are compared: that of a neighbour, half an edge
+// beyond the border, would be (L/2)^2 / 2R = 1.4 um off.
+TEST(HardCaseFastStroke, CompactTrackerMatchesOffset) {
   const TriangleMesh ball = support::icosphere(5, 0.008);  // edges of 0.3 mm
   Touched compact(ball, TrackerChoice::kPacked, NormalWeights::kAngle);
   Touched offset(ball, TrackerChoice::kOffset, NormalWeights::kAngle);
@@ -311,7 +311,7 @@ Difference difference(const TriangleMesh& base, TrackerChoice tracker, double sc
 // A scale of 1e-6 rounds each vertex; a sliver 1e-12 m high is turned by that by 1e-5 rad, so it is
 // another shape. A scale that is a power of two rounds nothing: there even slivers must give the
 // very bits, which nothing with a length of its own in it would.
-TEST(HardCase27, EveryTrackerFeelsTheSameAtEveryScaleAndFarFromTheOrigin) {
+TEST(HardCaseScale, EveryTrackerIsInvariant) {
   const TriangleMesh plain = bumps(3), slivers = with_slivers(bumps(2));
   struct Variant {
     const char* name;
@@ -337,7 +337,7 @@ TEST(HardCase27, EveryTrackerFeelsTheSameAtEveryScaleAndFarFromTheOrigin) {
   }
 }
 
-TEST(HardCase28, NoTrackerTunnelsThroughAPlateAtAnyPhase) {
+TEST(HardCaseTunnelling, NoTrackerPassesThroughAPlate) {
   const TriangleMesh plate = support::plate(0.1, 0.001, 8);
   for (const TrackerChoice tracker : kTrackers) {
     Touched touched(plate, tracker);

@@ -97,7 +97,7 @@ Wall pulled_wall(double stiffness) {
 const EnergyGuardSettings kPassivity{
     .stage = EnergyStage::kPassivity, .mass = 0.075, .allowance = 0, .reservoir = 1};
 
-TEST(HardCase11, PassivityControllerKeepsBouncesFromGrowing) {
+TEST(HardCaseController, BouncesDoNotGrow) {
   GatedWall wall(pulled_wall(3000), limits(50), kPassivity);
   const std::vector<double> bounces = apexes(wall.rig, 5, [&wall] { wall.tick(); });
   ASSERT_GE(bounces.size(), 5u);
@@ -118,7 +118,7 @@ TEST(HardCase11, PassivityControllerKeepsBouncesFromGrowing) {
                    bounces.back() / bounces.front(), 1, "1");
 }
 
-TEST(HardCase11, BouncesGrowWithoutTheController) {
+TEST(HardCaseController, GuardBouncesGrowWithoutIt) {
   GatedWall wall(pulled_wall(3000), limits(50), {});
   const std::vector<double> bounces = apexes(wall.rig, 5, [&wall] { wall.tick(); });
   ASSERT_GE(bounces.size(), 3u);
@@ -142,7 +142,7 @@ std::vector<double> bounces_with(Booking booking) {
   });
 }
 
-TEST(HardCase11, BouncesCreepWhenNotTheSentForceIsBooked) {
+TEST(HardCaseController, GuardBookingTheAskedForceCreeps) {
   // A wall that must not stick clamps the damping on the way out: an account of what was asked for
   // believes that it was paid.
   const auto good = bounces_with(Booking::kSent), bad = bounces_with(Booking::kDemanded);
@@ -175,7 +175,7 @@ double bounded_restitution(double viscous, double slope_share, double speed, dou
   return most;
 }
 
-TEST(HardCase12, BoundedWallOfAnyDemandGivesNoEnergy) {
+TEST(HardCaseBoundedWall, AnyDemandGivesNoEnergy) {
   double most = 0;
   for (const double viscous : {0.05, 0.1, 0.2, 0.5}) {
     for (const double demanded : {1000.0, 5000.0, 20'000.0}) {
@@ -187,7 +187,7 @@ TEST(HardCase12, BoundedWallOfAnyDemandGivesNoEnergy) {
                    "<= largest restitution", most, 1, "1");
 }
 
-TEST(HardCase12, BoundAboveTwiceTheFrictionPerPeriodIsActive) {
+TEST(HardCaseBoundedWall, GuardSteepBoundIsActive) {
   double least = 10;
   for (const double viscous : {0.05, 0.1, 0.2, 0.5}) {
     least = std::min(least, bounded_restitution(viscous, 3, 0.1, 20'000));
@@ -213,8 +213,8 @@ double limited_restitution(double stiffness, double speed, double phase, Limiter
   return std::max(0.0, rig.state.v) / speed;
 }
 
-TEST(HardCase10, SymmetricSlewLimiterThrowsTheTipBack) {
-  // The guard of HardCase10 in friction_impact_test.cpp: active below K v = 300 N/s
+TEST(HardCaseRiseLimit, GuardSymmetricLimitThrowsTheTip) {
+  // The guard of HardCaseRiseLimit in friction_impact_test.cpp: active below K v = 300 N/s
   // [PHYSICS 1.6].
   double most = 0;
   for (int i = 0; i < 50; ++i) {
@@ -239,7 +239,7 @@ scene::ArmFile vintage() {
   return *arm;
 }
 
-TEST(HardCase11, ControllerOfTheArmFileStopsAWallThatIsFarTooStiffThroughTheWholeWay) {
+TEST(HardCaseController, ArmFileStopsAStiffWall) {
   scene::ArmFile arm = vintage();
   arm.simulated.hand.damping = 0.3;  // a hand that hardly helps
   stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
@@ -261,7 +261,7 @@ TEST(HardCase11, ControllerOfTheArmFileStopsAWallThatIsFarTooStiffThroughTheWhol
                    wild->oscillation / tamed->oscillation, 3, "1");
 }
 
-TEST(HardCase11, BookedEnergyIsThatOfTheTrueMotors) {
+TEST(HardCaseController, BookedEnergyMatchesTheMotors) {
   // What the observer sees through counts, mA and a late wire against what the motors did.
   scene::ArmFile arm = vintage();
   stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
@@ -279,7 +279,7 @@ TEST(HardCase11, BookedEnergyIsThatOfTheTrueMotors) {
                    std::abs(booked / touch->energy_given - 1), 0.02, "1");
 }
 
-TEST(HardCase12, BoundedWallOfTwentyNewtonsPerMillimetreRestsThroughTheWholeWay) {
+TEST(HardCaseBoundedWall, TwentyNewtonsPerMillimetreRest) {
   const scene::ArmFile arm = vintage();
   stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 20'000};
   const auto wild = stability::press_on_wall(arm, trial);

@@ -162,7 +162,7 @@ Throw throw_from(double height, const scene::ArmFile& arm, const SlowSurface& su
 
 constexpr std::array kHeights{0.001, 0.003, 0.01, 0.03};  // m: 0.03 to 1.1 m/s
 
-TEST(HardCase40, ThrownAtItTheTipNeverComesBackFaster) {
+TEST(HardCaseSlowModel, ThrownTipReturnsNoSpeed) {
   const scene::ArmFile arm = phantom();
   scene::ArmFile low_impedance = arm;
   low_impedance.simulated.hand.damping /= 10;
@@ -197,7 +197,7 @@ TEST(HardCase40, ThrownAtItTheTipNeverComesBackFaster) {
                    "1");
 }
 
-TEST(HardCase40, NorIfTheSlowSideFallsSilentInTheMiddle) {
+TEST(HardCaseSlowModel, SilentModelReturnsNoSpeed) {
   const scene::ArmFile arm = phantom();
   double most = 0;
   for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
@@ -216,7 +216,7 @@ TEST(HardCase40, NorIfTheSlowSideFallsSilentInTheMiddle) {
                    "<= largest restitution", most, 1, "1");
 }
 
-TEST(HardCase40, GuardHeldForceComesBackFaster) {
+TEST(HardCaseSlowModel, GuardHeldForceComesBackFaster) {
   const scene::ArmFile arm = phantom();
   double most = 0;
   for (const double height : kHeights) {
@@ -244,7 +244,7 @@ double pressed_oscillation(double stiffness, Law law) {
   return high - low;
 }
 
-TEST(HardCase40, GuardHeldForceObeysTheSlowPeriodAndAModelTheServos) {
+TEST(HardCaseSlowModel, GuardHeldForceObeysTheSlowPeriod) {
   const scene::ArmFile arm = phantom();
   const auto& simulated = arm.simulated;
   // Computed for a whole period, then held for one: a delay of T, and the wire's.
@@ -295,7 +295,7 @@ Felt slide(SlowSide& slow, Law law, double speed) {
   return done;
 }
 
-TEST(HardCase40, ForceDoesNotJumpFromModelToModel) {
+TEST(HardCaseSlowModel, ForceDoesNotJumpBetweenModels) {
   double most = 0, held = 0, error = 0;
   int rests = 0;
   for (const Shape shape : {Shape::kPlane, Shape::kBall, Shape::kBowl}) {
@@ -330,7 +330,7 @@ TEST(HardCase40, ForceDoesNotJumpFromModelToModel) {
                    "%");
 }
 
-TEST(HardCase40, NothingJumpsWhenModelsComeAgainAfterTwoHundredMilliseconds) {
+TEST(HardCaseSlowModel, NothingJumpsAfter200msOfSilence) {
   double most = 0;
   for (const Shape shape : {Shape::kPlane, Shape::kBall, Shape::kBowl}) {
     for (const double begin : {0.45, 0.62, 0.7, 0.8, 0.83}) {
@@ -352,7 +352,7 @@ TEST(HardCase40, NothingJumpsWhenModelsComeAgainAfterTwoHundredMilliseconds) {
                    "<= largest change of force in a tick", 100 * most, 5, "%");
 }
 
-TEST(HardCase40, SilenceThatLastsEndsWithoutForceAndWithAName) {
+TEST(HardCaseSlowModel, LastingSilenceEndsWithoutForce) {
   SlowSide slow({});
   slow.silent_from_ns = 600'000'000;
   slow.silent_to_ns = 2'000'000'000;

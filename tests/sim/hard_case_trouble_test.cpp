@@ -157,7 +157,7 @@ Press stalled_press(std::uint64_t at, const driver::EnergyGuardSettings& energy)
   return press;
 }
 
-TEST(HardCase09, StalledLoopInContactIsBackSoonAndWithinItsForce) {
+TEST(HardCaseLoopStall, ContactReturnsWithin50ms) {
   double slowest = 0, most = 0, first = 0;
   for (const std::uint64_t at : {535u, 540u, 545u, 560u, 600u}) {
     const Press press = stalled_press(at, {});
@@ -182,7 +182,7 @@ TEST(HardCase09, StalledLoopInContactIsBackSoonAndWithinItsForce) {
   record_hard_case(9, "the same", "<= largest force", most, 5, "N");
 }
 
-TEST(HardCase09, StalledLoopGivesNoMoreEnergyThanItTookUnderTheController) {
+TEST(HardCaseLoopStall, ControllerPreventsEnergyGain) {
   // While the force is away the tip sinks in, and a wall that comes back pushes it out again: up to
   // K (x1^2 - x0^2) / 2 that nobody gave. So the energy needs the controller. Its bound is twice
   // the onset, and it sees a tick and a wire late: 2 * 0.1 mJ + F v (T + delay) with 5 N, 0.2 m/s,
@@ -219,7 +219,7 @@ TEST(HardCase09, StalledLoopGivesNoMoreEnergyThanItTookUnderTheController) {
                    1e3 * bare, 2.2, "mJ");
 }
 
-TEST(HardCase09, LongerGapThanTheWatchdogIsAFaultWithNoForce) {
+TEST(HardCaseLoopStall, LongGapIsAFaultWithoutForce) {
   Press press;
   press.disturb = [](std::uint64_t tick, driver::VirtualClock& clock, driver::ForceCommand&) {
     if (tick == 600) clock.sleep_until_ns(clock.now_ns() + 120'000'000);
@@ -229,7 +229,7 @@ TEST(HardCase09, LongerGapThanTheWatchdogIsAFaultWithNoForce) {
   EXPECT_EQ(press.current_at_end, 0);
 }
 
-TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
+TEST(HardCaseSnapInHand, ControllerCausesNoSecondSnap) {
   // A vertex on a snapping base point, pressed in by a hand through spring and gate.
   constexpr double kContact = 350;  // N/m; below 440, so that it jumps
   support::Wall wall;
@@ -287,7 +287,7 @@ TEST(HardCase33, SnapUnderTheControllerDoesNotChatterAndItsAccountCloses) {
                    std::abs(booked / taken - 1), 0.01, "1");
 }
 
-TEST(HardCase37, SingularPosesAndTheEdgeOfReachGiveFiniteClampedCurrents) {
+TEST(HardCaseSingularPose, CurrentsAreFiniteAndClamped) {
   const auto model = support::vintage_model();
   driver::SafetyGate gate({.force_max = 5,
                            .speed_max = 50,
@@ -352,7 +352,7 @@ double largest_step(const std::vector<Press::Row>& rows, std::size_t from) {
   return most;
 }
 
-TEST(HardCase38, GlitchesThatATipCannotDoAreDroppedAndOthersMoveAFifthOfTheForceAtMost) {
+TEST(HardCaseEncoderFault, ImpossibleGlitchesAreDropped) {
   constexpr double kAllowed = 0.2 * 5;  // N
   // Beyond this the driver takes a jump for none of the tip's: 1000 m/s^2 for 1 ms, and the rest of
   // its last movement.
@@ -396,7 +396,7 @@ TEST(HardCase38, GlitchesThatATipCannotDoAreDroppedAndOthersMoveAFifthOfTheForce
                    most_dropped, 0.05, "N");
 }
 
-TEST(HardCase38, EncoderThatStaysOffIsAFaultAndADeadAxisStaysWithinItsForce) {
+TEST(HardCaseEncoderFault, LastingOffsetIsAFault) {
   Press off;
   off.tamper = [](int read, InputReport report) {
     if (read >= 800) report.counts[2] = static_cast<std::int16_t>(report.counts[2] + 1000);
@@ -427,7 +427,7 @@ TEST(HardCase38, EncoderThatStaysOffIsAFaultAndADeadAxisStaysWithinItsForce) {
   record_hard_case(38, "dead axis in contact", "<= largest step of force", step, 1, "N");
 }
 
-TEST(HardCase39, ForceThatIsNoNumberAndPacketsThatAreTornEndInNoForce) {
+TEST(HardCaseBadNumbers, EndInNoForce) {
   double after = 0;
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     Press press;

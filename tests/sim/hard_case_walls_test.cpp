@@ -58,7 +58,7 @@ double edge_between(double low, double growth_low, double high, double growth_hi
   return low + (high - low) * growth_low / (growth_low - growth_high);
 }
 
-TEST(HardCase01, StiffnessLimitIsTheLatencyBudgetAtAnyRateAndDelay) {
+TEST(HardCaseStiffestWall, LimitIsTheLatencyBudget) {
   // b / L leaves out that a late wall oscillates slower: with u tan u = b L / m the limit of a late
   // spring is (b / L) u / sin u, 4.6 % more at 250 Hz and five periods of delay. The plain law is
   // held to 3 % where that is below 1 % (b L / m <= 0.06), the full one to 3 % everywhere.
@@ -133,7 +133,7 @@ double jittered_growth(Jitter jitter, double stiffness, double viscous, int tick
   return (logarithm + std::log(energy / 1e-6)) / ticks;
 }
 
-TEST(HardCase02, JitterCostsWhatTheMeanSquareOfThePeriodSays) {
+TEST(HardCaseJitter, CostFollowsTheMeanSquarePeriod) {
   double worst = 0;
   const int ticks = support::long_form() ? 20'000'000 : 1'000'000;
   for (const Jitter jitter : {Jitter::kUniform, Jitter::kExponential, Jitter::kDropouts}) {
@@ -180,7 +180,7 @@ double worst_operator(double stiffness, double damping, double delay, double vis
   return worst;
 }
 
-TEST(HardCase03, NoPassiveHandMakesAPassiveWallGrow) {
+TEST(HardCasePassiveHands, PassiveWallNeverGrows) {
   double most = -1, least = std::numeric_limits<double>::infinity();
   struct Set {
     double damping, delay;
@@ -250,7 +250,7 @@ double adversary_gain(const EncodedTip& tip, double stiffness, double step, doub
   return gain;
 }
 
-TEST(HardCase04, AnAdversaryGainsJustWhereFrictionIsBelowHalfAQuantum) {
+TEST(HardCaseEncoderAdversary, GainsOnlyBelowHalfAQuantum) {
   double most = -std::numeric_limits<double>::infinity();
   double least = std::numeric_limits<double>::infinity();
   for (const double stiffness : {300.0, 1000.0, 3000.0, 10'000.0}) {
@@ -301,7 +301,7 @@ Ending ending(const Wall& wall, double x, double v, double duration) {
   return {fastest < 1e-9, most - least};
 }
 
-TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
+TEST(HardCaseFrictionRegions, FourRegionsMatchTheMap) {
   double worst_counts = 0;
   int classes = 0;
   for (const int delay : {0, 1}) {
@@ -355,7 +355,7 @@ TEST(HardCase05, TheFourRegionsMeetWhereTheMapSays) {
                    worst_counts, 2, "counts");
 }
 
-TEST(HardCase06, DryFrictionHoldsAnOscillationUpToItsLimitSpeed) {
+TEST(HardCaseOscillationLimit, DryFrictionHoldsUpToItsSpeed) {
   double slow = 0, fast = 1e9;
   for (const double stiffness : {500.0, 1000.0, 2000.0, 3000.0}) {
     Wall wall{.plant = {.mass = kMass, .viscous = 0.005, .coulomb = 0.04}};
@@ -397,7 +397,7 @@ double restitution(const Wall& wall, double speed, double phase) {
   return std::max(0.0, rig.state.v) / speed;
 }
 
-TEST(HardCase07, AFreeMassComesBackFromAWallAsTheLawSays) {
+TEST(HardCaseWallImpact, FreeMassFollowsTheLaw) {
   double worst = 0, worst_plain = 0;
   for (const double stiffness : {300.0, 1000.0, 3000.0}) {
     for (const std::int64_t period_ns : {1'000'000, 250'000, 125'000}) {
@@ -427,7 +427,7 @@ TEST(HardCase07, AFreeMassComesBackFromAWallAsTheLawSays) {
                    "<= error of mean restitution against the law", worst_plain, 0.01, "1");
 }
 
-TEST(HardCase07, SpringAndDamperOfAnyShippedSurfaceNeverGiveSpeedAtAnyPhase) {
+TEST(HardCaseWallImpact, ShippedSurfacesReturnNoSpeed) {
   double most = 0;
   int surfaces = 0;
   for (const auto& entry :
@@ -461,7 +461,7 @@ TEST(HardCase07, SpringAndDamperOfAnyShippedSurfaceNeverGiveSpeedAtAnyPhase) {
       "<= largest restitution", most, 1, "1");
 }
 
-TEST(HardCase08, MoreDampingCarriesMoreStiffnessUpToItsCorner) {
+TEST(HardCaseDampingCorner, StiffnessPeaksAtTheCorner) {
   double worst = 0;
   const std::array<double, 3> stated{0.686, 0.145, 0.062};
   for (int delay = 0; delay < 3; ++delay) {

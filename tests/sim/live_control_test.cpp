@@ -493,7 +493,7 @@ TEST(LiveControl, PauseIsLedByAnArmInFaultAsWell) {
   EXPECT_EQ(control.gain(), 0);
 }
 
-TEST(LiveControl, APauseInRealTimeLetsTheHandStandStillWithoutForce) {
+TEST(LiveControl, RealTimePauseHoldsTheHandWithoutForce) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.share = true;

@@ -11,7 +11,7 @@
 namespace thimble {
 namespace {
 
-TEST(SeveralObjects, AreTouchedOneAfterTheOtherEachWithItsOwnStiffness) {
+TEST(SeveralObjects, EachIsTouchedWithItsOwnStiffness) {
   const auto opened = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml", {});
   ASSERT_TRUE(opened) << opened.error().message;

@@ -44,7 +44,7 @@ std::uint64_t hash_of(session::Session& session) {
   return hash.value();
 }
 
-TEST(OwnWire, OfTheWoodenHapticsGivesTheForcesOfTheReportsThatItSpokeBefore) {
+TEST(OwnWire, WoodenHapticsKeepsItsForces) {
   const auto own = open_arm("woodenhaptics", {.duration = 2});
   const auto before = open_arm("woodenhaptics", {.duration = 2, .adjust = [](scene::Scene& scene) {
                                                    scene.arms.front().arm.protocol =

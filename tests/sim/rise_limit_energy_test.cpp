@@ -165,7 +165,7 @@ void throw_through_all(const Faces& body, const Throw& thrown, double rise_max, 
 
 constexpr std::array<double, 4> kSpeeds{0.05, 0.1, 0.3, 1.0};  // m/s
 
-TEST(RiseLimitEnergy, OneFaceGivesBackWhatItGaveWithALimitOfTheLengthAlone) {
+TEST(RiseLimitEnergy, OneFaceKeepsTheEnergyOfALengthLimit) {
   for (const double stiffness : {300.0, 1000.0, 3000.0}) {
     for (const double speed : kSpeeds) {
       for (int i = 0; i < 40; ++i) {
@@ -189,7 +189,7 @@ TEST(RiseLimitEnergy, OneFaceGivesBackWhatItGaveWithALimitOfTheLengthAlone) {
   }
 }
 
-TEST(HardCase10, WedgesAndPlatesGiveBackNoMoreThanWithoutTheRiseLimit) {
+TEST(HardCaseRiseLimit, WedgesReturnNoMoreThanWithout) {
   // Faces at random: the force turns from one tick to the next where the nearest face changes.
   support::Random random(5);
   double mean = 0, most = 0;
@@ -226,7 +226,7 @@ TEST(HardCase10, WedgesAndPlatesGiveBackNoMoreThanWithoutTheRiseLimit) {
                             "1");
 }
 
-TEST(HardCase10, WedgesThrowBackWhatASymmetricLimitSlows) {
+TEST(HardCaseRiseLimit, GuardWedgesThrowBack) {
   // The guard of the test above.
   support::Random random(5);
   Back back;

@@ -54,7 +54,7 @@ std::uint64_t hash_of_touch(const session::Session& session) {
 
 class ShippedScene : public ::testing::TestWithParam<SceneRun> {};
 
-TEST_P(ShippedScene, RunsForItsWholeTimeAlikeEachTimeWithoutAFaultALostContactOrTheHeap) {
+TEST_P(ShippedScene, CompletesRepeatablyWithoutFaultsOrHeap) {
   std::uint64_t first = 0;
   for (int time = 0; time < 2; ++time) {
     const auto session = support::open_shipped(GetParam().name);

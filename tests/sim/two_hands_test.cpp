@@ -89,7 +89,7 @@ std::uint64_t hash_of_hands(const session::Session& session) {
   return hash.value();
 }
 
-TEST(TwoHands, RunForTheirWholeTimeAlikeEachTimeWithoutAFaultOrTheHeap) {
+TEST(TwoHands, CompleteRepeatablyWithoutFaultsOrHeap) {
   std::uint64_t first = 0;
   for (int time = 0; time < 2; ++time) {
     const auto session = open_two_hands();

@@ -198,7 +198,7 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
   }
 }
 
-TEST_P(UsbTouch, SendsNothingMoreWhenTheCableIsPulledAndTheArmSwitchesOff) {
+TEST_P(UsbTouch, CablePullEndsSendingAndSwitchesTheArmOff) {
   ASSERT_TRUE(touch_until_contact());
   ASSERT_GT(arm_->truth().currents.norm(), 0);
   faulty_->order(*usb::parse_fault("unplug"));

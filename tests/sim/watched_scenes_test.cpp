@@ -82,7 +82,7 @@ class PressedPlate : public ::testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(PressedPlate, SwitchesReversedMotorsOffAndLeavesSoundOnesAlone) {
+TEST_P(PressedPlate, OnlyReversedMotorsAreSwitchedOff) {
   const auto sound = open(false);
   ASSERT_TRUE(sound);
   EXPECT_EQ(sound->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);

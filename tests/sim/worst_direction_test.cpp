@@ -56,7 +56,7 @@ double adversary_step(const scene::ArmFile& arm, const Vector3d& p_W, const Vect
   return jump_W.dot(n_W) / (arm.R_WB.transpose() * n_W).cwiseAbs().sum();
 }
 
-TEST(HardCase04, NoAdversaryFindsALongerStepThanTheRuleInThreeDimensions) {
+TEST(HardCaseEncoderAdversary, RuleBoundsStepsIn3D) {
   for (const char* const name : {"vintage_phantom", "woodenhaptics"}) {
     const scene::ArmFile arm = shipped(name);
     support::Random random(9);
@@ -111,7 +111,7 @@ double joint_growth(const Matrix3d& J, const Vector3d& mass, const Vector3d& dam
   return support::spectral_radius(tick);
 }
 
-TEST(HardCase01, StiffnessTimesLatencyUpToTheLeastDampingIsStableInThreeDimensions) {
+TEST(HardCaseStiffestWall, IsStableInThreeDimensions) {
   const double period = 1e-3;
   double lowest = 1e9, highest = 0;
   int poses = 0;

@@ -18,12 +18,14 @@ namespace thimble::support {
 /// `criterion` is a sentence that begins with the comparison that must hold between `measured` and
 /// `limit`: "<=", ">=", "<", ">" or "==". The table tests/HARD_CASES.md is made of these lines, so
 /// a test whose case has several figures notes each. `words` begin with "guard: " where what is
-/// measured is that something bad shows. No text may hold a bar. The test must be in a suite
-/// HardCaseNN of a program marked HARD_CASES, or the table knows nothing of it.
+/// measured is that something bad shows. No text may hold a bar. The test must be in the suite that
+/// tests/hard_cases.list gives the number, in a program marked HARD_CASES. The number is also the
+/// test's property `hard_case` in a report of GoogleTest.
 inline void record_hard_case(int number, const std::string& words, const std::string& criterion,
                              double measured, double limit, const std::string& unit) {
   const ::testing::TestInfo* const test = ::testing::UnitTest::GetInstance()->current_test_info();
   const std::string name = std::string(test->test_suite_name()) + "." + test->name();
+  ::testing::Test::RecordProperty("hard_case", number);
   std::string file = test->file();
   if (const auto at = file.rfind("/tests/"); at != std::string::npos) file.erase(0, at + 1);
   char figures[80];

@@ -67,7 +67,7 @@ TEST(FaceDhdMotors, RestWhenForceIsOffAndWhenTheArmIsClosed) {
   EXPECT_EQ(dhdClose(-1), 0);
 }
 
-TEST(FaceDhdMotors, RestAfterAForceThatIsNoNumberUntilForceIsSwitchedOn) {
+TEST(FaceDhdMotors, NaNForceStopsMotorsUntilForceIsEnabled) {
   ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   for (int i = 0; i < 500; ++i) dhdSetForce(0.5, 0, 0, -1);

@@ -169,7 +169,7 @@ TEST_F(DhdFace, AnArmThatIsNotRegulatedGetsTheForceOfTheProgram) {
   EXPECT_LT(fake::f_sent_W(0).norm(), 1e-9) << "held where it is";
 }
 
-TEST_F(DhdFace, RegulationEndsWithTheArmAndStaysOffWhereForceWasSwitchedOff) {
+TEST_F(DhdFace, RegulationEndsWithTheArm) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdStart(), 0);
   ASSERT_EQ(drdClose(), 0);

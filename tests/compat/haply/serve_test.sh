@@ -14,26 +14,27 @@ printf '0 0.002 -0.03 0.02\n0.05 0.002 -0.03 0.02\n0.5 0.002 -0.03 0.0135\n1 0.0
 # On a busy machine the inner run may miss the arm for 20 ms, and says so: what both knew until then is the same all the same,
 # and it is tried again until the touch was long enough.
 for _ in 1 2 3 4 5 6; do
+  rm -f outer.h5 inner.h5
   serve --clock virtual --hand press.txt --record outer.h5 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
     --device 0001 --yes --no-real-time --no-view --duration 4 --record inner.h5 >run.txt 2>&1
   status=$?
   [ $status = 0 ] || expect 0 'no_reports|loop_stalled|stood still|told nothing' cat run.txt
-  for end in outer inner; do expect 0 "$end.csv: [0-9]+ ticks" "$thimble" export $end.h5 --csv $end.csv; done
+  for end in outer inner; do expect 0 '' "$thimble" export $end.h5 --csv $end.csv; done
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i ~ /^p_WT.x/) p = i; if ($i ~ /^v_WT.x/) v = i; if ($i ~ /^f_sent_W.x/) f = i; if ($i == "fresh") n = i }; next }
     $n { print $p, $(p + 1), $(p + 2), $v, $(v + 1), $(v + 2), $f, $(f + 1), $(f + 2); next }
     { print "- - - - - -", $f, $(f + 1), $(f + 2) }' inner.csv >inner.txt
   awk -f "$ends" -v force_step=1e-6 -v opening=600 inner.txt outer.csv >same.txt
   cat same.txt
-  expect 0 ' ticks here, 0 not there, 0 out of order; .* 0 from elsewhere$' cat same.txt
+  expect_own 0 ' ticks here, 0 not there, 0 out of order; .* 0 from elsewhere$' cat same.txt
   grep -qE ' [0-9]{3,} ticks there with a force' same.txt && break
 done
-expect 0 '^[0-9]{3,} ticks here, .* [0-9]{3,} ticks there with a force from here, [0-9]{2,} different' cat same.txt
+expect_own 0 '^[0-9]{3,} ticks here, .* [0-9]{3,} ticks there with a force from here, [0-9]{2,} different' cat same.txt
 
 expect 2 'haply' "$thimble" exec --serve tetris true
 expect 2 '70000' "$thimble" exec --serve haply --port 70000 true
-expect 7 'No program came to ws://localhost:[0-9]+' serve sh -c 'exit 7'
-expect 2 'cannot be started: No such file' serve ./nowhere
-expect 3 'Not all arms could be opened' serve --arm nonesuch true
+expect_words 7 'ws://localhost:#' serve sh -c 'exit 7'
+expect_words 2 './nowhere' serve ./nowhere
+expect_words 3 'arms' serve --arm nonesuch true
 
 python=/usr/bin/python3 # Debian's
 [ -x $python ] || python=python3
@@ -42,29 +43,29 @@ if ! $python -c 'import websockets' 2>/dev/null; then
   finish
 fi
 run() { serve --clock virtual $python "$program" "$@"; }
-expect 0 'first_message: right' run first_message
-expect 0 'stylus: right' serve --clock virtual --arm polhem $python "$program" stylus
-expect 0 'two: right' run two virtual
-expect 0 'garbage: right' run garbage
-expect 0 'Wrong +message [0-9]+ times: no JSON object' run garbage
-expect 0 'Wrong +set_cursor_position 1 time: not stood in for' run garbage
-expect 0 'Wrong +device_id 1 time: there is no arm of this name' run garbage
-expect 0 'huge: right' run huge
+expect_own 0 'first_message: right' run first_message
+expect_own 0 'stylus: right' serve --clock virtual --arm polhem $python "$program" stylus
+expect_own 0 'two: right' run two virtual
+expect_own 0 'garbage: right' run garbage
+expect 0 '^Wrong +message [0-9]+ .*JSON' run garbage
+expect 0 '^Wrong +set_cursor_position 1 ' run garbage
+expect 0 '^Wrong +device_id 1 ' run garbage
+expect_own 0 'huge: right' run huge
 expect 0 'went off: .*not a number' run huge
-expect 0 'doors: right' run doors
+expect_own 0 'doors: right' run doors
 # The same bits each time, and the same at both ends.
 printf '0 0 0 0\n1 0.01 0.012 0.01\n2 -0.01 0 0\n' >hand.txt
 for turn in first second; do
-  expect 0 'force: right' serve --clock virtual --hand hand.txt --record $turn.h5 $python "$program" force $turn.txt
-  expect 0 'ticks' "$thimble" export $turn.h5 --csv $turn.csv
+  expect_own 0 'force: right' serve --clock virtual --hand hand.txt --record $turn.h5 $python "$program" force $turn.txt
+  expect 0 '' "$thimble" export $turn.h5 --csv $turn.csv
 done
-expect 0 '^same$' sh -c 'cmp first.txt second.txt && cmp first.csv second.csv && echo same'
-expect 0 '^2500 ticks here, 0 not there, 0 out of order; [0-9]{4} ticks there with a force from here, [0-9]{4} different, 0 from elsewhere$' \
+expect_own 0 '^same$' sh -c 'cmp first.txt second.txt && cmp first.csv second.csv && echo same'
+expect_own 0 '^2500 ticks here, 0 not there, 0 out of order; [0-9]{4} ticks there with a force from here, [0-9]{4} different, 0 from elsewhere$' \
   awk -f "$ends" -v force_step=1e-9 -v opening=600 first.txt first.csv
 # In real time: force goes when messages do.
-expect 0 'lets_go: right' serve $python "$program" lets_go
-expect 0 'cut: right' serve $python "$program" cut
-expect 0 'python3 \(Haply\) has not renewed its force' serve $python "$program" lets_go
+expect_own 0 'lets_go: right' serve $python "$program" lets_go
+expect_own 0 'cut: right' serve $python "$program" cut
+expect_words 0 'python3 Haply 20 ms' serve $python "$program" lets_go
 
 # Without a program: for those that come by themselves, until Ctrl-C.
 env --default-signal=INT "$thimble" exec --serve haply --port 0 >served.txt 2>&1 &
@@ -76,9 +77,9 @@ for _ in $(seq 200); do
 done
 export THIMBLE_HAPLY_PORT
 THIMBLE_HAPLY_PORT=$(grep -oE 'ws://localhost:[0-9]+' served.txt | grep -oE '[0-9]+$')
-expect 0 'two: right' $python "$program" two
-expect 0 '^0001 +stand-in of Thimble +service' "$thimble" devices
-expect 2 "Port $THIMBLE_HAPLY_PORT of this computer cannot be had: .*choose another port \(--port\)" \
+expect_own 0 'two: right' $python "$program" two
+expect 0 '^0001 ' "$thimble" devices
+expect_words 2 "$THIMBLE_HAPLY_PORT --port" \
   "$thimble" exec --serve haply --port "$THIMBLE_HAPLY_PORT" true
 $python "$program" hold >hold.txt 2>&1 &
 hold=$!
@@ -92,5 +93,5 @@ status=$?
 expect 0 '^0$' echo $status
 expect 0 'left with zero force' cat served.txt
 wait $hold
-expect 0 'hold: WRONG' cat hold.txt
+expect_own 0 'hold: WRONG' cat hold.txt
 finish

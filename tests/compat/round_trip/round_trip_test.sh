@@ -14,11 +14,11 @@ awk 'BEGIN { for (i = 0; i <= 4000; ++i) { t = i / 10
 good='^[0-9]{3,} ticks here, 0 not there, 0 out of order; [0-9]{3,} ticks there with a force from here, [0-9]{3,} different, 0 from elsewhere$'
 for kind in dhd:omega3 hd:touch; do
   name=${kind%:*}
-  expect 0 'Program +link_client by (DHD|HDAPI): asked for a force' "$thimble" exec --clock virtual --hand hand.txt \
+  expect 0 'link_client .*(DHD|HDAPI).* [1-9]' "$thimble" exec --clock virtual --hand hand.txt \
     --record $name.h5 "$client" $name "$source_dir/app/arms/${kind#*:}.yaml" $name.txt 10000
   # A Touch is calibrated first, which is a run of its own.
   [ ! -e $name-2.h5 ] || mv $name-2.h5 $name.h5
-  expect 0 "$name.csv: [0-9]+ ticks" "$thimble" export $name.h5 --csv $name.csv
+  expect 0 '' "$thimble" export $name.h5 --csv $name.csv
   expect 0 "$good" awk -f "$here/both_ends.awk" -v force_step=1e-9 -v opening=5000 $name.txt $name.csv
   awk -f "$here/both_ends.awk" -v force_step=1e-9 -v opening=5000 $name.txt $name.csv
 done

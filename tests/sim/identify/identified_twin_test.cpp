@@ -99,7 +99,7 @@ TEST(IdentifiedTwin, SaysInItsFileWhatNoKeyHolds) {
               1e-4);
 }
 
-TEST(IdentifiedTwin, KeepsWhatWasNotMeasuredAndTakesNoAnswerForAReport) {
+TEST(IdentifiedTwin, KeepsWhatWasNotMeasured) {
   Identified found;
   found.constants.mass = {0.08, 0.001};
   for (Estimate& gain : found.constants.gain) gain = {1, 0.01};

@@ -69,7 +69,7 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
   expect_scores({&mass, &coulomb, &gain, &delay, &resonance, &antiresonance, &inertia}, kFew);
 }
 
-TEST(IdentifyCables, SeesResonancesOfStiffCablesOrSaysThatItDoesNot) {
+TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
   const int arms = long_form() ? 20 : 1;
   int seen = 0;
   double worst = 0;

@@ -27,7 +27,7 @@ std::vector<std::array<std::int32_t, 3>> noisy(double rms, double drift, std::ui
   return counts;
 }
 
-TEST(EncoderNoise, HoldsTheTruthInItsIntervalAndTakesRoundingForNoise) {
+TEST(EncoderNoise, IntervalContainsTheTrueNoise) {
   constexpr double kRms = 1.5;
   const double truth = std::hypot(kRms, std::sqrt(1.0 / 12));  // rounding is evenly spread
   int held = 0, all = 0;
@@ -44,7 +44,7 @@ TEST(EncoderNoise, HoldsTheTruthInItsIntervalAndTakesRoundingForNoise) {
   EXPECT_LE(held, 0.99 * all);
 }
 
-TEST(EncoderNoise, IsNotSeenWhereNothingChangesAndNotToldOfAJointThatMoves) {
+TEST(EncoderNoise, NeedsAJointThatRestsWithChangingCounts) {
   const EncoderRest still = noise_at_rest(noisy(0, 0, 1));
   EXPECT_TRUE(still.at_rest[0]);
   EXPECT_EQ(still.noise[0].value, 0);

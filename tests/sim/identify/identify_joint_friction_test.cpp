@@ -142,7 +142,7 @@ TEST(IdentifyJointFriction, IsWrittenWithItsInterval) {
   EXPECT_NE(again->find("coulomb: [0, 0, 0]"), std::string::npos);
 }
 
-TEST(IdentifyJointFriction, NamesTheJointThatRubsFarMoreThanAllElse) {
+TEST(IdentifyJointFriction, NamesTheJointOfMostFriction) {
   Identified found;
   found.play.searched = found.play.fits = true;
   found.play.friction.fits = found.play.friction.seen = true;

@@ -91,7 +91,7 @@ void expect_equal(
 
 constexpr double kGravityConstant = 9.80665;  // which a row takes for gravity, m/s^2
 
-TEST(LinkEquations, OfEachConstantAreLagrangesOfABodyThatHasItAlone) {
+TEST(LinkEquations, EachConstantMatchesLagrange) {
   // Gravity of a row's own size.
   const Eigen::Vector3d gravity = kGravityConstant * kGravity.normalized();
   const double along = 0.6;

@@ -148,7 +148,7 @@ double pushed_way(scene::ArmFile file, const Eigen::Vector3d& p_W, int axis) {
   return (*bench)->device().state().p_WT[axis] - from;
 }
 
-TEST(IdentifiedLinks, MakeATwinWithTheMassOfItsArmFarAwayAndWithoutThemItIsNone) {
+TEST(IdentifiedLinks, ImproveTheTwinAtTheWorkspaceEdge) {
   const std::uint64_t arms = long_form() ? 12 : 1;
   for (std::uint64_t seed = 7201; seed < 7201 + arms; ++seed) {
     SCOPED_TRACE(seed);

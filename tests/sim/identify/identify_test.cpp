@@ -53,7 +53,7 @@ bool is_uneven(const HiddenArm& arm) {
   return *std::max_element(arm.gain.begin(), arm.gain.end()) > 6 * weakest(arm);
 }
 
-TEST(Identify, FindsTheConstantsOfHiddenArmsOrSaysThatTheirFrictionIsTooHigh) {
+TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
   // The method was made with arms 1000 to 1019 in view; these are others. 5012 is a Polhem, whose
   // strong motors hardly rub beside what it weighs.
   std::vector<std::uint64_t> seeds = {5001, 5002, 5005, 5012};

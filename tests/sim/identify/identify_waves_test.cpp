@@ -80,7 +80,7 @@ struct Found {
   }
 };
 
-TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
+TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArms) {
   // Polhems, whose linkage takes ten times as long to simulate, are left to the long form.
   std::vector<std::uint64_t> seeds = {9000, 9001};
   for (std::uint64_t k = 0; long_form() && k < 60; ++k) {
@@ -151,7 +151,7 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArmsAndTheirOtherConstants) {
   }
 }
 
-TEST(IdentifyWaves, ComparesNumbersByTheMotorsThatTurnedFarEnoughByEither) {
+TEST(IdentifyWaves, ComparesOnlyMotorsThatTurnedFarEnough) {
   // The second motor turns through 0.93 periods of 7, the right number, and through 1.06 of 8.
   constexpr std::uint64_t kSeed = 9;
   HiddenArm arm = hidden_arm(kSeed);

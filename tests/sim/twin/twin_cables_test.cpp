@@ -46,7 +46,7 @@ double left_by(const TwinMotion& motion, const scene::ArmFile& file) {
   return relived.ok() ? relived->rms() / motion.step_error : HUGE_VAL;
 }
 
-TEST(TwinCables, OfTheSameConstantsReliveTheMotionToTheEncodersStepsBothWays) {
+TEST(TwinCables, SameConstantsReproduceTheMotion) {
   const std::uint64_t arms = long_form() ? 20 : 1;
   double worst = 0, apart = 0;
   for (std::uint64_t seed = 1; seed <= arms; ++seed) {

@@ -163,7 +163,7 @@ void tell(const char* what, int arms, const Worst& worst) {
   std::fflush(stdout);
 }
 
-TEST(TwinPrediction, OfAnIdentifiedArmIsItsWallItsBounceAndItsFreeMotion) {
+TEST(TwinPrediction, MatchesTheIdentifiedArm) {
   const bool all = support::long_form();
   // Amplifiers that lag are nothing that the twin knows of: it takes them for delay.
   for (const double lag : {0.0, 5e-4}) {

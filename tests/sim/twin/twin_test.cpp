@@ -190,7 +190,7 @@ TEST(Twin, TellsHowManyPercentOfTheMotionItMisses) {
             std::string::npos);
 }
 
-TEST(Twin, SaysThatOneConstantIsNotAllWhereAHandHeldTheTipOrTwoAreWrong) {
+TEST(Twin, ReportsThatOneConstantIsNotEnough) {
   const char* const said = "something held the tip";
   for (std::uint64_t seed = 11; seed <= 10 + arms_of(3); ++seed) {
     HiddenArm arm = hidden_arm(seed);

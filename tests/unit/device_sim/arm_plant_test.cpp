@@ -124,7 +124,7 @@ TEST(ArmPlant, StaysFiniteUnderFullCurrentsInAnyDirection) {
   }
 }
 
-TEST(ArmPlant, RefusesAStartOutOfReachAndMotorsAndLinksThatCannotBe) {
+TEST(ArmPlant, RefusesImpossibleStartsAndConstants) {
   EXPECT_TRUE(refuses(made_with(free_arm(), {1, 0, 0}), "starting point"));
   SimulatedArmSettings settings = free_arm();
   settings.motors.current_max = 0;

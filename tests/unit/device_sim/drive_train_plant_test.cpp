@@ -47,7 +47,7 @@ TEST(DriveTrainPlant, FallsUnderItsWeight) {
   }
 }
 
-TEST(DriveTrainPlant, IsTheIdealArmWhereNothingIsBetweenMotorAndLink) {
+TEST(DriveTrainPlant, RigidDriveTrainIsTheIdealArm) {
   SimulatedArmSettings settings = phantom_like();
   SerialDriveTrainPlant plant = plant_with(settings);
   const auto model = support::vintage_model();
@@ -206,7 +206,7 @@ TEST(DriveTrainPlant, SettlesTowardsThePolesOfItsMotors) {
   }
 }
 
-TEST(DriveTrainPlant, HasTorqueConstantsThatRippleWithTheMotorsAngle) {
+TEST(DriveTrainPlant, TorqueRipplesWithTheMotorAngle) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.ripple.setConstant(0.1);
   settings.drive_train.periods_per_turn = 6;

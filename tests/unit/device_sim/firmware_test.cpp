@@ -103,7 +103,7 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
             (std::array<std::int16_t, 6>{-32768, 32767, 5, 0, 0, 0}));
 }
 
-TEST(Firmware, SamplesAnglesThatAreAboutRightOnlyWhereTheCountsAreSure) {
+TEST(Firmware, SamplesAnglesOnlyFromSureCounts) {
   FirmwareSettings ideal;
   ideal.ideal_encoders = true;
   for (const FirmwareSettings& settings : {FirmwareSettings(), ideal}) {
@@ -145,7 +145,7 @@ TEST(Firmware, RestartCountsFromZeroWithMotorsOff) {
             (std::array<std::int16_t, 6>{-1500, -800, 300, 0, 0, 0}));
 }
 
-TEST(Firmware, PresetsAllCountersClearsTheButtonAndAsksForNoCurrent) {
+TEST(Firmware, HomingPresetsCountersWithoutCurrent) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   const SerialPose pose = steps_from_home(10.3, 20.3, 30.3);
   firmware.receive(drive_message(100, 200, 300), 0);
@@ -212,7 +212,7 @@ TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
   EXPECT_EQ(firmware.watchdog_due_ns(), 100'000'000);
 }
 
-TEST(Firmware, StartsWithItsMotorsOffAndArmsItsWatchdogWithTheFirstMessage) {
+TEST(Firmware, FirstMessageArmsTheWatchdog) {
   Firmware firmware = Firmware::make(arm_model(support::vintage_model()), {}).value();
   EXPECT_FALSE(firmware.motors_on());
   EXPECT_EQ(firmware.watchdog_due_ns(), Firmware::kNever_ns);

@@ -152,7 +152,7 @@ TEST_P(HidArmTest, IsNotKeptOnByMessagesOfAnotherLength) {
   EXPECT_EQ(arm_->truth().currents[0], 0);
 }
 
-TEST_P(HidArmTest, ServesOnlyTheRequestsOfTheHidClassThatItsLibraryServes) {
+TEST_P(HidArmTest, ServesOnlyTheHidRequestsOfItsLibrary) {
   const bool teensy = size() == driver::hfab::kPaddedReportSize;
   const auto length = static_cast<std::uint16_t>(size());
   const auto status = [&](const SetupPacket& setup, const std::vector<std::byte>& data = {}) {
@@ -222,7 +222,7 @@ struct Board {
 
 class BoardThatAnswers : public testing::TestWithParam<std::pair<const char*, HidBoard>> {};
 
-TEST_P(BoardThatAnswers, SamplesWhenAMessageComesAndSendsOneReportForIt) {
+TEST_P(BoardThatAnswers, SendsOneReportForEachMessage) {
   Board board(GetParam().first, GetParam().second);
   board.arm->advance_to(40'000'000);
   // That of its start comes first, however late it is taken, and it is as old as that.
@@ -251,7 +251,7 @@ TEST_P(BoardThatAnswers, DoesNotListenWhileItsReportWaits) {
   EXPECT_FALSE(board.report());
 }
 
-TEST_P(BoardThatAnswers, AnswersAMessageOfAnotherLengthWithoutTakingIt) {
+TEST_P(BoardThatAnswers, WrongLengthIsAnsweredButNotTaken) {
   Board board(GetParam().first, GetParam().second);
   board.report();
   board.arm->advance_to(9'000'000);

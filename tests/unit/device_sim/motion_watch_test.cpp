@@ -44,7 +44,7 @@ MotionRun strokes(MotionArm arm, double speed, std::uint64_t seed = 3) {
   return run;
 }
 
-TEST(ReversedMotors, AreFoundWithin16MillimetresUpTo300MillimetresPerSecond) {
+TEST(ReversedMotors, AreFoundWithin16mmAtUpTo300mmPerSecond) {
   for (const MotionArm arm : kMotionArms) {
     for (const double speed : {0.05, 0.1, 0.2, 0.3}) {
       MotionRun reversed = strokes(arm, speed);
@@ -70,7 +70,7 @@ TEST(ReversedMotors, AreNotSeenInStrokesOfASoundArm) {
   }
 }
 
-TEST(ReversedMotors, AreFoundInManyStrokingsWhereOneJointOfThoseThatCarryTheForceIsWrong) {
+TEST(ReversedMotors, OneReversedJointIsFoundInManyStrokes) {
   // At home of the PHANTOM link B alone moves the tip up and down; of the others, C more than B.
   constexpr std::array<int, 3> kJoints{1, 2, 2};
   // Of 200 strokings of 3.5 s: 197, 104, 170. Where another joint holds the tip, nothing tells.
@@ -176,7 +176,7 @@ TEST(FrozenEncoder, IsNotSeenInAPureYawStroke) {
   EXPECT_GT(run.force_most, 1.2);
 }
 
-TEST(FrozenEncoder, HoldsASteadyForceForABoundedTimeWhileTheTipMoves) {
+TEST(FrozenEncoder, HoldsASteadyForceForABoundedTime) {
   MotionRun run = yaw_strokes();
   freeze(run, 1, 1000);
   MotionRun patient = run;

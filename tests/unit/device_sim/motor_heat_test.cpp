@@ -79,7 +79,7 @@ TEST(MotorHeat, RunsAwayAboveTheCurrentThatItsCopperBears) {
   EXPECT_EQ(heat.rise().z(), MotorHeatSettings::kRiseMost);
 }
 
-TEST(MotorHeat, IsTheDriversOwnModelWhereCopperStaysAsItIsAndNeverAboveItOtherwise) {
+TEST(MotorHeat, NeverExceedsTheModelOfTheDriver) {
   for (const double a : {0.0, kCopper}) {
     MotorHeatSettings settings = some_motors();
     settings.resistance = a;

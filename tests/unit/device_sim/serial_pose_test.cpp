@@ -37,7 +37,7 @@ TEST(SerialPose, AgreesWithTheDriversGeometryAllOverTheWorkspace) {
   EXPECT_GT(reached, 5000);
 }
 
-TEST(SerialPose, FindsItsAnglesFromAPoseNearbyToWithinThePlantsError) {
+TEST(SerialPose, FindsItsAnglesFromANearbyPose) {
   const driver::SerialArm arm{.height = 0.05, .length_b = 0.138, .length_c = 0.112};
   support::Random random(9);
   int found = 0, refused = 0;

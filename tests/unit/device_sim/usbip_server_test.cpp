@@ -369,7 +369,7 @@ TEST_F(AttachedHost, KnowsNoEndpointBeforeItIsConfigured) {
   EXPECT_LT(fresh.done(unknown)->status, 0);
 }
 
-TEST_F(AttachedHost, HangsUpWhenTheDeviceLeavesAndGivesItAwayWhenItIsBack) {
+TEST_F(AttachedHost, DisconnectsWhenTheDeviceLeaves) {
   host_.ask(1, 8);
   faulty_.order(*parse_fault("unplug for=5"));
   host_.frames();

@@ -37,7 +37,7 @@ double law_of_restitution(double stiffness, double period) {
                   (2 * std::sqrt(stiffness * 0.075)));
 }
 
-TEST(StabilityLaws, SampledWallReturnsTheEnergyThatTheRestitutionLawSays) {
+TEST(StabilityLaws, SampledWallFollowsTheRestitutionLaw) {
   EXPECT_NEAR(mean_restitution(1000, 1'000'000), 1.0936, 0.0011);  // [PHYSICS 1.5]
   EXPECT_NEAR(mean_restitution(1000, 1'000'000), law_of_restitution(1000, 1e-3), 0.0011);
   EXPECT_NEAR(mean_restitution(1000, 250'000), law_of_restitution(1000, 0.25e-3), 0.0005);

@@ -91,7 +91,7 @@ TEST_F(DeviceTest, RefusesLimitsThatAreNotPositiveNumbers) {
   EXPECT_NE(opened.error().message.find("force_max"), std::string::npos);
 }
 
-TEST_F(DeviceTest, RefusesASpeedFloorThatWouldSwitchTheDampingOffOrTurnItUp) {
+TEST_F(DeviceTest, RefusesASpeedFloorThatChangesDamping) {
   DeviceSettings settings = support::vintage_settings();
   settings.energy = {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02};
   for (const double floor : {-0.01, static_cast<double>(NAN), HUGE_VAL}) {
@@ -141,7 +141,7 @@ TEST_F(DeviceTest, SendsTheGatedForceAndTellsIt) {
   EXPECT_LT((device_->f_sent_W() - Eigen::Vector3d(0, 0.5, 0)).norm(), 1e-12);
 }
 
-TEST_F(DeviceTest, KeepsItsStateThroughAMissingReportAndFaultsWhenTheArmStaysSilent) {
+TEST_F(DeviceTest, SilentArmIsAFault) {
   open_and_activate();
   settle();
   tick({0, 0.5, 0});
@@ -280,7 +280,7 @@ TEST_F(DeviceTest, SendsZeroWhenDeactivatedAndWhenDestroyed) {
   EXPECT_EQ(last_currents(), kZero);
 }
 
-TEST_F(DeviceTest, InsistsOnZeroOnceAndIsDestroyedWithoutInsistingAgain) {
+TEST_F(DeviceTest, InsistsOnZeroForceOnce) {
   constexpr int kMany = 1'000'000;
   open_and_activate();
   settle();

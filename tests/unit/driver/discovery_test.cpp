@@ -149,7 +149,7 @@ TEST(Discovery, AgreesWithTheUdevRuleAboutTheTeensiesThatAreArms) {
   EXPECT_EQ(lines, 3);
 }
 
-TEST(Discovery, NamesBoardsByTheirSocketWhereTheSerialNumberNamesNoneOrSeveral) {
+TEST(Discovery, AmbiguousSerialNumbersUseTheSocketName) {
   const support::FakeUsb usb("discovery_names");
   usb.plug("1-1.4", "1234", "0006", "0123456789", 1, 2);  // as every mbed board
   usb.plug("1-2", "1234", "0006", "0123456789", 1, 3);

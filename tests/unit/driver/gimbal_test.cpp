@@ -146,7 +146,7 @@ TEST(Gimbal, IsNothingToAnArmWithoutOne) {
   EXPECT_EQ(R_BT, Matrix3d(Matrix3d::Zero()));
 }
 
-TEST(Orientation, GoesThroughItsQuaternionWithinASmallFractionOfAnyStep) {
+TEST(Orientation, QuaternionRoundTripKeepsEveryStep) {
   support::Random random(5);
   for (int i = 0; i < 1000; ++i) {
     const Matrix3d R =

@@ -33,7 +33,7 @@ class CpuLatencyTest : public ::testing::Test {
   fs::path root_;
 };
 
-TEST_F(CpuLatencyTest, AsksForNoSleepAtAllAndKeepsTheFileOpenWhileItLives) {
+TEST_F(CpuLatencyTest, ForbidsSleepWhileItLives) {
   std::ofstream(file()).close();
   {
     const CpuLatencyRequest request(root_);

@@ -93,7 +93,7 @@ class ReplugTest : public ::testing::Test {
   std::function<void(const TickRecord&)> at_tick_;
 };
 
-TEST_F(ReplugTest, LatchesZeroForceAndKeepsTheLoopAliveWhenTheArmIsPulledInContact) {
+TEST_F(ReplugTest, UnplugInContactLatchesZeroForce) {
   at_tick_ = [&](const TickRecord&) { wire_.lost = records_.size() >= 500; };
   EXPECT_EQ(run(1000), ServoEnd::kDone);
   ASSERT_EQ(records_.size(), 1000u);
@@ -105,7 +105,7 @@ TEST_F(ReplugTest, LatchesZeroForceAndKeepsTheLoopAliveWhenTheArmIsPulledInConta
   }
 }
 
-TEST_F(ReplugTest, FindsTheArmAgainButGivesForceOnlyWhenTheUserSaysSo) {
+TEST_F(ReplugTest, ReplugKeepsForceOffUntilActivated) {
   at_tick_ = [&](const TickRecord&) {
     const std::size_t tick = records_.size();
     if (tick == 500) wire_.lost = true;

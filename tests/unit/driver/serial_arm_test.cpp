@@ -104,7 +104,7 @@ TEST(SerialArm, GivesPositionAndJacobianTogetherAsItGivesThemAlone) {
   }
 }
 
-TEST(SerialArm, HasNoJointsForPointsOutOfReachOrOnItsAxisOrNotFinite) {
+TEST(SerialArm, UnreachablePointsHaveNoJoints) {
   const SerialArm& arm = kArms[0];
   EXPECT_FALSE(arm.inverse({0.2501, 0, 0}));  // longer than both links
   EXPECT_FALSE(arm.inverse({0.0259, 0, 0}));  // closer than their difference

@@ -106,7 +106,7 @@ TEST_F(ServoLoopTest, RunsItsTicksAtEvenTimesAndLeavesWithZeroForce) {
   EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
 }
 
-TEST_F(ServoLoopTest, RunsTickByTickAndTellsItsEndAgainWithoutSendingMore) {
+TEST_F(ServoLoopTest, StepAfterTheEndSendsNothing) {
   VirtualClock clock;
   Records records(100);
   auto law = [](const DeviceState&) noexcept {
@@ -189,7 +189,7 @@ struct PreparedLaw {
   }
 };
 
-TEST_F(ServoLoopTest, LetsTheLawPrepareItselfShortlyBeforeEachTickThatIsNotLate) {
+TEST_F(ServoLoopTest, LawPreparesBeforeEachPunctualTick) {
   LateClock clock;
   clock.late_at_ns = 4'990'000;  // woken 2.3 ms too late for what comes before the tick at 5 ms
   clock.late_by_ns = 2'300'000;

@@ -46,7 +46,7 @@ TEST(Snapshot, ShowsTheNewestValue) {
   EXPECT_EQ(snapshot.count(), 2u);
 }
 
-TEST(Snapshot, IsNeverTornAndNeverGoesBackWhileOneWriterAndThreeReadersRun) {
+TEST(Snapshot, ConcurrentReadsAreConsistentAndOrdered) {
   constexpr std::uint64_t kStores = 200'000;
   Snapshot<Value> snapshot;
   std::atomic<bool> done{false};

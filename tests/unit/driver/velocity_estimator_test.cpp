@@ -17,7 +17,7 @@ TEST(VelocityEstimator, IsTheBackwardDifferenceWithoutAPole) {
             1e-12);
 }
 
-TEST(VelocityEstimator, SettlesOnAConstantVelocityWithThePolesTimeConstant) {
+TEST(VelocityEstimator, SettlesWithTheTimeConstantOfItsPole) {
   constexpr double kCorner = 100;
   VelocityEstimator estimator(kCorner);
   estimator.update({0, 0, 0}, kSamplePeriod);

@@ -44,7 +44,7 @@ TEST(CreasedMesh, IsTheMeshItselfWhereNothingIsSharp) {
   }
 }
 
-TEST(CreasedMesh, IsClosedWhereEachEdgeHasTwoSidesAndOutsideIsOutside) {
+TEST(CreasedMesh, ClosedMeshHasTwoSidesPerEdge) {
   render::TriangleMesh ball = support::icosphere(1, 1.0);
   EXPECT_TRUE(crease(ball, kSharp).closed);
   EXPECT_TRUE(crease(support::box({1, 2, 3}), kSharp).closed);

@@ -71,7 +71,7 @@ TEST(GroundShadow, IsASmallPartOfThePictureFromAfar) {
   EXPECT_LT(box.volume(), 4 * count(camera).shadowed);
 }
 
-TEST(GroundShadow, IsEmptyWithoutShadowsAndAllWhereTheGroundGoesBehindTheEye) {
+TEST(GroundShadow, CoversAllIfTheGroundPassesTheEye) {
   EXPECT_TRUE(box_of(camera_at(0, 0, 0.3), {}).isEmpty());
   Camera within;  // among what casts shadows, close to the ground
   within.distance = 0.001;

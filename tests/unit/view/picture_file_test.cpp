@@ -160,7 +160,7 @@ TEST(PictureFile, AnimationShowsEachPictureInTheColoursOfTheTable) {
   }
 }
 
-TEST(PictureFile, AnimationShowsItsFirstPictureToReadersThatKnowNone) {
+TEST(PictureFile, StillReadersShowTheFirstPicture) {
   support::Random random(7);
   std::vector<Picture> pictures;
   for (int i = 0; i < 4; ++i) pictures.push_back(any_picture(random, 90, 60));

@@ -47,7 +47,7 @@ class PlotPanelUsed : public Screenless {
   std::optional<double> asked;
 };
 
-TEST_F(PlotPanelUsed, GoesCloserByTheWheelAboutTheMouseAndBackByADoubleClick) {
+TEST_F(PlotPanelUsed, WheelZoomsAndDoubleClickResets) {
   rest(at(4));
   look(at(4), false, 1);
   EXPECT_NEAR(range().begin, 4 - 0.8 * 4, 0.1);

@@ -178,7 +178,7 @@ TEST(RecordingView, ShowsWhatWasShapedForGood) {
 
 // A can that rolls after its wall snapped in: what is shaped for good is drawn by the object's
 // pose, as its dent is.
-TEST(RecordingView, ShowsWhatWasShapedForGoodWhereTheObjectHasMovedTo) {
+TEST(RecordingView, ShowsLastingShapesOnAMovedObject) {
   const Seen seen = see("tin_can", {6.7});
   ASSERT_NE(seen.recorded, nullptr);
   const auto now = std::make_unique<DrawnMoment>();

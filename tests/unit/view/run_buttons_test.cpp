@@ -25,7 +25,7 @@ bool lists(const std::vector<SceneChoice>& scenes, const fs::path& file) {
   return false;
 }
 
-TEST(SceneMenu, ListsShippedScenesTheUsersOwnAndThoseBesideTheOneThatRuns) {
+TEST(SceneMenu, ListsShippedUserAndNeighbouringScenes) {
   const fs::path folder = support::scratch_folder() / "menu";
   const fs::path own = folder / "data/thimble/scenes/mine.yaml";
   fs::create_directories(own.parent_path());

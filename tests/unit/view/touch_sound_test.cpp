@@ -75,7 +75,7 @@ TEST(TouchSound, GivesTheFrequencyOfATexture) {
   }
 }
 
-TEST(TouchSound, HearsAForceToAndFroAcrossTheNormalAtItsOwnFrequency) {
+TEST(TouchSound, TangentialForceSoundsAtItsFrequency) {
   const auto ticks = ticks_of(1000, 1, [](double t) {
     return Eigen::Vector3d(0.2 * std::sin(2 * kPi * 120 * t), -0.2 * std::sin(2 * kPi * 120 * t),
                            2);
@@ -141,7 +141,7 @@ TEST(TouchSound, HissesWhereFrictionSlidesAndNotWhereItRests) {
   EXPECT_GT(rubbed(0.2), 1.1 * rubbed(0.1));
 }
 
-TEST(TouchSound, KeepsTheTimeWhereTicksAreMissingAndIsNotUpsetByNonsense) {
+TEST(TouchSound, MissingTicksKeepTheTime) {
   auto ticks = ticks_of(1000, 1, [](double t) {
     return Eigen::Vector3d(0, 0, 1 + 0.1 * std::sin(2 * kPi * 100 * t));
   });

@@ -138,7 +138,7 @@ TEST_F(CalibrationTest, FeelCheckEndsAtTheFirstStepThatIsLeft) {
   EXPECT_EQ(results.size(), 2u);
 }
 
-TEST_F(CalibrationTest, FeelCheckSeesAWatchdogThatIsLaterThanTheFileSays) {
+TEST_F(CalibrationTest, FeelCheckFindsALateWatchdog) {
   scene::ArmFile slow = vintage();
   slow.simulated.firmware.watchdog_ns = 700'000'000;
   bool prompted_all = false;

@@ -159,7 +159,7 @@ TEST(CarriedWeight, LetsLinksFloatInEachPoseThatFallWithoutIt) {
   EXPECT_GT(most, 1.1 * least);
 }
 
-TEST(CarriedWeight, GivesNoPoseMoreForItsLinksThanAThirdOfTheGatesForce) {
+TEST(CarriedWeight, LinksTakeAtMostAThirdOfTheGateForce) {
   const auto arm = scene::load_arm(files(1, true) / "arm.yaml");
   ASSERT_TRUE(arm.ok()) << arm.error().message;
   scene::LinkGravity links = scene::link_gravity(*arm);

@@ -143,7 +143,7 @@ TEST_F(DoctorTest, MissingPriorityIsAProblemForARealArm) {
   EXPECT_EQ(finding("real-time priority").health, Health::kProblem);
 }
 
-TEST_F(DoctorTest, SaysOfABoardOfUnknownKindHowToUseItAndHowToGiveAccessToItAlone) {
+TEST_F(DoctorTest, UnknownBoardGetsItsOwnUdevRule) {
   usb_.plug("1-3", "16c0", "0486", "7654321", 1, 4);
   usb_.call("1-3", "Teensyduino RawHID");
   usb_.bind("1-3", 0, "usbhid");
@@ -208,7 +208,7 @@ TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
   EXPECT_EQ(troubles(), 1u);
 }
 
-TEST_F(DoctorTest, SeesProcessorsThatSleepTooDeepAndWhatKeepsThemAwake) {
+TEST_F(DoctorTest, FindsDeepProcessorSleepStates) {
   plug_woody();
   EXPECT_EQ(finding("take 200 us to wake; you may ask for less").health, Health::kGood);
   std::filesystem::remove(usb_.root() / "dev/cpu_dma_latency");  // root may write all that exists

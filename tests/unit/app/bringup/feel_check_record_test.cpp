@@ -18,7 +18,7 @@ namespace {
 using driver::ArmKind;
 using driver::FoundArm;
 
-TEST_F(RealArmTermsTest, WithoutAPassedFeelCheckTheForceStaysBelowHalfANewton) {
+TEST_F(RealArmTermsTest, UncheckedArmStaysBelowHalfANewton) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));

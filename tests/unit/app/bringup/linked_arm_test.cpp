@@ -126,7 +126,7 @@ TEST_F(LinkedArmTest, TheDoctorSaysWhatServesItOrWhatIsMissing) {
   EXPECT_TRUE(holds(said("Inverse3 049D").mend, "calibrate it"));
 }
 
-TEST_F(LinkedArmTest, AFileOfSuchAnArmNamesNothingThatItsSoftwareKnows) {
+TEST_F(LinkedArmTest, FileOmitsWhatTheVendorSoftwareKnows) {
   const std::string text = text_of(kArms / "inverse3.yaml");
   const auto mistake = [&](const std::string& more) {
     write(home_ / "own.yaml", text + more);

@@ -24,7 +24,7 @@ using driver::ArmKind;
 using driver::EnergyStage;
 using driver::FoundArm;
 
-TEST_F(RealArmTermsTest, AnArmBringsItsOwnFileByItsKindOrItsBoardsModel) {
+TEST_F(RealArmTermsTest, ArmFileFollowsFromKindOrBoardModel) {
   EXPECT_EQ(file_for(plug(ArmKind::kWoody, "W1")), "woodenhaptics");
   EXPECT_EQ(file_for(plug(ArmKind::kFalcon, "F1")), "falcon");
   EXPECT_EQ(file_for(plug(ArmKind::kHfabLine, "L1"), 1), "polhem");
@@ -34,14 +34,14 @@ TEST_F(RealArmTermsTest, AnArmBringsItsOwnFileByItsKindOrItsBoardsModel) {
   EXPECT_TRUE(holds(nine, "answers as model 9") && holds(nine, "--device L1 --arm")) << nine;
 }
 
-TEST_F(RealArmTermsTest, ABoardThatTellsNoModelIsRefusedWithWhatToType) {
+TEST_F(RealArmTermsTest, BoardWithoutModelIsRefusedWithAdvice) {
   const std::string said = file_for(plug(ArmKind::kPolhem, "P1"));
   EXPECT_TRUE(holds(said, "thimble calibrate --device P1 --arm NAME")) << said;
   EXPECT_TRUE(holds(said, "polhem")) << said;
   EXPECT_FALSE(holds(said, "falcon")) << said;
 }
 
-TEST_F(RealArmTermsTest, ABoardThatMayBeAnythingIsNotAskedForItsModel) {
+TEST_F(RealArmTermsTest, UnknownBoardIsNotAskedForItsModel) {
   for (const char* product : {"Haply inverse3", "USB Serial", "Teensyduino RawHID", ""}) {
     FoundArm arm = plug(ArmKind::kHfabLine, "T1", 0x0279, product);
     arm.node = home_ / "port";
@@ -53,7 +53,7 @@ TEST_F(RealArmTermsTest, ABoardThatMayBeAnythingIsNotAskedForItsModel) {
   }
 }
 
-TEST_F(RealArmTermsTest, AFileThatTheUserNamesHoldsBeforeWhatTheCalibrationKept) {
+TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
   const FoundArm arm = plug(ArmKind::kHfabLine, "P1");
   ASSERT_TRUE(scene::save_calibration("P1", {.arm_file = "polhem"}));
   const auto kept = scene::find_real_arm_file(arm);
@@ -87,7 +87,7 @@ TEST_F(RealArmTermsTest, AFileOfAnotherWireIsRefused) {
       << found.error().message;
 }
 
-TEST_F(RealArmTermsTest, AFileFromElsewhereTightensEachLimitAndLoosensNone) {
+TEST_F(RealArmTermsTest, ForeignFileOnlyTightensLimits) {
   struct Case {
     const char *key, *was, *tighter, *weaker;
     double (*value)(const scene::ArmFile&);
@@ -192,7 +192,7 @@ TEST_F(RealArmTermsTest, AnArmOfOnesOwnIsInstalledOnce) {
   EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "it is known by name";
 }
 
-TEST_F(RealArmTermsTest, AUsersOwnFileReplacesTheOneThatCameWithTheProgram) {
+TEST_F(RealArmTermsTest, UserFileReplacesTheShippedOne) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   write(scene::own_arm_folder() / "woodenhaptics.yaml",
         with(text_of(kArms / "woodenhaptics.yaml"), "force_max: 5 ", "force_max: 2 "));
@@ -205,7 +205,7 @@ TEST_F(RealArmTermsTest, AUsersOwnFileReplacesTheOneThatCameWithTheProgram) {
 }
 
 // A scene with one ball, its arm and its gate.
-TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
+TEST_F(RealArmTermsTest, ShippedScenesKeepTheArmAndItsLimits) {
   const auto terms =
       scene::terms_for(plug(ArmKind::kPolhem, "P1"),
                        {.arm_file = kArms / "polhem.yaml", .firmware = {}, .unchecked = true});
@@ -231,7 +231,7 @@ TEST_F(RealArmTermsTest, NoShippedSceneChangesTheArmOrLoosensItsLimits) {
   EXPECT_GE(scenes, 8);
 }
 
-TEST_F(RealArmTermsTest, ASceneThatWantsNoEnergyStageLeavesARealArmItsOwn) {
+TEST_F(RealArmTermsTest, SceneCannotRemoveTheEnergyStage) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   const auto terms = scene::terms_for(plug(ArmKind::kWoody, "W1"),
                                       {.arm_file = {}, .firmware = {}, .unchecked = true});

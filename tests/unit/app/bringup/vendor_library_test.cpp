@@ -116,7 +116,7 @@ TEST_F(VendorLibraryTest, TheDoctorNamesTheLibrary) {
   EXPECT_TRUE(said);
 }
 
-TEST_F(VendorLibraryTest, TheDoctorSaysHowAVendorsLibraryGetsToItsArm) {
+TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
   usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
   usb_.plug("1-2", "2988", "0302", "TT1", 1, 3);
   usb_.add_tty("1-2", 0, "ttyACM0");

@@ -93,7 +93,7 @@ TEST(ArmFile, CountsAQuarterTurnAsItsHomeCounts) {
             arm->model.encoders[1].home_counts);
 }
 
-TEST(ArmFile, NamesTheGatesEnergyStageAndWhatItLeavesOpenFollowsFromTheArm) {
+TEST(ArmFile, EnergyStageDefaultsFollowFromTheArm) {
   const auto arm = scene::load_arm(kArm);
   ASSERT_TRUE(arm.ok());
   const auto own = scene::energy_settings(*arm, 1000, {});

@@ -69,7 +69,7 @@ class OpenWireTest : public ::testing::Test {
   driver::WallClock clock_;
 };
 
-TEST_F(OpenWireTest, SendsNothingToATeensyOnRawHidUnlessItIsNamedAndTheArmFileNamesItsBoard) {
+TEST_F(OpenWireTest, RawHidTeensyNeedsDeviceAndBoardName) {
   plug_hid("16c0", "0486", "Teensyduino RawHID", 64);
   EXPECT_EQ(open("polhem", "auto"), "none chosen");
   for (const char* file : {"woodenhaptics", "woodenhaptics_teensy", "vintage_phantom", "falcon"}) {
@@ -80,7 +80,7 @@ TEST_F(OpenWireTest, SendsNothingToATeensyOnRawHidUnlessItIsNamedAndTheArmFileNa
   EXPECT_EQ(hid_.messages, 0u);  // the first is the zero force of Device::open
 }
 
-TEST_F(OpenWireTest, SendsNothingToAnMbedBoardWhoseReportsAreNotAnArms) {
+TEST_F(OpenWireTest, SendsNothingToAForeignMbedBoard) {
   plug_hid("1234", "0006", "HID DEVICE", 8);
   EXPECT_NE(open("woodenhaptics", "auto").find("not numbered"), std::string::npos);
   hid_.coming = 0;
@@ -100,7 +100,7 @@ TEST_F(OpenWireTest, OpensTheWoodenHapticsThatProvesItself) {
   EXPECT_EQ(hid_.messages, 0u);
 }
 
-TEST_F(OpenWireTest, SendsNothingToAnMbedBoardOf14BytesUnlessItIsNamed) {
+TEST_F(OpenWireTest, SendsNothingToAnUnnamed14ByteBoard) {
   plug_hid("1234", "0006", "HID DEVICE", 14);
   EXPECT_EQ(open("polhem", "auto"), "none chosen");
   EXPECT_NE(open("woodenhaptics"), "");
@@ -142,7 +142,7 @@ class OpenSerialTest : public OpenWireTest {
   int far_;
 };
 
-TEST_F(OpenSerialTest, SendsNothingToATeensyUnlessItIsNamedAndTheArmFileNamesItsBoard) {
+TEST_F(OpenSerialTest, TeensyNeedsDeviceAndBoardName) {
   plug_serial("USB Serial");
   EXPECT_EQ(open("polhem", "auto"), "none chosen");
   EXPECT_NE(open("woodenhaptics").find("is a text_lines"), std::string::npos);

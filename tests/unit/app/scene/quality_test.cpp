@@ -139,7 +139,7 @@ std::filesystem::path ring_scene(int across, double stiffness, const std::string
   return folder / "ring.yaml";
 }
 
-TEST(Quality, ADraftKeepsTheRateWhereHalfOfItWouldNotHoldTheSurface) {
+TEST(Quality, DraftKeepsTheRateOfStiffSurfaces) {
   // 4 N s/m of hand and surface over 2 ms hold 2,000 N/m, of which half is borne.
   const SceneReading slow{.rate_factor = 0.5};
   EXPECT_EQ(load_scene(ring_scene(8, 700), slow)->rate, 500);
@@ -149,7 +149,7 @@ TEST(Quality, ADraftKeepsTheRateWhereHalfOfItWouldNotHoldTheSurface) {
   EXPECT_FALSE(load_scene(ring_scene(8, 700, ", colour: red"), slow).ok());
 }
 
-TEST(Quality, AutoTakesTheCheapestPointAtWhichNothingWrongCanBeFelt) {
+TEST(Quality, AutoTakesTheCheapestImperceptiblePoint) {
   const QualityTable& table = quality_table();
   for (const int across : {24, 48}) {
     auto scene = load_scene(ring_scene(across, 800));
@@ -187,7 +187,7 @@ TEST(Quality, AutoKeepsToABudgetAndSaysSoWhereNothingFits) {
   EXPECT_EQ(chosen(1000).second.tracker, TrackerChoice::kPacked);
 }
 
-TEST(Quality, AutoStepsADentSoThatItsMotionIsRightAndLeavesNamedTrackersAlone) {
+TEST(Quality, AutoLimitsTheStepOfADent) {
   const std::string dent = ", body: {dent: {rings: 6}}";
   auto scene = load_scene(ring_scene(16, 100, dent)).value();
   apply_quality(Quality::kAuto, scene);

@@ -75,7 +75,7 @@ TEST(RealArm, IsChosenByNameOrAsTheOnlyOne) {
   EXPECT_NE(scene::choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
 }
 
-TEST(RealArm, IsAskedForByListingAllWithTheirKindsWhereSeveralArePluggedIn) {
+TEST(RealArm, SeveralArmsAreListedWithTheirKinds) {
   std::vector<driver::FoundArm> arms = {found(ArmKind::kWoody, "W1"), found(ArmKind::kFalcon, "F1"),
                                         found(ArmKind::kHaply, "H1")};
   arms[0].arm = "WoodenHaptics";
@@ -139,7 +139,7 @@ TEST(RealArm, IsFoundAgainBySerialNumberInAnySocketElseBySocket) {
   EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
 }
 
-TEST(RealArm, WithoutANameOfItsOwnIsFoundAgainInItsSocketAloneAndAsTheSameBoard) {
+TEST(RealArm, UnnamedArmIsFoundOnlyInItsSocket) {
   const support::FakeUsb usb("find_again_socket");
   const auto plug = [&usb](const std::string& port, unsigned char bytes, int device) {
     usb.plug(port, "1234", "0006", "0123456789", 1, device);

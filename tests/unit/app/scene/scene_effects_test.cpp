@@ -29,7 +29,7 @@ std::string mistake(const std::string& effects) {
   return done ? "" : done.error().message;
 }
 
-TEST(SceneEffects, RunInTheOrderOfATickWhateverOrderASceneNamesThemIn) {
+TEST(SceneEffects, RunInTickOrder) {
   auto yaml = scene::YamlFile::parse(
       "effects:\n  - {friction: bristle, coefficient: 0.4}\n  - {texture: sandpaper}\n", "scene");
   ASSERT_TRUE(yaml.ok());
@@ -41,7 +41,7 @@ TEST(SceneEffects, RunInTheOrderOfATickWhateverOrderASceneNamesThemIn) {
   for (const render::EffectPlan& plan : plans) EXPECT_NE(plan.build(), nullptr);
 }
 
-TEST(SceneEffects, AreRefusedByLineWhereTheyAreNotKnownOrStandTogether) {
+TEST(SceneEffects, UnknownOrConflictingEffectsNameTheirLine) {
   EXPECT_EQ(mistake("  - {friction: bristle, coefficient: 0.4}\n"), "");
   EXPECT_NE(mistake("  - {friction: magic}\n").find("scene:2: friction: expected bristle"),
             std::string::npos);

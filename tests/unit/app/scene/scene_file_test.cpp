@@ -220,7 +220,7 @@ TEST(SceneFile, RefusesUnknownKeys) {
             std::string::npos);
 }
 
-TEST(SceneFile, ReadsRepairAndSheetsAndRefusesWhatDoesNotGoWithThem) {
+TEST(SceneFile, ReadsRepairAndSheets) {
   const std::string mesh = "  - {name: ball, mesh: cgal:ball.off, size: 0.1, stiffness: 500, ";
   const auto scene = scene_from(mesh + "repair: true, open: {thickness: 0.001}}\n", kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;

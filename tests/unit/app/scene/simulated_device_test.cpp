@@ -22,7 +22,7 @@ using scene::SimulatedDevice;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(LoadByName, ReadsTheArmAndTheSceneThatTheProgramKnowsByThatName) {
+TEST(LoadByName, ReadsTheNamedArmAndScene) {
   const auto arm = scene::load_arm("vintage_phantom");
   ASSERT_TRUE(arm) << arm.error().message;
   EXPECT_EQ(arm->name, "vintage_phantom");

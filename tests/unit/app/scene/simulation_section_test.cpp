@@ -153,7 +153,7 @@ TEST(SimulationSection, RefusesLinksThatCannotBeAndThoseOfALinkage) {
             std::string::npos);
 }
 
-TEST(SimulationSection, TellsTheFalconThatItsDriveTrainIsNotSimulated) {
+TEST(SimulationSection, RefusesADriveTrainOfTheFalcon) {
   EXPECT_NE(mistake_with("  tip:\n", "  drive_train: {current_lag: 0.001}\n  tip:\n", "falcon")
                 .find("drive_train: is no key that is known here"),
             std::string::npos);

@@ -105,7 +105,7 @@ TEST_F(EventLogTest, HoldsNothingOfARunThatIsNotToBeLogged) {
   EXPECT_TRUE(log().empty());
 }
 
-TEST_F(EventLogTest, IsWrittenBesideARunInRealTimeWithTheTimeOfWhatHappened) {
+TEST_F(EventLogTest, RealTimeEventsKeepTheirTime) {
   options_.clock = ClockKind::kWall;
   options_.duration = 0.3;
   auto session = open();

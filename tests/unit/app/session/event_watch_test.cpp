@@ -143,7 +143,7 @@ TEST_F(EventWatchTest, TellsThatAnArmIsActiveFromItsFirstTickOn) {
   EXPECT_EQ(events(), Events({event(0, EventKind::kActivated)}));
 }
 
-TEST_F(EventWatchTest, TellsWhenAnActivityBeginsAndWhenItHasBeenQuiet) {
+TEST_F(EventWatchTest, ReportsBeginningAndEndOfAnActivity) {
   ticks(10);
   for (int i = 0; i < 50; ++i) {  // every other tick, ten to a tick
     if (i % 2 == 0) counters_.of(Activity::kRiseCut) += 10;

@@ -27,7 +27,7 @@ TEST(Interrupt, TakesSeveralSignalsWithinHalfASecondForOneRequest) {
   }
 }
 
-TEST(Interrupt, ObeysAFurtherSignalOnceNothingIsAtStakeOrTheProgramHangs) {
+TEST(Interrupt, SecondSignalEndsAHungProgram) {
   EXPECT_TRUE(scene::ends_at_once(500 * kMs, false));
   EXPECT_FALSE(scene::ends_at_once(500 * kMs, true));
   EXPECT_FALSE(scene::ends_at_once(1999 * kMs, true));
@@ -53,7 +53,7 @@ void rest(std::int64_t time_ns) {
   }
 }
 
-TEST(Interrupt, SetsTheFlagForEverySignalThatEndsAProgramAndCanBeCaught) {
+TEST(Interrupt, EveryCatchableSignalSetsTheFlag) {
   for (int number = 1; number <= SIGRTMAX; ++number) {
     switch (number) {
       case SIGKILL:
@@ -90,7 +90,7 @@ TEST(Interrupt, SetsTheFlagForEverySignalThatEndsAProgramAndCanBeCaught) {
   }
 }
 
-TEST(Interrupt, OutlivesTheTerminalUnderNohupAndLeavesOthersHandlersAlone) {
+TEST(Interrupt, OutlivesTheTerminalUnderNohup) {
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGHUP, SIG_IGN);
               const auto& flag = scene::catch_interrupts();
@@ -114,7 +114,7 @@ TEST(Interrupt, OutlivesTheTerminalUnderNohupAndLeavesOthersHandlersAlone) {
             7);
 }
 
-TEST(Interrupt, KeepsAnArmAtStakeAliveThroughABurstAndEndsAProgramThatHangs) {
+TEST(Interrupt, SignalBurstDoesNotAbandonTheArm) {
   EXPECT_EQ(outcome_of([] {
               scene::catch_interrupts();
               const scene::LeavingGuard guard;

@@ -195,7 +195,7 @@ TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
   EXPECT_EQ(honey->scene().name, "honey");
 }
 
-TEST_F(NextRunTest, HearsWhatIsAskedWhileItPreparesAndTellsWhoComesLater) {
+TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   std::unique_ptr<SharedReader> viewer;
   std::string asked_meanwhile = (kSource / "app/scenes/honey.yaml").string();
   int prepared = 0;
@@ -286,7 +286,7 @@ TEST_F(NextRunTest, HearsWhatIsAskedBetweenTheLastTickAndTheEnd) {
   EXPECT_NE(viewer->notice().find("fault"), std::string::npos) << viewer->notice();
 }
 
-TEST_F(NextRunTest, BeginsPausedWhereTheRunBeforeEndedBeforeItHeardOfIt) {
+TEST_F(NextRunTest, PauseCarriesOverToTheNextRun) {
   NextRun next = next_of(false, true);
   const auto session = prepare();
   next.begin(*session);

@@ -125,7 +125,7 @@ session::RecordingInfo small_info() {
   return info;
 }
 
-TEST(RecordingSwitch, RecordsFromItsBeginningToItsEndAndNothingBesides) {
+TEST(RecordingSwitch, RecordsOnlyWhileSwitchedOn) {
   const auto file = support::scratch_folder() / "switch.h5";
   const auto run = scripted_run(20'000, 100, 300);
   for (const bool by_thread : {false, true}) {

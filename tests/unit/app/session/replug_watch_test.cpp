@@ -161,7 +161,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
   EXPECT_EQ(last_.fault, Fault::kNone);
 }
 
-TEST_F(ReplugWatchTest, AsksAnArmThatFindsItsOwnHomeOnlyForTheWorkspace) {
+TEST_F(ReplugWatchTest, SelfHomingArmNeedsOnlyTheWorkspace) {
   make_watch(std::nullopt);
   pass(5);
   first_.lost = true;

@@ -76,7 +76,7 @@ class RunLoopTest : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-TEST_F(RunLoopTest, TellsItsObserversInOrderOnceATickAfterTheForceWasSent) {
+TEST_F(RunLoopTest, ObserversRunInOrderAfterTheForce) {
   auto law = [](const driver::DeviceState&) noexcept {
     return driver::ForceCommand{.f_T_W = {1, 0, 0}, .touch = {}};
   };

@@ -29,7 +29,7 @@ TEST(ChooseRunArm, LooksForNoBoardWhereTheSimulatedArmIsAskedFor) {
   EXPECT_EQ(looks, 0);
 }
 
-TEST(ChooseRunArm, SaysSoWhereTheSimulatedArmStandsInAndFailsForANameThatIsNotThere) {
+TEST(ChooseRunArm, ReportsSimulationAndUnknownNames) {
   const auto none = [] {
     return driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>());
   };

@@ -91,7 +91,7 @@ TEST_F(SessionBatchTest, HandsAreLedEachToItsPoint) {
   }
 }
 
-TEST_F(SessionBatchTest, ARunBegunAnewIsTheOneOfItsSeedAndTheOthersGoOn) {
+TEST_F(SessionBatchTest, RestartedRunFollowsItsSeed) {
   const auto batch = open("rubber", 2, {.seed = 3, .keep = session::Keep::kNewest});
   batch->step(300);
   ASSERT_TRUE(batch->restart(0, 4));

@@ -179,7 +179,7 @@ TEST_F(SessionStart, LetsForcesThroughOnlyToAnArmWhoseTipIsAtHome) {
   EXPECT_EQ(forced_, 0);
 }
 
-TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
+TEST(ServoThread, KnowsItsPriorityBeforeItRuns) {
   {
     const session::ServoThread unused(true);
     EXPECT_EQ(unused.grant().fifo && unused.grant().memory_locked && unused.grant().cpu_awake,
@@ -199,7 +199,7 @@ TEST(ServoThread, KnowsItsGrantBeforeItRunsAndMayLeaveWithoutRunning) {
   EXPECT_EQ((*session)->ticks().size(), 500u);
 }
 
-TEST(CheckRealTime, RefusesARealArmWithoutPriorityUnlessTheUserSaysSo) {
+TEST(CheckRealTime, RealArmNeedsPriorityOrConsent) {
   driver::RealTimeGrant grant;
   grant.advice = "Add your user to a group.";
   const auto refused = session::check_real_time(grant, false);

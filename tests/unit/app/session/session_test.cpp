@@ -144,7 +144,7 @@ TEST_F(SessionTest, RunsTickByTickAsItRunsAtOnce) {
   EXPECT_EQ(stepped->ticks().back().p_WT, whole->ticks().back().p_WT);
 }
 
-TEST_F(SessionTest, TakesALawOfOnesOwnBeforeTheFirstTickOfVirtualTime) {
+TEST_F(SessionTest, TakesACustomLawBeforeTheFirstTick) {
   const auto own = open("box");
   HalfTheForce law{own->touch()};
   ASSERT_TRUE(own->set_law(driver::ForceLaw(law)));

@@ -793,7 +793,7 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
   EXPECT_NE(gone.error().message.find("--list"), std::string::npos) << gone.error().message;
 }
 
-TEST(Share, GivesItsNameToTheNextRunWithoutAMomentInWhichThereIsNone) {
+TEST(Share, NamePassesToTheNextRunWithoutAGap) {
   const std::string name = name_for("next");
   auto run = session::SharedRun::create(name, small_scene(), 10).value();
   session::SharedScene other = small_scene();

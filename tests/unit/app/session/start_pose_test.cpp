@@ -147,7 +147,7 @@ TEST_F(WaitForStartPose, GoesOnAtOnceIfTheTipIsThere) {
   EXPECT_TRUE(told_.empty());
 }
 
-TEST_F(WaitForStartPose, AsksUntilTheTipIsThereAndSendsZeroForceMeanwhile) {
+TEST_F(WaitForStartPose, SendsZeroForceWhileWaiting) {
   counts_ = {2000, 0, 0, 0, 0, 0};  // a yaw of 0.35 rad
   open();
   user_ = [this](int look) {

@@ -16,7 +16,7 @@
 namespace thimble::stability {
 namespace {
 
-TEST(RaisedEdge, IsBelowTheFirstWallThatDoesNotRestThoughStifferOnesRestAgain) {
+TEST(RaisedEdge, IsBelowTheFirstWallThatDoesNotRest) {
   const auto rests = [](double stiffness) -> driver::Result<bool> {
     return stiffness < 850 || (stiffness > 990 && stiffness < 3000);
   };

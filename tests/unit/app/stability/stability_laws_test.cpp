@@ -136,7 +136,7 @@ TEST(SampledWall, IsThatOfARigidArmWhereTheCableIsStiff) {
   EXPECT_NEAR(limit_by_phase(wall) / late_stiffness_limit(1, 0.002, mass), 1, 1e-3);
 }
 
-TEST(SampledWall, IsShiftedByACableThatStretchesAsTheLawOfTwoMassesSays) {
+TEST(SampledWall, CableShiftsItByTheTwoMassLaw) {
   // The same two masses by steps of 2 us, in place of the exact map.
   const auto grows = [](const SampledWall& wall, double stiffness) {
     double x = 0, v = 0.01, rotor = 0, rate = 0.01, force = 0, early = 0, late = 0;

@@ -48,7 +48,7 @@ double error_of(const Membrane& membrane, SpringScheme scheme, int substeps) {
   return error / size;
 }
 
-TEST(Membrane, IsKnownExactlyBothByItsSinesAndByTheModesOfItsNetwork) {
+TEST(Membrane, SinesAndNetworkModesAgree) {
   Membrane membrane;
   membrane.n = 12;
   auto modal = render::ModalMotion<1>::build(membrane_network(membrane), kFrame).value();
@@ -88,7 +88,7 @@ TEST(Membrane, ShowsTheOrderOfEachIntegrator) {
   }
 }
 
-TEST(HardCase31, ExplicitEulerDivergesOnAMembraneWhereItsBoundSaysSo) {
+TEST(HardCaseMembrane, GuardExplicitEulerDivergesAtItsBound) {
   Membrane membrane;
   membrane.n = 12;
   // Dampers stand at the nodes alone: 2 zeta / w of the stiffest mode, here 8 us.

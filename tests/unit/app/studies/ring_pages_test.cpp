@@ -53,7 +53,7 @@ bool shares_edge(const PackedTriangle& t, std::size_t k, std::int32_t number,
   return false;
 }
 
-TEST(RingPages, AreAClosedSurfaceWhoseNeighboursAreMutualAndBoxesRight) {
+TEST(RingPages, FormAClosedSurface) {
   for (const std::int64_t triangles : {1024, 20'000, 100'000}) {
     const auto file = render::PageFile::open(ring_of(triangles));
     ASSERT_TRUE(file.ok()) << file.error().message;
@@ -164,7 +164,7 @@ TEST(RingPages, AreWrittenInAMemoryThatDoesNotGrowWithTheMesh) {
 // A tip that slides at 0.5 m/s over a ring of 10^7 triangles on the disk (10^5 in the short form),
 // with 16 MiB (4) of it in memory: the depth is known in closed form, every page comes in time, and
 // memory does not grow with the mesh.
-TEST(RingPages, AreTouchedAtTenMillionTrianglesInTheMemoryOfTheirFrames) {
+TEST(RingPages, TenMillionTrianglesFitTheFrames) {
   const auto file = ring_of(support::long_form() ? 10'000'000 : 100'000);
   const std::size_t frames = support::long_form() ? 256 : 64;
   const std::size_t before = resident_memory().now;

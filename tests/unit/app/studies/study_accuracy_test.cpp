@@ -248,7 +248,7 @@ TEST(AccuracyAxes, TakeTheTwentiethBounceForTheSafetyStages) {
   }
 }
 
-TEST(AccuracyAxes, ShowThatOnlyTheSmoothProfileTurnsAtAContinuousRate) {
+TEST(AccuracyAxes, OnlyTheSmoothProfileTurnsContinuously) {
   const AccuracyAxis axis = axis_named("profile_rate");
   const auto at = [&](const char* line, std::size_t i) {
     return line_named(axis, line).points[i].error();
@@ -285,7 +285,7 @@ TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
   }
 }
 
-TEST(VirtualCoupling, GivesNoSpeedUpToTheLimitItIsSizedByWhateverIsBehindIt) {
+TEST(VirtualCoupling, GivesNoSpeedUpToItsSizedLimit) {
   for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
     // The law asks for no more than the arm has, and wastes less than half.
     const double counted_on = least_counted_on(stiffness);
@@ -396,7 +396,7 @@ TEST(MeasuredAxis, ReportsAsManyStepsAsItAnnounces) {
   EXPECT_EQ(steps, announced);
 }
 
-TEST(MeasuredAxis, FindsSlopeDefaultAndThePointBeyondWhichNothingIsFelt) {
+TEST(MeasuredAxis, FindsSlopeDefaultAndFeltLimit) {
   const MeasuredAxis axis = measured_by_hand();
   ASSERT_TRUE(axis.lines[0].slope);
   EXPECT_NEAR(*axis.lines[0].slope, 2, 1e-12);
@@ -457,7 +457,7 @@ TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
 
 class GatingOfScene : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(GatingOfScene, KeepsWhatItCallsForAndChecksItAgainstTheFullModel) {
+TEST_P(GatingOfScene, IsCheckedAgainstTheFullModel) {
   if (GetParam() == "elephant" && !std::filesystem::exists(THIMBLE_MESHES "/elephant.off")) {
     GTEST_SKIP() << "needs its scanned mesh";
   }

@@ -25,7 +25,7 @@ TEST(RingSurface, KnowsItsDepthAndNormalAlongEachWayIn) {
   }
 }
 
-TEST(RingStroke, BeginsAndEndsOutsideAndStaysBetweenHalfAndOneAndAHalfMillimetres) {
+TEST(RingStroke, StaysBetweenItsDepthLimits) {
   const RingSurface ring;
   const auto states = ring_stroke(ring, kStrokeTicks, 0.001);
   EXPECT_LT(ring.depth(states.front().p_WT), 0);
@@ -40,7 +40,7 @@ TEST(RingStroke, BeginsAndEndsOutsideAndStaysBetweenHalfAndOneAndAHalfMillimetre
   EXPECT_LT(fastest, 0.2);
 }
 
-TEST(CostSubjects, AreEveryWayOfContactAndEveryEffectOnceAndAllCanBeTouched) {
+TEST(CostSubjects, CoverEveryContactAndEffectOnce) {
   const auto states = ring_stroke(kCostRing, kStrokeTicks, 0.001);
   std::set<std::string> names;
   for (const CostSubject& subject : cost_subjects()) {

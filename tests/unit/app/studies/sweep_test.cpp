@@ -55,7 +55,7 @@ std::string journal_after(const std::filesystem::path& folder, int jobs, bool re
   return scene::text_of(folder / "plain.journal");
 }
 
-TEST(HardCase41, SweepGivesTheSameBytesWithAnyNumberOfThreads) {
+TEST(HardCaseDeterminism, SweepIsIndependentOfThreads) {
   const Folder one, four;
   const std::string first = journal_after(one.path(), 1, false);
   const std::string second = journal_after(four.path(), 4, false);
@@ -65,7 +65,7 @@ TEST(HardCase41, SweepGivesTheSameBytesWithAnyNumberOfThreads) {
   EXPECT_EQ(std::count(first.begin(), first.end(), '\n'), 51);
 }
 
-TEST(Sweep, GoesOnAfterAnyTornOrDamagedEndOfItsJournalAndGivesTheSameBytes) {
+TEST(Sweep, ResumesAfterATornJournal) {
   const Folder scratch;
   const std::string whole = journal_after(scratch.path(), 2, false);
   const auto file = scratch.path() / "plain.journal";

@@ -97,7 +97,7 @@ TEST(Trouble, IsSeenThoughMoreWasTakenBefore) {
   EXPECT_TRUE(found.bad());
 }
 
-TEST(EnergyGiven, CountsWhatSpringsHeldAndNothingThatWasTakenBefore) {
+TEST(EnergyGiven, CountsOnlyWhatSpringsHeld) {
   EnergyGiven passive;
   for (int press = 0; press < 10; ++press) {
     passive.book(-5e-3, 4e-3);  // pressed in; a fifth is lost
@@ -180,7 +180,7 @@ TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
   }
 }
 
-TEST(Trouble, OfFacetsInAHollowIsCuredAndWarnedOfForTheTrackerThatIsForComparisonAlone) {
+TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
   constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring, nothing on it
   std::vector<std::string> warnings;
   // Above 20 mN before both facets of a hollow edge held the tip at once.
@@ -206,7 +206,7 @@ TEST(Trouble, LightBodyInTheGripOfAFrictionRests) {
   EXPECT_TRUE(any_has(warnings, "so light"));
 }
 
-TEST(RestWarnings, FindTheCurvatureOfASineAndTheGrainOfAVelocityInCounts) {
+TEST(RestWarnings, FindCurvatureAndVelocityGrain) {
   // Hollows of a cube: none; its texture and friction as a scene names them.
   EXPECT_NEAR(stability::quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3),
               2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
@@ -300,7 +300,7 @@ TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
   EXPECT_GE(found.most, found.mean);
 }
 
-TEST(WallMeasures, MakeLateAndSpreadTicksOfTheMeanThatTheLawIsAsked) {
+TEST(WallMeasures, JitteredTicksKeepTheirMean) {
   const auto sum_of = [](const std::vector<std::int64_t>& gaps) {
     double sum = 0, squares = 0;
     for (const std::int64_t gap : gaps) {

@@ -86,7 +86,7 @@ TEST_F(LiveFeedTest, WhoComesLateIsToldWhatIsKept) {
   EXPECT_FALSE(feed_->has_message(late));
 }
 
-TEST_F(LiveFeedTest, ASlowPageIsToldHowManyTicksItLacksAndMissesNoOther) {
+TEST_F(LiveFeedTest, SlowPageLearnsHowManyTicksItMissed) {
   LiveFeed::Place slow;
   run_ticks(500);
   feed_->step();
@@ -132,7 +132,7 @@ TEST_F(LiveFeedTest, SaysHowManyTicksCameTooFastForAnybody) {
   EXPECT_EQ(updates.back().json["lost"], 3000);
 }
 
-TEST_F(LiveFeedTest, ShapesOfClayComeStepByStepAndOutliveWhatIsForgotten) {
+TEST_F(LiveFeedTest, ClayShapesOutliveForgottenTicks) {
   run_ticks(10);
   run_->store_vertex(1, {1, 0, 0.9});
   feed_->step();

@@ -191,7 +191,7 @@ TEST(RequestGuard, LetsInWhoKnowsTheTokenAndAsksAsThePageItself) {
   }
 }
 
-TEST_F(WebServerTest, ToldToNobodyWithoutTheTokenNorToAPageOfSomebodyElse) {
+TEST_F(WebServerTest, NothingIsSentWithoutTheToken) {
   run_ticks(10);
   const std::string page = "/" + token_, live = "/live" + token_;
   for (const Asking& asking : {Asking{"/"}, Asking{"/?token=0123456789abcdef0123456789abcdef"},
@@ -282,7 +282,7 @@ TEST_F(WebServerTest, ConnectionOfOtherUserIsRefused) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST_F(WebServerTest, GarbageAndWhatIsTooLongEndAConnectionAndNothingElse) {
+TEST_F(WebServerTest, GarbageEndsOnlyItsConnection) {
   run_ticks(10);
   for (const std::string& bytes :
        {std::string("\0\xff\xfe garbage \r\n\r\n", 17), std::string("GET"),
@@ -318,7 +318,7 @@ TEST_F(WebServerTest, GarbageAndWhatIsTooLongEndAConnectionAndNothingElse) {
   EXPECT_EQ(read_ticks(good, 5).size(), 5U);
 }
 
-TEST_F(WebServerTest, TwoPagesAreToldAllTicksWhateverAThirdDoesThatNeverReads) {
+TEST_F(WebServerTest, SlowClientDoesNotStallOthers) {
   Page stuck(io_), first(io_), second(io_);
   ASSERT_EQ(open(stuck), 101U);
   stuck.next_layer().set_option(asio::socket_base::receive_buffer_size(65'536));

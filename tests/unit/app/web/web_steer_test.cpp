@@ -98,7 +98,7 @@ TEST(SteerRun, IsShownToPagesWithKnobsAndWhatTheRunTells) {
   EXPECT_EQ(last["notice"], "line 3: wrong");
 }
 
-TEST(RequestGuard, LetsChangeTheRunWhoSendsTheTokenInAHeaderFromTheServedPageAlone) {
+TEST(RequestGuard, ChangesNeedTheTokenAndTheServedPage) {
   const RequestGuard guard = RequestGuard::make().value();
   const std::string& token = guard.token();
   const RequestGuard::Request good{"/steer", "127.0.0.1:8080", "http://127.0.0.1:8080", token};

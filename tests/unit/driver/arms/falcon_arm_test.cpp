@@ -46,7 +46,7 @@ TEST_F(FalconGeometry, ReachesItsWholeWorkspaceFarFromSingularPoses) {
   EXPECT_FALSE(arm_.inverse({NAN, 0, 0.12}));
 }
 
-TEST_F(FalconGeometry, FindsTheTipBelowANanometreFromAnyStartInTheWorkspace) {
+TEST_F(FalconGeometry, FindsTheTipFromAnyStart) {
   double worst = 0;
   int most_steps = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -112,7 +112,7 @@ TEST_F(FalconGeometry, DoesTheSameWorkAtItsLegsAndAtItsTip) {
   EXPECT_LT(worst, 1e-9);
 }
 
-TEST_F(FalconGeometry, ExertsTheNewtonThatIsAskedAnywhereInAnyDirection) {
+TEST_F(FalconGeometry, ExertsTheAskedForceEverywhere) {
   const JointModel<DeltaArm> model = falcon_model();
   const FalconArm arm(model);
   double worst = 0, worst_on_wire = 0, quantum = 0;

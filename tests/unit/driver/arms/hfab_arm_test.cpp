@@ -51,7 +51,7 @@ TEST(HfabArm, TurnsJointAnglesIntoCountsAndBack) {
   }
 }
 
-TEST(HfabArm, FindsTheSameAnglesToTheBitFromWholeCountsOfFineEncoders) {
+TEST(HfabArm, WholeAndFineCountsGiveTheSameAngles) {
   const auto whole = support::vintage_model();
   const auto fine = with_fine_counts(whole);
   support::Random random(22);

@@ -54,7 +54,7 @@ TEST(HfabModels, PolhemHasTheJacobianOfCentralDifferences) {
   }
 }
 
-TEST(HfabModels, PolhemFindsTheAnglesOfEveryPlaceItReachesAsItIsBuilt) {
+TEST(HfabModels, PolhemInvertsEveryReachablePlace) {
   const LinkageArm arm = polhem_model().geometry;
   const Eigen::Vector3d middle(0.2045, 0, 0.0325);  // of the workspace [S forsslund/hfabapi]
   support::Random random(93);
@@ -145,7 +145,7 @@ TEST(HfabModels, WoodenHapticsHasItsPublishedHomeAndResolution) {
 // it: CHAI3D's CWoodenDevice.cpp (encoder values {-a, b, c}, gear ratios {+16, -12, +12}, C from a
 // right angle downwards, motor torques {+A, -B, -C}) and haptikfabrikenapi (all encoders reversed,
 // motor A positive).
-TEST(HfabModels, WoodenHapticsOnItsMbedBoardTurnsToTheLeftWhenEncoderAGrows) {
+TEST(HfabModels, MbedEncoderATurnsWoodenHapticsLeft) {
   const woody::WoodyArm arm(woody_model(WoodyBoard::kMbed));
   const double step_a = 2 * std::numbers::pi / (2000 * 16);
   const double step_b = 2 * std::numbers::pi / (2000 * 12);
@@ -163,7 +163,7 @@ TEST(HfabModels, WoodenHapticsOnItsMbedBoardTurnsToTheLeftWhenEncoderAGrows) {
   EXPECT_EQ(arm.drives()[0].current_max, 3);
 }
 
-TEST(HfabModels, WoodenHapticsOnTextLinesTurnsToTheRightWhenEncoderAGrows) {
+TEST(HfabModels, TextEncoderATurnsWoodenHapticsRight) {
   const auto arm = make_line_arm(3);
   ArmReading reading;
   reading.counts = {1000, 0, 0};

@@ -39,7 +39,7 @@ TEST(HfabReport, IsLittleEndianInTheOrderOfThePublishedFirmware) {
   }
 }
 
-TEST(HfabReport, IsUnderstoodAt14And64BytesAndRejectedAtEveryOtherLength) {
+TEST(HfabReport, AcceptsOnly14And64Bytes) {
   support::Random random(2);
   for (std::size_t length = 0; length <= 130; ++length) {
     std::vector<std::byte> bytes(length);

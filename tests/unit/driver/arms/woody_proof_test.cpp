@@ -56,7 +56,7 @@ std::string refusal(const Board::Says& says, std::size_t size = kReportSize) {
   return heard ? "" : heard.error().message;
 }
 
-TEST(WoodyProof, BelievesABoardThatNumbersItsReportsAndSendsItNothing) {
+TEST(WoodyProof, AcceptsNumberedReportsWithoutSending) {
   EXPECT_EQ(refusal([](int frame) { return numbered(frame); }), "");
   EXPECT_EQ(refusal([](int frame) { return numbered(65'530 + frame); }), "");  // over the top
   // Half a second of silence after power-on, and the leftovers of an earlier time.

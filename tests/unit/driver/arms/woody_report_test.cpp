@@ -30,7 +30,7 @@ TEST(WoodyReport, IsLittleEndianInTheOrderOfThePublishedFirmware) {
   }
 }
 
-TEST(WoodyReport, IsUnderstoodAt8BytesAndRejectedAtEveryOtherLength) {
+TEST(WoodyReport, AcceptsOnly8Bytes) {
   support::Random random(32);
   for (std::size_t length = 0; length <= 130; ++length) {
     const auto bytes = support::any_bytes(random, length);

@@ -48,7 +48,7 @@ TEST(GateTime, TakesATickOfNoLengthForOneInWhichNothingMayRise) {
   EXPECT_EQ(gate.fault(), Fault::kNone);
 }
 
-TEST(GateTime, TakesAJumpForwardForAStallAndALongOneForTheWatchdogsBusiness) {
+TEST(GateTime, JumpForwardIsAStallOrWatchdogFault) {
   SafetyGate gate = support::open_gate();
   gate.pass({1, 0, 0}, kStill, 0.03);
   EXPECT_EQ(gate.counters().stalls, 1U);

@@ -49,7 +49,7 @@ TEST(RiseLimit, TurnsAForceAsideInAsManyTicksAsItsRiseTakes) {
   EXPECT_EQ(ticks, 4);  // 7.07 N in steps of 2 N
 }
 
-TEST(RiseLimit, DropsAForceThatWouldPushTheHandOnAndAddsTheNewOneNoFaster) {
+TEST(RiseLimit, DropsAForceThatWouldPushTheHand) {
   // Friction of 5 N whose hand has just turned round: the old force would push it on.
   SafetyGate gate = support::open_gate();
   for (int k = 0; k < 3; ++k) gate.pass({5, 0, 0}, {-0.2, 0, 0}, kPeriod);
@@ -58,7 +58,7 @@ TEST(RiseLimit, DropsAForceThatWouldPushTheHandOnAndAddsTheNewOneNoFaster) {
   }
 }
 
-TEST(RiseLimit, DropsNoForceForAVelocityThatOneCountOfTheEncoderFeigns) {
+TEST(RiseLimit, OneCountOfVelocityDropsNoForce) {
   const EnergyGuardSettings noise{.speed_floor = 0.014};
   for (const double speed : {0.0139, 0.0141}) {
     SafetyGate gate = support::open_gate(limits(), noise);
@@ -80,7 +80,7 @@ TEST(RiseLimit, HoldsForDampingToo) {
   EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {-1, 0, 0}, kPeriod, {}).f_T_W().x(), 2, 1e-12);
 }
 
-TEST(RiseLimit, CountsFromTheForceThatStandsIfTheArmDidNotTakeTheLastOne) {
+TEST(RiseLimit, RejectedForceDoesNotCount) {
   SafetyGate gate = support::open_gate();
   gate.pass({2, 0, 0}, kStill, kPeriod);
   gate.pass({4, 0, 0}, kStill, kPeriod);  // refused
@@ -139,7 +139,7 @@ EnergyGuardSettings draw_energy(support::Random& random) {
   return drawn;
 }
 
-TEST(RiseLimit, AddsNoMoreThanItsRiseToWhatIsLeftOfTheOldForceWhateverIsWanted) {
+TEST(RiseLimit, AddsAtMostItsRisePerTick) {
   support::Random random(16);
   std::uint64_t limited = 0, damped = 0;
   for (int sequence = 0; sequence < 100'000; ++sequence) {
@@ -191,7 +191,7 @@ TEST(RiseLimit, NeverSlowsAFallAlongTheForcesOwnDirection) {
   }
 }
 
-TEST(RiseLimit, TakesNoLessFromTheHandThanWhatIsWantedUnlessTheForceMustRiseFirst) {
+TEST(RiseLimit, TakesAtLeastTheWantedEnergy) {
   // In a tick the gate may give the hand more power than the wanted force only where letting the
   // whole old force go, and adding what may be added, does too.
   support::Random random(18);

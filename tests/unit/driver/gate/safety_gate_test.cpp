@@ -75,7 +75,7 @@ double work_of_visit(double rise_max, double stiffness, double speed) {
   return work;
 }
 
-TEST(SafetyGate, KeepsAWallPassiveWhenItsRiseLimitIsAtLeastStiffnessTimesSpeed) {
+TEST(SafetyGate, FastRiseLimitKeepsAWallPassive) {
   for (const double speed : {0.1, 0.3, 1.0, 2.0}) {
     EXPECT_LE(work_of_visit(1000 * speed * 1.01, 1000, speed), 1e-9) << speed;
   }
@@ -122,7 +122,7 @@ TEST(SafetyGate, LatchesZeroForceOnRunawaySpeed) {
   EXPECT_EQ(other.fault(), Fault::kStateNotFinite);
 }
 
-TEST(SafetyGate, OpensAnewAfterAStallAndFaultsAfterTheWatchdogsTime) {
+TEST(SafetyGate, StallReopensAndWatchdogFaults) {
   SafetyGate gate = open_gate();
   EXPECT_GT(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().norm(), 0.9);
   EXPECT_EQ(gate.pass({1, 0, 0}, kStill, 0.030).f_T_W().norm(), 0);
@@ -167,7 +167,7 @@ TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
   EXPECT_NEAR(gate.energy(), 0.1e-3, 1e-15);
 }
 
-TEST(EnergyGuard, DampsAgainstTheVelocityWithAsMuchAsPaysTheDebtAndNoMore) {
+TEST(EnergyGuard, DampsExactlyTheDebt) {
   SafetyGate gate = open_guarded_gate(passivity());
   const Eigen::Vector3d v{0.1, -0.2, 0.1};
   const Eigen::Vector3d f = gate.pass_guarded({0, 0, 0}, v, kPeriod, {.work = 1e-4}).f_T_W();
@@ -184,7 +184,7 @@ TEST(EnergyGuard, DampsAgainstTheVelocityWithAsMuchAsPaysTheDebtAndNoMore) {
   EXPECT_LT(gate.counters().energy_least, -0.9);
 }
 
-TEST(EnergyGuard, KeepsNoMoreToOnesCreditThanTheReservoirAndAllowsWhatItIsTold) {
+TEST(EnergyGuard, CreditIsBoundedByTheReservoir) {
   EnergyGuardSettings settings = passivity();
   settings.allowance = 0.002;
   SafetyGate gate(limits(), settings);
@@ -217,7 +217,7 @@ TEST(EnergyGuard, FadesTheForceOfADebtBeyondItsOnsetEvenAtRest) {
   EXPECT_NEAR(sent(0.002), 0, 1e-12);  // and no more at twice the onset
 }
 
-TEST(EnergyGuard, BringsAFadedForceBackSlowlyAndOnlyWhenLittleIsOwed) {
+TEST(EnergyGuard, FadedForceReturnsSlowly) {
   SafetyGate gate = open_gate_with_onset();
   const auto sent = [&](double work) { return sent_at_rest(gate, work); };
   EXPECT_NEAR(sent(0.003), 1, 1e-9);
@@ -270,7 +270,7 @@ TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
   EXPECT_NEAR(damped(-0.04), 75 * 0.02, 1e-9);
 }
 
-TEST(EnergyGuard, KeepsTheCreditOfSpringsThatArePressedNowAndNoLonger) {
+TEST(EnergyGuard, CreditLastsWhileSpringsArePressed) {
   SafetyGate gate = open_guarded_gate(passivity());
   gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = -0.09, .held = 0.08});
   EXPECT_NEAR(gate.energy(), 0.09, 1e-12);

@@ -113,7 +113,7 @@ TEST_F(ZeroForce, IsInsistedOnAtTheEndOfALoopUntilItIsTaken) {
   EXPECT_EQ(clock.now_ns() - begin_ns, (2 + 30) * kPeriod_ns);
 }
 
-TEST_F(ZeroForce, IsInsistedOnForAsLongAsTheArmsOwnWatchdogWaitsAndThenNamed) {
+TEST_F(ZeroForce, IsRetriedUntilTheWatchdogTime) {
   open();
   VirtualClock clock;
   clock.sleep_until_ns(now_ns_ + kPeriod_ns);

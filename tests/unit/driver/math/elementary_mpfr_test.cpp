@@ -81,7 +81,7 @@ TEST(ElementaryByMpfr, EveryResultIsTheDoubleNearestToTheTrueValue) {
   }
 }
 
-TEST(ElementaryByMpfr, SineAndCosineAtOnceAreWrongByLessThanTheirBound) {
+TEST(ElementaryByMpfr, SineAndCosineAreWithinTheirBound) {
   Number x(53), sine(200), cosine(200);
   const auto units = [](Number& value, double found) {
     int exponent = 0;
@@ -106,7 +106,7 @@ TEST(ElementaryByMpfr, SineAndCosineAtOnceAreWrongByLessThanTheirBound) {
   EXPECT_GT(worst, 0.5) << "as good as sin and cos: these would do for both";
 }
 
-TEST(ElementaryByMpfr, MultiplesOfAQuarterTurnAreReducedToTheLastBitAtAnySize) {
+TEST(ElementaryByMpfr, QuarterTurnsAreReducedExactly) {
   // The double nearest to a multiple of pi / 2: what remains is as small as it gets.
   Nearest nearest;
   Number multiple(1200);

@@ -157,7 +157,7 @@ std::int64_t steps_apart(double found, double wanted) {
   return std::abs(place(found) - place(wanted));
 }
 
-TEST(Elementary, SineAndCosineAtOnceAreTheNearestDoubleOrTheNextOne) {
+TEST(Elementary, SineAndCosineAreWithinOneUlp) {
   support::Random random(std::uint64_t{3});
   support::RunHash hash;
   int next = 0;

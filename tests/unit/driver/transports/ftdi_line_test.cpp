@@ -18,7 +18,7 @@ class FtdiLineTest : public ::testing::Test {
   support::FakeLibusb& usb_ = support::fake_libusb();
 };
 
-TEST_F(FtdiLineTest, ReadsTheLineWithoutTheStatusBytesAndKeepsWhatWasNotAskedFor) {
+TEST_F(FtdiLineTest, RemovesTheStatusBytes) {
   const auto line = FtdiLine::open({.bus = 1, .device = 7});
   ASSERT_TRUE(line) << line.error().message;
   std::array<std::byte, 4> bytes{};
@@ -35,7 +35,7 @@ TEST_F(FtdiLineTest, ReadsTheLineWithoutTheStatusBytesAndKeepsWhatWasNotAskedFor
   EXPECT_EQ((*line)->read(bytes, 5), -1);
 }
 
-TEST_F(FtdiLineTest, ForgetsWhatWasHeardAndFailsIfTheConverterRefusesEitherWay) {
+TEST_F(FtdiLineTest, FlushFailsIfTheConverterRefuses) {
   const auto line = FtdiLine::open({.bus = 1, .device = 7});
   ASSERT_TRUE(line) << line.error().message;
   std::array<std::byte, 2> bytes{};

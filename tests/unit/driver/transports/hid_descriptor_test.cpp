@@ -41,7 +41,7 @@ TEST(HidDescriptor, SumsTheFieldsOfAKeyboardAndKeepsItsOuterUsage) {
   EXPECT_EQ(reports.out_bytes, 1u);
 }
 
-TEST(HidDescriptor, KeepsTheUsageOfTheOuterCollectionWhateverIsWithin) {
+TEST(HidDescriptor, KeepsTheUsageOfTheOuterCollection) {
   const std::vector<unsigned char> nested = {
       0x06, 0xab, 0xff, 0x0a, 0x00, 0x02, 0xa1, 0x01,  // page ffab, usage 0200: a collection
       0x05, 0x01, 0x09, 0x06, 0xa1, 0x02,              // page 1, usage 6: a collection within

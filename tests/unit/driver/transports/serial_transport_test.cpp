@@ -119,7 +119,7 @@ TEST_F(SerialTransportTest, SaysThatTheArmIsGoneWhenThePortHangsUp) {
   EXPECT_EQ(write("[0,0,0]\n"), TransportStatus::kLost);
 }
 
-TEST_F(SerialTransportTest, RefusesWhatAFullPortCannotTakeInsteadOfWaiting) {
+TEST_F(SerialTransportTest, FullPortRefusesInsteadOfWaiting) {
   open();
   const std::string line = "[" + std::string(90, '1') + "]\n";
   int refused = 0;

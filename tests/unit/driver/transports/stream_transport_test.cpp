@@ -78,7 +78,7 @@ class StreamTransportTest : public ::testing::Test {
   std::int64_t tick_ = 0;
 };
 
-TEST_F(StreamTransportTest, ReadsInEachTickTheAnswerToTheMessageOfTheTickBefore) {
+TEST_F(StreamTransportTest, ReadsTheAnswerToThePreviousTick) {
   write();
   for (int tick = 1; tick <= 100; ++tick) {
     next_tick();
@@ -92,7 +92,7 @@ TEST_F(StreamTransportTest, ReadsInEachTickTheAnswerToTheMessageOfTheTickBefore)
   EXPECT_EQ(wire_.counters().unanswered, 0u);
 }
 
-TEST_F(StreamTransportTest, WaitsForALateAnswerInsteadOfTalkingOverIt) {
+TEST_F(StreamTransportTest, WaitsForALateAnswer) {
   write();
   std::int64_t longest_ns = 0;
   for (int tick = 1; tick <= 500; ++tick) {
@@ -108,7 +108,7 @@ TEST_F(StreamTransportTest, WaitsForALateAnswerInsteadOfTalkingOverIt) {
   EXPECT_EQ(wire_.counters().unanswered, 0u);
 }
 
-TEST_F(StreamTransportTest, WaitsForASilentArmOnlyOnceAndGoesOnSending) {
+TEST_F(StreamTransportTest, WaitsForASilentArmOnlyOnce) {
   wire_.silent = true;
   write();
   std::int64_t waited_ns = 0;

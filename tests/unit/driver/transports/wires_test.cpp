@@ -135,7 +135,7 @@ TEST_F(FtdiWire, SeesInAWriteThatTheArmIsGone) {
   EXPECT_EQ(last_.status, TransportStatus::kLost);
 }
 
-TEST_F(FtdiWire, RefusesAThirdMessageWhileTwoHangAndTellsOfAFailedOneLater) {
+TEST_F(FtdiWire, RefusesAThirdPendingMessage) {
   usb_.takes = false;
   open();
   EXPECT_EQ(write(), TransportStatus::kOk);
@@ -269,7 +269,7 @@ TEST_F(HidWire, TakesTheNewestReportAndCountsTheOlder) {
   EXPECT_EQ(buffer_[0], std::byte{5});
 }
 
-TEST_F(HidWire, WaitsForTheNextReportWhereTheKernelHadNoPlaceForTheNewest) {
+TEST_F(HidWire, WaitsForTheNextReportAfterAnOverflow) {
   hid_.reports = 63;
   hid_.coming = 2;
   TransportRead read = wire_->read_latest(buffer_, 0);

@@ -59,7 +59,7 @@ TEST_F(DhdLinkTest, TellsPoseGripperAndButtonsAndGivesTheGatedForce) {
   EXPECT_EQ(mock_->found_zero, 0) << "nobody said that it may move";
 }
 
-TEST_F(DhdLinkTest, AnArmThatDoesNotKnowItsZeroGetsNoForceAndDoesNotMoveUnasked) {
+TEST_F(DhdLinkTest, UncalibratedArmGetsNoForceOrMotion) {
   mock_->initialised = false;
   const auto link = dhd::open_link(library_, clock_);
   ASSERT_FALSE(link);

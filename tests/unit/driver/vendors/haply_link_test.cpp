@@ -115,7 +115,7 @@ class HaplyLinkTest : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(HaplyLinkTest, TellsWhereTheArmIsAndGivesItTheGatedForceInItsBase) {
+TEST_F(HaplyLinkTest, SendsTheGatedForceInTheBaseFrame) {
   for (const bool old_spelling : {false, true}) {
     greet(HaplyGreeting::kInverse3, old_spelling);
     ASSERT_NO_FATAL_FAILURE(open());
@@ -171,7 +171,7 @@ TEST_F(HaplyLinkTest, EndsWithZeroForceAndClosesAsItShould) {
   EXPECT_EQ(service_->log().wrong, 0);
 }
 
-TEST_F(HaplyLinkTest, ALoopThatStandsStillSendsNothingSoThatTheForceEnds) {
+TEST_F(HaplyLinkTest, StalledLoopSendsNothing) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->f_sent_W().x() > 0.3; }));
@@ -182,7 +182,7 @@ TEST_F(HaplyLinkTest, ALoopThatStandsStillSendsNothingSoThatTheForceEnds) {
   EXPECT_TRUE(service_->log().f_T_B.isZero(0));
 }
 
-TEST_F(HaplyLinkTest, SendsNothingToWhatHasNotProvenToBeHaplysServiceWithThisArm) {
+TEST_F(HaplyLinkTest, SendsNothingToAnUnprovenService) {
   const std::pair<HaplyGreeting, const char*> kCases[] = {
       {HaplyGreeting::kOther, "does not speak as Haply's"},
       {HaplyGreeting::kNoJson, "does not speak as Haply's"},
@@ -285,7 +285,7 @@ TEST_F(HaplyLinkTest, AnAnswerThatIsLeftOutEndsNothing) {
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
-TEST_F(HaplyLinkTest, ComesBackOverANewLinkWithoutForceUntilTheUserAsks) {
+TEST_F(HaplyLinkTest, NewLinkStartsWithoutForce) {
   greet();
   const std::uint16_t port = service_->port();
   ASSERT_NO_FATAL_FAILURE(open());

@@ -34,7 +34,7 @@ TEST(HaplyMessage, KnowsAnArmByItsNameAlone) {
   EXPECT_EQ(read_state("", "049D", state), StateRead::kRejected);
 }
 
-TEST(HaplyMessage, RejectsNumbersThatCannotBeAndLeavesTheStateAlone) {
+TEST(HaplyMessage, RejectsImpossibleNumbers) {
   const auto with = [](const std::string& from, const std::string& to) {
     std::string text = kState;
     return text.replace(text.find(from), from.size(), to);

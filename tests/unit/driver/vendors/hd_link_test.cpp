@@ -47,7 +47,7 @@ TEST_F(HdLinkTest, TellsPoseAndButtonsInMetresAndGivesTheGatedForce) {
   EXPECT_EQ(mock_->taken.back(), Vector3d(0, 0, 0));
 }
 
-TEST_F(HdLinkTest, GivesNoMoreThanTheLibrarysNominalForceAndTellsWhatIsLeft) {
+TEST_F(HdLinkTest, ClampsToTheNominalForce) {
   mock_->nominal = 0.5;
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0, 0, 1}, [&] {

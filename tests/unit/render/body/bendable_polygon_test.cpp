@@ -104,7 +104,7 @@ double beside(BendablePolygon& dent, std::int32_t triangle, const Vector3d& w, B
   return count > 0 ? sum / count : 0;
 }
 
-TEST(BendablePolygon, KeepsTheDepthOfItsDentWhileTheCursorCrossesEdgesAndCorners) {
+TEST(BendablePolygon, DentDepthIsKeptAcrossEdges) {
   auto patch = std::make_unique<BodyPatch>();
   for (const Shape& shape : shapes()) {
     auto dent = dent_in(shape.mesh, quiet());
@@ -227,7 +227,7 @@ TEST(BendablePolygon, KeepsSwingingVerticesWhenTheCursorGoesOn) {
 
 // Very elastic objects of few polygons [BP 4.3]: at 1, 10 and 0.1 times the stiffness, any step and
 // integrator, and far beyond.
-TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshesAtAnyStiffnessMassAndStep) {
+TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr int kPresses = 1;  // of what takes a minute and a half under them
 #else

@@ -97,7 +97,7 @@ int presses() {
 
 // Through contact and mesh: set = x_max - F_y / k, heat = F_y * set, and the second
 // press is as stiff as the first.
-TEST(HardCase34, ClayKeepsWhatItGaveWayBeyondTheYieldForce) {
+TEST(HardCaseClayPress, KeepsTheSetBeyondYield) {
   double worst = 0;
   support::Random random(34);
   for (int i = 0; i < 50; ++i) {
@@ -151,7 +151,7 @@ TEST(HardCase34, ClayKeepsWhatItGaveWayBeyondTheYieldForce) {
 }
 
 // Random presses at all speeds and places, wherever the hand goes meanwhile.
-TEST(HardCase34, ClayNeverTurnsATriangleOverNorLosesTheTipNorGivesEnergy) {
+TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
   double least = 1, least_work = 1e9;
   std::uint64_t lost = 0;
   for (const auto tracker : {TrackerChoice::kEdgePlanes, TrackerChoice::kOffset}) {
@@ -235,7 +235,7 @@ TEST(Clay, FlowsNoFasterThanItsRateAndNoFartherThanItsLimit) {
 }
 
 // The probe leaves a pit and goes in again, over its edge and along its walls.
-TEST(HardCase35, ClayKeepsTheForceContinuousWhereTheProbeLeavesAPitAndComesBack) {
+TEST(HardCaseClayPit, ForceIsContinuousOnReturn) {
   const TriangleMesh mesh = support::icosphere(5, 0.03);
   auto object =
       shaped(mesh, {.clay = ClayChoice{.yield_force = 0.8, .radius = 6e-3}, .snap = {}}, phong());
@@ -280,7 +280,7 @@ TriangleMesh sheet() {
 }
 
 // Displacement control.
-TEST(HardCase32, SnapSnapsAtTheLimitLoadOfTheStatedTruss) {
+TEST(HardCaseSnapThrough, TrussSnapsAtItsLimitLoad) {
   const SnapSettings truss = stated_truss().snap->truss();
   EXPECT_NEAR(truss.bar_stiffness, 5000, 0.1);
   auto object = shaped(sheet(), stated_truss());
@@ -315,7 +315,7 @@ TEST(HardCase32, SnapSnapsAtTheLimitLoadOfTheStatedTruss) {
 }
 
 // A free hand pushes through the threshold.
-TEST(HardCase33, SnapDoesNotChatterUnderAHandAndItsAccountCloses) {
+TEST(HardCaseSnapInHand, HandCausesNoSecondSnap) {
   auto object = shaped(sheet(), stated_truss(), {}, 1);
   support::Stylus stylus{.hand_stiffness = 300, .hand_damping = 3};
   const double top = 0.015;

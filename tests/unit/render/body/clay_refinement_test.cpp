@@ -299,7 +299,7 @@ void press_at_random(Tip& tip, support::Random& random, double size, Vector3d& p
 }
 
 // Seeded strokes, with what is found at their end and no heap on the way.
-TEST(ClayRefinement, KeepsTheMeshClosedAndTheTipInTouchOverAThousandPrints) {
+TEST(ClayRefinement, ThousandPrintsKeepTheMeshClosed) {
   struct Case {
     TriangleMesh mesh;
     int triangles;

@@ -164,7 +164,7 @@ double restitution(const MotionChoice& motion, const SurfaceChoice& surface, dou
   return std::sqrt(rig.energy(motion.mass) / before);
 }
 
-TEST(HardCase42, BodyLeavesRestingTipsNoFasterThanItCame) {
+TEST(HardCaseRestingBody, LeavesTipsNoFasterThanItCame) {
   std::map<std::string, double> worst;
   for (const double mass : {1e-3, 1e-2, 0.1, 1.0, 10.0}) {
     for (const double stiffness : {10.0, 100.0, 1e3, 1e4, 1e5}) {
@@ -197,7 +197,7 @@ TEST(HardCase42, BodyLeavesRestingTipsNoFasterThanItCame) {
   }
 }
 
-TEST(HardCase42, ABlockThatFallsOnATipBouncesNoHigherEachTime) {
+TEST(HardCaseRestingBody, FallingBlockBouncesNoHigher) {
   double worst = 0;
   for (const double rate : {1e3, 8e3}) {
     for (const double stiffness : {200.0, 1000.0}) {
@@ -229,7 +229,7 @@ TEST(HardCase42, ABlockThatFallsOnATipBouncesNoHigherEachTime) {
                             "<= rise above where they were let go", worst, 1e-9, "m");
 }
 
-TEST(HardCase42, AHeldBodySwingsNoFurtherEachTime) {
+TEST(HardCaseRestingBody, HeldBodySwingsNoFurther) {
   double worst = 0;
   for (const double rate : {100.0, 1e3, 8e3, 2e4}) {
     for (const double mass : {1e-3, 0.02, 0.1, 0.5}) {
@@ -267,7 +267,7 @@ TEST(HardCase42, AHeldBodySwingsNoFurtherEachTime) {
 }
 
 // Two fingers without dampers press a block and hold it against its weight by friction.
-TEST(HardCase42, APinchedBlockComesToRest) {
+TEST(HardCaseRestingBody, PinchedBlockComesToRest) {
   double loudest = 0;
   for (const char* friction : {"bristle", "stiction_point", "lugre", "implicit_coulomb"}) {
     for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {

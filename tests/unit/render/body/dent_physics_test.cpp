@@ -215,7 +215,7 @@ TEST(PhysicsOfDents, StaticDepthDoesNotDependOnTheMass) {
 }
 
 // A heavily damped dent fades by its slowest rate: springs to the base points have no modes.
-TEST(PhysicsOfDents, AnOverdampedDentCreepsBackAtTheRateOfItsSpringAndDamper) {
+TEST(PhysicsOfDents, OverdampedDentCreepsBackAtItsRate) {
   const Plate plate;
   for (const double rate : {1e3, 2e4}) {
     DentSettings settings;

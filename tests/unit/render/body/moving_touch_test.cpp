@@ -73,7 +73,7 @@ struct Spy {
   void step(double) noexcept {}
 };
 
-TEST(MovingTouch, GivesTheBodyExactlyTheOppositeOfWhatTheHandFeelsAtTheTip) {
+TEST(MovingTouch, BodyGetsTheOppositeForce) {
   std::vector<std::pair<Vector3d, Vector3d>> pushes;
   auto touch = build_object_touch(support::icosphere(2, 0.03), {}, surface_of(500, 1, true));
   MovingTouch<Spy> moving(std::move(touch).value(), Spy{&pushes, 20}, {500, 1, kTick});
@@ -98,7 +98,7 @@ TEST(MovingTouch, GivesTheBodyExactlyTheOppositeOfWhatTheHandFeelsAtTheTip) {
   EXPECT_GT(felt, 500);
 }
 
-TEST(MovingTouch, FeelsLikeTheObjectItselfWhereverItStandsIfItCannotBeMoved) {
+TEST(MovingTouch, FixedBodyFeelsLikeTheObject) {
   std::vector<std::pair<Vector3d, Vector3d>> pushes;
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.03, 0.2, 5);
   MovingTouch<Spy> moved(build_object_touch(mesh, {}, surface_of(500, 1, true)).value(),
@@ -126,7 +126,7 @@ TEST(MovingTouch, FeelsLikeTheObjectItselfWhereverItStandsIfItCannotBeMoved) {
 
 // A stylus meets bodies of 1 g to 100 kg through contact and friction stages, at any
 // stiffness a scene can name, in the middle and off it.
-TEST(HardCase36, MovingTouchKeepsTheMomentaAndNeverGainsEnergyAtAnyMassAndStiffness) {
+TEST(HardCaseRigidBody, TouchKeepsTheMomenta) {
   double worst = 0, gain = -1;
   for (const double mass : {1e-3, 1e-2, 0.1, 1.0, 100.0}) {
     for (const double stiffness : {50.0, 800.0, 5000.0}) {
@@ -178,7 +178,7 @@ TEST(HardCase36, MovingTouchKeepsTheMomentaAndNeverGainsEnergyAtAnyMassAndStiffn
 
 // The same without any damping, held by a hand against a floor or not: springs alone do not
 // oscillate up, even at stiffnesses that no arm could show.
-TEST(MovingTouch, OscillatesAtNoMassAndStiffnessWhileAHandRestsOnIt) {
+TEST(MovingTouch, RestingHandCausesNoOscillation) {
   for (const double mass : {1e-3, 1e-2, 1.0, 100.0}) {
     for (const double stiffness : {200.0, 2000.0, 5000.0}) {
       MotionChoice motion{.kind = MotionKind::kRigid, .mass = mass};
@@ -201,7 +201,7 @@ TEST(MovingTouch, OscillatesAtNoMassAndStiffnessWhileAHandRestsOnIt) {
   }
 }
 
-TEST(MovingTouch, CannotPassThroughARestingTipHoweverFastItMovesAndTurns) {
+TEST(MovingTouch, FastBodyCannotPassARestingTip) {
   // A plate of 1 mm runs or turns over a tip that stands still: 2 to 9 mm per tick.
   const TriangleMesh plate = support::plate(0.06, 0.001, 6);
   support::Random random(28);
@@ -245,7 +245,7 @@ TEST(MovingTouch, FeelsHeavierByTheSquareOfTheTimeScale) {
   }
 }
 
-TEST(MovingTouch, LeavesTheHandUnharmedWhenItIsPushedOffTheWorkspacesEdge) {
+TEST(MovingTouch, LeavingTheWorkspaceIsHarmless) {
   // Hard case 37's cousin: a light block is pushed on and on; it stays at its reach, where the hand
   // feels a wall, and far away it is felt no more.
   for (const double mass : {1e-3, 0.1, 10.0}) {

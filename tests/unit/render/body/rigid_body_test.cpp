@@ -123,7 +123,7 @@ struct FreeTop {
 };
 
 // Spin about the middle axis, against the closed form.
-TEST(HardCase36, RigidBodyTumblesWithThePeriodOfTheClosedForm) {
+TEST(HardCaseRigidBody, TumblesWithTheClosedFormPeriod) {
   double worst_period = 0, worst_energy = 0, worst_momentum = 0;
   for (const double tilt : {0.003, 0.03, 0.3}) {
     for (const double spin : {2.0, 20.0, 60.0}) {
@@ -166,7 +166,7 @@ TEST(HardCase36, RigidBodyTumblesWithThePeriodOfTheClosedForm) {
   record_hard_case(36, kSpins, "<= drift of the energy", worst_energy, 1e-5, "1");
 }
 
-TEST(HardCase36, RigidBodyFollowsTheClosedFormAllTheWay) {
+TEST(HardCaseRigidBody, FollowsTheClosedForm) {
   double worst = 0;
   RigidBody body = body_of(block(), 0.3);
   const Vector3d inertia = body.settings().mass.inertia;
@@ -205,7 +205,7 @@ TEST(RigidBody, TurnsWithOrderFour) {
 }
 
 // However fast it spins and however long the step.
-TEST(HardCase36, RigidBodyNeverSpinsItselfUp) {
+TEST(HardCaseRigidBody, NeverSpinsItselfUp) {
   support::Random random(36);
   for (int i = 0; i < 100; ++i) {
     RigidBody body = body_of(block(), 0.3);

@@ -61,7 +61,7 @@ TEST(SnapTruss, SettlesWhereForcesAreEqual) {
 }
 
 // Under a growing load.
-TEST(HardCase32, SnapBaseSnapsInOnceAtTheLimitLoadAndOutOnceAtItsOpposite) {
+TEST(HardCaseSnapThrough, SnapsOnceEachWay) {
   using support::record_hard_case;
   SnapBase base = stated_base();
   double load = 0;
@@ -96,7 +96,7 @@ TEST(HardCase32, SnapBaseSnapsInOnceAtTheLimitLoadAndOutOnceAtItsOpposite) {
 }
 
 // With the vertex driven in and out: the loop through its own spring.
-TEST(HardCase32, SnapBaseRepeatsItsLoopAndAccountsForItsWork) {
+TEST(HardCaseSnapThrough, LoopRepeatsAndWorkIsAccounted) {
   double worst = 0;
   constexpr double kSpring = 200;  // softer than the truss is steep, so that it jumps
   constexpr double kIn = 25e-3;
@@ -141,7 +141,7 @@ TEST(HardCase32, SnapBaseRepeatsItsLoopAndAccountsForItsWork) {
 }
 
 // Displacement control: driven stiffly it never jumps, and the force is the law's.
-TEST(HardCase32, SnapBaseFollowsTheWholeLawWhereItIsDrivenStiffly) {
+TEST(HardCaseSnapThrough, StiffDriveFollowsTheLaw) {
   constexpr double kSpring = 1e6;
   SnapBase base = stated_base();
   double most = 0;

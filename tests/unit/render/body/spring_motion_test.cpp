@@ -53,7 +53,7 @@ double growth(const SpringNetwork<1>& network, SpringScheme scheme, double step,
   return most;
 }
 
-TEST(HardCase30, SpringMotionIsBoundedBelowItsLargestStepAndGrowsAboveIt) {
+TEST(HardCaseStepLimit, ExplicitMotionIsBoundedBelowIt) {
   double most = 0, least = std::numeric_limits<double>::infinity();
   const auto below = [&most](double found) {
     most = std::max(most, found);
@@ -90,7 +90,7 @@ TEST(HardCase30, SpringMotionIsBoundedBelowItsLargestStepAndGrowsAboveIt) {
                             "> energy over the first", std::min(undamped, 1e12), 10, "1");
 }
 
-TEST(HardCase30, SpringMotionNeverGrowsWithImplicitSchemesAtAHundredTimesThatStep) {
+TEST(HardCaseStepLimit, ImplicitMotionIsBoundedAt100Times) {
   double most = 0;
   for (const double relaxation : {0.0, 2e-5}) {
     const SpringNetwork<1> network = sheet(8, relaxation);
@@ -136,7 +136,7 @@ void expect_passive(SpringScheme scheme, double stiffness, double step, int roun
 }
 
 // The proof in the header, at any number of rounds, so that the bound on work costs no stability.
-TEST(SpringMotion, NeverGainsMoreThanTheWorkDoneWhateverStiffnessMassStepAndRounds) {
+TEST(SpringMotion, NeverGainsMoreThanTheWorkDone) {
   std::uint64_t seed = 0;
   for (const SpringScheme scheme : {SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid}) {
     for (const double stiffness : {1.0, 1e4, 1e8, 1e12}) {
@@ -151,7 +151,7 @@ TEST(SpringMotion, NeverGainsMoreThanTheWorkDoneWhateverStiffnessMassStepAndRoun
   }
 }
 
-TEST(HardCase31, SpringMotionKeepsTheEnergyOfAMembraneForAMillionSymplecticSteps) {
+TEST(HardCaseMembrane, SymplecticStepsKeepTheEnergy) {
   const int steps = support::long_form() ? 1000000 : 30000;
   const SpringNetwork<1> network = sheet(8, 0);
   const double step = 0.1 / network.bounds().omega_max;
@@ -176,7 +176,7 @@ TEST(HardCase31, SpringMotionKeepsTheEnergyOfAMembraneForAMillionSymplecticSteps
   }
 }
 
-TEST(HardCase31, SpringMotionFadesByTheLawOfImplicitEuler) {
+TEST(HardCaseMembrane, ImplicitEulerFadesByItsLaw) {
   double worst = 0;
   // One mode alone: it fades by 1 / sqrt(1 + w^2 h^2) per step.
   const std::vector<BodyNode> nodes{{1e-3, 0, 0}, {1e-3, 0, 0}};

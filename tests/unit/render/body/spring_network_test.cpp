@@ -52,7 +52,7 @@ void expect_bounds_of_the_dense_matrix(const SpringNetwork<kDof>& network) {
   EXPECT_NEAR(network.bounds().damping_rate_max, fastest, 1e-6 * fastest + 1e-9);
 }
 
-TEST(SpringNetwork, FindsTheHighestFrequencyOfMeshesAndWildNetworks) {
+TEST(SpringNetwork, FindsTheHighestFrequency) {
   const MeshSpringSettings settings{1e-3, 50, 0.1, 1000, 0.2, true};
   expect_bounds_of_the_dense_matrix(join_vertices(support::icosphere(1, 0.03), settings).value());
   expect_bounds_of_the_dense_matrix(support::join_heights(support::icosphere(2, 0.03), settings));

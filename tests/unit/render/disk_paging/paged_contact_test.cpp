@@ -169,7 +169,7 @@ TEST(PagedContact, BringsWhatAPressedTipTouchesHoweverDeepItIs) {
   EXPECT_EQ(hand.contact.misses(), 0u);
 }
 
-TEST(PagedContact, HoldsWhileTheLoaderIsStalledAndGoesOnWithoutAJump) {
+TEST(PagedContact, StalledLoaderCausesNoJump) {
   for (const double stall : {0.02, 0.1, 0.5}) {
     Hand hand(PagedContact(open({.frames = 80, .reach = 0.002, .horizon = 0.01})));
     Way way(support::seed_of(4));

@@ -155,7 +155,7 @@ TEST(PageFile, IsRefusedWhenAnyBitBeforeItsPagesIsDamaged) {
   }
 }
 
-TEST(PageFile, RefusesToEndWithAnotherNumberOfTrianglesThanPromised) {
+TEST(PageFile, RefusesAWrongNumberOfTriangles) {
   const auto path = support::scratch_folder() / "short.pages";
   auto writer = PageFileWriter::create(path, {{0, 0, 0}, 1}, 10);
   ASSERT_TRUE(writer.ok());
@@ -207,7 +207,7 @@ TEST(PagedSurface, KeepsTheNearestPagesWhenItHasTooFewFrames) {
   EXPECT_TRUE(surface->find(under.triangle));
 }
 
-TEST(PagedSurface, FindsTheSameEntriesAsATreeInMemoryAndSaysWhenItCannotKnow) {
+TEST(PagedSurface, FindsTheEntriesOfATreeInMemory) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(7);
@@ -309,7 +309,7 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
   EXPECT_GT(unknown, 1000);
 }
 
-TEST(PagedSurface, NeverShowsAWrongRecordWhileALoaderChangesItsFrames) {
+TEST(PagedSurface, LoadingNeverShowsAWrongRecord) {
   // A fast tip, few frames, and a servo that looks at packed triangles as long as a tick lasts:
   // what the thread sanitizer and the comparison would catch is a frame that is reused too early.
   const auto surface = open({.frames = 6, .reach = 0.003, .horizon = 0.01});

@@ -99,7 +99,7 @@ TEST(Fields, GiveNoForceForNaNOrInfinity) {
   }
 }
 
-TEST(PointCharges, PushWithTheForceNamedAtTheirRadiusOverRootTwoAndNoMoreAnywhere) {
+TEST(PointCharges, LargestForceIsAtRadiusOverRootTwo) {
   for (const double force : {2.5, -1.25}) {
     const PointCharges charge({.charges = {{Vector3d::Zero(), force, 0.01}}}, {});
     const double peak = 0.01 / std::numbers::sqrt2;
@@ -118,7 +118,7 @@ TEST(PointCharges, PushWithTheForceNamedAtTheirRadiusOverRootTwoAndNoMoreAnywher
   }
 }
 
-TEST(MagneticSnap, PullsOntoItsTargetFromTheCaptureRadiusOnWithoutAStep) {
+TEST(MagneticSnap, PullsWithoutAStepAtTheCaptureRadius) {
   MagneticSnap::Settings settings;
   settings.targets = {{.from_O = {0, 0, 0}, .to_O = {0, 0, 0}, .force = 2, .radius = 0.01}};
   const MagneticSnap point(settings, {});
@@ -198,7 +198,7 @@ TEST(Viscous, RefusesWhatTheLoopCannotHold) {
   }
 }
 
-TEST(FieldTable, BuildsEveryFieldFromSettingsAndTouchesWithoutTheHeap) {
+TEST(FieldTable, EveryFieldTouchesWithoutTheHeap) {
   std::set<std::string_view> names;
   for (const FieldKind& kind : field_table()) {
     EXPECT_TRUE(names.insert(kind.name).second);

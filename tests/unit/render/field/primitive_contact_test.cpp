@@ -173,7 +173,7 @@ TEST(WedgeBox, PopsThroughAPlateAtStiffnessTimesHalfItsThickness) {
   EXPECT_TRUE(popped);
 }
 
-TEST(EntryFaceContact, HoldsTheTipBeforeAPlateHoweverDeepItIsPressed) {
+TEST(EntryFaceContact, HoldsTheTipBeforeAPlateAtAnyDepth) {
   const Box plate{.half_sides = {0.05, 0.05, 0.0001}};  // case 23 of PHYSICS 7: 0.2 mm
   support::Random random(3);
   for (const double side : {1.0, -1.0}) {
@@ -209,7 +209,7 @@ struct Entry {
   std::int32_t face;  // -1: no contact
 };
 
-TEST(EntryFaceContact, TakesTheFaceOfAFastPathEvenAtEdgesAndCorners) {
+TEST(EntryFaceContact, FastPathEntersTheRightFace) {
   for (const Entry& c : {
            Entry{{0.03, 0, 0.01}, {0.01, 0, 0.015}, kRight},   // slanted, through the right
            Entry{{0.021, 0, 0.03}, {0.01, 0, 0.015}, kTop},    // past x = 20 mm first, in by z
@@ -252,7 +252,7 @@ TEST(EntryFaceContact, LetsGoAboveItsFaceAndSidewaysWithoutAPull) {
   EXPECT_FALSE(touch(at({0.01, 0, 0.02})).touch.in_contact);
 }
 
-TEST(EntryFaceContact, BeginsForEveryPathThatEndsInsideTurnedAndPlacedAnyhow) {
+TEST(EntryFaceContact, EveryPathInsideBeginsContact) {
   support::Random random(4);
   for (int i = 0; i < 20000; ++i) {
     const Box box{.R_WO = random_rotation(random),

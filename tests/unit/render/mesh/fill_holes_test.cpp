@@ -167,7 +167,7 @@ TEST(FillHoles, ClosesWhateverIsTornOutAtRandom) {
   EXPECT_GE(closed, kRounds * 99 / 100);
 }
 
-TEST(SplitFans, PartsBodiesThatTouchAtAnEdgeAlsoWhereWindingIsWrong) {
+TEST(SplitFans, PartsBodiesThatTouchAtAnEdge) {
   support::Random random(9);
   for (const bool turned : {false, true}) {
     TriangleMesh mesh = support::box({1, 1, 1});

@@ -86,7 +86,7 @@ TEST(LoadMesh, UnderstandsEveryDialectOfOffText) {
   EXPECT_EQ(triangles_in("off", "STOFF 3 1 0\n0 0 0 0 0\n1 0 0 0 1\n0 1 0 1 0\n3 0 1 2"), 1u);
 }
 
-TEST(LoadMesh, SplitsConvexAndConcavePolygonsWithoutChangingTheirArea) {
+TEST(LoadMesh, SplittingPolygonsKeepsTheirArea) {
   EXPECT_EQ(triangles_in("off", "OFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"), 2u);
   // An arrowhead: a fan from its first corner would cover the notch and count it twice.
   const MeshFile file("off", "OFF 4 1 0\n0 0 0\n2 -1 0\n1 0 0\n2 1 0\n4 1 2 3 0\n");
@@ -152,7 +152,7 @@ TEST(LoadMesh, RefusesPromisesThatAFileCannotKeep) {
   expect_error("stl", stl + std::string(100, '\1'), "this is no STL file that can be read");
 }
 
-TEST(LoadMesh, ReadsPlyOfEitherByteOrderWithWhateverStandsBesideTheMesh) {
+TEST(LoadMesh, ReadsPlyOfEitherByteOrder) {
   const std::array<std::array<double, 3>, 4> vertices{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const std::array<std::array<std::int16_t, 3>, 4> faces{
       {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};

@@ -114,7 +114,7 @@ TEST(RepairMesh, ChangesNothingOfAGoodMesh) {
   }
 }
 
-TEST(RepairMesh, WeldsWhatLiesWithinTheToleranceAndMovesNothingFarther) {
+TEST(RepairMesh, WeldsOnlyWithinTheTolerance) {
   const TriangleMesh torn = soup(good(), kCrack / 2);
   const RepairedMesh repaired = repair_mesh(torn);
   EXPECT_TRUE(check_mesh(repaired.mesh).touchable());
@@ -238,7 +238,7 @@ TEST(CheckMesh, ListsThePlacesOfFaultsUpToABound) {
 
 // Hard case 24 [PHYSICS 7]: a fault is told on loading, and nothing falls through what a repair
 // promises to mend.
-TEST(HardCase24, IsToldOnLoadingAndMendedWithoutFallThrough) {
+TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
   TriangleMesh crack = good();
   const auto doubled = support::add_vertex(crack, crack.vertices[9] + Vector3d(0, 0, kCrack));
   int moved = 0;
@@ -288,7 +288,7 @@ TEST(HardCase24, IsToldOnLoadingAndMendedWithoutFallThrough) {
                             "== ticks fallen through or not finite", fallen, 0, "1");
 }
 
-TEST(HardCase24, RefusesAFinAlsoAfterARepair) {
+TEST(HardCaseBrokenMesh, FinIsRefusedAfterRepair) {
   int refused = 0;
   TriangleMesh fin = good();
   const Vector3d above = 1.5 * fin.vertices[static_cast<std::size_t>(fin.triangles[0][0])];

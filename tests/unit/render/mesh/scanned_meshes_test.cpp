@@ -54,7 +54,7 @@ TEST(ScannedMeshes, EachLoadsOrIsRefusedWithAReason) {
   EXPECT_GT(touchable, 50);
 }
 
-TEST(ScannedMeshes, ElephantIsNeverLostWhileTheTipWandersBelowItsSkin) {
+TEST(ScannedMeshes, ElephantKeepsContactBelowItsSkin) {
   if (!fs::exists(kFolder / "elephant.off")) GTEST_SKIP() << kAbsent;
   const TriangleMesh file = load_mesh(kFolder / "elephant.off").value();
   const MeshFindings size = check_mesh(file);

@@ -129,7 +129,7 @@ TEST(SmoothNormals, WithRoundWeightsAreExactOnAnyMeshOfASphere) {
   EXPECT_GT(worst_angle, 1e-3);
 }
 
-TEST(SmoothNormals, ThatAreFittedStandStraightOnFlatGroundHoweverItIsCutUp) {
+TEST(SmoothNormals, FittedNormalsAreExactOnFlatGround) {
   const ContactMesh mesh = prepared_mesh(support::plate(0.05, 0.004, 7));
   const SmoothNormals normals(mesh);
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {

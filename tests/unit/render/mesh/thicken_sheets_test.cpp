@@ -205,7 +205,7 @@ const ContactState& move(GodObjectContact& contact, const Vector3d& p_WT) {
   return contact.update(state);
 }
 
-TEST(ThickenSheets, HoldsATipFromBothSidesFarDeeperThanTheSheetIsThick) {
+TEST(ThickenSheets, HoldsADeepTipFromBothSides) {
   const ThickenedMesh thick = thicken_sheets(sheet(0.1, 10), kThickness);
   for (const double side : {1.0, -1.0}) {
     auto contact = GodObjectContact::build(thick.mesh);

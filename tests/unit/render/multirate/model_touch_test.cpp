@@ -248,7 +248,7 @@ TEST(ModelTouch, HoldsAModelThenLetsItFadeAndSaysSo) {
   EXPECT_EQ(tip.touch->age(), ModelAge::kFollowed);
 }
 
-TEST(ModelTouch, FeelsATooStiffModelAsOneItCanCarryWithTheSameSurface) {
+TEST(ModelTouch, LimitsAModelThatIsTooStiff) {
   Tip tip({.stiffness_max = 500});
   LocalModel model = plane(5000);
   model.p_WR = at_depth(0.001);

@@ -122,7 +122,7 @@ TEST(PackedSurface, HasTheNormalsOfPlainSumsWhereTwoThreadsBuiltIt) {
   }
 }
 
-TEST(PackedSurface, NamesTheFirstFlatTriangleWhicheverThreadFindsIt) {
+TEST(PackedSurface, ReportsTheFirstFlatTriangle) {
   TriangleMesh mesh = support::icosphere(6, 0.05);
   // Onto the middle of an edge of its own: no area left of one triangle beside it.
   const auto flatten = [&mesh](std::size_t t) {

@@ -158,7 +158,7 @@ struct Nearest {
   }
 };
 
-TEST(EightTriangles, LeaveOutNoneThatIsAsNearAsTheNearestPointKnown) {
+TEST(EightTriangles, KeepEveryTriangleWithinTheBound) {
   support::Random random(6);
   int nearer = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -198,7 +198,7 @@ TEST(EightTriangles, KeepFewBesideTheNearest) {
   EXPECT_LT(kept, 0.5 * farther) << kept << " of " << farther;
 }
 
-TEST(EightTriangles, LeaveOutNoneThatIsNearOfAPointThatIsWrongAsFarAsItSays) {
+TEST(EightTriangles, InexactPointKeepsNearTriangles) {
   support::Random random(7);
   constexpr double kWrong = 300;
   int nearer = 0;

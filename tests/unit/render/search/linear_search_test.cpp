@@ -69,7 +69,7 @@ TEST(LinearSearch, EqualsBruteForceOnRandomSegments) {
   EXPECT_GT(entered, 10000);
 }
 
-TEST(LinearSearch, EntersExactlyOnceThroughEveryVertexAndEdgeMiddle) {
+TEST(LinearSearch, EntersVerticesAndEdgesExactlyOnce) {
   Scene scene(support::icosphere(3, 0.05));
   std::vector<Vector3d> targets = scene.mesh.vertices;
   for (const auto& [a, b, c] : scene.mesh.triangles) {
@@ -90,7 +90,7 @@ TEST(LinearSearch, EntersExactlyOnceThroughEveryVertexAndEdgeMiddle) {
   }
 }
 
-TEST(LinearSearch, MissesNothingBetweenConsecutiveSegmentsThatMeetOnTheSurface) {
+TEST(LinearSearch, SegmentsThatMeetOnTheSurfaceMissNothing) {
   // Coordinates on a coarse grid: nearly every point lies exactly on planes, edges or corners.
   Scene scene(support::plate(1, 0.5, 4));
   std::uniform_int_distribution<int> grid(-5, 5);

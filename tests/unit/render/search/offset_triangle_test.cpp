@@ -58,7 +58,7 @@ class Definition {
   double depth = 0;
 };
 
-TEST(OffsetTriangle, AnswersAsItsDefinitionUpToTheRoundingOfSinglePrecision) {
+TEST(OffsetTriangle, MatchesItsDefinition) {
   support::Random random(5);
   int places = 0;
   for (const TriangleMesh& mesh :

@@ -144,7 +144,7 @@ TEST(EverySearch, GivesTheSameAnswersOnScans) {
   }
 }
 
-TEST(EverySearch, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
+TEST(EverySearch, IsIndependentOfScaleAndOrigin) {
   for (const double scale : {1e-6, 1.0, 1e3}) {
     for (const double offset : {0.0, 1e4 * 0.05 * scale}) {
       const Vector3d middle(offset, -offset, offset);

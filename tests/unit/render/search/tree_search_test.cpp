@@ -80,7 +80,7 @@ TEST(TreeSearch, GivesTheAnswersOfTheLinearSearchOnRandomSegments) {
   }
 }
 
-TEST(TreeSearch, GivesTheAnswersOfTheLinearSearchThroughVerticesAndEdges) {
+TEST(TreeSearch, MatchesLinearSearchAtVerticesAndEdges) {
   Scene scene(support::icosphere(3, 0.05));
   support::Random random(12);
   for (const Vector3d& v : scene.mesh.vertices) {
@@ -120,7 +120,7 @@ TEST(TreeSearch, MissesNothingBetweenSegmentsThatMeetOnTheSurface) {
   EXPECT_GT(changes, 500);
 }
 
-TEST(TreeSearch, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
+TEST(TreeSearch, IsIndependentOfScaleAndOrigin) {
   for (const double scale : {1e-6, 1.0, 1e3}) {
     for (const double offset : {0.0, 1e4 * scale}) {
       Scene scene(placed(support::bumpy_sphere(2, 0.05, 0.3, 6), scale, Eigen::Matrix3d::Identity(),

@@ -71,7 +71,7 @@ double most_energy_to_the_hand(AnyStage& friction, double step) {
   return most;
 }
 
-TEST(HardCase18, EveryFrictionButTheNaiveGivesARandomHandNoEnergyInAnyWindowFromRest) {
+TEST(HardCaseFrictionEnergy, RandomHandGainsNoEnergy) {
   double most = -1;
   for (const std::string& name : support::friction_names()) {
     if (name == "naive") continue;
@@ -156,7 +156,7 @@ double most_energy_by_pressing(AnyStage& friction) {
   return most;
 }
 
-TEST(FrictionWithASpring, MakesNoEnergyOutOfPressingHarderOnTheWayBack) {
+TEST(FrictionWithASpring, PressingHarderMakesNoEnergy) {
   for (const char* name :
        {"bristle", "dahl", "implicit_coulomb", "karnopp", "lugre", "stiction_point"}) {
     const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));

@@ -66,7 +66,7 @@ AnyStageOf<FrictionStage<Law>> stage(const typename Law::Settings& settings) {
 }
 
 // [PHYSICS 2.1]: p = v T / step.
-TEST(HardCase13, NaiveFrictionIsOnlyADamperBelowOneCountPerTick) {
+TEST(HardCaseNaiveFriction, IsADamperBelowOneCountPerTick) {
   double worst = 0;
   for (const double speed : {0.005, 0.02}) {
     const auto friction = make_friction("naive", MapSettings({{"coefficient", 0.5}}));
@@ -90,7 +90,7 @@ TEST(HardCase13, NaiveFrictionIsOnlyADamperBelowOneCountPerTick) {
   record_hard_case(13, "the law alone", "<= error of mean and ripple", worst, 0.01, "1");
 }
 
-TEST(HardCase17, LugreFrictionNeverGrowsHoweverStiffAndFast) {
+TEST(HardCaseLugre, NeverGrows) {
   double most_over = -1, most_ringing = 0;
   for (const double stiffness : {1e3, 1e5, 1e6}) {
     for (double speed = 1e-6; speed <= 2.01; speed *= 2) {
@@ -119,7 +119,7 @@ TEST(HardCase17, LugreFrictionNeverGrowsHoweverStiffAndFast) {
   record_hard_case(17, kSweep, "<= change per tick of the force at last", most_ringing, 1e-3, "1");
 }
 
-TEST(HardCase17, LugreFrictionWouldDivergeByEulersStep) {
+TEST(HardCaseLugre, GuardEulerStepDiverges) {
   // The guard of the test above: z <- z + T v - T sigma0 |v| z / g where T sigma0 |v| / g > 2.
   const double stiffness = 1e5, level = 0.5;
   const auto force_after = [&](double share) {
@@ -198,7 +198,7 @@ double loop_area(AnyStage& friction) {
   return work;
 }
 
-TEST(HardCase19, FrictionTakesTheEnergyOfItsHysteresisLoop) {
+TEST(HardCaseHysteresis, LoopAreaMatches) {
   const double full = 4 * 0.01 * 0.5;
   for (const char* name : {"bristle", "dahl", "implicit_coulomb", "lugre"}) {
     const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
@@ -208,7 +208,7 @@ TEST(HardCase19, FrictionTakesTheEnergyOfItsHysteresisLoop) {
   }
 }
 
-TEST(BristleFriction, CarriesItsBendAroundACurveWithoutStretchingIt) {
+TEST(BristleFriction, CurveDoesNotStretchTheBristle) {
   // Around a cylinder about y of 5 mm: first bent along y at rest, then turned by two turns. What
   // was bent along the axis stays; what turns with the surface is neither lost nor made.
   auto bristle = stage<BristleLaw>({.coulomb = {.sliding = 5, .holding = 5}, .stiffness = 2000});

@@ -31,7 +31,7 @@ TEST(EveryFriction, IsInTheTable) {
                                       "naive", "paper", "stiction_point"}));
 }
 
-TEST(EveryFriction, StaysFiniteTangentialAndBelowItsLimitInAnyState) {
+TEST(EveryFriction, StaysTangentialAndBelowItsLimit) {
   for (const std::string& name : support::friction_names()) {
     const auto friction = make_friction(name, half());
     ASSERT_TRUE(friction) << name;
@@ -62,7 +62,7 @@ TEST(EveryFriction, StaysFiniteTangentialAndBelowItsLimitInAnyState) {
   }
 }
 
-TEST(EveryFriction, GivesNothingWhereSomethingIsNotANumberAndRecovers) {
+TEST(EveryFriction, NaNGivesNoForceAndRecovers) {
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
                         std::numeric_limits<double>::infinity()};
   for (const std::string& name : support::friction_names()) {
@@ -174,7 +174,7 @@ TEST(EveryFriction, RefusesSettingsThatMakeNoSense) {
   EXPECT_TRUE(damped(0.21).empty());
 }
 
-TEST(HardCase20, EveryFrictionRefusesToHoldStifferThanTheArmCanKeepQuiet) {
+TEST(HardCaseStiffBristle, TooStiffFrictionIsRefused) {
   int refused = 0;
   for (const char* name :
        {"bristle", "dahl", "implicit_coulomb", "karnopp", "lugre", "stiction_point"}) {

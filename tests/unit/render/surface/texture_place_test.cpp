@@ -138,7 +138,7 @@ TEST(TexturePlace, FeelsAsRoughAtEveryDepth) {
   EXPECT_NEAR(deep, shallow, 1e-12);
 }
 
-TEST(TexturePlace, DoesNoWorkAroundAClosedWayInsideAFlatTriangleAlsoInDepth) {
+TEST(TexturePlace, ClosedPathInATriangleDoesNoWork) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const auto& corners = ball.triangles[3];
   const auto p = [&](std::size_t k) { return ball.vertices[static_cast<std::size_t>(corners[k])]; };
@@ -221,7 +221,7 @@ TEST(TexturePlace, AddsNoWorkAcrossEdgesWhereTheFootIsOneMap) {
   }
 }
 
-TEST(TexturePlace, AddsLittleToTheWorkOfContactsWhoseFeetJumpOverEdges) {
+TEST(TexturePlace, JumpsOverEdgesAddLittleWork) {
   // Over the edges of flat faces the foot jumps, and what is felt follows by the tip's path: no
   // function of the place, and the contact itself takes energy there.
   const TriangleMesh ball = support::icosphere(3, 0.05);
@@ -264,7 +264,7 @@ TEST(TexturePlace, AddsNoWorkInsideAFaceHoweverItIsShaded) {
   }
 }
 
-TEST(TexturePlace, AddsWorkOverEdgePlanesOnlyWhereTheFeetOfTheTwoSidesLieApart) {
+TEST(TexturePlace, EdgePlanesAddWorkOnlyAtGaps) {
   // On meshes of equal triangles the two feet are one. On others they lie apart below an edge, and
   // the height jumps there.
   const auto open = [](const TriangleMesh& ball, const auto& shading, const Vector3d& outside,

@@ -122,7 +122,7 @@ void expect_work_around(const Stage& stage, bool conservative, const char* what)
   }
 }
 
-TEST(Textures, DoNoWorkAroundAClosedWayUnlessTheyChangeTheDepthOnly) {
+TEST(Textures, LateralTexturesDoNoWorkOnAClosedPath) {
   Sandpaper::Settings rough;
   rough.roughness = 0.00005;
   rough.wavelength = 0.0015;

@@ -239,7 +239,7 @@ TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
 // more than 0.1 mm only where that belongs to another sheet: the face that was entered is kept, and
 // no triangle around it that looks the same way is nearer, in all ticks but two. The nearest point
 // looks the other way in all but a few.
-TEST(ContactTruth, EdgePlanesTellTheDistanceOfTheNearestPointUnlessItIsOfAnotherSheet) {
+TEST(ContactTruth, EdgePlanesMeasureTheNearestDistance) {
   if (!fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";
   }

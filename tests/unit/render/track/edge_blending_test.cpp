@@ -48,7 +48,7 @@ Vector3d weights_of(std::size_t corner, double at_corner, double at_next) {
   return weights;
 }
 
-TEST(EdgeBlending, GivesTheSameNormalFromBothSidesOfEverySmoothEdge) {
+TEST(EdgeBlending, NormalIsContinuousOverSmoothEdges) {
   support::Random random(1);
   for (const TriangleMesh& shape : {support::icosphere(2, 0.05), support::torus(0.05, 0.02, 24, 10),
                                     support::bumpy_sphere(3, 0.05, 0.3, 6)}) {
@@ -73,7 +73,7 @@ TEST(EdgeBlending, GivesTheSameNormalFromBothSidesOfEverySmoothEdge) {
   }
 }
 
-TEST(EdgeBlending, ComesToTheVertexNormalFromEveryTriangleAroundAVertex) {
+TEST(EdgeBlending, EveryTriangleReachesTheVertexNormal) {
   support::Random random(2);
   const Shaded on(support::bumpy_sphere(3, 0.05, 0.3, 6));
   for_each_shading(0.01, [&](const auto& shading) {
@@ -137,7 +137,7 @@ double rate_jump(const Shaded& on, const Shading& shading, std::int32_t t, const
   return (at(weights + turn) - 2 * at(weights) + at(weights - turn)).norm() / step;
 }
 
-TEST(EdgeBlending, TurnsAtAContinuousRateWithinATriangleIfTheProfileIsSmooth) {
+TEST(EdgeBlending, SmoothProfileTurnsContinuouslyInside) {
   support::Random random(5);
   const Shaded on(support::icosphere(2, 0.05));
   double linear = 0, smooth = 0;
@@ -169,7 +169,7 @@ TEST(EdgeBlending, TurnsAtAContinuousRateWithinATriangleIfTheProfileIsSmooth) {
   EXPECT_GT(linear, 50);  // 0.1 rad within a band of 1 mm, or none
 }
 
-TEST(EdgeBlending, TurnsAtTheSameRateOnBothSidesOfAnEdgeIfTheProfileIsSmooth) {
+TEST(EdgeBlending, SmoothProfileTurnsContinuouslyOverEdges) {
   support::Random random(6);
   // Triangles of different sizes on both sides of an edge.
   const Shaded on(support::torus(0.05, 0.02, 24, 10));
@@ -203,7 +203,7 @@ TEST(EdgeBlending, TurnsAtTheSameRateOnBothSidesOfAnEdgeIfTheProfileIsSmooth) {
   EXPECT_GT(linear, 100);
 }
 
-TEST(EdgeBlending, SmoothAndLinearProfilesAreTheSameOnEdgesAtVerticesAndInTheMiddle) {
+TEST(EdgeBlending, ProfilesAgreeOnEdgesVerticesAndMiddle) {
   const Shaded on(support::icosphere(1, 0.05));
   const FixedBand linear{0.003}, smooth{0.003, BlendProfile::kSmooth};
   double apart = 0;
@@ -309,7 +309,7 @@ TEST(CurvedDepth, IsPositiveOverHillsAndNegativeOverHollows) {
   EXPECT_GT(hollows, 1000);
 }
 
-TEST(Blended, BeginsContactWithoutAForceStepWhereTheSurfaceIsCurved) {
+TEST(Blended, CurvedSurfaceBeginsWithoutAForceStep) {
   Blended<OffsetContact, Phong, CurvedDepth> contact(
       OffsetContact::build(support::icosphere(1, 0.03)).value());
   const ContactMesh& mesh = contact.mesh();

@@ -52,7 +52,7 @@ std::vector<Hollow> hollows() {
   return all;
 }
 
-TEST(HardCase25, GodObjectEqualsTheQuadraticProgramAfterOneTickFromAnywhere) {
+TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
   double worst = 0, most_hops = 0, moved_later = 0;
   int presses = 0;
   for (const Hollow& hollow : hollows()) {
@@ -120,7 +120,7 @@ TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {
   }
 }
 
-TEST(GodObjectCorners, MoveTheProxyNoFartherThanTheTipWhereTheOutsideIsConvex) {
+TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
   // Projection on a convex set brings no two points farther apart: no jump, no tremor made louder.
   const double size = 0.4;
   auto contact =

@@ -179,7 +179,7 @@ TEST(GodObject, CatchesAFastTipInAThinPlateAtEveryPhase) {
   }
 }
 
-TEST(GodObject, TurnsItsDirectionOnASphereByNoMoreThanTheFacesCrossed) {
+TEST(GodObject, DirectionTurnsWithTheFacesOfASphere) {
   const TriangleMesh sphere = support::icosphere(4, 0.05);
   auto contact = GodObjectContact::build(sphere).value();
   double bend = 0;
@@ -264,7 +264,7 @@ TEST(GodObject, GivesTheSameAnswersFarFromTheOrigin) {
   expect_same_answers(support::block_around(support::box({0.03, 0.03, 0.03}), 0.05), 1, 1e4);
 }
 
-TEST(GodObject, TouchesNothingUntilATipThatStartsInsideHasBeenOutside) {
+TEST(GodObject, StartInsideIsNotContact) {
   auto contact = GodObjectContact::build(support::box({1, 1, 1})).value();
   EXPECT_FALSE(move(contact, {0, 0.1, 0.2}).touching);
   EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);

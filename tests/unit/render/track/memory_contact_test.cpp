@@ -60,7 +60,7 @@ class Wanderer {
   Vector3d way_{0.1, -0.9, 0.2};
 };
 
-TEST(MemoryContact, MeasuresDepthAndDirectionOfASphereHoweverCoarse) {
+TEST(MemoryContact, MeasuresCoarseSpheresExactly) {
   for (int level = 2; level <= 5; ++level) {
     MemoryContact contact = MemoryContact::build(support::icosphere(level, 0.03)).value();
     Wanderer tip(support::seed_of(static_cast<std::uint64_t>(level)), 0.01);
@@ -77,7 +77,7 @@ TEST(MemoryContact, MeasuresDepthAndDirectionOfASphereHoweverCoarse) {
   }
 }
 
-TEST(MemoryContact, BeginsAndEndsWithoutAJumpWhereACoarseSurfaceBulgesAboveItsTriangles) {
+TEST(MemoryContact, BulgeBeginsAndEndsWithoutAJump) {
   const MemoryContact untouched = MemoryContact::build(support::icosphere(2, 0.03)).value();
   ASSERT_GT(untouched.surface().rise(), 2e-4);
   support::Random random(17);
@@ -101,7 +101,7 @@ TEST(MemoryContact, BeginsAndEndsWithoutAJumpWhereACoarseSurfaceBulgesAboveItsTr
 
 // What speaks against smoothing whatever a scene says nothing of: the edges of 20 triangles are no
 // creases.
-TEST(MemoryContact, IsFeltAFifthOfItsRadiusOutsideABallOf20Triangles) {
+TEST(MemoryContact, BallOf20TrianglesIsFeltOutside) {
   constexpr double kBall = 0.05;
   const TriangleMesh ball = support::icosphere(0, kBall);
   MemoryContact contact = MemoryContact::build(ball).value();
@@ -127,7 +127,7 @@ TEST(MemoryContact, TouchesNoBulgeThatTheTipReachesFromInside) {
   EXPECT_TRUE(move(contact, 0.0299 * u).touching);
 }
 
-TEST(MemoryContact, MeasuresDepthOnATorusWithAnErrorThatFallsAtLeastWithTheSquareOfTheEdge) {
+TEST(MemoryContact, TorusErrorFallsWithTheSquaredEdge) {
   const support::Ring ring;
   std::vector<double> errors;
   for (const std::size_t triangles : {1000u, 4000u, 16000u, 64000u}) {
@@ -152,7 +152,7 @@ TEST(MemoryContact, MeasuresDepthOnATorusWithAnErrorThatFallsAtLeastWithTheSquar
   EXPECT_LT(errors.back(), 1e-6);
 }
 
-TEST(MemoryContact, KeepsDepthAndDirectionContinuousOverEdgesAndVertices) {
+TEST(MemoryContact, IsContinuousOverEdgesAndVertices) {
   MemoryContact contact = MemoryContact::build(support::bumpy_sphere(3, 0.05, 0.2, 4)).value();
   // By the numbers of the input, so that the places do not depend on how packed triangles are
   // sorted.
@@ -306,7 +306,7 @@ TEST(MemoryContact, BeginsWithAnySpeedAndEndsOutside) {
   }
 }
 
-TEST(MemoryContact, TouchesNothingUntilATipThatStartsInsideHasBeenOutsideAndAfterNaN) {
+TEST(MemoryContact, StartInsideOrNaNIsNotContact) {
   MemoryContact contact = MemoryContact::build(support::box({1, 1, 1})).value();
   EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);
   EXPECT_FALSE(move(contact, {0, 0.1, 1.1}).touching);
@@ -325,7 +325,7 @@ TEST(MemoryContact, TouchesNothingUntilATipThatStartsInsideHasBeenOutsideAndAfte
 }
 
 // The tick that stays in its triangle tells by the depth alone that the position is within range.
-TEST(MemoryContact, EndsContactAtEveryPositionBeyondRangeInWhicheverDirection) {
+TEST(MemoryContact, EveryPositionBeyondRangeEndsContact) {
   MemoryContact contact = MemoryContact::build(support::icosphere(4, 0.05)).value();
   support::Random random(21);
   for (int i = 0; i < 3000; ++i) {

@@ -38,7 +38,7 @@ TEST(MeshContact, CatchesAFastTipInAThinPlateAtEveryPhase) {
   }
 }
 
-TEST(MeshContact, TouchesNothingUntilATipThatStartsInsideHasBeenOutside) {
+TEST(MeshContact, StartInsideIsNotContact) {
   MeshContact contact = MeshContact::build(support::box({1, 1, 1})).value();
   EXPECT_FALSE(move(contact, {0, 0.1, 0.2}).touching);
   EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);
@@ -54,7 +54,7 @@ TEST(MeshContact, EndsContactForAPositionThatIsNaN) {
   EXPECT_FALSE(move(contact, {0.1, 0.2, 0.9}).touching);
 }
 
-TEST(MeshContact, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
+TEST(MeshContact, IsIndependentOfScaleAndOrigin) {
   const TriangleMesh base = support::bumpy_sphere(3, 0.05, 0.3, 6);
   MeshContact reference = MeshContact::build(base).value();
   struct Variant {

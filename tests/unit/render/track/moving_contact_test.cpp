@@ -63,7 +63,7 @@ void for_each_way(const TriangleMesh& shape, Test test) {
   }
 }
 
-TEST(MovingContact, FollowsWhileTheSurfaceIsPressedInAndSpringsBack) {
+TEST(MovingContact, FollowsADeformingSurface) {
   const TriangleMesh shape = support::icosphere(4, kBallRadius);
   for_each_way(shape, [&](const auto& surface, auto contact) {
     support::Random random(1);
@@ -149,7 +149,7 @@ TEST(MovingContact, LetsNoMovingSurfaceThroughARestingTip) {
 }
 
 // A plate of 1 mm jumps by 20 mm, over a tip that was above it and is far below it afterwards.
-TEST(MovingContact, FeelsAPlateThatHasPassedOverTheTipWithinOneTick) {
+TEST(MovingContact, PlateThatSweepsOverTheTipIsFelt) {
   const TriangleMesh shape = support::plate(0.1, 0.001, 8);
   for_each_way(shape, [&](const auto& surface, auto contact) {
     support::Random random(3);

@@ -58,7 +58,7 @@ struct EdgeJumps {
   }
 };
 
-TEST(NormalProjectionTracker, JumpsInDepthByTheLawWhereEdgePlanesDoNot) {
+TEST(NormalProjectionTracker, JumpsInDepthByItsLaw) {
   const double depth = 0.001;
   const ContactMesh mesh = ContactMesh::build(support::icosphere(2, 0.03)).value();
   const EdgeJumps<NormalProjectionTracker> projected(mesh, depth);

@@ -180,7 +180,7 @@ void report(const char* name, double step, const Smoothness& s) {
             << " hops\n";
 }
 
-TEST(OffsetTracker, TurnsTheNormalByNoMoreThanThePathImpliesOnSmoothShapes) {
+TEST(OffsetTracker, PathBoundsTheNormalOnSmoothShapes) {
   const int ticks = support::long_form() ? 1000000 : 60000;
   struct Case {
     const char* name;
@@ -203,7 +203,7 @@ TEST(OffsetTracker, TurnsTheNormalByNoMoreThanThePathImpliesOnSmoothShapes) {
   }
 }
 
-TEST(OffsetTracker, TurnsTheNormalByNoMoreThanThePathImpliesOnTheElephant) {
+TEST(OffsetTracker, PathBoundsTheNormalOnTheElephant) {
   const auto file = std::filesystem::path(THIMBLE_MESHES) / "elephant.off";
   if (!std::filesystem::exists(file)) {
     GTEST_SKIP() << "Needs the scanned meshes: run app/fetch_meshes.sh (it downloads them)";
@@ -249,7 +249,7 @@ TEST(OffsetTracker, IsContinuousThroughEveryVertexAtDepth) {
   }
 }
 
-TEST(HardCase22, OffsetTrackerCrossesEdgesSlowlyWithoutLossOrJump) {
+TEST(HardCaseEdgeCrossing, OffsetTrackerDoesNotJump) {
   // The force changes per tick by at most 5 % and by what the path implies.
   int all_crossings = 0, all_lost = 0;
   const int wanted = support::long_form() ? 100000 : 10000;
@@ -286,7 +286,7 @@ TEST(HardCase22, OffsetTrackerCrossesEdgesSlowlyWithoutLossOrJump) {
   EXPECT_GE(all_crossings, 3 * wanted);
 }
 
-TEST(HardCase26, TrackersAreOnTheTriangleThatBruteForceNamesInAFastStroke) {
+TEST(HardCaseFastStroke, TrackersMatchBruteForce) {
   // 2 m/s at 1 kHz over triangles of 0.3 mm.
   std::uint16_t most_flat_hops = 0;
   const TriangleMesh shape = support::icosphere(5, 0.008);
@@ -343,7 +343,7 @@ TEST(HardCase26, TrackersAreOnTheTriangleThatBruteForceNamesInAFastStroke) {
                             kHopsMax, "1");
 }
 
-TEST(HardCase22, OffsetTrackerKeepsFacesFlatAndCreasesExact) {
+TEST(HardCaseEdgeCrossing, OffsetTrackerKeepsCreasesExact) {
   double worst = 0;
   OffsetContact contact = OffsetContact::build(support::box({0.05, 0.05, 0.05})).value();
   support::move_tip(contact, {0.01, 0.02, 0.06});
@@ -407,7 +407,7 @@ TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
   }
 }
 
-TEST(OffsetTracker, ComesBackToTheNearSideAfterALeapThroughTheMiddle) {
+TEST(OffsetTracker, ReturnsToTheNearSideAfterALeap) {
   // A tip that leaps from one side of a ball to the other within a tick is followed over the
   // surface, 64 triangles a tick, and not left on the far side's cells that reach through the
   // middle.
@@ -472,7 +472,7 @@ TEST(OffsetTracker, IsHeldByBothFacesAtOnceBelowAHollowCrease) {
   EXPECT_GT(both, 100);
 }
 
-TEST(OffsetTracker, GivesTheSameAnswersAtEveryScaleAndFarFromTheOrigin) {
+TEST(OffsetTracker, IsIndependentOfScaleAndOrigin) {
   const TriangleMesh base = support::bumpy_sphere(3, 0.05, 0.3, 6);
   struct Variant {
     double scale;

@@ -85,7 +85,7 @@ Vector3d on_stroke(double angle) {
   return 0.049 * Vector3d(std::sin(angle), 0.01, std::cos(angle)).normalized();
 }
 
-TEST(PackedContact, AnswersAsTheContactInMemoryWhileNothingIsAbsent) {
+TEST(PackedContact, MatchesTheContactInMemory) {
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.2, 4);
   PackedScene scene(mesh);
   MemoryContact reference = MemoryContact::build(mesh).value();
@@ -106,7 +106,7 @@ TEST(PackedContact, AnswersAsTheContactInMemoryWhileNothingIsAbsent) {
   EXPECT_EQ(scene.contact.ticks_held(), 0u);
 }
 
-TEST(PackedContact, HoldsThePlaneWhereRecordsAreAbsentAndNeverJumps) {
+TEST(PackedContact, AbsentRecordsHoldThePlane) {
   PackedScene scene(support::icosphere(4, 0.05));
   // Nothing is at hand beyond 0.28 rad from the top, until the loader catches up.
   scene.absence.triangles = [&](const PackedTriangle& packed) {
@@ -143,7 +143,7 @@ TEST(PackedContact, HoldsThePlaneWhereRecordsAreAbsentAndNeverJumps) {
   EXPECT_NEAR(before.depth, 1e-3, 2e-5);
 }
 
-TEST(PackedContact, KeepsContactInsideWhileTheSearchKnowsNothingAndEndsItWhenItDoes) {
+TEST(PackedContact, UnknownSearchKeepsContact) {
   PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   ASSERT_TRUE(scene.move({0, 0, 0.049}).touching);
@@ -195,7 +195,7 @@ struct Bulge {
   double smooth = 0;     // and of the smooth surface above it
 };
 
-TEST(PackedContact, BeginsAboveTheTrianglesWhereTheSmoothSurfaceBulges) {
+TEST(PackedContact, BeginsOnTheSmoothBulge) {
   Bulge bulge;
   EXPECT_GT(bulge.smooth - bulge.triangles, 0.001);
   bulge.move(0.06);
@@ -212,7 +212,7 @@ TEST(PackedContact, BeginsAboveTheTrianglesWhereTheSmoothSurfaceBulges) {
 // triangle is absent, or the one is there but not those around: it is felt as soon as they are back
 // or when the tip passes through the triangles, and then as if they had never been away. (That the
 // depth comes back slowly is for PagedContact to see to.)
-TEST(PackedContact, FeelsABulgeThatItCouldNotSeeOnceItsRecordsAreThere) {
+TEST(PackedContact, LoadedRecordsShowABulge) {
   enum class Absent { kSearches, kAllRecords, kRecordsAround };
   for (const Absent absent : {Absent::kSearches, Absent::kAllRecords, Absent::kRecordsAround}) {
     for (const double share : {0.1, 0.5, 0.9}) {

@@ -48,7 +48,7 @@ TEST(PackedSurface, HoldsEveryTriangleOnceWithItsCornersInOrder) {
   EXPECT_EQ(seen, std::vector<int>(mesh.triangles.size(), 1));
 }
 
-TEST(PackedSurface, NamesNeighboursThatShareTheEdgeAndOnSmoothEdgesTheNormals) {
+TEST(PackedSurface, NeighboursShareEdgesAndSmoothNormals) {
   const TriangleMesh mesh = support::bumpy_sphere(4, 0.05, 0.3, 6);
   const PackedSurface surface = PackedSurface::build(mesh).value();
   int creases = 0;
@@ -74,7 +74,7 @@ TEST(PackedSurface, NamesNeighboursThatShareTheEdgeAndOnSmoothEdgesTheNormals) {
   EXPECT_LT(creases, 10);  // in the steepest dents
 }
 
-TEST(PackedSurface, SplitsNormalsAtCreasesAndKeepsTheFacesOfABoxExact) {
+TEST(PackedSurface, CreasesSplitNormals) {
   const PackedSurface surface = PackedSurface::build(support::box({0.03, 0.02, 0.01})).value();
   for (std::int32_t t = 0; t < surface.triangle_count(); ++t) {
     const PackedTriangle& r = surface.triangle(t);
@@ -88,7 +88,7 @@ TEST(PackedSurface, SplitsNormalsAtCreasesAndKeepsTheFacesOfABoxExact) {
   }
 }
 
-TEST(PackedSurface, TakesSixtyFourBytesPerRecordAndLessThanNinetySixWithTheTree) {
+TEST(PackedSurface, RecordTakes64BytesAnd96WithTheTree) {
   static_assert(sizeof(PackedTriangle) == 64);
   const TriangleMesh mesh = support::bench_ball({}, 100000);
   const PackedSurface surface = PackedSurface::build(mesh).value();
@@ -99,7 +99,7 @@ TEST(PackedSurface, TakesSixtyFourBytesPerRecordAndLessThanNinetySixWithTheTree)
   EXPECT_GE(per_triangle, 68);
 }
 
-TEST(PackedSurface, RefusesWhatIsNotClosedAndWoundAlikeAndNamesThePlace) {
+TEST(PackedSurface, RefusesOpenSurfacesWithThePlace) {
   TriangleMesh open = support::icosphere(1, 1);
   open.triangles.pop_back();
   TriangleMesh flipped = support::icosphere(1, 1);

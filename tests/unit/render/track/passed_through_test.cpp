@@ -82,7 +82,7 @@ TEST_P(PassedThroughBy, PlateThatTurnsFastCatchesEveryTip) {
 // free on before, unless it has been beside the plate. Not so where a tick ends within the plate,
 // less than its thickness from the rim: the nearest face pushes the tip out, and that may be the
 // back.
-TEST_P(PassedThroughBy, TipThatWasCaughtLeavesAtTheBackOnlyFromWithinTheRim) {
+TEST_P(PassedThroughBy, CaughtTipLeavesBackOnlyInsideTheRim) {
   support::Random random(11);
   int held_behind = 0, passed = 0;
   for (int round = 0; round < 400; ++round) {

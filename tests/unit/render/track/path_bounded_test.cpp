@@ -187,7 +187,7 @@ std::vector<std::pair<std::string, TriangleMesh>> collection(std::size_t every) 
   return meshes;
 }
 
-TEST(PathBounded, ChangesTheForceByNoMoreThanThePathOnEveryScannedMeshAtAnyDepth) {
+TEST(PathBounded, ChangesTheForceBoundedlyOnScannedMeshes) {
   if (!fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";
   }
@@ -230,7 +230,7 @@ TriangleMesh random_star(support::Random& random) {
   return mesh;
 }
 
-TEST(PathBounded, ChangesTheForceByNoMoreThanThePathOnRandomClosedMeshes) {
+TEST(PathBounded, ChangesTheForceBoundedlyOnRandomMeshes) {
   support::Random random(11);
   const int shapes = support::long_form() ? 400 : 40;
   std::array<int, 4> over{};
@@ -329,7 +329,7 @@ TEST(PathBounded, BeginsWithoutAStepHoweverDeepAContactIsFound) {
   }
 }
 
-TEST(PathBounded, FollowsASurfaceThatMovesByItselfUnderAHandThatRests) {
+TEST(PathBounded, FollowsASurfaceUnderARestingHand) {
   const TriangleMesh shape = support::box({0.05, 0.05, 0.05});
   const auto surface = std::make_shared<MovingMesh>(
       ContactMesh::build(shape, {.room = 0.25}).value(), MovingMeshOptions{});

@@ -85,7 +85,7 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
   return walk;
 }
 
-TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfAConvexMesh) {
+TEST(HardCaseEdgeCrossing, ConvexMeshKeepsContact) {
   const Walk walk = wander(support::icosphere(4, 0.05), 0.0008, 0.001, 100000);
   EXPECT_GE(walk.crossings, 100000);
   EXPECT_EQ(walk.lost, 0);
@@ -94,7 +94,7 @@ TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfAConvexMesh) {
                             0, "1");
 }
 
-TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfATorus) {
+TEST(HardCaseEdgeCrossing, TorusKeepsContact) {
   const Walk walk = wander(support::torus(0.05, 0.02, 60, 30), 0.0008, 0.001, 100000);
   EXPECT_GE(walk.crossings, 100000);
   EXPECT_EQ(walk.lost, 0);
@@ -103,7 +103,7 @@ TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfATorus) {
                             0, "1");
 }
 
-TEST(HardCase22, SurfaceTrackerLosesNoContactInManyCrossingsOfABumpyMesh) {
+TEST(HardCaseEdgeCrossing, BumpyMeshKeepsContact) {
   const Walk walk = wander(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.0008, 0.001, 100000);
   EXPECT_GE(walk.crossings, 100000);
   EXPECT_EQ(walk.lost, 0);
@@ -131,7 +131,7 @@ TEST(SurfaceTracker, KeepsDepthWhenCrossingAnEdge) {
   }
 }
 
-TEST(SurfaceTracker, ChangesDepthByNoMoreThanTheTipMovesOverOneEdge) {
+TEST(SurfaceTracker, DepthFollowsTheTipOverAnEdge) {
   MeshContact contact = MeshContact::build(support::icosphere(3, 0.05)).value();
   std::mt19937_64 random(support::seed_of(4));
   std::normal_distribution<double> normal;
@@ -155,7 +155,7 @@ TEST(SurfaceTracker, ChangesDepthByNoMoreThanTheTipMovesOverOneEdge) {
   EXPECT_GT(single_hops, 1000);
 }
 
-TEST(SurfaceTracker, SettlesWithinItsBoundAtANeedleTipAndInAnAcuteWedge) {
+TEST(SurfaceTracker, SettlesAtANeedleAndInAnAcuteWedge) {
   struct Case {
     TriangleMesh mesh;
     Vector3d entry, middle;
@@ -203,7 +203,7 @@ TriangleMesh pair_of(const TriangleMesh& shape, double apart) {
 
 // A tip that leaps far away inside, where neither a walk nor the patch around can follow: the
 // surface nearest to it is touched, and the tip is below the triangle that is named.
-TEST(SurfaceTracker, FindsTheNearestSurfaceWhenTheTipLeapsFarAwayInside) {
+TEST(SurfaceTracker, FindsTheNearestSurfaceAfterALeap) {
   for (const TriangleMesh& shape : {pair_of(support::torus(0.035, 0.015, 60, 30), 0.12),
                                     pair_of(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.15)}) {
     const ContactMesh mesh = ContactMesh::build(shape).value();

@@ -124,7 +124,7 @@ const support::SphereSurface kSphere{0.03};
 const Vector3d kOnSphere(0.01, 0.02, 0.015);
 constexpr double kAnywhere = 1;
 
-TEST(TouchAccuracy, OfFlatFacesOnASphereFollowsTheLawOfTessellation) {
+TEST(TouchAccuracy, FlatFacesFollowTheTessellationLaw) {
   for (const int level : {2, 3, 4}) {
     const Errors flat = replay(MeshContact::build(support::icosphere(level, 0.03)).value(), kSphere,
                                kOnSphere, kAnywhere);
@@ -136,7 +136,7 @@ TEST(TouchAccuracy, OfFlatFacesOnASphereFollowsTheLawOfTessellation) {
   }
 }
 
-TEST(TouchAccuracy, OfPhongAloneLeavesTheMagnitudeWrongByTheSagitta) {
+TEST(TouchAccuracy, PhongErrorIsTheSagitta) {
   // [PHYSICS 3]: 35, 8.8 and 2.2 % at L/R = 0.33, 0.165 and 0.083, 1 mm deep.
   const double law[] = {0.35, 0.088, 0.022};
   for (const int level : {2, 3, 4}) {
@@ -148,7 +148,7 @@ TEST(TouchAccuracy, OfPhongAloneLeavesTheMagnitudeWrongByTheSagitta) {
   }
 }
 
-TEST(HardCase21, CurvedDepthOnASphereMeetsTheLimitsOfFeel) {
+TEST(HardCaseCurvedSurface, SphereMeetsTheLimitsOfFeel) {
   Errors before;
   for (const int level : {2, 3, 4, 5}) {
     const Errors curved = replay(Curved(offset_contact(support::icosphere(level, 0.03))), kSphere,
@@ -189,7 +189,7 @@ TEST(TouchAccuracy, OfRoundWeightsOnASphereIsFourthOrder) {
   }
 }
 
-TEST(HardCase21, CurvedDepthOnATorusFallsWithTheSquareOfTheEdgeLength) {
+TEST(HardCaseCurvedSurface, TorusErrorFallsWithSquaredEdge) {
   const support::TorusSurface surface{0.05, 0.02};
   Errors before;
   for (const int fine : {2, 4, 8}) {
@@ -226,7 +226,7 @@ Errors replay_with(NormalWeights weights, const Surface& surface, const Triangle
   return errors;
 }
 
-TEST(HardCase21, ErrorOfFittedNormalsFallsWithTheSquareOfTheEdgeLengthOnIrregularTriangles) {
+TEST(HardCaseCurvedSurface, FittedNormalsAreSecondOrder) {
   const support::GyroidSurface gyroid{2 * std::numbers::pi / 0.06, 0.04, 0.6};
   const support::SphereSurface sphere{0.03};
   const support::TorusSurface torus{0.05, 0.02};
@@ -257,7 +257,7 @@ TEST(HardCase21, ErrorOfFittedNormalsFallsWithTheSquareOfTheEdgeLengthOnIrregula
   check("torus", on_torus.front(), on_torus.back());
 }
 
-TEST(TouchAccuracy, OfAngleWeightedNormalsIsFirstOrderOnIrregularTriangles) {
+TEST(TouchAccuracy, AngleWeightedNormalsAreFirstOrder) {
   const support::GyroidSurface gyroid{2 * std::numbers::pi / 0.06, 0.04, 0.6};
   std::vector<Errors> errors;
   for (const double cell : {0.005, 0.0025, 0.0013}) {
