@@ -8,7 +8,7 @@
 #     --long        all tests under all sanitizers, at full length and with fresh random cases (THIMBLE_SEED=N in the
 #                   environment repeats those of N), the release built by clang, a build in which no sources are
 #                   joined, the parts that can be left out, then tests on 64-bit ARM under QEMU (hours), clang-tidy,
-#                   coverage and mutants (40, 30 and 30 minutes of two cores)
+#                   coverage, mutants, and the additions of the guide's page (about 30 minutes of two cores each)
 #     --without     optional parts (keys of app/optional_parts.list) that are not installed and may be absent
 #     PRESET        only these
 # Ends with 1 if a test fails, or if an optional part that it installs is absent and not named by --without. A test that
@@ -46,7 +46,7 @@ if [ ${#presets[@]} = 0 ]; then
   presets=(release)
   if [ -n "${THIMBLE_LONG:-}" ]; then
     presets+=(asan-all tsan-all)
-    more=(core arm64 tidy coverage mutate)
+    more=(core arm64 tidy coverage mutate extending)
   elif [ -n "$sanitizers" ]; then
     presets+=(asan tsan)
   fi

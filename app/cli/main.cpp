@@ -39,27 +39,12 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kFooter);
   int exit_code = thimble::cli::kExitDone;
-  thimble::cli::add_run_command(app, exit_code);
-  thimble::cli::add_shot_command(app, exit_code);
-  thimble::cli::add_window_command(app, exit_code);
-  thimble::cli::add_devices_command(app, exit_code);
-  thimble::cli::add_doctor_command(app, exit_code);
-  thimble::cli::add_calibrate_command(app, exit_code);
-  thimble::cli::add_feel_check_command(app, exit_code);
-  thimble::cli::add_identify_command(app, exit_code);
-  thimble::cli::add_twin_command(app, exit_code);
-  thimble::cli::add_hil_command(app, exit_code);
-  thimble::cli::add_exec_command(app, exit_code);
-  thimble::cli::add_export_command(app, exit_code);
-  thimble::cli::add_replay_command(app, exit_code);
-  thimble::cli::add_mesh_command(app, exit_code);
-  thimble::cli::add_study_command(app, exit_code);
-  thimble::cli::add_tune_command(app, exit_code);
-  thimble::cli::add_bench_command(app, exit_code);
-  thimble::cli::add_help_command(app, exit_code);
-  thimble::cli::add_cost_probe_command(app, exit_code);
-  thimble::cli::add_plug_command(app, exit_code);
-  thimble::cli::add_manual_command(app, exit_code);
+#define THIMBLE_COMMAND(function, part, name, about) \
+  thimble::add_##function##_command(app, exit_code);
+#define THIMBLE_SUBCOMMAND(function, part, name, about)
+#include "cli/commands.inc"
+#undef THIMBLE_COMMAND
+#undef THIMBLE_SUBCOMMAND
   std::string command_line;
   for (int i = 1; i < argc; ++i) command_line.append(i == 1 ? "" : " ").append(argv[i]);
   thimble::cli::add_log_options(app, command_line);

@@ -55,8 +55,10 @@ bool bends(const scene::SceneObject& object) {
 bool is_flat(const scene::SceneObject& object) {
   const render::ContactChoice& contact = object.contact;
   if (contact.blending) return *contact.blending == render::BlendingChoice::kFlat;
-  return contact.tracker == render::TrackerChoice::kEdgePlanes ||
-         contact.tracker == render::TrackerChoice::kNormalProjection;
+  // These are smooth, or push towards a proxy.
+  return contact.tracker != render::TrackerChoice::kOffset &&
+         contact.tracker != render::TrackerChoice::kPacked &&
+         contact.tracker != render::TrackerChoice::kGodObject;
 }
 
 void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& warnings) {

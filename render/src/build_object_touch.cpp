@@ -16,9 +16,7 @@
 #include "track/edge_blending.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
-#include "track/normal_projection_tracker.h"
-#include "track/offset_tracker.h"
-#include "track/packed_contact_in_memory.h"
+#include "tracker_table.h"
 
 namespace thimble::render {
 namespace {
@@ -88,19 +86,15 @@ Built mesh_touch(const StillSurface& still, const ContactChoice& choice,
 
 Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
                   const SurfaceChoice& surface) {
-  switch (choice.tracker) {
-    case TrackerChoice::kEdgePlanes:
-      break;
-    case TrackerChoice::kNormalProjection:
-      return mesh_touch<TrackedContact<NormalProjectionTracker>>(still, choice, surface);
-    case TrackerChoice::kOffset:
-      return mesh_touch<OffsetContact>(still, choice, surface);
-    case TrackerChoice::kGodObject:
-      return build_surface_touch(GodObjectContact(still.mesh, still.search), surface);
-    case TrackerChoice::kPacked:
-      return build_surface_touch(MemoryContact(still.packed, still.search), surface);
-  }
-  return mesh_touch<MeshContact>(still, choice, surface);
+  return with_contact_of(choice.tracker, [&]<class Contact>(std::type_identity<Contact>) -> Built {
+    if constexpr (std::is_same_v<Contact, GodObjectContact>) {
+      return build_surface_touch(Contact(still.mesh, still.search), surface);
+    } else if constexpr (std::is_same_v<Contact, MemoryContact>) {
+      return build_surface_touch(Contact(still.packed, still.search), surface);
+    } else {
+      return mesh_touch<Contact>(still, choice, surface);
+    }
+  });
 }
 
 /// Puts a dent around an object, if its surface has one.

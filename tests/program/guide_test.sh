@@ -58,6 +58,16 @@ grep -qE ' sheet .*4 triangles' said || { echo "FAILED: nothing is told of the s
 bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||
   { echo "FAILED: app/guide/pages/keys.md is old; app/guide/keys.sh writes it" >&2 && exit 1; }
 
+# Each friction, texture and field that a scene can name has a row on the page of effects.
+for group in friction texture field; do
+  thimble help scene $group | sed -nE "s/^ *$group +(.*); .*/\1/p" | sed 's/, /\n/g; s/ or /\n/g' >names
+  [ "$(wc -l <names)" -ge 3 ] || { echo "FAILED: thimble help scene $group names hardly any" >&2 && exit 1; }
+  while read -r name; do
+    grep -q "^|.*\`$name\`" "$source/app/guide/pages/effects.md" ||
+      { echo "FAILED: app/guide/pages/effects.md has no row for the $group $name" >&2 && exit 1; }
+  done <names
+done
+
 # What the guide tells of peers is what the folders of the source have measured: ticks that are hot and in the loop, and
 # the peer's times of searches.
 compare=$source/app/guide/pages/compare.md packed=$source/render/src/compact_mesh/README.md

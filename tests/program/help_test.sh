@@ -4,9 +4,15 @@ source "$(dirname "$0")/expect.sh" "$@"
 
 expect 0 '0 [a-z]+, 1 [a-z ]+, 2 [a-z ]+, 3 ' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
+# Every command of the table (app/cli/commands.inc) that help lists, and its row in the guide.
+mapfile -t commands < <("$thimble" --help | sed -n '/^Subcommands:/,$s/^  \([a-z][a-z-]*\).*/\1/p')
 for command in run exec view devices doctor calibrate feel-check identify twin hil mesh plug bench; do
+  expect 0 . grep -xe "$command" <(printf '%s\n' "${commands[@]}")
+done
+for command in "${commands[@]}"; do
   expect 0 "$command" "$thimble" "$command" --help
   expect 0 '^thimble [0-9]' "$thimble" "$command" --version
+  expect 0 . grep "\`thimble $command\b" "$source_dir/app/guide/pages/commands.md"
 done
 for option in device clock duration report seed quality view hand name unchecked hold-to-run; do
   expect 0 "--$option" "$thimble" run --help

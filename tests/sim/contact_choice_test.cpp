@@ -2,10 +2,13 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "figures/lost_contacts.h"
 #include "support/covered.h"
 #include "support/meshes/elephant.h"
+#include "thimble/render/contact_choice.h"
 #include "thimble/render/scene_touch.h"
 
 // The demo's stroke with every way of contact that a scene can name, from the wire up.
@@ -18,7 +21,7 @@ std::unique_ptr<session::Session> open_with(const std::string& contact, std::str
   return support::open_elephant_text(support::elephant_text(contact), &error);
 }
 
-class EveryWayOfContact : public ::testing::TestWithParam<const char*> {};
+class EveryWayOfContact : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
   THIMBLE_NEEDS_MESHES();
@@ -37,21 +40,30 @@ TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
   }
 }
 
+std::vector<std::string> each_tracker() {
+  std::vector<std::string> ways;
+  for (const std::string_view name : render::kTrackerNames) {
+    ways.push_back("tracker: " + std::string(name));
+  }
+  return ways;
+}
+
+INSTANTIATE_TEST_SUITE_P(Alone, EveryWayOfContact, ::testing::ValuesIn(each_tracker()));
 INSTANTIATE_TEST_SUITE_P(
-    ByName, EveryWayOfContact,
-    ::testing::Values(
-        "tracker: edge_planes", "tracker: edge_planes, blending: fixed_band, band: 0.0005",
-        "tracker: edge_planes, blending: sized_band",
-        "tracker: edge_planes, blending: fixed_band, profile: smooth",
-        "tracker: offset, blending: sized_band, profile: smooth",
-        "tracker: edge_planes, blending: phong, curved_depth: true", "tracker: offset",
-        "tracker: offset, blending: flat, curved_depth: false",
-        "tracker: offset, crease_degrees: 30", "tracker: offset, normals: angle",
-        "tracker: offset, normals: round", "tracker: edge_planes, blending: phong, normals: fitted",
-        "tracker: compact, normals: angle", "tracker: normal_projection", "tracker: god_object",
-        "tracker: compact", "search: linear", "search: grid", "search: tree",
-        "tracker: god_object, search: linear", "tracker: offset, search: tree",
-        "tracker: compact, search: linear", "tracker: compact, search: tree"));
+    Chosen, EveryWayOfContact,
+    ::testing::Values("tracker: edge_planes, blending: fixed_band, band: 0.0005",
+                      "tracker: edge_planes, blending: sized_band",
+                      "tracker: edge_planes, blending: fixed_band, profile: smooth",
+                      "tracker: offset, blending: sized_band, profile: smooth",
+                      "tracker: edge_planes, blending: phong, curved_depth: true",
+                      "tracker: offset, blending: flat, curved_depth: false",
+                      "tracker: offset, crease_degrees: 30", "tracker: offset, normals: angle",
+                      "tracker: offset, normals: round",
+                      "tracker: edge_planes, blending: phong, normals: fitted",
+                      "tracker: compact, normals: angle", "search: linear", "search: grid",
+                      "search: tree", "tracker: god_object, search: linear",
+                      "tracker: offset, search: tree", "tracker: compact, search: linear",
+                      "tracker: compact, search: tree"));
 
 TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
   THIMBLE_NEEDS_MESHES();

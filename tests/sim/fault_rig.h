@@ -33,14 +33,14 @@ struct TestedArm {
 inline void PrintTo(const TestedArm& arm, std::ostream* out) {
   *out << arm.name;
 }
-inline constexpr std::array<TestedArm, 6> kTestedArms{{
+inline constexpr auto kTestedArms = std::to_array<TestedArm>({
     {"vintage_phantom", "vintage_phantom", driver::ArmKind::kPolhem},
     {"vintage_text", "vintage_phantom", driver::ArmKind::kHfabLine},
     {"woodenhaptics", "woodenhaptics", driver::ArmKind::kWoody},
     {"woodenhaptics_text", "woodenhaptics_teensy", driver::ArmKind::kHfabLine},
     {"polhem", "polhem", driver::ArmKind::kPolhem},
     {"falcon", "falcon", driver::ArmKind::kFalcon},
-}};
+});
 
 /// What the arm is about when the fault comes.
 enum class Phase { kOpening, kFree, kContact, kSliding, kDeforming, kRecording };

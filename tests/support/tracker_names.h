@@ -1,32 +1,25 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <string_view>
 
-#include "thimble/render/build_object_touch.h"
+#include "thimble/render/contact_choice.h"
 
 namespace thimble::support {
 
 /// All trackers that a scene can name.
-inline constexpr std::array kTrackers{
-    render::TrackerChoice::kEdgePlanes, render::TrackerChoice::kNormalProjection,
-    render::TrackerChoice::kOffset, render::TrackerChoice::kGodObject,
-    render::TrackerChoice::kPacked};
+inline constexpr auto kTrackers = [] {
+  std::array<render::TrackerChoice, render::kTrackerNames.size()> trackers{};
+  for (std::size_t i = 0; i < trackers.size(); ++i) {
+    trackers[i] = static_cast<render::TrackerChoice>(i);
+  }
+  return trackers;
+}();
 
 /// Returns the name of a tracker in a scene.
 inline const char* scene_name(render::TrackerChoice tracker) {
-  switch (tracker) {
-    case render::TrackerChoice::kEdgePlanes:
-      return "edge_planes";
-    case render::TrackerChoice::kNormalProjection:
-      return "normal_projection";
-    case render::TrackerChoice::kOffset:
-      return "offset";
-    case render::TrackerChoice::kGodObject:
-      return "god_object";
-    case render::TrackerChoice::kPacked:
-      break;
-  }
-  return "compact";
+  return render::kTrackerNames[static_cast<std::size_t>(tracker)].data();  // of a literal
 }
 
 }  // namespace thimble::support

@@ -8,6 +8,7 @@ namespace thimble::cli {
 
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
                         const std::string& about, const std::string& part) {
+  if (about.empty()) return;
   CLI::App* command = app.add_subcommand(name, about + " (not in this build)");
   command->prefix_command();
   const std::string option = part.empty() ? "" : " (CMake: " + part + "=ON)";

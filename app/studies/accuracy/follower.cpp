@@ -1,6 +1,7 @@
 #include "studies/accuracy/follower.h"
 
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "mesh/closest_point.h"
@@ -8,8 +9,8 @@
 #include "mesh/triangle_set.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
-#include "track/normal_projection_tracker.h"
 #include "track/packed_contact_in_memory.h"
+#include "tracker_table.h"
 
 namespace thimble::studies {
 namespace {
@@ -163,24 +164,18 @@ std::unique_ptr<Follower> followed_by(Contact contact) {
 }
 
 std::unique_ptr<Follower> make_tracked(const FollowedSurface& surface, TrackerChoice tracker) {
-  switch (tracker) {
-    case TrackerChoice::kEdgePlanes:
-      return followed_by(render::MeshContact(surface.mesh, surface.tree));
-    case TrackerChoice::kNormalProjection:
-      return followed_by(
-          render::TrackedContact<render::NormalProjectionTracker>(surface.mesh, surface.tree));
-    case TrackerChoice::kOffset: {
+  return render::with_contact_of(tracker, [&]<class Contact>(std::type_identity<Contact>) {
+    if constexpr (std::is_same_v<Contact, render::OffsetContact>) {
       const auto normals = std::make_shared<const render::SmoothNormals>(
           *surface.mesh, render::kCreaseAngle, render::NormalWeights::kFitted);
-      return followed_by(render::OffsetContact(surface.mesh, surface.tree, normals));
+      return followed_by(Contact(surface.mesh, surface.tree, normals));
+    } else if constexpr (std::is_same_v<Contact, render::MemoryContact>) {
+      return followed_by(Contact(render::PackedSurface::build(*surface.mesh).value(),
+                                 render::SearchChoice::kTree));
+    } else {
+      return followed_by(Contact(surface.mesh, surface.tree));
     }
-    case TrackerChoice::kGodObject:
-      return followed_by(render::GodObjectContact(surface.mesh, surface.tree));
-    case TrackerChoice::kPacked:
-      break;
-  }
-  return followed_by(render::MemoryContact(render::PackedSurface::build(*surface.mesh).value(),
-                                           render::SearchChoice::kTree));
+  });
 }
 
 }  // namespace

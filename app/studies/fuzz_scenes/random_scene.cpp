@@ -14,6 +14,7 @@
 #include "stability/stability_laws.h"
 #include "studies/fuzz_scenes/small_meshes.h"
 #include "thimble/render/contact_choice.h"
+#include "thimble/render/effect/effect_table.h"
 
 namespace thimble::studies {
 namespace {
@@ -234,12 +235,13 @@ class Drawing {
       lines_.add(8, "roughness", draw_.uniform(0, 0.02) * wavelength);
     }
     if (!friction) return;
-    constexpr std::array<std::string_view, 8> kFrictions{
-        "bristle", "dahl",  "implicit_coulomb", "karnopp", "lugre",
-        "naive",   "paper", "stiction_point"};
-    const std::string_view chosen = kFrictions[draw_.one_of(kFrictions.size())];
-    oscillates_ = oscillates_ || chosen == "naive" || chosen == "paper";
-    lines_.text().append("      - friction: ").append(chosen).append("\n");
+    std::vector<const render::EffectKind*> frictions;
+    for (const render::EffectKind& kind : render::effect_table()) {
+      if (kind.group == "friction") frictions.push_back(&kind);
+    }
+    const render::EffectKind& chosen = *frictions[draw_.one_of(frictions.size())];
+    oscillates_ = oscillates_ || !chosen.rests;
+    lines_.text().append("      - friction: ").append(chosen.name).append("\n");
     lines_.add(8, "coefficient", draw_.uniform(0.05, 1));
   }
 

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +52,46 @@ inline std::vector<std::string> friction_names() {
   std::vector<std::string> names;
   for (const render::EffectKind& kind : render::effect_table()) {
     if (kind.group == "friction") names.emplace_back(kind.name);
+  }
+  return names;
+}
+
+/// Notes which settings an effect asks for.
+class NotedSettings final : public render::SettingsReader {
+ public:
+  bool has(std::string_view key) override {
+    note(key);
+    return false;
+  }
+  void number(std::string_view key, double&, const render::NumberLimits&) override { note(key); }
+  void vector(std::string_view key, Eigen::Vector3d&, const render::NumberLimits&) override {
+    note(key);
+  }
+  void choice(std::string_view key, std::size_t&, const std::vector<std::string_view>&) override {
+    note(key);
+  }
+  void file(std::string_view key, std::filesystem::path&) override { note(key); }
+  void list(std::string_view key, const std::function<void(SettingsReader&)>&) override {
+    note(key);
+  }
+  void reject(std::string_view, const std::string&) override {}
+
+  /// Returns whether a setting was asked for.
+  bool asked(std::string_view key) const { return keys_.contains(std::string(key)); }
+
+ private:
+  void note(std::string_view key) { keys_.emplace(key); }
+
+  std::set<std::string> keys_;
+};
+
+/// Returns the names of all frictions of the table that have a setting.
+inline std::vector<std::string> frictions_with(std::string_view setting) {
+  std::vector<std::string> names;
+  for (const std::string& name : friction_names()) {
+    NotedSettings settings;
+    friction_kind(name)->read(settings, phantom_context());
+    if (settings.asked(setting)) names.push_back(name);
   }
   return names;
 }

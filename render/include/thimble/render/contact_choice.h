@@ -21,8 +21,10 @@ enum class TrackerChoice {
   kGodObject,         ///< A proxy that no face lets through [ZS].
   kPacked,            ///< Smooth cells on 64-byte packed triangles.
 };
-inline constexpr std::array<std::string_view, 5> kTrackerNames{"edge_planes", "normal_projection",
-                                                               "offset", "god_object", "compact"};
+/// Names what TrackerChoice says, in its order.
+inline constexpr auto kTrackerNames = std::to_array<std::string_view>({
+    "edge_planes", "normal_projection", "offset", "god_object", "compact",  //
+});
 
 /// Names what SearchChoice says.
 inline constexpr std::array<std::string_view, 3> kSearchNames{"linear", "grid", "tree"};

@@ -20,7 +20,8 @@ namespace thimble::render {
 /// direction in which the tip moved: the hand feels its opposite. `turn` carries what is remembered
 /// along when the normal turns; `forget` ends the contact; `coulomb` returns the coefficients,
 /// which may be changed between two ticks. All Real-time: safe. `kName` is the name by which scenes
-/// choose it, `Settings` what they set, read by `Settings::read`; a law is made of them.
+/// choose it, `Settings` what they set, read by `Settings::read`; a law is made of them. A law on
+/// which a tip that is held still does not come to rest has a constant `kRests` that is false.
 template <class Law>
 concept FrictionLaw = std::constructible_from<Law, const typename Law::Settings&> &&
     std::default_initializable<typename Law::Settings> &&
@@ -51,6 +52,10 @@ class FrictionStage {
   static constexpr std::string_view kGroup = "friction";
   static constexpr std::string_view kName = Law::kName;
   static constexpr EffectOrder kOrder = EffectOrder::kTangential;
+  static constexpr bool kRests = [] {
+    if constexpr (requires { Law::kRests; }) return Law::kRests;
+    return true;
+  }();
   using Settings = typename Law::Settings;  ///< Of the law.
 
   /// Takes settings that Settings::read found right. Real-time: never from the servo thread.

@@ -14,6 +14,7 @@ namespace thimble::render {
 class NaiveFrictionLaw {
  public:
   static constexpr std::string_view kName = "naive";
+  static constexpr bool kRests = false;  // it has a limit cycle
 
   /// What happens in a tick without a move.
   enum class AtRest : std::size_t {

@@ -16,6 +16,7 @@ namespace thimble::render {
 class PaperFrictionLaw {
  public:
   static constexpr std::string_view kName = "paper";
+  static constexpr bool kRests = false;  // it creeps under any load
 
   /// What is smoothed.
   enum class Smooth : std::size_t {

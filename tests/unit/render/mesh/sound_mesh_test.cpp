@@ -11,6 +11,7 @@
 #include "mesh/repair/surely_sound.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
+#include "support/tracker_names.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"
 
@@ -20,8 +21,7 @@
 namespace thimble::render {
 namespace {
 
-constexpr TrackerChoice kTrackers[] = {TrackerChoice::kPacked, TrackerChoice::kEdgePlanes,
-                                       TrackerChoice::kGodObject, TrackerChoice::kOffset};
+using support::kTrackers;
 
 TriangleMesh ball() {
   return support::icosphere(4, 0.05);  // 5,120 triangles

@@ -31,6 +31,8 @@ struct EffectKind {
   /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
   /// Real-time: never from the servo thread.
   StageBuilder (*read)(SettingsReader& settings, const EffectContext& context);
+  /// False if a tip that the hand holds still does not come to rest on it.
+  bool rests = true;
 };
 
 /// One effect with the settings that a scene gives it.
@@ -41,9 +43,11 @@ struct EffectPlan {
 
 /// Makes the table's line of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct
 /// `Settings` with `read(SettingsReader&, const EffectContext&)`, and a constructor from
-/// `(const Settings&, const EffectContext&)`.
+/// `(const Settings&, const EffectContext&)`. A constant `kRests` is optional.
 template <SurfaceStage Stage>
 constexpr EffectKind effect_kind() {
+  bool rests = true;
+  if constexpr (requires { Stage::kRests; }) rests = Stage::kRests;
   return {Stage::kGroup, Stage::kName, Stage::kOrder,
           [](SettingsReader& reader, const EffectContext& context) -> StageBuilder {
             typename Stage::Settings settings;
@@ -51,7 +55,8 @@ constexpr EffectKind effect_kind() {
             return [settings, context]() -> std::unique_ptr<AnyStage> {
               return std::make_unique<AnyStageOf<Stage>>(Stage(settings, context));
             };
-          }};
+          },
+          rests};
 }
 
 /// Returns every effect that a scene can name. To add one: write its file, add its line here.

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include "thimble/render/contact_choice.h"
+#include "track/god_object.h"
+#include "track/packed_contact_in_memory.h"
+#include "track/mesh_contact.h"
+#include "track/normal_projection_tracker.h"
+
+namespace thimble::render {
+
+/// Calls `use` with the contact stage of a tracker as a type (std::type_identity) and returns its
+/// answer. The only place that knows which class a name stands for. A stage over a ContactMesh is
+/// built from mesh and search; OffsetContact takes normals as well, MemoryContact packed triangles.
+template <class Use>
+auto with_contact_of(TrackerChoice tracker, Use&& use) {
+  switch (tracker) {
+    case TrackerChoice::kEdgePlanes:
+      break;
+    case TrackerChoice::kNormalProjection:
+      return use(std::type_identity<TrackedContact<NormalProjectionTracker>>());
+    case TrackerChoice::kOffset:
+      return use(std::type_identity<OffsetContact>());
+    case TrackerChoice::kGodObject:
+      return use(std::type_identity<GodObjectContact>());
+    case TrackerChoice::kPacked:
+      return use(std::type_identity<MemoryContact>());
+  }
+  return use(std::type_identity<MeshContact>());
+}
+
+}  // namespace thimble::render
