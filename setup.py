@@ -1,4 +1,4 @@
-"""Builds the wheel: CMake builds module and program, and installs the program's files beside the module.
+"""Builds the wheel: CMake builds module and program, and installs the files of all its parts beside the module.
 
 THIMBLE_BUILD_FOLDER in the environment names a build folder (preset release) to take them from instead.
 """
@@ -17,7 +17,7 @@ SOURCE = Path(__file__).resolve().parent
 
 
 class BuildByCMake(build_ext):
-    """Fills the package's folder in the wheel: _core, bin/thimble, share/thimble."""
+    """Fills the package's folder in the wheel: _core, bin/thimble, libexec/thimble, lib/thimble, share/thimble."""
 
     def build_extension(self, ext: Extension) -> None:
         package = Path(self.get_ext_fullpath(ext.name)).resolve().parent
@@ -30,7 +30,8 @@ class BuildByCMake(build_ext):
             sys.exit(f"{build} has no Python module: install python3-dev and pybind11-dev, and build anew.")
         package.mkdir(parents=True, exist_ok=True)
         shutil.copy2(modules[0], package)
-        self._run("cmake", "--install", build, "--prefix", str(package), "--component", "program", "--strip")
+        for component in ("program", "viewer", "studies", "mesh_formats", "compat"):
+            self._run("cmake", "--install", build, "--prefix", str(package), "--component", component, "--strip")
 
     def _build(self, build: str) -> None:
         preset = ["-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG"]

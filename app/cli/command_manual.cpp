@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -43,16 +45,23 @@ void print_commands(const CLI::App& above, const std::string& prefix) {
     const std::string name = prefix + command->get_name();
     scene::print_format(".SS %s\n%s\n", roff(name).c_str(),
                         roff(command->get_description()).c_str());
+    if (command->get_help_ptr() == nullptr) {  // of another program, which has its options
+      scene::print_format("%s\n", roff(command->get_footer()).c_str());
+      continue;
+    }
     print_options(*command);
     print_commands(*command, name + " ");
   }
 }
 
-/// Prints the manual page of the whole program, so that it says what `--help` says.
-void print_manual(const CLI::App& program) {
-  scene::print_format(".TH THIMBLE 1 \"\" \"thimble %s\" \"User Commands\"\n",
+/// Prints the manual page of a program, with the text of `--help`.
+void print_manual(const CLI::App& program, const std::string& name, const std::string& about) {
+  std::string heading = name;
+  std::transform(heading.begin(), heading.end(), heading.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  scene::print_format(".TH %s 1 \"\" \"thimble %s\" \"User Commands\"\n", roff(heading).c_str(),
                       std::string(scene::build_info().version).c_str());
-  scene::print_format(".SH NAME\nthimble \\- touch virtual objects by a force\\-feedback arm\n");
+  scene::print_format(".SH NAME\n%s \\- %s\n", roff(name).c_str(), roff(about).c_str());
   scene::print_format(".SH SYNOPSIS\n.B thimble\n.I COMMAND\n.RI [ OPTIONS ]\n");
   scene::print_format(".SH DESCRIPTION\n%s\n", roff(program.get_description()).c_str());
   scene::print_format(
@@ -67,11 +76,12 @@ void print_manual(const CLI::App& program) {
 
 }  // namespace
 
-void add_manual_command(CLI::App& app, int& exit_code) {
+void add_manual_command(CLI::App& app, int& exit_code, const std::string& name,
+                        const std::string& about) {
   CLI::App* command = app.add_subcommand("manual", "Print the manual page (roff)");
   command->group("");  // for the installation, not for people
-  command->callback([&app, &exit_code] {
-    print_manual(app);
+  command->callback([&app, &exit_code, name, about] {
+    print_manual(app, name, about);
     exit_code = kExitDone;
   });
 }

@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/parts/part.h"
 #include "log/printed_text.h"
 #include "report/html/page_libraries.h"
 #include "share/knob_order.h"
@@ -252,8 +253,8 @@ int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
                     kExitBadInput);
   }
   if (!show_window.recordings) {
-    return complain({"This thimble was built without a window; `thimble replay FILE --page "
-                     "FILE.html` makes a page that a browser plays."},
+    return complain({"The window is not installed: " + how_to_get(kViewer) +
+                     "; or make a page for a browser: `thimble replay FILE --page FILE.html`."},
                     kExitBadInput);
   }
   return show_window.recordings(options.shown, options.seconds);
@@ -271,8 +272,8 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
   if (options.text) return tell(options);
   if (options.web) return serve(options);
   if (!show_window.runs) {
-    return complain({"This thimble was built without a window; use `thimble view --text` or "
-                     "`thimble view --web`."},
+    return complain({"The window is not installed: " + how_to_get(kViewer) +
+                     "; or use `thimble view --text` or `thimble view --web`."},
                     kExitBadInput);
   }
   session::RunAttachment runs(options.run());

@@ -34,7 +34,7 @@ struct ShowWindow {
 /// `thimble view RUN`: shows a run that goes on in another process, by `show_window` or as text, or
 /// a recording.
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window);
-/// Returns whether this program has a window: what app/demo.sh builds has none.
+/// Returns whether `thimble view` has a window: without the package thimble-viewer it has none.
 bool has_window();
 /// `thimble study stability`: measures where walls are stable.
 void add_stability_study(CLI::App& study_command, int& exit_code);
@@ -45,10 +45,17 @@ void add_accuracy_study(CLI::App& study_command, int& exit_code);
 /// `thimble study gating SCENE`: which effects a scene could do without.
 void add_gating_study(CLI::App& study_command, int& exit_code);
 
-/// Adds a command that this program lacks: it is listed in the help, and answers with how to build
-/// the whole program. `part` is the option of CMake that it belongs to, if there is one. One
-/// without `about` is not added.
+/// `thimble manual`: prints the manual page of a program, which the installation keeps. `name`: of
+/// the page; `about`: what the program is for.
+void add_manual_command(CLI::App& app, int& exit_code, const std::string& name,
+                        const std::string& about);
+
+struct Part;
+
+/// Adds a command of a part that is not in this program. If the part's program is there, it gets
+/// the command line; otherwise the command answers with how to get the part. One without `about` is
+/// not added.
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
-                        const std::string& about, const std::string& part = {});
+                        const std::string& about, const Part& part);
 
 }  // namespace thimble::cli

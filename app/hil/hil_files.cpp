@@ -8,6 +8,7 @@
 
 #include "output/output_file.h"
 #include "report/figure_json.h"
+#include "report/json_text.h"
 #include "text/utf8.h"
 
 namespace thimble::hil {
@@ -72,8 +73,7 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
                    {"exit_code", record.exit_code},
                    {"not_tested", record.not_tested},
                    {"checks", std::move(checks)}};
-  return output::write_file(file, output::kJson,
-                            whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return output::write_file(file, output::kJson, report::json_text(whole, 2) + "\n");
 }
 
 driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<HilResult>& results,

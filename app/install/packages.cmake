@@ -1,9 +1,9 @@
-# `cpack -G DEB` in the build folder: Debian packages.
+# `cpack -G DEB` in the build folder: a Debian package of each component that is installed (CMakeLists.txt here).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME thimble)
 set(CPACK_PACKAGE_VENDOR "Thimble")
-# Who builds a package answers for it, by the same two variables that Debian's own tools read. The
-# fallback says that nobody can be written to, in an address that will never exist (RFC 2606).
+# The same two variables that Debian's own tools read name the maintainer. The default is an address
+# that will never exist (RFC 2606).
 set(CPACK_PACKAGE_CONTACT "Thimble developers <thimble@unreachable.invalid>")
 if(DEFINED ENV{DEBEMAIL})
   set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
@@ -12,77 +12,34 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has a first line of it
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL program udev dev)
+set(CPACK_COMPONENTS_ALL)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
-set(CPACK_COMPONENT_PROGRAM_GROUP program)
-set(CPACK_COMPONENT_UDEV_GROUP program)
-set(CPACK_COMPONENT_DEV_GROUP dev)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME thimble)
-set(CPACK_DEBIAN_DEV_PACKAGE_NAME libthimble-dev)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# Not needed to touch: scans that scenes name (unpacked on first use), OpenGL for shots and the window, which
-# is opened at run time, plots, and what a page in the browser is made of.
-string(CONCAT CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libcgal-demo, "
-    "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "valgrind, ffmpeg")
-string(CONCAT CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "thimble (= ${PROJECT_VERSION}), libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
-    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libspdlog-dev, pkg-config")
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
-"touch virtual objects by a force-feedback arm, real or simulated
-Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
-none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
-more, with textures, friction and bodies that dent, move and snap.")
-set(CPACK_COMPONENT_DEV_DESCRIPTION
-"libraries and headers to build on Thimble
-The driver of 3-DOF force-feedback arms, the simulated arm, the haptic
-rendering, the scenes and the runs of Thimble as static libraries, with a
-CMake package, a pkg-config file and small numbered examples.")
-set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${CPACK_COMPONENT_PROGRAM_DESCRIPTION}")
-set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_COMPONENT_DEV_DESCRIPTION}")
 
-# Python's module, where it was built: for the Python that it was built with, and no other.
-set(packages thimble libthimble-dev)
-if(THIMBLE_HAS_PYTHON)
-  list(APPEND packages python3-thimble)
-  list(APPEND CPACK_COMPONENTS_ALL python)
-  set(CPACK_COMPONENT_PYTHON_GROUP python)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-thimble)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-  math(EXPR python_next "${Python_VERSION_MINOR} + 1")
-  string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "thimble (= ${PROJECT_VERSION}), python3-numpy, "
-         "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${python_next})")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-numba, jupyter-notebook")
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-"touch virtual objects from Python
-The scenes, simulated arms, recordings and studies of Thimble as numpy arrays:
-whole runs in virtual time, tick by tick, or watched in real time.")
-  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "${CPACK_COMPONENT_PYTHON_DESCRIPTION}")
-endif()
-
-# Topics of ROS 2, where there was a Cyclone DDS to build the module with.
-if(TARGET thimble_ros2)
-  list(APPEND packages thimble-ros2)
-  list(APPEND CPACK_COMPONENTS_ALL ros2)
-  set(CPACK_COMPONENT_ROS2_GROUP ros2)
-  set(CPACK_DEBIAN_ROS2_PACKAGE_NAME thimble-ros2)
-  set(CPACK_DEBIAN_ROS2_PACKAGE_SECTION science)
-  set(CPACK_DEBIAN_ROS2_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_ROS2_PACKAGE_DEPENDS "thimble (= ${PROJECT_VERSION})")
-  set(CPACK_COMPONENT_ROS2_DESCRIPTION
-"runs of Thimble as topics of ROS 2
-What `thimble run --ros2` loads: it publishes joints, pose, velocity, force and
-buttons of a force-feedback arm by DDS and takes forces, without ROS installed.")
-  set(CPACK_DEBIAN_ROS2_DESCRIPTION "${CPACK_COMPONENT_ROS2_DESCRIPTION}")
-endif()
-
-# What Debian wants of every package: its licence and its changes, and rules that udev reads anew.
-foreach(package ${packages})
+# thimble_package(PACKAGE COMPONENT name [DEPENDS text] [RECOMMENDS text] [SUGGESTS text] [SECTION name] [LIBRARIES]
+#                 DESCRIPTION text): LIBRARIES: it also depends on the libraries that its files are linked with. Each package holds
+# its licence and its changes, as Debian wants.
+macro(thimble_package package)
+  cmake_parse_arguments(ARG "LIBRARIES" "COMPONENT;DEPENDS;RECOMMENDS;SUGGESTS;SECTION;DESCRIPTION" "" ${ARGN})
+  string(TOUPPER ${ARG_COMPONENT} name)
+  list(APPEND CPACK_COMPONENTS_ALL ${ARG_COMPONENT})
+  set(CPACK_COMPONENT_${name}_GROUP ${ARG_COMPONENT})
+  set(CPACK_DEBIAN_${name}_PACKAGE_NAME ${package})
+  set(CPACK_DEBIAN_${name}_PACKAGE_SECTION science)
+  if(ARG_SECTION)
+    set(CPACK_DEBIAN_${name}_PACKAGE_SECTION ${ARG_SECTION})
+  endif()
+  if(ARG_LIBRARIES)
+    set(CPACK_DEBIAN_${name}_PACKAGE_SHLIBDEPS ON)
+  endif()
+  foreach(relation DEPENDS RECOMMENDS SUGGESTS)
+    if(ARG_${relation})
+      set(CPACK_DEBIAN_${name}_PACKAGE_${relation} "${ARG_${relation}}")
+    endif()
+  endforeach()
+  set(CPACK_COMPONENT_${name}_DESCRIPTION "${ARG_DESCRIPTION}")
+  set(CPACK_DEBIAN_${name}_DESCRIPTION "${ARG_DESCRIPTION}")
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${package}")
   file(MAKE_DIRECTORY "${folder}")
   configure_file("${PROJECT_SOURCE_DIR}/LICENSE" "${folder}/copyright" COPYONLY)
@@ -94,17 +51,82 @@ foreach(package ${packages})
  -- ${CPACK_PACKAGE_CONTACT}  ${today}
 ")
   execute_process(COMMAND gzip -9nf "${folder}/changelog")
-  if(package STREQUAL thimble)
-    set(component program)
-  elseif(package STREQUAL python3-thimble)
-    set(component python)
-  elseif(package STREQUAL thimble-ros2)
-    set(component ros2)
-  else()
-    set(component dev)
-  endif()
   install(FILES "${folder}/copyright" "${folder}/changelog.gz"
-          DESTINATION "share/doc/${package}" COMPONENT ${component})
-endforeach()
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_SOURCE_DIR}/postinst")
+          DESTINATION "share/doc/${package}" COMPONENT ${ARG_COMPONENT})
+endmacro()
+set(same_version "thimble (= ${PROJECT_VERSION})")
+
+# Below 40 MB with what it depends on (tests/program/package_test.sh). Not needed to touch: scans that scenes name (unpacked on
+# first use), plots, what a page in the browser is made of, and the other packages.
+thimble_package(thimble COMPONENT program LIBRARIES
+  RECOMMENDS "libcgal-demo, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs, thimble-viewer, thimble-mesh-formats"
+  SUGGESTS "thimble-studies, thimble-compat, thimble-ros2, python3-thimble"
+  DESCRIPTION
+"touch virtual objects by a force-feedback arm, real or simulated
+Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
+none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
+more, with textures, friction and bodies that dent, move and snap.")
+list(APPEND CPACK_COMPONENTS_ALL udev)
+set(CPACK_COMPONENT_UDEV_GROUP program)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_SOURCE_DIR}/postinst")  # udev reads the rules again
+
+string(CONCAT development "${same_version}, libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
+    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libspdlog-dev, pkg-config")
+thimble_package(libthimble-dev COMPONENT dev SECTION libdevel DEPENDS "${development}" DESCRIPTION
+"libraries and headers to build on Thimble
+The driver of 3-DOF force-feedback arms, the simulated arm, the haptic
+rendering, the scenes and the runs of Thimble as static libraries, with a
+CMake package, a pkg-config file and small numbered examples.")
+
+# OpenGL is opened at run time.
+if(TARGET thimble_viewer_program)
+  thimble_package(thimble-viewer COMPONENT viewer LIBRARIES DEPENDS "${same_version}"
+    RECOMMENDS "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri" SUGGESTS ffmpeg DESCRIPTION
+"window and pictures of runs of Thimble
+The window of `thimble view`, which shows a run or a recording, plays its sound
+and leads the simulated hand, and the pictures and films of `thimble shot`.")
+endif()
+
+if(TARGET thimble_studies_program)
+  thimble_package(thimble-studies COMPONENT studies LIBRARIES DEPENDS "${same_version}" RECOMMENDS gnuplot-nox SUGGESTS valgrind
+    DESCRIPTION
+"measurements of accuracy, cost and stability of Thimble
+The commands `thimble study`, `thimble bench` and `thimble mesh generate`.")
+endif()
+
+if(TARGET thimble_mesh_formats)
+  thimble_package(thimble-mesh-formats COMPONENT mesh_formats LIBRARIES DEPENDS "${same_version}" DESCRIPTION
+"more mesh formats for Thimble
+Lets scenes of Thimble name meshes in COLLADA (DAE), AMF, 3DS and glTF 1.")
+endif()
+
+if(TARGET thimble_compat_libraries)
+  thimble_package(thimble-compat COMPONENT compat LIBRARIES DEPENDS "${same_version}" DESCRIPTION
+"programs written for other force-feedback arms, on Thimble
+The libraries that `thimble exec` puts in front of those of other makers, with
+the interfaces HDAPI, DHD and DRD, and hdPhantom of CHAI3D.")
+  # Until 0.2 its files were in the package thimble.
+  set(CPACK_DEBIAN_COMPAT_PACKAGE_BREAKS "thimble (<< 0.3.0)")
+  set(CPACK_DEBIAN_COMPAT_PACKAGE_REPLACES "thimble (<< 0.3.0)")
+endif()
+
+# The Python module is for the Python that it was built with, and no other.
+if(THIMBLE_HAS_PYTHON)
+  math(EXPR python_next "${Python_VERSION_MINOR} + 1")
+  string(CONCAT python_needs "${same_version}, python3-numpy, "
+         "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${python_next})")
+  thimble_package(python3-thimble COMPONENT python SECTION python LIBRARIES DEPENDS "${python_needs}"
+    SUGGESTS "thimble-viewer, thimble-studies, python3-matplotlib, python3-numba, jupyter-notebook" DESCRIPTION
+"touch virtual objects from Python
+The scenes, simulated arms, recordings and studies of Thimble as numpy arrays:
+whole runs in virtual time, tick by tick, or watched in real time.")
+endif()
+
+# Topics of ROS 2, where there was a Cyclone DDS to build the module with.
+if(TARGET thimble_ros2)
+  thimble_package(thimble-ros2 COMPONENT ros2 LIBRARIES DEPENDS "${same_version}" DESCRIPTION
+"runs of Thimble as topics of ROS 2
+What `thimble run --ros2` loads: it publishes joints, pose, velocity, force and
+buttons of a force-feedback arm by DDS and takes forces, without ROS installed.")
+endif()
 include(CPack)

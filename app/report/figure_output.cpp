@@ -7,6 +7,7 @@
 
 #include "output/output_file.h"
 #include "report/figure_json.h"
+#include "report/json_text.h"
 
 namespace thimble::report {
 
@@ -27,7 +28,7 @@ nlohmann::ordered_json figures_json(const std::vector<Figure>& figures) {
 
 driver::Result<void> write_figures(const std::vector<Figure>& figures,
                                    const std::filesystem::path& file) {
-  return write_text(figures_json(figures).dump(2) + "\n", file);
+  return write_json(figures_json(figures), file);
 }
 
 std::string figure_table(const std::vector<Figure>& figures) {
@@ -63,6 +64,11 @@ std::string unmet_line(const std::vector<Figure>& figures) {
 
 driver::Result<void> write_text(const std::string& text, const std::filesystem::path& file) {
   return output::write_file(file, output::kind_of_name(file), text);
+}
+
+driver::Result<void> write_json(const nlohmann::ordered_json& json,
+                                const std::filesystem::path& file) {
+  return write_text(json_text(json, 2) + "\n", file);
 }
 
 }  // namespace thimble::report

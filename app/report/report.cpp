@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "report/figure_output.h"
+#include "report/json_text.h"
 #include "text_file.h"
 #include "thimble/scene/build_info.h"
 #include "wall_side.h"
@@ -117,10 +118,7 @@ driver::Result<void> write_report(const session::RunFigures& report,
     return driver::Error{"Cannot make the folder " + folder.string() + ": " + status.message() +
                          "."};
   }
-  // Names come from files and may hold any byte; what is not UTF-8 is replaced, not thrown over.
-  const std::string json =
-      to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
-  if (auto done = write_text(json + "\n", folder / "report.json"); !done) return done;
+  if (auto done = write_json(to_json(report), folder / "report.json"); !done) return done;
   return write_figures(session::figures_of(report), folder / "figures.json");
 }
 

@@ -11,6 +11,7 @@
 #include "report/html/page.h"
 #include "report/html/page_rows.h"
 #include "report/html/page_scene.h"
+#include "report/json_text.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::web {
@@ -26,8 +27,7 @@ void fill_up(std::string& bytes, char with) {
 
 std::string update_of(Json json, const report::PageBlock& block) {
   json["arrays"] = block.arrays();
-  // Names come from files and may hold any byte; what is not UTF-8 is replaced, not thrown over.
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = report::json_text(json);
   fill_up(text, ' ');
   const auto sizes = std::array{static_cast<std::uint32_t>(text.size()),
                                 static_cast<std::uint32_t>((block.bytes().size() + 7) / 8 * 8)};
@@ -122,7 +122,7 @@ void LiveFeed::step() {
   for (std::size_t i = 0; i < reader_.scene().knobs.size(); ++i) {
     json["knobs"].push_back(reader_.knob_wanted(i));
   }
-  const std::string told = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string told = report::json_text(json);
   take_ticks(json, block, update);
   if (update.ticks == 0 && told == told_) return;
   told_ = told;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "transports/loopback_acceptor.h"
 #include "transports/socket_owner.h"
 #include "web/live_feed.h"
 #include "web/request_guard.h"
@@ -45,16 +46,12 @@ class WebServer::Parts {
     cut_all();
   }
 
-  /// Begins to listen; returns what is wrong, empty if nothing.
-  std::string begin(std::uint16_t port) {
-    const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
-    error_code failed;
-    acceptor_.open(here.protocol(), failed);
-    if (!failed) acceptor_.set_option(tcp::acceptor::reuse_address(true), failed);
-    if (!failed) acceptor_.bind(here, failed);
-    if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
-    if (failed) return failed.message();
-    port_ = acceptor_.local_endpoint(failed).port();
+  /// Begins to listen.
+  driver::Result<void> begin(std::uint16_t port) {
+    const auto listens = driver::listen_on_loopback(
+        acceptor_, port, "Choose another one (--port), or none: then a free one is taken.");
+    if (!listens) return listens.error();
+    port_ = *listens;
     accept();
     return {};
   }
@@ -224,12 +221,7 @@ driver::Result<std::unique_ptr<WebServer>> WebServer::listen(session::RunAttachm
   auto guard = RequestGuard::make();
   if (!guard) return guard.error();
   auto parts = std::make_unique<Parts>(runs, std::move(guard).value());
-  const std::string wrong = parts->begin(port);
-  if (!wrong.empty()) {
-    return driver::Error{"Port " + std::to_string(port) +
-                         " of this computer cannot be had: " + wrong +
-                         ". Choose another one (--port), or none: then a free one is taken."};
-  }
+  if (const auto begun = parts->begin(port); !begun) return begun.error();
   return std::unique_ptr<WebServer>(new WebServer(std::move(parts)));
 }
 

@@ -58,7 +58,7 @@ expect 0 'reference' "$thimble" run "$source_dir/app/scenes/box.yaml" --duration
 if command -v valgrind >/dev/null; then
   count() {
     valgrind --tool=callgrind --toggle-collect=thimble_probed_stroke \
-      --callgrind-out-file=/dev/null "$thimble" cost-probe "accuracy/$1" 1 2>&1 \
+      --callgrind-out-file=/dev/null "$thimble-studies" cost-probe "accuracy/$1" 1 2>&1 \
       >/dev/null | awk '/Collected/ {print $4}'
   }
   # A method alone, a tick that is found to be the worst, and an effect with what is taken off.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the Debian packages, lets lintian judge them, and looks at what they hold. With THIMBLE_LONG and as
+# Makes the Debian packages, lets lintian judge them, looks at what each holds and how large it is with its dependencies, and asks
+# the program for each command with and without the other packages. With THIMBLE_LONG and as
 # root it installs them into a bare Debian 12 and there touches without and with the scans, publishes topics of ROS 2, runs
 # every command of the guide (of studies the first second: they take minutes and have tests of their own), and builds and
 # runs the examples.
@@ -29,22 +30,59 @@ for tool in dpkg-shlibdeps file; do
 done
 cpack -G DEB --config "$build/CPackConfig.cmake" -B "$work" >log 2>&1 || fail "$(tail -n 40 log)"
 program=$(ls "$work"/thimble_*.deb) development=$(ls "$work"/libthimble-dev_*.deb)
-holds() {  # PACKAGE FILE
-  dpkg-deb --contents "$1" >held
-  grep -q " \./$2$" held || fail "$(basename "$1") has no $2"
+deb() { ls "$work/$1"_*.deb; }  # PACKAGE: its file
+for package in *.deb; do dpkg-deb --contents "$package" >"$package.contents"; done
+holds() {  # DEB FILE
+  grep -q " \./$2\( -> .*\)\?$" "$1.contents" || fail "$(basename "$1") has no $2"
 }
-for file in usr/bin/thimble usr/share/man/man1/thimble.1.gz usr/lib/udev/rules.d/70-thimble.rules \
-  usr/share/bash-completion/completions/thimble usr/share/thimble/scenes/box.yaml \
-  usr/share/doc/thimble/README.md usr/share/doc/thimble/guide/index.md usr/share/doc/thimble/guide/keys.md; do
-  holds "$program" "$file"
+made=$(cd "$work" && ls -- *.deb | cut -d _ -f 1 | LC_ALL=C sort | tr '\n' ' ')
+[[ $made == "libthimble-dev "* && ${made/python3-thimble /} == *"thimble thimble-compat thimble-mesh-formats "* &&
+  $made == *"thimble-studies thimble-viewer " ]] || fail "the packages are $made"
+# PACKAGE FILE, of a part each.
+while read -r package file; do
+  holds "$(deb "$package")" "$file"
+done <<'END'
+thimble usr/bin/thimble
+thimble usr/share/man/man1/thimble.1.gz
+thimble usr/lib/udev/rules.d/70-thimble.rules
+thimble usr/share/bash-completion/completions/thimble
+thimble usr/share/thimble/scenes/box.yaml
+thimble usr/share/doc/thimble/README.md
+thimble usr/share/doc/thimble/guide/index.md
+thimble usr/share/doc/thimble/guide/keys.md
+thimble-viewer usr/libexec/thimble/thimble-viewer
+thimble-viewer usr/share/man/man1/thimble-viewer.1.gz
+thimble-studies usr/libexec/thimble/thimble-studies
+thimble-studies usr/share/man/man1/thimble-studies.1.gz
+thimble-compat usr/lib/thimble/compat/libHD.so.3
+thimble-compat usr/lib/thimble/compat/libdhd.so.3
+thimble-mesh-formats usr/lib/thimble/thimble-mesh-formats.so
+END
+manual() { dpkg-deb --fsys-tarfile "$(deb "$1")" | tar -xO "./usr/share/man/man1/$1.1.gz" | zcat; }  # PACKAGE
+for line in 'thimble \.SS study' 'thimble See thimble\\-studies(1)' 'thimble See thimble\\-viewer(1)' 'thimble-studies \.SS study friction' \
+  'thimble-viewer \.SS shot'; do
+  manual "${line%% *}" >page
+  grep -q "^${line#* }" page || fail "the manual page of ${line%% *} has no line ${line#* }"
 done
+# Of a folder that only one package may have: PACKAGE FOLDER.
+while read -r package folder; do
+  for other in "$work"/*.deb; do
+    [ "$other" = "$(deb "$package")" ] || ! grep -q " \./$folder" "$other.contents" ||
+      fail "$(basename "$other") has files of $folder, which belong to $package"
+  done
+done <<'END'
+thimble usr/bin/
+thimble usr/lib/udev/
+thimble-compat usr/lib/thimble/compat/
+libthimble-dev usr/include/
+END
 for file in usr/include/thimble/driver/safety_gate.h usr/include/thimble/scene/scene_file.h \
   usr/include/thimble/session/session.h usr/lib/cmake/thimble/thimbleConfig.cmake \
   "usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/pkgconfig/thimble.pc"; do
   holds "$development" "$file"
 done
 # What two packages hold, dpkg does not install.
-for package in "$work"/*.deb; do dpkg-deb --fsys-tarfile "$package" | tar -t | grep -v '/$'; done | sort | uniq -d >twice
+cat ./*.deb.contents | awk '{ print $6 }' | grep -v '/$' | sort | uniq -d >twice
 [ ! -s twice ] || fail "two packages hold $(tr '\n' ' ' <twice)"
 # What thimbleConfig.cmake asks for, by the names that pkg-config and then Debian know it by.
 dpkg-deb --field "$development" Depends >asked
@@ -61,9 +99,96 @@ for module in $needed pkg-config thimble; do
   grep -qE "(^|, )$library( |,|$)" asked || fail "libthimble-dev does not ask for $library: $(cat asked)"
 done
 dpkg-deb --field "$program" Recommends >asked
-for package in libcgal-demo libegl-mesa0 gnuplot-nox libjs-three libjs-dygraphs; do
-  grep -q "$package" asked || fail "thimble does not recommend $package"
+for package in libcgal-demo gnuplot-nox libjs-three libjs-dygraphs thimble-viewer thimble-mesh-formats; do
+  grep -qE "(^| )$package(,|$)" asked || fail "thimble does not recommend $package"
 done
+dpkg-deb --field "$(deb thimble-viewer)" Recommends | grep -q libegl-mesa0 || fail "thimble-viewer does not recommend libegl-mesa0"
+version=$(dpkg-deb --field "$program" Version)
+for package in "$work"/*.deb; do
+  [ "$package" = "$program" ] || dpkg-deb --field "$package" Depends | grep -qF "thimble (= $version)" ||
+    fail "$(basename "$package") does not ask for thimble of its version"
+done
+
+# 40 MB in units of 1024 bytes, as Installed-Size has.
+bash "$source/app/debian_packages.sh" "$work"/*.deb >sizes || fail "the sizes of the packages: $(cat sizes)"
+cat sizes
+size=$(awk '$1 == "thimble" { print $4 }' sizes)
+[ "${size:-0}" -gt 5000 ] || fail "thimble takes $size kB with what it depends on"
+[ "$size" -lt $((40 * 1000 * 1000 / 1024)) ] || fail "thimble takes $size kB with what it depends on: not below 40 MB"
+# What makes the difference to the other packages: these must not be needed by it, not even through others.
+for package in thimble-viewer thimble-mesh-formats; do
+  awk -v package=$package -v limit="$size" '$1 == package && $4 > limit + 9000 { found = 1 } END { exit !found }' sizes ||
+    fail "with $package as much is installed as without"
+done
+
+echo "Asking for each command, of the package thimble alone and with the others ..."
+alone=$work/alone
+dpkg-deb -x "$program" "$alone"
+run_alone() { env -u THIMBLE_MESHES HOME="$work/home" XDG_STATE_HOME="$work/home" "$alone/usr/bin/thimble" "$@"; }
+run_alone --help >help || fail "thimble alone: $(cat help)"
+sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p' help >commands_alone
+[ "$(wc -l <commands_alone)" -ge 18 ] || fail "the help lists $(wc -l <commands_alone) commands"
+lacking() {  # PACKAGE COMMAND...: it answers with the package, and the exit code is that of wrong arguments, or $ends
+  local status=0
+  run_alone "${@:2}" >said 2>&1 || status=$?
+  [ $status = "${ends:-2}" ] || fail "without $1: thimble ${*:2} ended with $status: $(cat said)"
+  [ "$(wc -l <said)" = 1 ] && grep -qF "apt install $1" said || fail "without $1: thimble ${*:2} printed: $(cat said)"
+}
+while read -r command; do
+  case $command in
+    study | bench) package=thimble-studies ;;
+    shot) package=thimble-viewer ;;
+    *) package= ;;
+  esac
+  if [ -n "$package" ]; then
+    lacking "$package" "$command" anything --at all
+    grep -qE "^  $command .*\(package $package\)" help || fail "the help of thimble alone does not say where $command is"
+  else
+    run_alone "$command" --help >said 2>&1 || fail "thimble alone: $command --help: $(cat said)"
+    ! grep -q '(package ' <(head -n 1 said) || fail "thimble alone: $command is in $(cat said)"
+  fi
+done <commands_alone
+lacking thimble-studies mesh generate ring.page
+lacking thimble-viewer view recording.h5
+lacking thimble-viewer view no_such_run
+ends=1 lacking thimble-compat exec true
+printf x >mesh.dae && lacking thimble-mesh-formats mesh mesh.dae
+run_alone run water_balloon --duration 0.2 --no-view --record alone.h5 --report alone_report >said 2>&1 ||
+  fail "thimble alone does not run a scene: $(cat said)"
+[ -s alone.h5 ] && [ -s alone_report/report.json ] || fail "thimble alone leaves no recording and no report: $(cat said)"
+for package in viewer studies compat mesh-formats; do dpkg-deb -x "$(deb thimble-$package)" "$alone"; done
+run_alone --help >help_of_all
+! grep -qE '\(package ' <(sed -n '/^Subcommands:/,/^$/p' help_of_all) || fail "with all packages the help lists: $(cat help_of_all)"
+while read -r command; do
+  run_alone "$command" --help >said 2>&1 || fail "with all packages: thimble $command --help: $(cat said)"
+  grep -qE '^Usage: thimble' said || fail "with all packages: thimble $command --help printed: $(cat said)"
+  about=$(head -n 1 said)
+  tr -s ' \n' ' ' <help_of_all | grep -qF -- " $command $about" || fail "the help describes $command otherwise than its own: $about"
+done <commands_alone
+run_alone study --help >said && grep -q '^  friction ' said || fail "with thimble-studies: thimble study --help: $(cat said)"
+run_alone mesh generate ring.page --triangles 2000 >said 2>&1 && [ -s ring.page ] || fail "with thimble-studies: thimble mesh generate: $(cat said)"
+run_alone view no_such_recording.h5 >said 2>&1 && fail "with thimble-viewer: a recording that is not there is shown"
+grep -q 'no_such_recording.h5' said && ! grep -q 'apt install' said || fail "with thimble-viewer: thimble view printed: $(cat said)"
+run_alone exec /bin/true >said 2>&1 || fail "with thimble-compat: thimble exec: $(cat said)"
+run_alone mesh mesh.dae >said 2>&1 || true
+grep -q 'this is no DAE file' said || fail "with thimble-mesh-formats: thimble mesh printed: $(cat said)"
+
+echo "Installing over the package of an earlier version ..."
+mkdir -p old/DEBIAN old/usr/lib/thimble/compat root/var/lib/dpkg/{info,updates}
+printf 'Package: thimble\nVersion: 0.2.0\nArchitecture: %s\nMaintainer: x <x@unreachable.invalid>\nDescription: earlier\n' \
+  "$(dpkg --print-architecture)" >old/DEBIAN/control
+for file in libHD.so libdhd.so libdrd.so libhdPhantom.so; do : >old/usr/lib/thimble/compat/$file; done
+dpkg-deb --root-owner-group -b old old.deb >log
+: >root/var/lib/dpkg/status
+install_into_root() {
+  PATH=$PATH:/usr/sbin:/sbin dpkg --root="$work/root" --log=/dev/null --force-not-root --force-depends --auto-deconfigure "$@" >log 2>&1 ||
+    fail "dpkg $*: $(cat log)"
+}
+install_into_root --unpack old.deb
+install_into_root --configure thimble
+install_into_root --unpack "$(deb thimble-compat)"
+install_into_root --unpack "$program"
+[ -s root/usr/lib/thimble/compat/libHD.so ] || fail "the files of thimble-compat went with the earlier package thimble"
 # Of the folders of the machine that built it, only what stands in every program: names of sources.
 dpkg-deb --fsys-tarfile "$program" | tar -xO ./usr/bin/thimble >held
 for folder in build/meshes "$source/app" "$source/build"; do
@@ -91,7 +216,16 @@ echo "Installing into a bare Debian 12 ..."
 make_bare
 cp "$work"/*.deb "$bare/root/"
 inside 'apt-get update -q'
+inside 'dpkg-query -W -f "\${Installed-Size}\n" | awk "{ sum += \$1 } END { print sum }"'
+before=$(cat log)
 inside 'apt-get install -y -q --no-install-recommends ./root/thimble_*.deb'
+# As much as was printed: nothing that a bare system lacks was left out. This one has libssl3 for its certificates.
+inside 'dpkg-query -W -f "\${Installed-Size}\n" | awk "{ sum += \$1 } END { print sum }"'
+after=$(cat log)
+inside 'dpkg-query -W -f "\${Installed-Size}" libssl3'
+grown=$((after - before + $(cat log)))
+echo "  installed: $grown kB"
+[ $((grown - size)) -le 100 ] && [ $((size - grown)) -le 100 ] || fail "$grown kB were installed, not $size"
 inside 'cd /root && thimble run water_balloon'
 echo "  a mesh of ours: $(grep -m 1 '^Contact' log || head -n 1 log)"
 in_bare 'cd /root && thimble run elephant' && fail "an elephant without its scan: $(cat log)"
@@ -100,7 +234,8 @@ in_bare 'thimble doctor' || true  # no arm is plugged in
 grep -q '^advice .*meshes' log || fail "without the scans the doctor said: $(cat log)"
 
 echo "Installing what the packages recommend ..."
-inside 'apt-get install -y -q ./root/thimble_*.deb $(dpkg-deb -f /root/thimble_*.deb Recommends | tr -d ,)'
+inside 'cd /root && apt-get install -y -q ./thimble_*.deb ./thimble-{viewer,studies,compat,mesh-formats}_*.deb \
+  $(for deb in thimble_*.deb thimble-viewer_*.deb; do dpkg-deb -f $deb Recommends; done | tr -d , | tr " " "\n" | grep -v ^thimble)'
 if ls "$bare"/root/python3-thimble_*.deb >/dev/null 2>&1; then
   inside 'apt-get install -y -q --no-install-recommends ./root/python3-thimble_*.deb'
 fi
@@ -143,5 +278,5 @@ inside 'cmake -S /usr/share/doc/thimble/examples -B /root/built && cmake --build
 inside 'cd /root && for example in built/0?_*; do
           [ -x $example ] && [ -f $example ] || continue; $example || exit 1; done'
 echo "  the examples: $(tail -n 1 log)"
-inside 'apt-get purge -y -q thimble libthimble-dev $(dpkg-query -W -f "\${Package} " python3-thimble thimble-ros2 2>/dev/null) && ! ls /usr/share/thimble'
+inside 'apt-get purge -y -q thimble libthimble-dev $(dpkg-query -W -f "\${Package} " "thimble-*" python3-thimble 2>/dev/null) && ! ls /usr/share/thimble'
 echo "Done."

@@ -1,5 +1,6 @@
 """What the package answers beside a run: names, mistakes, arms, real time, studies."""
 
+import inspect
 import os
 import signal
 import subprocess
@@ -45,6 +46,15 @@ def test_knows_scenes_and_arms_by_name(source):
 def test_mistakes_are_answered_with_a_sentence(wrong, said):
     with pytest.raises(thimble.Error, match=said):
         wrong()
+
+
+def test_a_stepper_takes_the_options_of_run():
+    assert inspect.signature(thimble.Stepper).parameters == inspect.signature(thimble.run).parameters
+
+
+def test_a_stepper_refuses_options_of_open():
+    with pytest.raises(TypeError, match="'device'"):
+        thimble.Stepper("box", device="sim")
 
 
 def test_wrong_types_are_told_before_anything_runs():

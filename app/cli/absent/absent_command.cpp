@@ -1,21 +1,36 @@
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <string>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/parts/part.h"
 
 namespace thimble::cli {
 
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
-                        const std::string& about, const std::string& part) {
+                        const std::string& about, const Part& part) {
   if (about.empty()) return;
-  CLI::App* command = app.add_subcommand(name, about + " (not in this build)");
+  const auto program = part_program(part);
+  const bool packaged = *part.package != 0;
+  if (!program.empty()) {
+    CLI::App* command = app.add_subcommand(name, about);
+    command->prefix_command();
+    command->set_help_flag();  // the help is that of the part's program
+    command->footer("See " + std::string(part.package) + "(1).");
+    // Before the options of this program are complete, and the log of the other begins.
+    command->preparse_callback([program](std::size_t) {
+      throw CLI::RuntimeError(start_part(program).message, kExitTrouble);
+    });
+    return;
+  }
+  CLI::App* command =
+      app.add_subcommand(name, about + (packaged ? " (package " + std::string(part.package) + ")"
+                                                 : std::string(" (not in this build)")));
   command->prefix_command();
-  const std::string option = part.empty() ? "" : " (CMake: " + part + "=ON)";
-  command->callback([name, option, &exit_code] {
-    exit_code = complain({"This thimble was built without `" + name + "`" + option +
-                          ". app/setup.sh release thimble builds the whole program: "
-                          "build/release/app/thimble."},
+  command->callback([name, part, packaged, &exit_code] {
+    exit_code = complain({"`thimble " + name + "` is not " +
+                          (packaged ? "installed: " : "in this build: ") + how_to_get(part) + "."},
                          kExitBadInput);
   });
 }

@@ -1,6 +1,7 @@
-// The commands of parts that this program lacks (THIMBLE_LACKS_PART): each answers with how to
-// build the whole program.
+// The commands of parts that this program lacks (THIMBLE_LACKS_PART): each starts the program of
+// its part, or answers with how to get it.
 #include "cli/commands.h"
+#include "cli/parts/part.h"
 
 #define THIMBLE_ANSWER(function, name, about, part)              \
   void add_##function##_command(CLI::App& app, int& exit_code) { \
@@ -10,13 +11,13 @@
 
 #define THIMBLE_ANSWER_FIRST_TOUCH THIMBLE_NO_ANSWER
 #define THIMBLE_ANSWER_WINDOW THIMBLE_NO_ANSWER  // see no_window.cpp
-#define THIMBLE_OPTION_FIRST_TOUCH ""
-#define THIMBLE_OPTION_WINDOW ""
-#define THIMBLE_OPTION_TOOLS ""
-#define THIMBLE_OPTION_STUDIES "THIMBLE_STUDIES"
-#define THIMBLE_OPTION_COMMISSIONING "THIMBLE_COMMISSIONING"
-#define THIMBLE_OPTION_COMPAT "THIMBLE_COMPAT"
-#define THIMBLE_OPTION_VIEW "THIMBLE_VIEW"
+#define THIMBLE_PART_FIRST_TOUCH kTools
+#define THIMBLE_PART_WINDOW kViewer
+#define THIMBLE_PART_TOOLS kTools
+#define THIMBLE_PART_STUDIES kStudies
+#define THIMBLE_PART_COMMISSIONING kCommissioning
+#define THIMBLE_PART_COMPAT kCompat
+#define THIMBLE_PART_VIEW kViewer
 
 #ifdef THIMBLE_LACKS_TOOLS
 #define THIMBLE_ANSWER_TOOLS THIMBLE_ANSWER
@@ -47,7 +48,7 @@
 namespace thimble::cli {
 
 #define THIMBLE_COMMAND(function, part, name, about) \
-  THIMBLE_ANSWER_##part(function, name, about, THIMBLE_OPTION_##part)
+  THIMBLE_ANSWER_##part(function, name, about, THIMBLE_PART_##part)
 #define THIMBLE_SUBCOMMAND THIMBLE_COMMAND
 #include "cli/commands.inc"
 #undef THIMBLE_COMMAND

@@ -1,14 +1,18 @@
-// In place of the window in a program without it: `thimble view` shows runs as text.
+// The window is in the program thimble-viewer: without it `thimble view` shows runs as text and in
+// a browser.
 #include "cli/commands.h"
+#include "cli/parts/part.h"
 
 namespace thimble::cli {
 
 void add_window_command(CLI::App& app, int& exit_code) {
-  add_view_command(app, exit_code, {});
+  if (!has_window()) return add_view_command(app, exit_code, {});
+  add_absent_command(app, exit_code, "view",
+                     "Show a run that goes on in another process, or a recording", kViewer);
 }
 
 bool has_window() {
-  return false;
+  return !part_program(kViewer).empty();
 }
 
 }  // namespace thimble::cli

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/parts/part.h"
 #include "hold_key.h"
 #include "log/logger.h"
 #include "ros2/ros_module.h"
@@ -66,8 +67,7 @@ driver::Result<void> check_run_options(RunOptions& options) {
   }
   if (!options.no_view && !has_window()) {
     return driver::Error{"--hand " + options.hand +
-                         " needs the window, which this build does not have (app/setup.sh release "
-                         "thimble builds it)."};
+                         " needs the window, which is not installed: " + how_to_get(kViewer) + "."};
   }
   if (!options.no_view && !session::has_display()) {
     return driver::Error{
@@ -144,9 +144,8 @@ session::ViewerChoice viewer_choice(const RunOptions& options) {
   const bool asked = options.for_a_person();
   if (asked && !has_window() && scene::talk() != scene::Talk::kQuiet) {
     scene::terminal().info(
-        "No window in this build (app/setup.sh release thimble makes one); `thimble view --text` "
-        "tells of "
-        "the run.");
+        "No window is installed: {}; `thimble view --text` prints what happens in the run.",
+        how_to_get(kViewer));
   }
   if (options.no_view || !has_window()) return session::ViewerChoice::kNever;
   return asked ? session::ViewerChoice::kAsked : session::ViewerChoice::kIfWatched;

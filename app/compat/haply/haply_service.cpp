@@ -21,6 +21,7 @@
 
 #include "compat/haply/served_arms.h"
 #include "thimble/version.h"
+#include "transports/loopback_acceptor.h"
 #include "transports/socket_owner.h"
 
 namespace thimble::compat::haply {
@@ -171,16 +172,12 @@ class Service::Listener {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Begins to listen; returns what is wrong, empty if nothing.
-  std::string begin(std::uint16_t port) {
-    const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
-    error_code failed;
-    acceptor_.open(here.protocol(), failed);
-    if (!failed) acceptor_.set_option(tcp::acceptor::reuse_address(true), failed);
-    if (!failed) acceptor_.bind(here, failed);
-    if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
-    if (failed) return failed.message();
-    port_ = acceptor_.local_endpoint(failed).port();
+  /// Begins to listen.
+  driver::Result<void> begin(std::uint16_t port) {
+    const auto listens = driver::listen_on_loopback(
+        acceptor_, port, "If Haply's own service runs, stop it, or choose another port (--port).");
+    if (!listens) return listens.error();
+    port_ = *listens;
     thread_ = std::thread([this] { listen(); });
     return {};
   }
@@ -259,12 +256,7 @@ Service::~Service() = default;
 
 driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t port, Report report) {
   auto listener = std::make_unique<Listener>(std::move(report));
-  const std::string wrong = listener->begin(port);
-  if (!wrong.empty()) {
-    return driver::Error{
-        "Port " + std::to_string(port) + " of this computer cannot be had: " + wrong +
-        ". If Haply's own service runs, stop it, or choose another port (--port)."};
-  }
+  if (const auto begun = listener->begin(port); !begun) return begun.error();
   return std::unique_ptr<Service>(new Service(std::move(listener)));
 }
 

@@ -12,8 +12,10 @@ driver::Result<std::filesystem::path> face_folder() {
     if (std::filesystem::exists(folder / "libHD.so", status)) return folder;
   }
   return driver::Error{
-      "The libraries that stand in for other makers' are not there (lib/thimble/compat); install "
-      "the package thimble anew, or build the target thimble_compat_libraries."};
+      "The libraries for programs of other makers' arms are not installed: install the package "
+      "thimble-compat (`sudo apt install thimble-compat`), or build the target "
+      "thimble_compat_libraries from "
+      "the sources."};
 }
 
 }  // namespace thimble::compat

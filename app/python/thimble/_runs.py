@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Optional, Union
+import inspect
+from typing import Any, Callable, Concatenate, Mapping, Optional, ParamSpec
 
 from numpy.typing import ArrayLike
 
@@ -15,6 +16,24 @@ from ._meshes import Meshes
 from ._scene_text import Scene
 from ._shot import Shot, Touched
 from ._ticks import Figure, Tick, Ticks
+
+
+_Options = ParamSpec("_Options")
+
+
+def _options_of(
+    function: Callable[_Options, Any]
+) -> Callable[[Callable[..., None]], Callable[Concatenate[Any, _Options], None]]:
+    """Give a method the signature of a function, which lists the options for both."""
+    signature = inspect.signature(function)
+    own = inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+
+    def decorate(method: Callable[..., None]) -> Callable[Concatenate[Any, _Options], None]:
+        parameters = [own, *signature.parameters.values()]
+        setattr(method, "__signature__", signature.replace(parameters=parameters, return_annotation=None))
+        return method
+
+    return decorate
 
 
 class Run(Held, Ticks):
@@ -116,23 +135,11 @@ class Stepper(Held):
 
     _run: _core.Run
 
-    def __init__(
-        self,
-        scene: Scene,
-        *,
-        set: Optional[Mapping[str, Any]] = None,
-        seconds: Optional[float] = None,
-        seed: Optional[int] = None,
-        arm: Optional[PathOrName] = None,
-        quality: str = "normal",
-        record: Optional[PathOrName] = None,
-        overwrite: bool = False,
-        law: Optional[Law] = None,
-        meshes: Optional[Meshes] = None,
-    ) -> None:
-        self._run = begin(
-            scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, overwrite=overwrite, law=law, meshes=meshes
-        )
+    @_options_of(run)
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        given = inspect.signature(run).bind(*arguments, **options)
+        given.apply_defaults()
+        self._run = begin(**given.arguments)
         stop_at_exit(self)
 
     def __enter__(self) -> "Stepper":

@@ -34,8 +34,12 @@ BAD_INPUT = 2  # the program's exit code of wrong arguments, scene, arm file or 
 
 
 def _studies() -> list[str]:
-    told = subprocess.run([program(), "study", "--help"], capture_output=True, text=True, check=True).stdout
-    return re.findall(r"^  ([a-z][a-z-]*) ", told.partition("Subcommands:")[2], re.MULTILINE)
+    done = subprocess.run([program(), "study", "--help"], capture_output=True, text=True, check=False)
+    names = re.findall(r"^  ([a-z][a-z-]*) ", done.stdout.partition("Subcommands:")[2], re.MULTILINE)
+    if not names:
+        lacking = subprocess.run([program(), "study"], capture_output=True, text=True, check=False)
+        raise Error(f"thimble study: {lacking.stderr.strip() or done.stderr.strip()}")
+    return names
 
 
 def study(

@@ -9,6 +9,7 @@
 #include "report/html/page_libraries.h"
 #include "report/html/page_parts.h"
 #include "report/html/page_scene.h"
+#include "report/json_text.h"
 
 namespace thimble::report {
 namespace {
@@ -24,11 +25,10 @@ std::string script_text(std::string text) {
   return text;
 }
 
-std::string json_text(const Json& json) {
-  // Names come from files and may hold any byte; what is not UTF-8 is replaced, not thrown over.
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+// JSON inside of a script.
+std::string script_json(const Json& json) {
   std::string safe;
-  for (const char c : text) {
+  for (const char c : json_text(json)) {
     if (c == '<') {
       safe += "\\u003c";
     } else {
@@ -117,7 +117,7 @@ driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* 
                             {"LIBRARY_STYLES", styles},
                             {"STYLE", std::string(kPageStyle)},
                             {"LICENCES", licences},
-                            {"ABOUT", json_text(json)},
+                            {"ABOUT", script_json(json)},
                             {"NUMBERS", base64(block.bytes())},
                             {"LIBRARIES", scripts},
                             {"SCRIPT", script_text(std::string(kPageScript))}});

@@ -8,6 +8,7 @@
 
 #include "report/figure_output.h"
 #include "report/inline_picture.h"
+#include "report/json_text.h"
 #include "studies/accuracy/axis_words.h"
 #include "thimble/scene/build_info.h"
 
@@ -148,7 +149,7 @@ driver::Result<void> write_accuracy_summary(const std::vector<AxisSection>& sect
     }
     list.push_back(std::move(entry));
   }
-  return report::write_text(list.dump(2) + "\n", file);
+  return report::write_json(list, file);
 }
 
 }  // namespace thimble::studies

@@ -8,6 +8,7 @@
 
 #include "log/logger.h"
 #include "report/gnuplot.h"
+#include "report/json_text.h"
 #include "report/picture_style.h"
 #include "studies/stability/stability_pictures.h"
 #include "studies/stability/stability_tables.h"
@@ -63,7 +64,7 @@ driver::Result<void> write_summary(const StabilitySetup& setup,
     entry["goal"] = figure.goal;
     entry["met"] = figure.met();
   }
-  return report::write_text(summary.dump(2) + "\n", folder / "summary.json");
+  return report::write_json(summary, folder / "summary.json");
 }
 
 }  // namespace

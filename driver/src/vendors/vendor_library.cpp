@@ -2,17 +2,24 @@
 
 #include <dlfcn.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 namespace thimble::driver {
+namespace {
 
-Result<VendorLibrary> VendorLibrary::open(std::span<const std::string> files) {
+/// A library that was opened.
+struct Opened {
+  void* handle;
+  std::string file;
+};
+
+Result<Opened> open_first(std::span<const std::string> files) {
   std::string looked_for, refused;
   for (const std::string& file : files) {
     void* const handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
-    if (handle != nullptr) return VendorLibrary(handle, file);
+    if (handle != nullptr) return Opened{handle, file};
     const char* why = dlerror();
     looked_for += (looked_for.empty() ? "" : ", ") + file;
     std::error_code missing;
@@ -25,8 +32,28 @@ Result<VendorLibrary> VendorLibrary::open(std::span<const std::string> files) {
   return Error{"None of these libraries is there: " + looked_for + "."};
 }
 
-void* VendorLibrary::address_of(const char* name) const {
-  return dlsym(handle_, name);
+}  // namespace
+
+Result<std::string> open_vendor_library(std::span<const std::string> files,
+                                        std::initializer_list<VendorFunction> functions,
+                                        const std::string& otherwise) {
+  auto opened = open_first(files);
+  if (!opened) return opened.error();
+  for (const VendorFunction& function : functions) {
+    void* const found = dlsym(opened->handle, function.name());
+    if (found == nullptr) {
+      return Error{opened->file + " has no function " + function.name() + ", so it is not " +
+                   otherwise};
+    }
+    function.put(found);
+  }
+  return opened->file;
+}
+
+std::vector<std::string> vendor_files(const char* name, std::vector<std::string> files) {
+  const char* own = std::getenv(name);
+  if (own != nullptr && *own != 0) return {own};
+  return files;
 }
 
 }  // namespace thimble::driver

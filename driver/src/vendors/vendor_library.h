@@ -1,39 +1,42 @@
 #pragma once
 
+#include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "thimble/driver/result.h"
 
 namespace thimble::driver {
 
-/// A vendor's library, opened while the program runs and never closed: what such libraries leave
-/// behind (threads, handlers) does not survive it. Real-time: never from the servo thread.
-class VendorLibrary {
+/// A function of a vendor's library, and the pointer that it is put into.
+class VendorFunction {
  public:
-  /// Opens the first of these files that there is. The error says which were looked for, and what
-  /// the linker says where one is there and cannot be opened, such as another library that it
-  /// needs.
-  static Result<VendorLibrary> open(std::span<const std::string> files);
-
-  /// Returns the file that was opened.
-  const std::string& file() const { return file_; }
-
-  /// Finds a function by its name; false, and its name in `missing`, where the library has none.
   template <class Function>
-  bool find(const char* name, Function*& function, std::string& missing) const {
-    function = reinterpret_cast<Function*>(address_of(name));
-    if (function != nullptr) return true;
-    missing = name;
-    return false;
-  }
+  VendorFunction(const char* name, Function*& function)
+      : name_(name),
+        put_([&function](void* found) { function = reinterpret_cast<Function*>(found); }) {}
+
+  const char* name() const { return name_; }
+  void put(void* found) const { put_(found); }
 
  private:
-  VendorLibrary(void* handle, std::string file) : handle_(handle), file_(std::move(file)) {}
-  void* address_of(const char* name) const;
-
-  void* handle_;
-  std::string file_;
+  const char* name_;
+  std::function<void(void*)> put_;
 };
+
+/// Opens the first of these files that exists, finds the functions in it, and returns the file. The
+/// library is never closed: what such libraries leave behind (threads, handlers) would not survive
+/// it. The error says which files were looked for; or what the linker says of one that exists and
+/// cannot be opened, such as another library that it needs; or which function is missing and
+/// `otherwise`: what the library is not, and what to install. Real-time: never from the servo
+/// thread.
+Result<std::string> open_vendor_library(std::span<const std::string> files,
+                                        std::initializer_list<VendorFunction> functions,
+                                        const std::string& otherwise);
+
+/// Returns the file that the environment variable `name` names, alone; `files` if it is not set.
+std::vector<std::string> vendor_files(const char* name, std::vector<std::string> files);
 
 }  // namespace thimble::driver

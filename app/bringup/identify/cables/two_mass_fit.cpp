@@ -12,8 +12,14 @@ namespace thimble::bringup {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
+
 constexpr int kRoundsMost = 100;
 constexpr double kFitsWell = 3;  // chi^2 per degree of freedom
+
+// Returns the frequency of a mass on a spring, Hz. `compliance`: of the spring, m/N.
+double resonance_of(double compliance, double inverse_mass) {
+  return std::sqrt(inverse_mass / compliance) / kTurn;
+}
 
 /// Looks about a fit that is no good for a better one, where single cables are several times softer
 /// or stiffer: places that have all joints alike lie in other valleys.
@@ -92,13 +98,12 @@ void put_elastic(CableFit& found, const TwoMassSearch& search, const TwoMassThet
 }  // namespace
 
 double TwoMass::antiresonance(int joint, const Eigen::Matrix3d& JTJ) const {
-  return std::sqrt(1 / (theta[kCompliance + joint] * JTJ(joint, joint))) / kTurn;
+  return resonance_of(theta[kCompliance + joint], 1 / JTJ(joint, joint));
 }
 
 double TwoMass::resonance(int joint, const Eigen::Matrix3d& JTJ) const {
-  return std::sqrt((1 / JTJ(joint, joint) + 1 / theta[kInertia + joint]) /
-                   theta[kCompliance + joint]) /
-         kTurn;
+  return resonance_of(theta[kCompliance + joint],
+                      1 / JTJ(joint, joint) + 1 / theta[kInertia + joint]);
 }
 
 void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart& slow, double dt) {
@@ -153,7 +158,7 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
   double lowest = HUGE_VAL;  // Hz, at which a link oscillates on its cable
   for (int i = 0; i < 3; ++i) {
     const double give = std::max(0.0, found.elastic.theta[TwoMass::kCompliance + i]);
-    lowest = std::min(lowest, 1 / std::sqrt(give * spectrum.JTJ(i, i)) / kTurn);
+    lowest = std::min(lowest, resonance_of(give, 1 / spectrum.JTJ(i, i)));
   }
   // Beyond all lines it is no cable that is seen but an amplifier that lags.
   found.stretches = found.better > kBetter && lowest < LineForces::kHighest;
@@ -161,7 +166,7 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
   search.look_for_give(found.rigid.theta, give, error);
   for (int i = 0; i < 3; ++i) {
     const double most = std::max(0.0, give[i]) + kNormal95 * error[i];
-    found.unseen_from[i] = 1 / std::sqrt(most * spectrum.JTJ(i, i)) / kTurn;
+    found.unseen_from[i] = resonance_of(most, 1 / spectrum.JTJ(i, i));
   }
   found.noise = search.sigma();
   return found;

@@ -9,32 +9,41 @@
 namespace thimble::driver::dhd {
 namespace {
 
-Result<Library> take(Result<VendorLibrary> opened) {
-  if (!opened) return opened.error();
-  Library library{.file = opened->file(), .version = {}, .call = {}};
+Result<Library> open(const std::vector<std::string>& files) {
+  Library library;
   Functions& call = library.call;
-  std::string missing;
-  const auto find = [&](const char* name, auto*& function) {
-    return opened->find(name, function, missing);
-  };
-#define THIMBLE_FIND(name) find(#name, call.name)
-  const bool whole =
-      THIMBLE_FIND(dhdGetDeviceCount) && THIMBLE_FIND(dhdGetSDKVersion) &&
-      THIMBLE_FIND(dhdErrorGetLast) && THIMBLE_FIND(dhdErrorGetLastStr) &&
-      THIMBLE_FIND(drdOpenID) && THIMBLE_FIND(drdClose) && THIMBLE_FIND(drdIsInitialized) &&
-      THIMBLE_FIND(drdAutoInit) && THIMBLE_FIND(drdStop) && THIMBLE_FIND(dhdGetSystemName) &&
-      THIMBLE_FIND(dhdHasWrist) && THIMBLE_FIND(dhdHasGripper) && THIMBLE_FIND(dhdSetWatchdog) &&
-      THIMBLE_FIND(dhdEnableExpertMode) && THIMBLE_FIND(dhdDisableExpertMode) &&
-      THIMBLE_FIND(dhdGetStatus) && THIMBLE_FIND(dhdSetGravityCompensation) &&
-      THIMBLE_FIND(dhdSetBrakes) && THIMBLE_FIND(dhdEnableForce) && THIMBLE_FIND(dhdStop) &&
-      THIMBLE_FIND(dhdGetPosition) && THIMBLE_FIND(dhdGetLinearVelocity) &&
-      THIMBLE_FIND(dhdGetOrientationFrame) && THIMBLE_FIND(dhdGetGripperGap) &&
-      THIMBLE_FIND(dhdGetButtonMask) && THIMBLE_FIND(dhdSetForce);
+#define THIMBLE_FIND(name) VendorFunction(#name, call.name)
+  auto file = open_vendor_library(files,
+                                  {THIMBLE_FIND(dhdGetDeviceCount),
+                                   THIMBLE_FIND(dhdGetSDKVersion),
+                                   THIMBLE_FIND(dhdErrorGetLast),
+                                   THIMBLE_FIND(dhdErrorGetLastStr),
+                                   THIMBLE_FIND(drdOpenID),
+                                   THIMBLE_FIND(drdClose),
+                                   THIMBLE_FIND(drdIsInitialized),
+                                   THIMBLE_FIND(drdAutoInit),
+                                   THIMBLE_FIND(drdStop),
+                                   THIMBLE_FIND(dhdGetSystemName),
+                                   THIMBLE_FIND(dhdHasWrist),
+                                   THIMBLE_FIND(dhdHasGripper),
+                                   THIMBLE_FIND(dhdSetWatchdog),
+                                   THIMBLE_FIND(dhdEnableExpertMode),
+                                   THIMBLE_FIND(dhdDisableExpertMode),
+                                   THIMBLE_FIND(dhdGetStatus),
+                                   THIMBLE_FIND(dhdSetGravityCompensation),
+                                   THIMBLE_FIND(dhdSetBrakes),
+                                   THIMBLE_FIND(dhdEnableForce),
+                                   THIMBLE_FIND(dhdStop),
+                                   THIMBLE_FIND(dhdGetPosition),
+                                   THIMBLE_FIND(dhdGetLinearVelocity),
+                                   THIMBLE_FIND(dhdGetOrientationFrame),
+                                   THIMBLE_FIND(dhdGetGripperGap),
+                                   THIMBLE_FIND(dhdGetButtonMask),
+                                   THIMBLE_FIND(dhdSetForce)},
+                                  "Force Dimension's robotics library. Install the SDK's libdrd.");
 #undef THIMBLE_FIND
-  if (!whole) {
-    return Error{library.file + " has no function " + missing +
-                 ", so it is not Force Dimension's robotics library. Install the SDK's libdrd."};
-  }
+  if (!file) return file.error();
+  library.file = std::move(file).value();
   int version[4] = {0, 0, 0, 0};
   call.dhdGetSDKVersion(&version[0], &version[1], &version[2], &version[3]);
   library.version = std::to_string(version[0]) + '.' + std::to_string(version[1]) + '.' +
@@ -43,21 +52,16 @@ Result<Library> take(Result<VendorLibrary> opened) {
 }
 
 Result<Library> look() {
-  std::vector<std::string> files;
-  if (const char* own = std::getenv("THIMBLE_DHD_LIBRARY"); own != nullptr && *own != 0) {
-    files = {own};
-  } else {
-    // The soname has a number [S sofa 3497]; libdhd has the drd functions in no version known.
-    files = {"libdrd.so.3", "libdrd.so"};
-    if (const char* sdk = std::getenv("FDSDK"); sdk != nullptr && *sdk != 0) {
-      const std::string folder = std::string(sdk) + "/lib/release/lin-x86_64-gcc/";
-      files.push_back(folder + "libdrd.so.3");
-      files.push_back(folder + "libdrd.so");
-    }
-    files.push_back("/usr/local/lib/libdrd.so.3");
-    files.push_back("/usr/local/lib/libdrd.so");
+  // The soname has a number [S sofa 3497]; libdhd has the drd functions in no version known.
+  std::vector<std::string> files{"libdrd.so.3", "libdrd.so"};
+  if (const char* sdk = std::getenv("FDSDK"); sdk != nullptr && *sdk != 0) {
+    const std::string folder = std::string(sdk) + "/lib/release/lin-x86_64-gcc/";
+    files.push_back(folder + "libdrd.so.3");
+    files.push_back(folder + "libdrd.so");
   }
-  return take(VendorLibrary::open(files));
+  files.push_back("/usr/local/lib/libdrd.so.3");
+  files.push_back("/usr/local/lib/libdrd.so");
+  return open(vendor_files("THIMBLE_DHD_LIBRARY", std::move(files)));
 }
 
 }  // namespace
@@ -68,7 +72,7 @@ Result<Library> library() {
 }
 
 Result<Library> load(const std::string& file) {
-  return take(VendorLibrary::open(std::vector<std::string>{file}));
+  return open({file});
 }
 
 }  // namespace thimble::driver::dhd

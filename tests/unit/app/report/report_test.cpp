@@ -197,6 +197,12 @@ TEST(Report, SurvivesANameThatIsNotUtf8) {
   EXPECT_TRUE(read(folder / "report.json")["scene"].is_string());
 }
 
+TEST(Figure, IsWrittenWithANameThatIsNotUtf8) {
+  const std::filesystem::path file = support::scratch_folder() / "figures_of_bytes.json";
+  ASSERT_TRUE(write_figures({{"bytes_\xff", 1, "", ""}}, file).ok());
+  EXPECT_EQ(read(file)[0]["name"], "bytes_\xEF\xBF\xBD");
+}
+
 TEST(Figure, MeetsItsGoalOrNot) {
   EXPECT_TRUE((Figure{"a", 5, "N", "<= 5"}.met()));
   EXPECT_FALSE((Figure{"a", 5.001, "N", "<= 5"}.met()));

@@ -1,0 +1,11 @@
+// `thimble-viewer`: the commands of the package of that name, which `thimble` starts.
+#include "cli/commands.h"
+#include "cli/program.h"
+
+int main(int argc, char** argv) {
+  using namespace thimble::cli;
+  return run_program(argc, argv,
+                     {.name = "thimble-viewer",
+                      .about = "show touched objects in a window and in pictures",
+                      .commands = {add_shot_command, add_window_command}});
+}

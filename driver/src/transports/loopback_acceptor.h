@@ -1,0 +1,31 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <cstdint>
+#include <string>
+
+#include "thimble/driver/result.h"
+
+namespace thimble::driver {
+
+/// Begins to listen on a port of the loopback interface, which programs of this computer reach
+/// only, and returns the port; `port` 0: a free one. The error ends with `remedy`, as the rest of
+/// its sentence. Who connects is judged by distrust_of_peer (socket_owner.h). Real-time: never from
+/// the servo thread.
+inline Result<std::uint16_t> listen_on_loopback(boost::asio::ip::tcp::acceptor& acceptor,
+                                                std::uint16_t port, const std::string& remedy) {
+  using Acceptor = boost::asio::ip::tcp::acceptor;
+  const boost::asio::ip::tcp::endpoint here(boost::asio::ip::address_v4::loopback(), port);
+  boost::system::error_code failed;
+  acceptor.open(here.protocol(), failed);
+  if (!failed) acceptor.set_option(Acceptor::reuse_address(true), failed);
+  if (!failed) acceptor.bind(here, failed);
+  if (!failed) acceptor.listen(boost::asio::socket_base::max_listen_connections, failed);
+  if (failed) {
+    return Error{"Port " + std::to_string(port) +
+                 " of this computer is not available: " + failed.message() + ". " + remedy};
+  }
+  return acceptor.local_endpoint(failed).port();
+}
+
+}  // namespace thimble::driver
