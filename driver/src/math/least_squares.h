@@ -40,9 +40,9 @@ class ScaledNormal {
     return scale_.asDiagonal() * scaled_.ldlt().solve(Vector(scale_.asDiagonal() * right));
   }
 
-  /// Returns the inverse of the matrix: the covariance of the unknowns where the rows of J are in
+  /// Returns the inverse of J^T J: the covariance of the unknowns where the rows of J are in
   /// units of their noise.
-  Matrix inverse() const {
+  Matrix covariance() const {
     const Matrix one = Matrix::Identity(scaled_.rows(), scaled_.cols());
     return scale_.asDiagonal() * scaled_.ldlt().solve(one) * scale_.asDiagonal();
   }

@@ -104,7 +104,7 @@ class TwoMassSearch {
     Eigen::MatrixXd slope;
     Eigen::VectorXd rest;
     slopes(x, elastic, count, slope, rest);
-    return math::ScaledNormal<Eigen::MatrixXd>(slope.transpose() * slope, kRidge).inverse();
+    return math::ScaledNormal<Eigen::MatrixXd>(slope.transpose() * slope, kRidge).covariance();
   }
 
   /// What is known of compliances about a rigid arm: their values and deviations.
@@ -123,7 +123,7 @@ class TwoMassSearch {
     }
     const math::ScaledNormal<Eigen::MatrixXd> normal(all.transpose() * all, kRidge);
     const Eigen::VectorXd step = normal.solve(all.transpose() * rest);
-    const Eigen::MatrixXd inverse = normal.inverse();
+    const Eigen::MatrixXd inverse = normal.covariance();
     const double spread =
         std::max(1.0, rest.squaredNorm() / static_cast<double>(rows() - TwoMass::kRigidCount));
     for (int i = 0; i < 3; ++i) {

@@ -82,7 +82,8 @@ class GapSearch {
     add_up([lost_from](const GapPiece& piece) { return piece.left < lost_from ? 1.0 : 0.0; },
            reduced, right);
     const auto count = static_cast<Eigen::Index>(free_.size());
-    const Eigen::MatrixXd inverse = math::ScaledNormal<Eigen::MatrixXd>(reduced, 1e-10).inverse();
+    const Eigen::MatrixXd inverse =
+        math::ScaledNormal<Eigen::MatrixXd>(reduced, 1e-10).covariance();
     for (Eigen::Index a = 0; a < count; ++a) {
       for (Eigen::Index b = 0; b < count; ++b) {
         const int i = free_[static_cast<std::size_t>(a)], j = free_[static_cast<std::size_t>(b)];
