@@ -1,7 +1,7 @@
 // `thimble`: the commands of commands.inc. Those of parts with a program of their own are there
 // (parts/).
 #include "cli/commands.h"
-#include "cli/program.h"
+#include "cli/parts/program.h"
 
 int main(int argc, char** argv) {
   using namespace thimble::cli;

@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
-#include "cli/program.h"
+#include "cli/parts/program.h"
 
 namespace {
 

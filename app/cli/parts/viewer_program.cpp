@@ -1,6 +1,6 @@
 // `thimble-viewer`: the commands of the package of that name, which `thimble` starts.
 #include "cli/commands.h"
-#include "cli/program.h"
+#include "cli/parts/program.h"
 
 int main(int argc, char** argv) {
   using namespace thimble::cli;

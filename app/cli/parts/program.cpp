@@ -1,4 +1,4 @@
-#include "cli/program.h"
+#include "cli/parts/program.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
