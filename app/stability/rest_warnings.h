@@ -30,7 +30,8 @@ std::vector<std::string> rest_causes(const scene::Scene& scene, const std::strin
 
 /// Returns a sentence for each rest of a trial that is felt to oscillate, with its measure, and the
 /// causes that the laws know for it; and one if a fault ended the trial.
-std::vector<std::string> rest_warnings(const scene::Scene& scene, const stability::RestTrial& trial);
+std::vector<std::string> rest_warnings(const scene::Scene& scene,
+                                       const stability::RestTrial& trial);
 
 /// Returns the stiffness (N/m) that a texture's waves add along the surface for each newton of
 /// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [PHYSICS 1.1].
