@@ -14,15 +14,15 @@ done
 source "$(dirname "$0")/../program/expect.sh" "$1" "$2" "$3"
 eigen=$4 version_folder=$5
 export TMPDIR=$work
-faces=$source_dir/app/compat
-headers=$faces/include/thimble/compat
+compat=$source_dir/app/compat
+headers=$compat/include/thimble/compat
 mkdir lib clients
 
 # library NAME FACE [FLAG...]: libNAME.so of the sources of a face and of the core, as app/compat/CMakeLists.txt makes it.
 library() {
   local name=$1 face=$2 source objects=()
   mkdir -p "$face"
-  for source in "$faces/$face"/*.cpp "$faces"/core/*.cpp; do
+  for source in "$compat/$face"/*.cpp "$compat"/core/*.cpp; do
     objects+=("$face/$(basename "$source").o")
     aarch64-linux-gnu-g++ -std=c++20 -O1 -fPIC -Wno-psabi \
       -I"$version_folder" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" -I"$source_dir/driver/src" \
@@ -30,7 +30,7 @@ library() {
   done
   {
     echo '{ global:'
-    sed -nE 's/^([A-Za-z].*)/\1;/p' "$faces/$face/symbols.txt"
+    sed -nE 's/^([A-Za-z].*)/\1;/p' "$compat/$face/symbols.txt"
     echo 'local: *; };'
   } >"$face.map"
   aarch64-linux-gnu-g++ -shared "${objects[@]}" -static-libstdc++ -static-libgcc -pthread \

@@ -2,7 +2,7 @@
 # A run as ROS 2 topics, heard and moved by a program of another vendor's DDS: it finds us, hears every topic, asks for
 # a force, is killed; and it sends what nobody should.
 #   ros2_test.sh THIMBLE PEER WORK_DIR
-source "$(dirname "$0")/../../program/expect.sh" "$1" "$(cd "$(dirname "$0")/../../.." && pwd)" "$3"
+source "$(dirname "$0")/../program/expect.sh" "$1" "$(cd "$(dirname "$0")/../.." && pwd)" "$3"
 peer=$2
 if ! grep -q '127\.0\.0\.1' /proc/net/fib_trie 2>/dev/null; then
   echo "ROS 2 TEST SKIPPED: the interface lo is down; as root: ip link set lo up"
