@@ -13,7 +13,7 @@ driver::Result<std::filesystem::path> face_folder() {
   }
   return driver::Error{
       "The libraries that stand in for other makers' are not there (lib/thimble/compat); install "
-      "the package thimble anew, or build the target thimble_compat_libraries."};
+      "the package thimble again, or build the target thimble_compat_libraries."};
 }
 
 }  // namespace thimble::compat
