@@ -52,7 +52,7 @@ struct HilRig {
   const scene::ArmFile& file;
   Open open;
   const std::atomic<bool>& stop;
-  bringup::Prompt prompt;        ///< Tells a person what to do; answers false to leave the check.
+  bringup::Prompt prompt;        ///< Asks a person to act; returns false to leave the check.
   bringup::Question question{};  ///< Asks a person yes or no; empty: the simulated hand is asked.
   bool attended = false;         ///< A person is there to do it, or a simulated hand.
 };

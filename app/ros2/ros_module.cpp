@@ -30,10 +30,10 @@ std::filesystem::path own_file() {
 std::filesystem::path module_file() {
   std::error_code status;
   const std::filesystem::path folder = own_file().parent_path();
-  // Of Python's module: ../../faces in a build tree, and ../../../../bin where it is installed.
+  // Of Python's module: ../../ros2 in a build tree, and ../../../../bin where it is installed.
   const std::string installed = THIMBLE_ROS2_INSTALLED;
   for (const std::filesystem::path& place :
-       {folder / "ros2", folder / "../ros2", folder / "../../ros2", folder / "../../../app/ros2",
+       {folder / "ros2", folder / "../ros2", folder / "../../ros2", folder / "../../app/ros2",
         folder / installed, folder / "../../../../bin" / installed,
         "/usr/bin" / std::filesystem::path(installed)}) {
     const std::filesystem::path file = (place / "thimble-ros2.so").lexically_normal();

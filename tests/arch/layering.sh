@@ -133,7 +133,7 @@ forbid_app hil '(identified|share|events|view|compat|ros2|web|cli)/'
 forbid_app twin '(share|events|studies|view|bringup|hil|compat|ros2|web|cli)/'
 forbid_app compat '(report|stability|studies|view|bringup|hil|web|cli)/'
 forbid_app ros2 '(report|stability|studies|view|bringup|hil|compat|web|cli)/'
-# What a program of somebody else's loads brings no library of ours with it; and the libraries know the core alone.
+# Libraries that another maker's program loads bring none of ours with them, and know the core alone.
 for part in core haply hd hdphantom dhd; do
   [ -d "app/compat/$part" ] || continue
   forbid "app/compat/$part" 'compat/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \

@@ -77,16 +77,16 @@ peers_of() { grep -E "^\| $1" "$2" | grep -oE '\([0-9]+\)'; } # ROW FILE
 hot <"$packed" >measured
 [ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/compact_mesh/README.md has no table of peers" >&2 && exit 1; }
 grep -E '^\| 10\^[0-9] (\| [0-9]+ ){4}\|$' "$compare" | diff - measured ||
-  { echo "FAILED: compare.md tells other times of ticks than render/src/compact_mesh/README.md" >&2 && exit 1; }
+  { echo "FAILED: compare.md gives other times of ticks than render/src/compact_mesh/README.md" >&2 && exit 1; }
 in_the_loop <"$packed" >measured
 [ "$(wc -l <measured)" = 5 ] || { echo "FAILED: render/src/compact_mesh/README.md has no table of the loop" >&2 && exit 1; }
 in_the_loop <"$compare" | diff - measured ||
-  { echo "FAILED: compare.md tells other times in the loop than render/src/compact_mesh/README.md" >&2 && exit 1; }
+  { echo "FAILED: compare.md gives other times in the loop than render/src/compact_mesh/README.md" >&2 && exit 1; }
 for row in 'ball, segment' 'torus, segment' 'ball, nearest point' 'torus, nearest point'; do
   peers_of "$row" "$source/render/src/search/README.md" >measured
   [ "$(wc -l <measured)" = 4 ] || { echo "FAILED: render/src/search/README.md has no row: $row" >&2 && exit 1; }
   peers_of "$row" "$compare" | diff - measured ||
-    { echo "FAILED: compare.md tells other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
+    { echo "FAILED: compare.md gives other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
 done
 
 # The guide as a site, strictly: no dead link, no page out of the menu.

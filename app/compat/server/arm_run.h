@@ -67,7 +67,7 @@ class ArmRun {
   std::unique_ptr<session::ServoThread> servo_;
   std::unique_ptr<ClientForce> client_;
   std::unique_ptr<ReadingPublisher> publisher_;
-  std::unique_ptr<ros2::RosRun> topics_;  // null: nobody asked
+  std::unique_ptr<ros2::RosRun> topics_;  // null: not asked for
   std::optional<session::ReplugWatches> watch_;
   std::optional<session::RunAttendance> attendance_;
   std::atomic<bool> stop_{false};

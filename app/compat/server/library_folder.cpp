@@ -14,8 +14,7 @@ driver::Result<std::filesystem::path> face_folder() {
   return driver::Error{
       "The libraries for programs of other makers' arms are not installed: install the package "
       "thimble-compat (`sudo apt install thimble-compat`), or build the target "
-      "thimble_compat_libraries from "
-      "the sources."};
+      "thimble_compat_libraries from the sources."};
 }
 
 }  // namespace thimble::compat

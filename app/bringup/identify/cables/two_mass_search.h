@@ -121,9 +121,9 @@ class TwoMassSearch {
       residuals(soft, true, other);
       all.col(TwoMass::kRigidCount + i) = (other - rest) / soft[TwoMass::kCompliance + i];
     }
-    const math::ScaledNormal<Eigen::MatrixXd> normal(all.transpose() * all, kRidge);
-    const Eigen::VectorXd step = normal.solve(all.transpose() * rest);
-    const Eigen::MatrixXd inverse = normal.covariance();
+    const Eigen::MatrixXd inverse =
+        math::ScaledNormal<Eigen::MatrixXd>(all.transpose() * all, kRidge).covariance();
+    const Eigen::VectorXd step = inverse * (all.transpose() * rest);
     const double spread =
         std::max(1.0, rest.squaredNorm() / static_cast<double>(rows() - TwoMass::kRigidCount));
     for (int i = 0; i < 3; ++i) {
@@ -158,14 +158,18 @@ class TwoMassSearch {
       search.slopes(x, elastic, count, slope, rest);
       normal = slope.transpose() * slope;
       gradient = slope.transpose() * rest;
-      return search.look(x, elastic, nullptr);
+      return sum_of(x, rest);
     }
     /// Bounds a step to a factor of e where the search is by the logarithm.
     TwoMassTheta stepped(TwoMassTheta x, const Eigen::VectorXd& by) const {
       for (int k = 0; k < count; ++k) x[k] += is_log(k) ? std::clamp(by[k], -1.0, 1.0) : by[k];
       return x;
     }
-    double sum(const TwoMassTheta& x) const { return search.look(x, elastic, nullptr); }
+    double sum(const TwoMassTheta& x) const {
+      Eigen::VectorXd rest(search.rows());
+      search.rest_at(x, elastic, rest);
+      return sum_of(x, rest);
+    }
   };
 
   void residuals(const TwoMassTheta& theta, bool elastic, Eigen::VectorXd& rest) const {
@@ -194,21 +198,23 @@ class TwoMassSearch {
     return rest;
   }
 
-  double look(const TwoMassTheta& x, bool elastic, Eigen::VectorXd* rest) const {
-    Eigen::VectorXd mine(rows());
-    Eigen::VectorXd& out = rest != nullptr ? *rest : mine;
-    residuals(from_search(x), elastic, out);
-    // Which way the motors pull was seen before.
-    if (rest == nullptr && !(x.segment<3>(TwoMass::kGain).minCoeff() > 0)) return HUGE_VAL;
-    const double sum = out.squaredNorm();
-    return std::isfinite(sum) ? sum : HUGE_VAL;
+  /// Fills what the constants at `x` leave of the lines.
+  void rest_at(const TwoMassTheta& x, bool elastic, Eigen::VectorXd& rest) const {
+    residuals(from_search(x), elastic, rest);
+  }
+
+  /// Returns the sum of squares; infinite where a motor pulls the other way, for which way the
+  /// motors pull was seen before.
+  static double sum_of(const TwoMassTheta& x, const Eigen::VectorXd& rest) {
+    const double sum = rest.squaredNorm();
+    return x.segment<3>(TwoMass::kGain).minCoeff() > 0 && std::isfinite(sum) ? sum : HUGE_VAL;
   }
 
   void slopes(const TwoMassTheta& x, bool elastic, int count, Eigen::MatrixXd& slope,
               Eigen::VectorXd& rest) const {
     rest.resize(rows());
     slope.resize(rows(), count);
-    look(x, elastic, &rest);
+    rest_at(x, elastic, rest);
     Eigen::VectorXd other(rows());
     for (int k = 0; k < count; ++k) {
       TwoMassTheta next = x;
@@ -216,7 +222,7 @@ class TwoMassSearch {
                           : is_log(k)          ? 1e-5
                                                : 1e-5 * std::max(std::abs(x[k]), floor_of(k));
       next[k] += step;
-      look(next, elastic, &other);
+      rest_at(next, elastic, other);
       slope.col(k) = (other - rest) / step;
     }
   }
