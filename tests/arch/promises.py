@@ -14,6 +14,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 PAGE = "app/guide/pages/guarantees.md"
 TABLE = "app/guide/guarantees.list"
@@ -71,7 +72,11 @@ def all_there_is(source, build):
 
 def commands(build):
     """Returns the name of each test of GoogleTest in CTest, and its program."""
-    said = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True)
+    # Listed from another folder: a ctest that lists tests truncates the log of the ctest that runs in the same folder.
+    with tempfile.TemporaryDirectory() as lister:
+        pathlib.Path(lister, "CTestTestfile.cmake").write_text(f'subdirs("{build}")\n')
+        said = subprocess.run(["ctest", "--test-dir", lister, "--show-only=json-v1"], capture_output=True, text=True,
+                              check=True)
     prefix = "--gtest_filter="
     return [(argument[len(prefix):], test["command"][0]) for test in json.loads(said.stdout)["tests"]
             for argument in test.get("command", []) if argument.startswith(prefix)]
