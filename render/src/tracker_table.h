@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "thimble/render/contact_choice.h"
+#include "track/baseline/normal_projection_tracker.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
-#include "track/normal_projection_tracker.h"
 #include "track/packed_contact_in_memory.h"
 
 namespace thimble::render {

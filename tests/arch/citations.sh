@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every key in square brackets in a comment or a document stands in the guide's references, and every
 # section of the physics and of the arms that is cited exists, as does every test that a page names. Names of tests
-# (Suite.Name) have at most 60 characters, and each suite of hard cases has its number in tests/hard_cases.list.
+# (Suite.Name) have at most 60 characters, and each suite of hard cases has its number in tests/acceptance/hard_cases.list.
 #   citations.sh SOURCE_FOLDER
 set -euo pipefail
 source=$1
@@ -63,10 +63,10 @@ done
 tests_named=$(find tests -name '*.cpp' -print0 | xargs -0 perl -0777 -ne '
   while (/^(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+)\s*,\s*(\w+)\s*\)/mg) { print "$ARGV:$1.$2\n" }')
 wrong_names() { # reads file:Suite.Name
-  awk -F: -v suites=" $(sed -n 's/^[0-9]*|.*|\(HardCase[A-Za-z]*\)$/\1/p' tests/hard_cases.list | tr '\n' ' ')" '
+  awk -F: -v suites=" $(sed -n 's/^[0-9]*|.*|\(HardCase[A-Za-z]*\)$/\1/p' tests/acceptance/hard_cases.list | tr '\n' ' ')" '
     length($2) > 60 { print $1 ": the test " $2 " has " length($2) " characters; 60 are allowed" }
     { split($2, parts, ".") }
-    parts[1] ~ /^HardCase/ && !index(suites, " " parts[1] " ") { print $1 ": the suite " parts[1] " is no case of tests/hard_cases.list" }'
+    parts[1] ~ /^HardCase/ && !index(suites, " " parts[1] " ") { print $1 ": the suite " parts[1] " is no case of tests/acceptance/hard_cases.list" }'
 }
 [ "$(wc -l <<<"$tests_named")" -ge 2000 ] || { echo "FAILED: only $(wc -l <<<"$tests_named") tests were found" && failed=1; }
 wrong_names <<<"$tests_named" | grep . && failed=1

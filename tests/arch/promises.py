@@ -153,7 +153,7 @@ def main():
     if "--write" in sys.argv or "--page" in sys.argv:
         page.write_text(text)
     elif page.read_text() != text:
-        fail(f"{PAGE} is not what {TABLE} says: tests/promises.sh")
+        fail(f"{PAGE} is not what {TABLE} says: tests/acceptance/promises.sh")
     rows = [row for _, rows in sections for row in rows]
     print(f"{len(rows)} guarantees, {sum(bool(row['covers']) for row in rows)} with a breadth that was checked.")
     sys.exit(1 if fail.count else 0)

@@ -1,6 +1,6 @@
 // Every fault of cable, wiring and host, on every arm, in every phase of a touch: what is promised
 // (fault_promises.h) is held at the motors of the simulated arm, not in what the driver believes.
-// tests/FAULTS.md is the table of what was measured here.
+// tests/acceptance/FAULTS.md is the table of what was measured here.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -11,7 +11,7 @@ namespace thimble::support {
 ///     FAULT|fault|arm|phase|promise|measured|limit
 ///
 /// to the file that the environment variable THIMBLE_FAULTS names, if it does. The
-/// table of all faults (tests/FAULTS.md) is made of these lines. No text may hold a bar.
+/// table of all faults (tests/acceptance/FAULTS.md) is made of these lines. No text may hold a bar.
 inline void record_fault(const std::string& fault, const std::string& arm, const std::string& phase,
                          const std::string& promise, const std::string& measured,
                          const std::string& limit) {

@@ -16,11 +16,11 @@ namespace thimble::support {
 /// and puts it into the file of the test's name in the folder that the environment variable
 /// THIMBLE_HARD_CASES names, if it does; a test's first line replaces those of an earlier run.
 /// `criterion` is a sentence that begins with the comparison that must hold between `measured` and
-/// `limit`: "<=", ">=", "<", ">" or "==". The table tests/HARD_CASES.md is made of these lines, so
-/// a test whose case has several figures notes each. `words` begin with "guard: " where what is
-/// measured is that something bad shows. No text may hold a bar. The test must be in the suite that
-/// tests/hard_cases.list gives the number, in a program marked HARD_CASES. The number is also the
-/// test's property `hard_case` in a report of GoogleTest.
+/// `limit`: "<=", ">=", "<", ">" or "==". The table tests/acceptance/HARD_CASES.md is made of these
+/// lines, so a test whose case has several figures notes each. `words` begin with "guard: " where
+/// what is measured is that something bad shows. No text may hold a bar. The test must be in the
+/// suite that tests/acceptance/hard_cases.list gives the number, in a program marked HARD_CASES.
+/// The number is also the test's property `hard_case` in a report of GoogleTest.
 inline void record_hard_case(int number, const std::string& words, const std::string& criterion,
                              double measured, double limit, const std::string& unit) {
   const ::testing::TestInfo* const test = ::testing::UnitTest::GetInstance()->current_test_info();

@@ -10,7 +10,7 @@
 
 namespace thimble::support {
 
-/// A physical value that the program is compared with, as a row of tests/PHYSICS.md.
+/// A physical value that the program is compared with, as a row of tests/acceptance/PHYSICS.md.
 struct PhysicalValue {
   std::string component;  ///< Such as "rigid body".
   std::string quantity;   ///< What was measured, in which situation.

@@ -3,12 +3,12 @@
 #include <array>
 #include <cstddef>
 
+#include "surface/friction/baseline/naive.h"
 #include "surface/friction/bristle.h"
 #include "surface/friction/dahl.h"
 #include "surface/friction/implicit_coulomb.h"
 #include "surface/friction/karnopp.h"
 #include "surface/friction/lugre.h"
-#include "surface/friction/naive.h"
 #include "surface/friction/paper.h"
 #include "surface/friction/stiction_point.h"
 #include "surface/texture/height_map.h"

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "search/baseline/linear_search.h"
 #include "search/grid_search.h"
-#include "search/linear_search.h"
 #include "search/tree_search.h"
 
 namespace thimble::render {

@@ -1,5 +1,6 @@
 // What identifying never asks of an arm, whatever the arm, its hand and its faults are: more than
-// it says, or anything at all outside the workspace. tests/FAULTS.md has a row for each fault.
+// it says, or anything at all outside the workspace. tests/acceptance/FAULTS.md has a row for each
+// fault.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -22,8 +22,8 @@ inline int forces_since(const std::vector<Eigen::Vector3d>& taken, std::size_t f
                     taken.end(), [](const Eigen::Vector3d& f) { return !f.isZero(0); }));
 }
 
-/// One row of the table of faults (tests/FAULTS.md) for an arm behind a vendor's library or
-/// service: what is promised, and whether the checks since its beginning have shown it.
+/// One row of the table of faults (tests/acceptance/FAULTS.md) for an arm behind a vendor's library
+/// or service: what is promised, and whether the checks since its beginning have shown it.
 class LinkFaultRow {
  public:
   /// `arm`: of which library or service; `more`: how many messages with a force may still go to it.

@@ -1,4 +1,4 @@
-// Free bodies, springs and snapping panels against closed forms, for tests/PHYSICS.md.
+// Free bodies, springs and snapping panels against closed forms, for tests/acceptance/PHYSICS.md.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 

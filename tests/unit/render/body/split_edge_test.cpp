@@ -7,7 +7,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
-#include "search/linear_search.h"
+#include "search/baseline/linear_search.h"
 #include "search/tree_search.h"
 #include "support/heap_guard.h"
 #include "support/meshes/shapes.h"

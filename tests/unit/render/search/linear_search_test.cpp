@@ -1,4 +1,4 @@
-#include "search/linear_search.h"
+#include "search/baseline/linear_search.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "search/baseline/linear_search.h"
 #include "search/grid_search.h"
-#include "search/linear_search.h"
 #include "search/tree_search.h"
 #include "support/contact_walk.h"
 #include "support/heap_guard.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "search/baseline/linear_search.h"
 #include "search/free_space.h"
 #include "search/grid_search.h"
-#include "search/linear_search.h"
 #include "search/make_search.h"
 #include "search/tree_search.h"
 #include "support/contact_walk.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "mesh/file/weld_mesh.h"
-#include "search/linear_search.h"
+#include "search/baseline/linear_search.h"
 #include "support/long_form.h"
 #include "support/meshes/bench_meshes.h"
 #include "support/meshes/reference_geometry.h"

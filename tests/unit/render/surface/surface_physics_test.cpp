@@ -1,4 +1,4 @@
-// Surfaces, frictions, textures and fields against closed forms, for tests/PHYSICS.md.
+// Surfaces, frictions, textures and fields against closed forms, for tests/acceptance/PHYSICS.md.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesh/contact_mesh.h"
-#include "search/linear_search.h"
+#include "search/baseline/linear_search.h"
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"

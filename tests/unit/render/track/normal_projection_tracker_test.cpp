@@ -1,4 +1,4 @@
-#include "track/normal_projection_tracker.h"
+#include "track/baseline/normal_projection_tracker.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "search/linear_search.h"
+#include "search/baseline/linear_search.h"
 #include "support/contact_walk.h"
 #include "support/meshes/reference_geometry.h"
 #include "support/meshes/shapes.h"

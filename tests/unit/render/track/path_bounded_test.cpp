@@ -24,12 +24,12 @@
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
+#include "track/baseline/normal_projection_tracker.h"
 #include "track/blended.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
 #include "track/moving_contact.h"
 #include "track/moving_mesh.h"
-#include "track/normal_projection_tracker.h"
 #include "track/packed_contact_in_memory.h"
 
 namespace thimble::render {

@@ -1,4 +1,4 @@
-# Makes the page of physical values out of PHYSICS lines (support/physics.h). Faults go to the file
+# Makes the page of physical values out of PHYSICS lines (../support/physics.h). Faults go to the file
 # `faults`, one a line.
 function fault(text) { print text > faults; ++bad }
 function number(x, text) {
@@ -19,14 +19,14 @@ $1 == "PHYSICS" {
   error = $8 + 0 < 1e-3 * $9 ? "< " number($9 / 1000) : number($8)
   measured = $8 + 0 < 1e-3 * $9 ? number($6) : number($7)
   rows[$2] = rows[$2] "| " $3 " | `" $4 "` | " number($6) " | " measured " | " $5 " | " error " | " \
-    number($9) " | [" label "](" substr($11, 7) " \"" $10 "\") |\n"
+    number($9) " | [" label "](../" substr($11, 7) " \"" $10 "\") |\n"
   ++values
 }
 END {
   if (!values) fault("no test has noted a physical value")
   print "# Physical values"
   print ""
-  print "Made by `tests/physics.sh` from a run of the tests; do not edit. What the guide describes as physics, compared with"
+  print "Made by `tests/acceptance/physics.sh` from a run of the tests; do not edit. What the guide describes as physics, compared with"
   print "closed forms: simulated time, the product's own code, SI units. *Error* is a share of the value by the closed form; where"
   print "that is 0, of 1 in the unit given. *Bound* is the error at which the test fails. An error below a thousandth of its bound"
   print "is printed as such."

@@ -1,4 +1,4 @@
-#include "surface/friction/naive.h"
+#include "surface/friction/baseline/naive.h"
 
 namespace thimble::render {
 

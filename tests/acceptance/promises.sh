@@ -3,5 +3,5 @@
 # reported. Needs a complete release build.
 #   promises.sh [BUILD]
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 exec python3 tests/arch/promises.py . "${1:-build/release}" --write

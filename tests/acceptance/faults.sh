@@ -2,11 +2,11 @@
 # Runs the matrix of faults and writes what was promised and measured as a table: fault by arm, a
 # column per phase. What runs in simulated time is the same on every machine; of what runs on the
 # wall clock the table says only whether the promise was kept.
-#   tests/faults.sh [BUILD_DIR [OUTPUT]]    default: build/release and tests/FAULTS.md
-#   tests/faults.sh --check LINES           LINES: what FaultMatrix left (THIMBLE_FAULTS); fails where
-#                                           tests/FAULTS.md says otherwise; writes nothing
+#   tests/acceptance/faults.sh [BUILD_DIR [OUTPUT]]    default: build/release and tests/acceptance/FAULTS.md
+#   tests/acceptance/faults.sh --check LINES           LINES: what FaultMatrix left (THIMBLE_FAULTS); fails where
+#                                           tests/acceptance/FAULTS.md says otherwise; writes nothing
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 simulated_rows() {  # simulated_rows LINES
   awk -F'|' '
@@ -31,16 +31,16 @@ simulated_rows() {  # simulated_rows LINES
 }
 
 if [ "${1:-}" = --check ]; then
-  [ $# = 2 ] || { echo "Usage: tests/faults.sh --check LINES" >&2; exit 2; }
-  diff <(sed -n '/^## In simulated time/,/^## While/p' tests/FAULTS.md | sed -n '/^| fault/d; /^|-/d; /^|/p' | sort) \
+  [ $# = 2 ] || { echo "Usage: tests/acceptance/faults.sh --check LINES" >&2; exit 2; }
+  diff <(sed -n '/^## In simulated time/,/^## While/p' tests/acceptance/FAULTS.md | sed -n '/^| fault/d; /^|-/d; /^|/p' | sort) \
     <(simulated_rows "$2" | sort) >&2 || {
-    echo "FAILED: tests/FAULTS.md (<) is not what the matrix measured (>): write it anew by tests/faults.sh, and look at what changed" >&2
+    echo "FAILED: tests/acceptance/FAULTS.md (<) is not what the matrix measured (>): write it anew by tests/acceptance/faults.sh, and look at what changed" >&2
     exit 1
   }
   exit 0
 fi
 build=${1:-build/release}
-output=${2:-tests/FAULTS.md}
+output=${2:-tests/acceptance/FAULTS.md}
 lines=$(mktemp)
 trap 'rm -f "$lines"' EXIT
 THIMBLE_FAULTS=$lines "$build/tests/sim/test_faults" --gtest_filter="*FaultMatrix*" >/dev/null
@@ -54,7 +54,7 @@ THIMBLE_FAULTS=$lines "$build/tests/sim/test_identify" --gtest_filter='IdentifyB
   cat <<'TEXT'
 # Faults: what is promised, and what was measured
 
-Written by `tests/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
+Written by `tests/acceptance/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
 `tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors), `tests/sim/identify/identify_bounds_test.cpp`,
 `tests/unit/driver/vendors/*_link_test.cpp` (arms behind vendors' libraries and services) and `tests/program/faults_test.sh` (real
 processes).

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs the tests of the hard cases and writes what they measured to tests/HARD_CASES.md.
-#   tests/hard_cases.sh [BUILD]        BUILD: a built folder (build/release if none is named)
-#   tests/hard_cases.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
+# Runs the tests of the hard cases and writes what they measured to tests/acceptance/HARD_CASES.md.
+#   tests/acceptance/hard_cases.sh [BUILD]        BUILD: a built folder (build/release if none is named)
+#   tests/acceptance/hard_cases.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
 # Fails where a case has no figure, a figure misses its criterion, or (--check) the table in the
 # repository says otherwise: rows must be the same but for the figures, and these may differ by
 # 2 %; where both are 10 times better than needed by a factor of 2, where 1000 times by anything:
@@ -28,7 +28,7 @@ make_table() {
 }
 
 if [ "${1:-}" = --check ]; then
-  [ $# = 2 ] || { echo "Usage: tests/hard_cases.sh --check LINES" >&2; exit 2; }
+  [ $# = 2 ] || { echo "Usage: tests/acceptance/hard_cases.sh --check LINES" >&2; exit 2; }
   make_table "$2" "$scratch/now.md"
   sed -n 's/^\([0-9]* of .*guards\.\)$/\1/p' "$scratch/now.md"
   [ -z "${THIMBLE_LONG:-}" ] || exit 0
@@ -58,13 +58,13 @@ if [ "${1:-}" = --check ]; then
       bad = 1
     }
     END { exit bad || FNR != stored_count }' "$table" "$scratch/now.md" >&2 || {
-    echo "The table differs from what the tests measure: run tests/hard_cases.sh and look at it." >&2
+    echo "The table differs from what the tests measure: run tests/acceptance/hard_cases.sh and look at it." >&2
     exit 1
   }
   exit 0
 fi
 
-build=$(cd "${1:-$here/../build/release}" && pwd)
+build=$(cd "${1:-$here/../../build/release}" && pwd)
 ctest --test-dir "$build" -R '^(HardCase|hard_cases\.begin)' -j "$(nproc)" >"$scratch/log" || {
   grep -A30 "tests failed" "$scratch/log" >&2
   exit 1

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs the tests that compare physical values with closed forms and writes them to tests/PHYSICS.md.
-#   tests/physics.sh [BUILD]        BUILD: a built folder (build/release if none is named)
-#   tests/physics.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
+# Runs the tests that compare physical values with closed forms and writes them to tests/acceptance/PHYSICS.md.
+#   tests/acceptance/physics.sh [BUILD]        BUILD: a built folder (build/release if none is named)
+#   tests/acceptance/physics.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
 # Fails where an error is above its bound or (--check) the page in the repository differs: rows must be
 # the same but for measured values and errors. Errors may differ by 20 % of themselves or by a hundredth
 # of their bound, since another compiler rounds otherwise.
@@ -25,7 +25,7 @@ make_page() {
 }
 
 if [ "${1:-}" = --check ]; then
-  [ $# = 2 ] || { echo "Usage: tests/physics.sh --check LINES" >&2; exit 2; }
+  [ $# = 2 ] || { echo "Usage: tests/acceptance/physics.sh --check LINES" >&2; exit 2; }
   make_page "$2" "$scratch/now.md"
   sed -n 's/^\([0-9]* values of .*\)$/\1/p' "$scratch/now.md"
   [ -z "${THIMBLE_LONG:-}" ] || exit 0
@@ -46,13 +46,13 @@ if [ "${1:-}" = --check ]; then
       bad = 1
     }
     END { exit bad || FNR != stored_count }' "$page" "$scratch/now.md" >&2 || {
-    echo "The page differs from what the tests measure: run tests/physics.sh and look at the changes." >&2
+    echo "The page differs from what the tests measure: run tests/acceptance/physics.sh and look at the changes." >&2
     exit 1
   }
   exit 0
 fi
 
-build=$(cd "${1:-$here/../build/release}" && pwd)
+build=$(cd "${1:-$here/../../build/release}" && pwd)
 ctest --test-dir "$build" -R '^(Physics|physics\.begin)' -j "$(nproc)" >"$scratch/log" || {
   grep -A30 "tests failed" "$scratch/log" >&2
   exit 1

@@ -1,4 +1,4 @@
-#include "track/normal_projection_tracker.h"
+#include "track/baseline/normal_projection_tracker.h"
 
 #include <limits>
 #include "mesh/triangle_set.h"

@@ -1,4 +1,4 @@
-# Makes the table of the hard cases out of hard_cases.list and HARD_CASE lines (support/hard_case.h).
+# Makes the table of the hard cases out of hard_cases.list and HARD_CASE lines (../support/hard_case.h).
 # Faults go to the file `faults`, one a line.
 function fault(text) { print text > faults; ++bad }
 function short(x, digits,   text) {
@@ -69,7 +69,7 @@ $1 == "HARD_CASE" {
   row = "| | " (is_guard ? "*must fail:* " : "") words (what == "" ? "" : ": " what) \
         " | " with_unit($5 == "inf" ? "∞" : nothing ? "≈ 0" : short($5, near ? 4 : 3), unit) " | " sign " " with_unit(short($6, 4), unit) \
         " | " margin(sign, $5 == "inf" ? 1e300 : nothing ? 0 : $5 + 0, $6 + 0) \
-        " | [" label "](" substr($9, 7) " \"" $8 "\") |"
+        " | [" label "](../" substr($9, 7) " \"" $8 "\") |"
   if (is_guard) { guards[n] = guards[n] row "\n"; ++guard_count }
   else rows[n] = rows[n] row "\n"
   ++figures
@@ -83,7 +83,7 @@ END {
   }
   print "# The hard cases"
   print ""
-  print "Made by `tests/hard_cases.sh` from a run of the tests; do not edit. All on the virtual clock, with fixed seeds,"
+  print "Made by `tests/acceptance/hard_cases.sh` from a run of the tests; do not edit. All on the virtual clock, with fixed seeds,"
   print "through the product's own code; but walls in one dimension (1, 2, 5 to 7, parts of 11 and 12) are a spring and damper on the"
   print "simulated arm's exact map of one axis (tests/support/wall_rig.h), and the sums of 3, 4 and 37 are the test's own."
   print "*Margin* is how many times better than needed the figure is (*all*: nothing of the limit is used). *Must fail* marks"
