@@ -37,13 +37,13 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
 /// Returns whether `thimble view` has a window: without the package thimble-viewer it has none.
 bool has_window();
 /// `thimble study stability`: measures where walls are stable.
-void add_stability_study(CLI::App& study_command, int& exit_code);
+void add_stability_options(CLI::App& command, int& exit_code);
 /// `thimble study trouble`: touches random scenes.
-void add_trouble_study(CLI::App& study_command, int& exit_code);
+void add_trouble_options(CLI::App& command, int& exit_code);
 /// `thimble study accuracy`: what accuracy costs in time.
-void add_accuracy_study(CLI::App& study_command, int& exit_code);
+void add_accuracy_options(CLI::App& command, int& exit_code);
 /// `thimble study gating SCENE`: which effects a scene could do without.
-void add_gating_study(CLI::App& study_command, int& exit_code);
+void add_gating_options(CLI::App& command, int& exit_code);
 
 /// `thimble manual`: prints the manual page of a program, which the installation keeps. `name`: of
 /// the page; `about`: what the program is for.

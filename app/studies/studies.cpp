@@ -20,6 +20,14 @@ constexpr std::array kStudies{
           study_box},
     Study{"integrators", "what each integrator of bodies costs per tick, and how wrong it is",
           study_integrators},
+    Study{"accuracy", "what accuracy costs in time: a diagram for every knob, on one page", nullptr},
+    Study{"gating",
+          "which effects of the simulated arm a scene could do without, and what that saves",
+          nullptr},
+    Study{"stability", "where walls are stable on an arm: the laws, and the simulated loop",
+          nullptr},
+    Study{"trouble", "random scenes and hands by the thousand: nothing may go wrong in any",
+          nullptr},
 };
 
 }  // namespace

@@ -108,35 +108,31 @@ int run_gating(const GatingOptions& options) {
 
 }  // namespace
 
-void add_gating_study(CLI::App& study_command, int& exit_code) {
-  CLI::App* command = study_command.add_subcommand(
-      "gating", "which effects of the simulated arm a scene could do without, and what that saves");
+void add_gating_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<GatingOptions>();
-  add_scene_option(*command, options->scene)->required();
-  command->add_option("--out", options->out, "Folder for gating.txt and figures.json")
+  add_scene_option(command, options->scene)->required();
+  command.add_option("--out", options->out, "Folder for gating.txt and figures.json")
       ->capture_default_str();
-  command->add_flag("--no-count", options->no_count, "Do not count instructions");
-  command->callback([options, &exit_code] { exit_code = run_gating(*options); });
+  command.add_flag("--no-count", options->no_count, "Do not count instructions");
+  command.callback([options, &exit_code] { exit_code = run_gating(*options); });
 }
 
-void add_accuracy_study(CLI::App& study_command, int& exit_code) {
-  CLI::App* command = study_command.add_subcommand(
-      "accuracy", "what accuracy costs in time: a diagram for every knob, on one page");
+void add_accuracy_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<AccuracyOptions>();
-  command->add_option("--axis", options->axes,
-                      "Axes to measure, such as tessellation or velocity; all, if none is named");
-  command->add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
+  command.add_option("--axis", options->axes,
+                     "Axes to measure, such as tessellation or velocity; all, if none is named");
+  command.add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
       ->capture_default_str();
-  command->add_option(
+  command.add_option(
       "--table", options->table,
       "Write the points that `thimble run --quality auto` chooses on instead, as they "
       "are built in (app/scene/src/quality/quality_table.inc), measured on this machine");
-  command->add_flag(
+  command.add_flag(
       "--no-count", options->no_count,
       "Do not count instructions, which takes minutes; time alone says what is cheaper");
-  command->add_flag("--resume", options->resume,
-                    "Continue where an interrupted run of the same options ended");
-  command->callback([options, &exit_code] { exit_code = run_accuracy(*options); });
+  command.add_flag("--resume", options->resume,
+                   "Continue where an interrupted run of the same options ended");
+  command.callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 
 }  // namespace thimble::cli

@@ -59,15 +59,13 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
 
 }  // namespace
 
-void add_stability_study(CLI::App& study_command, int& exit_code) {
-  CLI::App* command = study_command.add_subcommand(
-      "stability", "where walls are stable on an arm: the laws, and the simulated loop");
+void add_stability_options(CLI::App& command, int& exit_code) {
   auto choice = std::make_shared<SweepChoice>();
   auto options = std::make_shared<studies::StabilityOptions>();
   choice->out = "study-stability";
-  choice->add_options(*command);
-  add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
-  command->add_option("--rate", options->rate, "Ticks per second, Hz")
+  choice->add_options(command);
+  add_arm_option(command, options->arm_file, "Arm file (app/arms)")->required();
+  command.add_option("--rate", options->rate, "Ticks per second, Hz")
       ->check(CLI::Range(100, 20'000))
       ->capture_default_str();
   command
@@ -79,8 +77,8 @@ void add_stability_study(CLI::App& study_command, int& exit_code) {
                    "X Y Z in the world, along which the wall stands; else the worst of the "
                    "base's axes")
       ->expected(3);
-  command->add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
-  command->callback([choice, options, &exit_code] {
+  command.add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
+  command.callback([choice, options, &exit_code] {
     exit_code = run_by_sweep(
         *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {
           return studies::study_stability(*options, sweep, stop);
@@ -88,19 +86,17 @@ void add_stability_study(CLI::App& study_command, int& exit_code) {
   });
 }
 
-void add_trouble_study(CLI::App& study_command, int& exit_code) {
-  CLI::App* command = study_command.add_subcommand(
-      "trouble", "random scenes and hands by the thousand: nothing may go wrong in any");
+void add_trouble_options(CLI::App& command, int& exit_code) {
   auto choice = std::make_shared<SweepChoice>();
   auto options = std::make_shared<studies::TroubleOptions>();
   choice->out = "study-trouble";
-  choice->add_options(*command);
-  add_arm_option(*command, options->arm_file, "Arm file (app/arms)")->required();
-  command->add_option("--count", options->count, "Scenes")
+  choice->add_options(command);
+  add_arm_option(command, options->arm_file, "Arm file (app/arms)")->required();
+  command.add_option("--count", options->count, "Scenes")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all scenes")->capture_default_str();
-  command->callback([choice, options, &exit_code] {
+  command.add_option("--seed", options->seed, "Of all scenes")->capture_default_str();
+  command.callback([choice, options, &exit_code] {
     exit_code = run_by_sweep(
         *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {
           return studies::study_trouble(*options, sweep, stop);
