@@ -69,13 +69,13 @@ void add_stability_options(CLI::App& command, int& exit_code) {
       ->check(CLI::Range(100, 20'000))
       ->capture_default_str();
   command
-      ->add_option("--hand", options->hand,
-                   "arm (as its file says), none, or MASS,STIFFNESS,DAMPING (kg, N/m, N s/m)")
+      .add_option("--hand", options->hand,
+                  "arm (as its file says), none, or MASS,STIFFNESS,DAMPING (kg, N/m, N s/m)")
       ->capture_default_str();
   command
-      ->add_option("--direction", options->direction,
-                   "X Y Z in the world, along which the wall stands; else the worst of the "
-                   "base's axes")
+      .add_option("--direction", options->direction,
+                  "X Y Z in the world, along which the wall stands; else the worst of the "
+                  "base's axes")
       ->expected(3);
   command.add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
   command.callback([choice, options, &exit_code] {
