@@ -63,7 +63,7 @@ def words(text, at):
 def interface(source):
     """Words that are names: of commands, keys, values, arms, scenes."""
     names = TERMS | VALUES | {one.stem for folder in ("scenes", "arms") for one in (source / "app" / folder).glob("*.yaml")}
-    for page in ("keys.md", "commands.md"):
+    for page in ("keys.md", "commands.md", "viewer.md"):
         text = (source / "app/guide/pages" / page).read_text()
         for code in re.findall(r"`([^`\n]+)`", text):
             names.update(re.findall(r"[A-Za-z_]+", code) if len(code.split()) <= 2 else [])

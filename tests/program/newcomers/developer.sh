@@ -25,7 +25,7 @@ fi
 c++ $(pkg-config --cflags thimble) -O0 touch.cpp -o by_pkg_config $(pkg-config --libs thimble) 2>said ||
   fail "pkg-config: $(cat said)"
 # Only below /usr are names found by themselves.
-says guide/cpp.md 'of another prefix say `export XDG_DATA_DIRS=~/thimble/share:/usr/share`'
+says guide/cpp.md 'For another prefix, run `export XDG_DATA_DIRS=~/thimble/share:/usr/share`'
 share=$(pkg-config --variable=prefix thimble)/share
 export XDG_DATA_DIRS=$share:/usr/share
 see '^Force +[0-9.]+ N at most' ./by_pkg_config

@@ -3,7 +3,7 @@
 # force, an arm file of his own. All on simulated arms.
 source "$(dirname "$0")/follow.sh"
 
-says guide/first_arm.md 'Below each problem stands the command that fixes it.'
+says guide/first_arm.md 'The command that fixes a problem is printed below it.'
 see '^sim +simulated arm' thimble devices
 thimble doctor >doctor.txt 2>&1 || true  # no arm is plugged in
 see 'udev rule' cat doctor.txt

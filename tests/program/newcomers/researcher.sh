@@ -11,15 +11,15 @@ see '"met": true' cat study/figures.json
 says guide/recording.md 'It is HDF5 with a unit on every column, so Python, MATLAB and Julia open it.'
 see '^Force' thimble run rubber --record rubber.h5
 if has h5dump; then see 'unit' h5dump -A rubber.h5; fi
-says guide/recording.md '`--verify` says whether every force is the same to the bit'
+says guide/recording.md '`--verify` reports whether every force is bit-identical'
 see 'to the bit' thimble replay rubber.h5 --verify
 
 if ! python3 -c 'import thimble' 2>/dev/null; then
   echo "  NOT TESTED: the series in Python; the package or python3-numpy is missing."
   exit 0
 fi
-says guide/python.md '`set` changes values of any scene by where they stand'
-says guide/python.md '`run.to_pandas()` gives all columns as a DataFrame (Debian: python3-pandas), `run.plot()` force and depth as matplotlib'
+says guide/python.md '`set` changes values of any scene by their path'
+says guide/python.md '`run.to_pandas()` gives all columns as a DataFrame (Debian: python3-pandas), `run.plot()` force and depth as a matplotlib figure'
 cat >series.py <<'END'
 import importlib.util
 import json

@@ -4,7 +4,7 @@ source "$(dirname "$0")/follow.sh"
 
 says guide/index.md 'Without an arm on the desk you use a simulated one'
 says guide/index.md 'thimble run elephant --report out'
-says guide/index.md 'The summary tells what was felt'
+says guide/index.md 'The summary lists contacts, forces and how evenly the loop ran.'
 scene=water_balloon  # which needs no scan
 [ -z "${THIMBLE_LONG:-}" ] || scene=elephant
 see '^Force +[0-9.]+ N at most' thimble run $scene --report out
@@ -18,7 +18,7 @@ came=$(thimble run --list | awk '$1 == "tin_can" { print $2 }')
 cp "$came" my_can.yaml
 sed -i 's/^name: .*/name: my_can/; s/stiffness: 600 /stiffness: 400 /' my_can.yaml
 see 'every run is the same' thimble run my_can.yaml --record can.h5
-says guide/scenes.md 'A mistake is answered with file, line, what was expected and what was found.'
+says guide/scenes.md 'An error message names the file, the line, the expected value and the value found.'
 sed 's/stiffness: 400 /stifness: 400 /' my_can.yaml >wrong.yaml
 refused 'wrong\.yaml:[0-9]+: .*stifness' thimble run wrong.yaml
 says guide/scenes.md 'thimble run my_ball.yaml'
