@@ -35,8 +35,8 @@ while IFS=$'\t' read -r at key rest; do
     failed=1
   fi
   case $key in
-    PHYSICS) page=physics ;;
-    DEVICES) page=devices ;;
+    PHYSICS) cited_pages=("$pages/physics.md" "$pages/physics_effects.md") ;;
+    DEVICES) cited_pages=("$pages/devices.md") ;;
     *) continue ;;
   esac
   sections=$(grep -oP '(?<![A-Za-z0-9.])[0-9](\.[0-9])?(?![0-9A-Za-z])' <<<"${rest%%, *}" || true)
@@ -45,8 +45,8 @@ while IFS=$'\t' read -r at key rest; do
     failed=1
   fi
   for section in $sections; do
-    grep -qE "^##+ ${section//./\\.} " "$pages/$page.md" || {
-      echo "$at: [$key$rest]: $pages/$page.md has no section $section"
+    grep -qE "^##+ ${section//./\\.} " "${cited_pages[@]}" || {
+      echo "$at: [$key$rest]: ${cited_pages[*]} has no section $section"
       failed=1
     }
   done
