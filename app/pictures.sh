@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Draws the pictures of README.md anew, into app/pictures: each a moment of a scene that comes with
-# the program. Needs no screen.
+# Redraws the pictures of README.md into app/pictures: each is a moment of a shipped scene.
+# Needs no screen.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 app/setup.sh release thimble
