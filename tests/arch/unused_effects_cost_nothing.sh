@@ -3,7 +3,7 @@
 # instructions per tick and holds the same bytes in a program with all effects and in one that was
 # built without them.
 #   unused_effects_cost_nothing.sh ALL NONE ONLY_BRISTLE SOURCE_DIR
-# The first three are effect_ticks, linked with all effects, with none, with friction: bristle alone.
+# The first three are effect_ticks, linked with all effects, with none, and with friction: bristle only.
 # Without valgrind only bytes are compared, and that only the table includes the effects.
 set -euo pipefail
 all=$1 none=$2 only_bristle=$3 source=$4
