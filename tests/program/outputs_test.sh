@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # No output destroys anything: one table has every output option of every command (`file` and `folder` below). It is refused
-# the work begins if it names an input, a file of another kind, a missing or read-only folder, or a file that another process
-# writes. At the end, every output option of the program must be in the table.
+# before the work begins if it names an input, a file of another kind, a missing or read-only folder, or a file that another
+# process writes. At the end, every output option of the program must be in the table.
 source "$(dirname "$0")/expect.sh" "$@"
 scenes=$source_dir/app/scenes
 sed "s#^arm: .*#arm: $source_dir/app/arms/vintage_phantom.yaml#" "$scenes/box.yaml" >scene.yaml
