@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Prints how much room Debian packages take: for each of the files its own kB, those of the packages that it depends on and
-# that a bare Debian (required packages and apt) does not have, and the sum, with the dependencies counted through and through.
+# Prints the disk space of Debian packages. For each file it prints its own kB, the kB of those dependencies that a bare Debian
+# (required packages and apt) does not have, and the sum. Indirect dependencies count as well.
 #   app/debian_packages.sh PACKAGE.deb...      build/release/*.deb after `cpack -G DEB`
-# The sizes are the field Installed-Size; the dependencies must be installed on this machine, as they are where the packages
-# were made. Exit code 1: one is not, so the sum is too small. Scripts that install packages source this file.
+# The sizes are the field Installed-Size. The dependencies must be installed on this machine, as they are where the packages
+# were built. Exit code 1: a dependency is missing, so the sum is too small. Scripts that install packages source this file.
 
 # installed_packages PACKAGE...: prints a line "PACKAGE VERSION" for each that is installed.
 installed_packages() {
@@ -31,7 +31,7 @@ install_packages() {
     apt-get install -y -q --no-install-recommends "$@" || return 1
 }
 
-# print_package_sizes DEB...: what this file prints.
+# print_package_sizes DEB...: prints the output of this script.
 print_package_sizes() {
   local deb
   {
@@ -41,7 +41,7 @@ print_package_sizes() {
     done
   } | awk -F'\t' '
     function name_of(text) { sub(/^ +/, "", text); sub(/[ (:\[].*/, "", text); return text }
-    # Adds a package, and what it depends on, to those of the bare system (mark "bare") or of one of the files.
+    # Adds a package and its dependencies to those of the bare system (mark "bare") or of one of the files.
     function add(package, mark,    i, k, count, groups, alternatives, choices, found, one) {
       if ((package, mark) in has || (package, "bare") in has) return
       has[package, mark] = 1
@@ -60,7 +60,7 @@ print_package_sizes() {
       }
     }
     $1 != "installed" && $1 != "file" { next }
-    # What a file holds counts, and not a package of that name that is installed here.
+    # The content of a file counts, not an installed package of the same name.
     $1 == "file" { files[++file_count] = $2 }
     {
       kilobytes[$2] = $3; needs[$2] = $6

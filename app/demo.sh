@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The first touch: sets the machine up, then a simulated PHANTOM-class arm in a simulated hand touches
-# a scanned elephant for 10 s at 1 kHz, and pictures of it are drawn. Where the scan cannot be had it is a
-# balloon, whose mesh came with Thimble.
+# A first touch: sets the machine up, then a simulated PHANTOM-class arm with a simulated hand touches
+# a scanned elephant for 10 s at 1 kHz, and draws pictures of it. If the scan is unavailable, it touches a
+# balloon, whose mesh is part of Thimble.
 #   app/demo.sh [options of `thimble run`]      for example: app/demo.sh --duration 3
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Unpacks the scanned meshes of Debian's libcgal-demo package (its data archive, about 140 meshes) into
-# build/meshes. Takes the installed package's archive, or else the package file alone: nothing is installed, and no
-# right is needed for it.
+# build/meshes. Uses the installed package's archive, or downloads the package file: nothing is installed, and no
+# privileges are needed.
 #   app/fetch_meshes.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs and lists the optional parts of Thimble (app/optional_parts.list). BY: the command that installs them, as in
-# that list, or the key of a part. THIMBLE_WITHOUT in the environment: keys of parts that are accepted as absent and are not installed.
+# that list, or the key of a part. THIMBLE_WITHOUT in the environment: keys of parts that may be absent and are not installed.
 #   app/optional_parts.sh keys BY...            prints the keys of the parts
 #   app/optional_parts.sh packages BY...        prints the Debian packages of the parts
-#   app/optional_parts.sh install BY...         installs them; ends with 1 if a part cannot be installed, and names it
-#   app/optional_parts.sh state                 prints what this system has of all parts: a build folder that was
-#                                               configured with something else is configured again
-#   app/optional_parts.sh table FOLDER BY...    prints which parts the build in FOLDER has, and why not the others
+#   app/optional_parts.sh install BY...         installs them; exits with 1 and names the part if one cannot be installed
+#   app/optional_parts.sh state                 prints the state of all parts on this system; a build folder that was
+#                                               configured with another state is configured again
+#   app/optional_parts.sh table FOLDER BY...    prints which parts the build in FOLDER has, and reasons for missing ones
 #   app/optional_parts.sh missing FOLDER BY...  prints the keys of the parts whose packages are missing
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -35,7 +35,7 @@ install_parts() {
   mapfile -t missing < <(missing_packages $(wanted_parts "$@" | packages_of))
   [ ${#missing[@]} -gt 0 ] || return 0
   echo "Installing Debian packages: ${missing[*]}"
-  # All at once is quickest. If one of them cannot be had, the other parts are installed all the same.
+  # One call for all is fastest. If one package is unavailable, the other parts are still installed.
   ! install_packages "${missing[@]}" || return 0
   while IFS='|' read -r _ _ packages part; do
     # shellcheck disable=SC2086
@@ -51,7 +51,7 @@ install_parts() {
 state() {
   # shellcheck disable=SC2046
   installed_packages $(parts | packages_of)
-  # Fetched without being installed.
+  # Downloaded but not installed.
   [ ! -f build/meshes/elephant.off ] || echo "build/meshes"
   tests/usb/kernel.sh 2>/dev/null || true
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the picture of README.md into app/pictures: a moment of a scene that comes with the program.
+# Draws the picture of README.md into app/pictures: a moment of a shipped scene.
 # Needs no screen.
 set -euo pipefail
 cd "$(dirname "$0")/.."

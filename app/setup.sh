@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes a Debian 12 machine ready and builds one preset: installs the Debian packages that are missing, unpacks the
+# Prepares a Debian 12 machine and builds one preset: installs missing Debian packages, unpacks the
 # scanned meshes, configures if the packages have changed since the last time, builds, and lists the optional parts.
-# Quick if there is nothing to do.
+# Fast if there is nothing to do.
 #   app/setup.sh [PRESET [TARGET...]]    PRESET: release (default), core (the smallest build), dev, clang, asan, asan-all, tsan, tsan-all, coverage
 #                                      TARGET: thimble: the program and the Python package, without tests
 # THIMBLE_WITHOUT="KEY..." in the environment: optional parts (app/optional_parts.list) that are not installed.
@@ -17,14 +17,14 @@ packages=(
   libeigen3-dev                          # vectors and matrices
   libusb-1.0-0-dev libhidapi-dev         # arms on USB
   libassimp-dev zlib1g-dev               # meshes: DAE, AMF, 3DS, glTF 1; archives of 3MF
-  libpng-dev                             # pictures felt as heights
+  libpng-dev                             # pictures as height maps
   libyaml-cpp-dev nlohmann-json3-dev     # scenes in, reports out
   libhdf5-dev                            # recordings
   libfmt-dev libspdlog-dev               # text with numbers, the log
-  libcli11-dev                           # arguments of the program
-  libjs-three libjs-dygraphs             # in report pages that replay a touch in a browser
+  libcli11-dev                           # command line
+  libjs-three libjs-dygraphs             # for report pages that replay a touch in a browser
   libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
-  libegl-mesa0 libgl1-mesa-dri           # ... by the processor if there is no graphics card
+  libegl-mesa0 libgl1-mesa-dri           # ... in software if there is no graphics card
   libglfw3-dev libimgui-dev              # the window
   libgtest-dev libbenchmark-dev          # tests and benchmarks
 )
@@ -66,7 +66,7 @@ if [ ${#missing[@]} -gt 0 ]; then
   }
 fi
 
-# Tests need them; a program without its tests does not.
+# Only tests need the meshes, so they may be missing if targets are named.
 [ "$preset" = core ] || app/fetch_meshes.sh || [ ${#targets[@]} -gt 0 ] || exit 3
 
 log=build/$preset.log
@@ -79,7 +79,7 @@ run() {
   }
 }
 : >"$log"
-# CMake looks for packages only while it configures, so it does that again if any of them was installed or removed.
+# CMake searches for packages only during configuration, so configure again if a package was installed or removed.
 folder=build/$preset
 if [ ! -f "$folder/build.ninja" ] || ! app/optional_parts.sh state | cmp -s - "$folder/optional_packages.txt"; then
   echo "Configuring $folder ..."

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds tests for 64-bit ARM and runs them by QEMU, with the hashes that x86-64 stored. Emulated: no board was asked.
-#   tests/arm64.sh [--all | PROGRAM...]    PROGRAM: of the tests, such as test_packed; without one test_math, which
+# Builds tests for 64-bit ARM and runs them under QEMU with the hashes stored on x86-64. Not run on a real board.
+#   tests/arm64.sh [--all | PROGRAM...]    PROGRAM: a test program such as test_packed; by default test_math, which
 #                                          is quick; --all: those of driver, device_sim, render and tests/sim, hours
-# Ends with 3 where the cross compiler or QEMU is not installed.
+# Exits with 3 if the cross compiler or QEMU is not installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 for tool in aarch64-linux-gnu-g++ qemu-aarch64; do
@@ -28,9 +28,9 @@ else
   done)
 fi
 
-# Each in a separate process, as many at once as there are cores. Three tests are left out: where one asks the kernel for
-# the name of a program it sees QEMU, in another a message of 1 MB takes QEMU longer than a service may be silent, and a
-# limit of memory that the third sets is not that of what QEMU runs.
+# Each in a separate process, one per core at a time. Three tests are excluded. One asks the kernel for the name of
+# a program and sees QEMU. In another, a message of 1 MB takes QEMU longer than a service may be silent. The third
+# sets a limit of memory, which does not apply to the emulated program.
 run_emulated() {  # run_emulated PATH
   qemu-aarch64 -L build/arm64_sysroot "$1" --gtest_brief=1 '--gtest_filter=-NodeLock.NamesTheProgramThat*:HaplyLinkTest.NamesEachFault*:RunApart.SurvivesWork*' >"$1.log" 2>&1 || touch "$1.failed"
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Unpacks what Thimble is linked with, for 64-bit ARM, into a folder: Debian's own packages, by a list and a
-# cache of apt's that are apart, so that nothing of this system changes and no administrator is needed.
+# Unpacks Debian's packages of Thimble's libraries for 64-bit ARM into a folder. Uses a separate list and cache of
+# apt, so that nothing of this system changes and no administrator is needed.
 #   tests/arm64_sysroot.sh FOLDER
 set -euo pipefail
 [ $# = 1 ] || { sed -n '2,4s/^# \{0,1\}//p' "$0" && exit 2; }
@@ -26,7 +26,7 @@ apt update >"$root/apt/log" && apt install -y --download-only "${packages[@]}" >
   tail -n 5 "$root/apt/log" >&2
   exit 1
 }
-# As Debian has been since 12: /lib is /usr/lib.
+# As in Debian since 12: /lib is /usr/lib.
 for folder in bin sbin lib; do
   mkdir -p "$root/usr/$folder"
   ln -sfn "usr/$folder" "$root/$folder"
@@ -35,13 +35,13 @@ for package in "$root"/apt/archives/*.deb; do
   dpkg-deb --fsys-tarfile "$package" |
     tar -x -C "$root" --keep-directory-symlink --exclude=./usr/share/doc --exclude=./usr/share/man --exclude=./usr/share/locale
 done
-# The cross compiler reads links of a sysroot as they are: those that begin at the root would lead out of it.
+# The cross compiler does not rewrite links of a sysroot: absolute ones would point outside of it.
 find "$root/usr" -type l -lname '/*' -printf '%p\t%l\n' | while IFS=$'\t' read -r link to; do
   ln -sfn "$(realpath -m --relative-to="$(dirname "$link")" "$root$to")" "$link"
 done
-# What installing would have chosen.
+# The choice that an installation would have made.
 ln -sfn hdf5-serial.pc "$root/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
-# CMake's files of packages name libraries from the root on as well.
+# CMake's package files also name libraries by absolute paths.
 find "$root"/usr/lib/*/cmake -name '*.cmake' -exec sed -Ei 's#([";:])/usr/#\1${CMAKE_SYSROOT}/usr/#g' {} +
 rm -rf "$root/apt/archives"
 echo "${packages[*]}" >"$root/packages"

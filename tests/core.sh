@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Tests the parts that can be left out (CMakeLists.txt).
+# Tests builds without optional parts (CMakeLists.txt).
 #   tests/core.sh [--each]
-#     (nothing)  configures a build without each part alone; builds the preset core in an empty folder, prints the
-#                seconds, touches a scene with it, asks for what it lacks, and builds programs on its installed libraries;
+#     (nothing)  configures a build without each single part; builds the preset core in an empty folder, prints the
+#                seconds, touches a scene with it, calls missing commands, and builds programs with its installed libraries;
 #                then the same with shared libraries (shared.sh)
-#     --each     also builds the program without each part alone (an hour)
+#     --each     also builds the program without each single part (an hour)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source=$PWD
@@ -42,7 +42,7 @@ cd "$work"
 "$thimble" run box --duration 1 --no-view --report "$work/report" >said 2>&1 || fail "core does not run a scene: $(cat said)"
 grep -q '^Force ' said || fail "core prints no summary: $(cat said)"
 [ -s report/report.json ] || fail "core writes no report"
-lacks() {  # lacks OPTION COMMAND...: the answer names the option
+lacks() {  # lacks OPTION COMMAND...: the error names the option
   local status=0
   "$thimble" "${@:2}" >said 2>&1 || status=$?
   [ $status = 2 ] || fail "thimble ${*:2}: exit code $status: $(cat said)"
@@ -63,7 +63,7 @@ mkdir -p driver_only
 cat >driver_only/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(driver_only LANGUAGES CXX)
-# What the driver does not need cannot be found here.
+# Packages that the driver does not need cannot be found here.
 foreach(package fmt assimp PNG ZLIB yaml-cpp spdlog)
   set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)
 endforeach()

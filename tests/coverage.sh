@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Prints which share of the lines of each module the tests reach, and the files that they reach least.
-# Builds all of it once more, counting, and runs every test: half an hour. (Debian: gcovr.)
-#   tests/coverage.sh [--target NAME] [CTEST_OPTIONS...]    NAME: this test program alone, to be quick
+# Prints the share of lines of each module that the tests reach, and the files with the lowest shares.
+# Builds everything again with counters and runs every test: half an hour. (Debian: gcovr.)
+#   tests/coverage.sh [--target NAME] [CTEST_OPTIONS...]    NAME: only this test program, to save time
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v gcovr >/dev/null || {

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Does each addition of the guide's page app/guide/pages/extending.md in a copy of the tree, builds what it needs, runs the
+# Applies each addition of the guide's page app/guide/pages/extending.md to a copy of the tree, builds it, runs the
 # commands below it, and checks that only the files changed that its section lists.
 #   tests/extending.sh [WORD...]    WORD: the last of a section's heading (arm, law, texture, key, study, command, tracker);
-#                                   all of them if none is named, one on top of the other
-# THIMBLE_EXTENDING: the folder of the copy, build/extending if not set. What an earlier call has built there is used again.
+#                                   by default all of them, on top of each other
+# THIMBLE_EXTENDING: the folder of the copy, build/extending by default. Builds of an earlier call are reused.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
 copy=${THIMBLE_EXTENDING:-$source/build/extending}
@@ -11,7 +11,7 @@ page() { python3 "$source/tests/arch/extending.py" "$source" "$@"; }
 [ $# -gt 0 ] && words=("$@") || mapfile -t words < <(page)
 for word in "${words[@]}"; do page --test "$word" >/dev/null; done
 
-# The copy gets what differs only, so that Ninja builds no more than that.
+# Only files that differ are copied, so that Ninja builds no more than necessary.
 mkdir -p "$copy"
 cd "$copy"
 in_copy() { git -C "$copy" -c user.name=extending -c user.email=extending@localhost "$@"; }

@@ -2,16 +2,16 @@
 # Sets the machine up, builds, and runs the tests.
 #   tests/run.sh [--sanitizers] [--long] [--without KEY,...] [PRESET...]
 #     (nothing)     all tests of the release build
-#     --sanitizers  in addition: the tests of the libraries of a run (tests/CMakeLists.txt) but for
-#                   release_only.list under the address and undefined-behaviour sanitizers, and of these the ones
-#                   in which threads of a run meet under the thread sanitizer
+#     --sanitizers  in addition: the tests of the libraries of a run (tests/CMakeLists.txt) except
+#                   release_only.list under the address and undefined-behaviour sanitizers, and those of them with
+#                   several threads in a run under the thread sanitizer
 #     --long        all tests under all sanitizers, at full length and with fresh random cases (THIMBLE_SEED=N in the
 #                   environment repeats those of N), the release built by clang, a build in which no sources are
 #                   joined, the parts that can be left out, then tests on 64-bit ARM under QEMU (hours), clang-tidy,
 #                   coverage, mutants, and the additions of the guide's page (about 30 minutes of two cores each)
 #     --without     optional parts (keys of app/optional_parts.list) that are not installed and may be absent
 #     PRESET        only these
-# Ends with 1 if a test fails, or if an optional part that it installs is absent and not named by --without. A test that
+# Exits with 1 if a test fails, or if an optional part that it installs is absent and not named by --without. A test that
 # depends on the wall clock (label wall_clock, tests/wall_clock.list) has three attempts, every other test has one.
 # Prints the seconds of each stage at the end.
 set -euo pipefail
@@ -39,7 +39,7 @@ while [ $# -gt 0 ]; do
 done
 export THIMBLE_WITHOUT=$without
 app/optional_parts.sh keys >/dev/null || exit 2  # a key that does not exist
-# The long form draws fresh random cases: one number for all of its tests (tests/support/seed.h).
+# The long form draws new random cases: one number for all of its tests (tests/support/seed.h).
 [ -z "${THIMBLE_LONG:-}" ] || export THIMBLE_SEED="${THIMBLE_SEED:-$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')}"
 more=()
 if [ ${#presets[@]} = 0 ]; then
@@ -54,19 +54,19 @@ fi
 
 stages=()
 stage_begin=$SECONDS
-end_stage() {  # end_stage NAME: notes the seconds since the end of the stage before
+end_stage() {  # end_stage NAME: notes the seconds since the end of the last stage
   stages+=("$(printf '%5d s  %s' $((SECONDS - stage_begin)) "$1")")
   stage_begin=$SECONDS
 }
 
-# Everything is installed before anything is configured. What cannot be installed is named here and fails at the end.
+# Everything is installed before configuration. Parts that cannot be installed are named here and fail at the end.
 promised=(base program all tests ${THIMBLE_LONG:+long})
 app/optional_parts.sh install "${promised[@]}" || true
 [[ " $without " == *" usb "* ]] || tests/usb/setup.sh || true
 end_stage "installation"
 if [ ${#more[@]} -gt 0 ] && command -v clang++ >/dev/null; then presets+=(clang); fi
 
-# The output of failed tests, again at the very end: a log of CI is often cut to its last lines.
+# Prints the output of failed tests at the very end, because CI logs are often cut to their last lines.
 report_failures() {  # report_failures PRESET
   local name
   [ -s "build/$1.failed" ] || return 0  # it did not build, or is no preset
@@ -78,7 +78,7 @@ report_failures() {  # report_failures PRESET
   sed "s/^/Failed in $1: /" "build/$1.failed"
 }
 
-# A sanitizer builds no more than the tests of libraries (tests/CMakeLists.txt) in its short form.
+# In the short form a sanitizer preset builds only the tests of libraries (tests/CMakeLists.txt).
 build() {  # build PRESET
   case $1 in
     asan | tsan) app/setup.sh "$1" tests ;;
@@ -86,8 +86,8 @@ build() {  # build PRESET
   esac
 }
 
-# Runs the tests of a preset. Those that failed and depend on the wall clock, which a busy machine makes fail, are
-# repeated one at a time. Leaves in build/: PRESET.tests (output), PRESET.failed and PRESET.retried (names),
+# Runs the tests of a preset. Failed tests that depend on the wall clock, which a busy machine makes fail, are
+# repeated one at a time. Writes to build/: PRESET.tests (output), PRESET.failed and PRESET.retried (names),
 # PRESET.details (output of each test, if one failed).
 run_tests() {  # run_tests PRESET CTEST_ARGUMENT...
   local preset=$1 logs=build/$1/Testing/Temporary files=build/$1 attempt pattern
@@ -118,7 +118,7 @@ failed=()
 for preset in "${presets[@]}"; do
   leave=()
   case $preset in
-    asan | tsan) leave=(-L .) ;; # what lies in sources, and not in a program, was tested with the release
+    asan | tsan) leave=(-L .) ;; # tests of sources, not of programs, ran with the release
   esac
   build "$preset"
   end_stage "build $preset"
@@ -139,7 +139,7 @@ for name in "${more[@]}"; do
 done
 echo "Stages, in seconds:"
 printf '  %s\n' "${stages[@]}"
-# What was not tested, or passed at a further attempt only, once more where it is seen.
+# Repeats at the end which tests did not run, or passed only at a further attempt.
 for preset in "${presets[@]}"; do
   sed "s/^/Passed at a further attempt in $preset: /" "build/$preset.retried"
   sed -n "s/.*Test  *#[0-9]*: \([^ ]*\) .*\*\*\*Skipped.*/Not tested in $preset: \1/p" "build/$preset.tests" || true

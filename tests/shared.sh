@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests the shared libraries (BUILD_SHARED_LIBS=ON) against the static build of the same sources.
 #   tests/shared.sh [STATIC_BUILD [SHARED_BUILD]]
-# Build folders of the preset core, the second with recordings; without them the script builds its own. Looks at SONAME, run path
+# Build folders of the preset core, the second with recordings; without them the script builds its own. Checks SONAME, run path
 # and exported symbols, installs the libraries, moves the installation, builds the examples and a program on each library, and
 # compares runs with those of the static build, by the summary of `thimble run` and by the bits of all ticks.
 set -euo pipefail
@@ -24,7 +24,7 @@ libraries="driver device_sim render scene session"
 version=$(sed -n 's/^project(thimble VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 minor=${version%.*}
 
-# Unit tests link what the libraries do not export.
+# Unit tests link symbols that the libraries do not export.
 cmake --preset release -B "$work/with_tests" -D BUILD_SHARED_LIBS=ON >"$work/said" 2>&1 && fail "tests with shared libraries are not refused"
 tr -s ' \n' ' ' <"$work/said" | grep -q 'Add -D THIMBLE_TESTS=OFF' || fail "tests with shared libraries: $(cat "$work/said")"
 rm -rf "$work/with_tests"
@@ -45,7 +45,7 @@ if [ -z "$shared" ]; then
 fi
 quiet install cmake --install "$static" --prefix "$work/static_usr" --component dev
 quiet install cmake --install "$shared" --prefix "$work/first"
-mv "$work/first" "$work/usr"  # nothing may name the folder of the installation
+mv "$work/first" "$work/usr"  # no file may name the installation folder
 quiet install cmake --install "$shared" --prefix "$work/program_only" --component program
 "$work/program_only/bin/thimble" --version >"$work/said" 2>&1 || fail "the component program alone: $(cat "$work/said")"
 
@@ -61,11 +61,11 @@ for library in $libraries; do
   grep -qE '\((RUNPATH|RPATH)\) .*\[\$ORIGIN\]$' "$work/dynamic" || fail "$library: $(grep PATH "$work/dynamic" || echo no run path)"
   ! ldd "$file" | grep 'not found' || fail "$library does not find what it needs"
 
-  # Every exported symbol is ours, templates included.
+  # Every exported symbol is in Thimble's namespace, templates included.
   nm -DP --defined-only "$file" | awk '{ print $1, $2 }' | c++filt | sed 's/@[^ ]*//' >"$work/symbols"
   ! grep -vE '^((vtable|typeinfo|typeinfo name|VTT|guard variable) for |(non-virtual |virtual )?thunk to )?thimble::' "$work/symbols" ||
     fail "$library exports the lines above, which are not in namespace thimble"
-  # Hidden: what only its own sources call.
+  # Hidden: functions that only the library's own sources call.
   nm -gP --defined-only "$static"/{,app/}"$library/libthimble_$library.a" 2>/dev/null | awk '$2 ~ /^[TDBRSG]$/' | wc -l >"$work/count"
   exported=$(grep -c ' [TDBRSG]$' "$work/symbols")
   defined=$(cat "$work/count")
@@ -162,7 +162,7 @@ for library in $libraries; do
   [ "$library" = session ] || "$library/build/consumer" >said 2>&1 || fail "the program on $library: $(cat said)"
 done
 scene/build/consumer | grep -qE '^[1-9][0-9]+ scenes$' || fail "the shared library does not find its scenes: $(scene/build/consumer)"
-# By pkg-config the shared libraries are all that a program names.
+# With pkg-config a program names only the shared libraries.
 PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)")
 export PKG_CONFIG_PATH
 quiet pkg_config "${CXX:-c++}" $(pkg-config --cflags thimble) -I "$source/tests" session/consumer.cpp -o by_pkg_config $(pkg-config --libs thimble)

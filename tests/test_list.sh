@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Fails if a line of a list of tests names no test of a build, or names one without the label, or if a test has the label
-# that no line names.
+# Fails if a line of a list of tests names no test of a build, or names one without the label, or if no line names a test
+# with the label.
 #   tests/test_list.sh BUILD_FOLDER LIST
 #   tests/test_list.sh BUILD_FOLDER LIST LABEL
 set -euo pipefail
 list=$(dirname "$0")/$2
-# By a folder of its own, for a ctest that lists tests takes the log from the one that runs them.
+# Runs in a separate folder, because a ctest that lists tests truncates the log of one that runs them.
 lister=$(mktemp -d)
 trap 'rm -rf "$lister"' EXIT
 echo "subdirs(\"$(realpath "$1")\")" >"$lister/CTestTestfile.cmake"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Asks clang-tidy about every source of the tree (checks: .clang-tidy). It reads sources joined, as they
-# are built, so that what sixteen of them include is read once; nothing needs to be compiled before.
+# Runs clang-tidy on every source of the tree (checks: .clang-tidy). It reads sources joined, as they
+# are built, so that common includes are parsed once per group; no build is needed before.
 # Forty minutes of one processor. (Debian: clang-tidy.)
 #   tests/tidy.sh [REGEX]      REGEX: only compiled files with such a name, e.g. render/
 set -euo pipefail
@@ -17,7 +17,7 @@ cmake --preset release -B "$build" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"build
 }
 found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
-ask() {  # ask FILE: prints what there is to say, once per place
+ask() {  # ask FILE: prints its findings, once per place
   local said status=0 config=.clang-tidy
   [[ $1 != */tests/* ]] || config=tests/.clang-tidy
   said=$(clang-tidy -p "$build" --config-file="$config" --quiet --extra-arg=-Wno-unknown-warning-option \

@@ -6,8 +6,8 @@
 The parts between the lines of "# %%" are cells for those who work in a notebook.
 """
 
-# %% Feel a ball of rubber, and the same hand on a surface twice as soft: a force law of one's own, which
-# is asked in each tick of virtual time and may be any Python.
+# %% Touch a ball of rubber, then the same ball at half the stiffness by a custom force law. The law may be any
+# Python code; it is called in each tick of virtual time.
 import sys
 
 import numpy as np
@@ -18,14 +18,14 @@ touch = thimble.run("rubber")
 softer = thimble.run("rubber", law=lambda tick: 0.5 * tick.force_wanted)
 print(touch.summary())
 
-# %% All is numpy: seconds, metres, newtons.
+# %% All arrays are numpy: seconds, metres, newtons.
 force = np.linalg.norm(touch.force, axis=1)
 softer_force = np.linalg.norm(softer.force, axis=1)
 beginnings = np.flatnonzero(np.diff(touch.in_contact.astype(int)) == 1)
 print(f"Contacts: {len(beginnings)}; {force.max():.2f} N at most, {1e3 * touch.depth.max():.2f} mm deep.")
 print(f"Half the force lets the hand {1e3 * softer.depth.max():.2f} mm deep.")
 
-# %% Drawn, if matplotlib is installed.
+# %% Drawn if matplotlib is installed.
 try:
     import matplotlib
 

@@ -17,8 +17,8 @@ import numpy as np
 import thimble
 from thimble import experiment
 
-STANDARD = 20e-6  # m, root mean square of the standard's height
-NOISE = 0.1  # of the subject: what it makes of a roughness scatters by this part of it
+STANDARD = 20e-6  # m, RMS height of the standard
+NOISE = 0.1  # of the simulated subject: relative scatter of its roughness estimate
 
 # A hand strokes 20 mm of a block of sandpaper in 0.4 s.
 SANDPAPER = {
@@ -37,7 +37,7 @@ def stroke(roughness, random):
     changes = {"strip.effects.texture.roughness": roughness, "strip.effects.texture.seed": piece}
     touch = thimble.run(SANDPAPER, set=changes, seed=tremor)
     force = touch.force[touch.time > 0.35, 2]
-    quick = force - np.convolve(force, np.ones(51) / 51, mode="same")  # without what is slower than 20 Hz
+    quick = force - np.convolve(force, np.ones(51) / 51, mode="same")  # without frequencies below 20 Hz
     return float(np.sqrt(np.mean(quick[25:-25] ** 2)))
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the guide's page of all keys of scene and arm files out of the program's own readers.
+# Writes the guide's page of all keys of scene and arm files, from the program's own readers.
 #   app/guide/keys.sh [PROGRAM]      prints the page; put it into app/guide/pages/keys.md
 set -euo pipefail
 program=${1:-build/release/app/thimble}

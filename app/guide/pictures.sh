@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Draws the guide's pictures anew by the program's own commands (needs gnuplot, chromium and python3-websockets).
+# Redraws the guide's pictures with the program's own commands (needs gnuplot, chromium and python3-websockets).
 #   app/guide/pictures.sh [PROGRAM]
-# The three that begin with accuracy_ come from `thimble study accuracy`, which takes minutes; they are kept.
+# The three pictures accuracy_* come from `thimble study accuracy`, which takes minutes; they are kept.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 program=$(realpath "${1:-build/release/app/thimble}")
@@ -14,14 +14,14 @@ cd "$work"
 shot() {  # NAME SCENE [OPTION...]: a moment of a scene, 480 by 320
   "$program" shot "$scenes/$2.yaml" --out "$pictures/$1.png" --size 480x320 --no-caption "${@:3}" >/dev/null
 }
-figure() {  # NAME FILE: a figure as the program wrote it
+figure() {  # NAME FILE: a figure that the program wrote
   cp "$2" "$pictures/$1.png"
 }
 
 # First touch, with force and depth over time.
 "$program" shot "$scenes/elephant.yaml" --plots --size 720x540 --out "$pictures/first_touch.png" >/dev/null
 
-# The scene that scenes.md writes out.
+# The example scene of scenes.md.
 awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^name: / { keep = $2 == "my_ball" } inside && keep' \
   "$here/pages/scenes.md" >my_ball.yaml
 "$program" shot my_ball.yaml --out "$pictures/my_ball.png" --size 480x320 --no-caption >/dev/null
@@ -31,7 +31,7 @@ for arm in vintage_phantom polhem falcon; do
   "$program" shot my_ball.yaml --arm "$here/../arms/$arm.yaml" --out "$pictures/arm_$arm.png" --size 320x320 --camera 35 18 0.35 --no-caption >/dev/null
 done
 
-# Effects: what dents, what keeps a print, what moves.
+# Effects: dents, prints that stay, moving objects.
 shot effect_dent water_balloon
 shot effect_clay clay
 shot effect_field charges
@@ -46,7 +46,7 @@ figure stability_drive_train stability/drive_train.png
 "$program" run "$scenes/tin_can.yaml" --report can >/dev/null
 figure recording can/force_and_depth.png
 
-# The page that plays a run, as a browser shows it.
+# The page that plays a run, in a browser.
 "$program" run "$scenes/water_balloon.yaml" --report balloon >/dev/null
 /usr/bin/python3 "$here/../../tests/program/page_browser.py" chromium balloon/index.html "$pictures/page.png" 1 >/dev/null
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the guide as web pages with mkdocs (Debian: mkdocs); a link that leads nowhere, or a page that
-# stands in no menu, is an error.
+# Builds the guide as web pages with mkdocs (Debian: mkdocs). Dead links and pages that are in no menu
+# are errors.
 #   app/guide/site.sh [FOLDER]      FOLDER: where to write, build/guide by default; open index.html there
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -13,7 +13,7 @@ said=$(mkdocs build --clean --strict -f "$here/mkdocs.yml" -d "$out" 2>&1) || {
   echo "$said" >&2
   exit 1
 }
-# mkdocs only mentions what stands in no menu, and does not look whether a heading exists.
+# mkdocs only reports pages that are in no menu, and does not check whether a heading exists.
 failed=0
 if grep -A 20 'not included in the "nav"' <<<"$said" >&2; then failed=1; fi
 while IFS=$'\t' read -r page target; do
@@ -24,7 +24,7 @@ while IFS=$'\t' read -r page target; do
     failed=1
   }
 done < <(grep -oHP '<a [^>]*href="\K[^":]*#[^"]+(?=")' "$out"/*.html | sed 's/:/\t/' | grep -v '#$' | sort -u)
-# Every picture is shown by some page.
+# Each picture must be shown on a page.
 for picture in "$here"/pages/pictures/*; do
   grep -rqF "pictures/$(basename "$picture")" "$here"/pages/*.md || {
     echo "app/guide/pages/pictures/$(basename "$picture"): no page shows it" >&2

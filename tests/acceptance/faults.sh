@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Runs the matrix of faults and writes what was promised and measured as a table: fault by arm, a
-# column per phase. What runs in simulated time is the same on every machine; of what runs on the
-# wall clock the table says only whether the promise was kept.
+# Runs the fault matrix and writes promises and measurements as a table: fault by arm, a
+# column per phase. Results in simulated time are equal on every machine; for results on the
+# wall clock the table states only whether the promise was kept.
 #   tests/acceptance/faults.sh [BUILD_DIR [OUTPUT]]    default: build/release and tests/acceptance/FAULTS.md
-#   tests/acceptance/faults.sh --check LINES           LINES: what FaultMatrix left (THIMBLE_FAULTS); fails where
-#                                           tests/acceptance/FAULTS.md says otherwise; writes nothing
+#   tests/acceptance/faults.sh --check LINES           LINES: output of FaultMatrix (THIMBLE_FAULTS); fails if
+#                                           tests/acceptance/FAULTS.md differs; writes nothing
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Runs the tests of the hard cases and writes what they measured to tests/acceptance/HARD_CASES.md.
+# Runs the tests of the hard cases and writes their measurements to tests/acceptance/HARD_CASES.md.
 #   tests/acceptance/hard_cases.sh [BUILD]        BUILD: a built folder (build/release if none is named)
-#   tests/acceptance/hard_cases.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
-# Fails where a case has no figure, a figure misses its criterion, or (--check) the table in the
-# repository says otherwise: rows must be the same but for the figures, and these may differ by
-# 2 %; where both are 10 times better than needed by a factor of 2, where 1000 times by anything:
-# another compiler or libm rounds otherwise. The long form (THIMBLE_LONG) measures more, so its
-# figures are compared with nothing.
+#   tests/acceptance/hard_cases.sh --check LINES  LINES: the folder of lines of a finished run; writes nothing.
+# Fails if a case has no figure, a figure misses its criterion, or (--check) the table in the
+# repository differs. Rows must be equal except for their figures, which may differ by 2 %, or
+# by a factor of 2 if both are 10 times better than needed, or by any factor if both are 1000
+# times better, because another compiler or libm rounds differently. The long form
+# (THIMBLE_LONG) measures more, so its figures are not compared.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 table=$here/HARD_CASES.md
@@ -14,7 +14,7 @@ export LC_ALL=C
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Writes the table of a folder of lines to a file; tells the faults and fails if there are any.
+# Writes the table of a folder of lines to a file; prints the faults and fails if there are any.
 make_table() {
   : >"$scratch/faults"
   [ ! -d "$1" ] || find "$1" -type f | sort | xargs -r cat >"$scratch/lines"
@@ -43,7 +43,7 @@ if [ "${1:-}" = --check ]; then
       if (-b > most) most = -b
       return (a - b <= share * most) && (b - a <= share * most)
     }
-    # How far from its limit a row is, by its margin.
+    # Distance of a row from its limit, by its margin.
     function times(cell) { return cell ~ /> 1000|all/ ? 1000 : cell ~ /×/ ? cell + 0 : 0 }
     BEGIN { FS = " [|] " }
     NR == FNR { stored[NR] = $0; stored_count = NR; next }

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Shows that hard_cases.sh --check fails where it must: on made-up lines of every case.
+# Shows that hard_cases.sh --check fails for invented wrong lines of every case.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Writes good lines; what is given as "number|figure" replaces that case's figure, "-" leaves it out.
+# Writes good lines; an argument "number|figure" replaces that case's figure, "-" omits it.
 lines() {
   awk -F'|' -v change="${1:-}" '
     BEGIN { split(change, c, "|") }
@@ -25,7 +25,7 @@ must_fail() {
 }
 
 mkdir "$scratch/lines"
-export THIMBLE_LONG=1  # the lines are not those of the table
+export THIMBLE_LONG=1  # lines that differ from the table
 lines && check || { cat "$scratch/log" >&2; exit 1; }
 lines '7|-' && must_fail "a case without figure" "case 7 has no figure"
 lines '7|2.1' && must_fail "a figure beyond its limit" "case 7, words: 2.1 is not ≤ 2"
@@ -37,7 +37,7 @@ lines && echo "HARD_CASE|1|words|<= s|1|2|N|HardCaseJitter.Test|f" >>"$scratch/l
 must_fail "a test in the suite of another case" "case 1 has the suite HardCaseStiffestWall, not that of HardCaseJitter"
 lines && echo "HARD_CASE|1|torn" >>"$scratch/lines/all"
 must_fail "a torn line" "not understood"
-# Rows as cases 4 and 38 have them: more than a limit, and just that.
+# Rows like cases 4 and 38: above a limit, and equal to it.
 lines && echo "HARD_CASE|4|adversary|> gain|-0.49|0|1|HardCaseEncoderAdversary.Test|f" >>"$scratch/lines/all"
 must_fail "an adversary who gains nothing" "case 4, adversary: -0.49 is not > 0"
 lines && echo "HARD_CASE|38|glitches|== not dropped|1|0|1|HardCaseEncoderFault.Test|f" >>"$scratch/lines/all"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Runs the tests that compare physical values with closed forms and writes them to tests/acceptance/PHYSICS.md.
 #   tests/acceptance/physics.sh [BUILD]        BUILD: a built folder (build/release if none is named)
-#   tests/acceptance/physics.sh --check LINES  LINES: the folder of lines that a run has left; writes nothing.
-# Fails where an error is above its bound or (--check) the page in the repository differs: rows must be
-# the same but for measured values and errors. Errors may differ by 20 % of themselves or by a hundredth
-# of their bound, since another compiler rounds otherwise.
+#   tests/acceptance/physics.sh --check LINES  LINES: the folder of lines of a finished run; writes nothing.
+# Fails if an error is above its bound or (--check) the page in the repository differs. Rows must be
+# equal except for measured values and errors. Errors may differ by 20 %, or by a hundredth of their
+# bound, because another compiler rounds differently.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 page=${THIMBLE_PHYSICS_PAGE:-$here/PHYSICS.md}

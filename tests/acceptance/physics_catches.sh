@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Shows that physics.sh --check fails where it must: on made-up lines.
+# Shows that physics.sh --check fails for invented wrong lines.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes app/guide/pages/guarantees.md from app/guide/guarantees.list, with the breadth that the tests of each row
+# Writes app/guide/pages/guarantees.md from app/guide/guarantees.list, with the coverage that the tests of each row
 # reported. Needs a complete release build.
 #   promises.sh [BUILD]
 set -euo pipefail

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Shows that bodies that move or bend, force fields, and clay's splitting cost a scene without them nothing: of all that they are made
-# of nothing is called in a tick, and a tick calls the object's own law and the observers of every run, no more.
+# Shows that bodies that move or bend, force fields, and splitting of clay cost nothing in a scene without them: a tick
+# calls none of their functions, and calls only the object's own law and the observers of every run.
 #   absent_bodies_and_fields_cost_nothing.sh SCENE_TICKS SOURCE_DIR
 set -euo pipefail
 program=$1 source=$2
@@ -13,7 +13,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 bad=0
 
-# Every class that lives there, whoever adds one.
+# Every class in these folders, so that new ones are included.
 classes() {
   grep -rhoE '^(class|struct) [A-Z][A-Za-z]+' "$@" | awk '{ print $2 }' | sort -u | paste -sd'|'
 }
@@ -37,7 +37,7 @@ for what in bodies fields; do
   fi
 done
 
-# A call of somebody's else would be one of these two's.
+# A call of other code would come from one of these two.
 expect() {
   local caller=$1 expected=$2 found
   found=$(callees "$folder/plain.calls" "$caller" | sed -E 's/.*::([A-Za-z]+::)/\1/' | paste -sd' ')
@@ -51,10 +51,10 @@ expect 'ForceLaw<thimble::render::SceneTouch>(thimble::render::SceneTouch&)::{la
 expect 'TickSink<thimble::session::RunLoop>(thimble::session::RunLoop&)::{lambda' \
   'BlackBox::take LatestTick::take RecordingSwitch::take RunStatistics::take Trace::take'
 
-# What this looks for is there where a scene names it.
+# The searched functions are called in a scene that uses them.
 tick_calls "$program" "$source/app/scenes/clay.yaml" "$folder" clay
 tick_calls "$program" "$source/app/scenes/honey.yaml" "$folder" honey
-# Clay that splits no triangles calls nothing of what does.
+# Clay that splits no triangles calls none of the splitting code.
 splits='PrintRefinement|split_edge|EdgeSplit'
 found=$(used "$splits" clay)
 if [ -n "$found" ]; then

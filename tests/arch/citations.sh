@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Every key in square brackets in a comment or a document stands in the guide's references, and every
-# section of the physics and of the arms that is cited exists, as does every test that a page names. Names of tests
+# Each key in square brackets in a comment or a document is in the guide's references. Each cited section
+# of the physics and of the arms exists, and so does each test that a page names. Names of tests
 # (Suite.Name) have at most 60 characters, and each suite of hard cases has its number in tests/acceptance/hard_cases.list.
 #   citations.sh SOURCE_FOLDER
 set -euo pipefail
@@ -10,7 +10,7 @@ cd "$source"
 keys=$(grep -oP '^\| \[\K[A-Za-z]+(?=\])' $pages/references.md)
 [ "$(wc -w <<<"$keys")" -ge 10 ] || { echo "FAILED: $pages/references.md has no keys" >&2 && exit 1; }
 
-# file:line:comment of every comment, and of every line of a document outside of its code.
+# file:line:comment of every comment, and of every line of a document outside its code.
 comments() {
   find CMakeLists.txt README.md CONTRIBUTING.md app device_sim driver render tests udev -type f \
     \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print0 | xargs -0 grep -nHoP '//.*'
@@ -20,7 +20,7 @@ comments() {
   find README.md CONTRIBUTING.md app device_sim driver render tests -type f -name '*.md' -not -name references.md -print0 |
     xargs -0 awk '/^ *```/ { inside = !inside; next } !inside && !/^    / { gsub(/`[^`]*`/, ""); print FILENAME ":" FNR ":" $0 }'
 }
-# A citation: no index, no function's argument, no link, no option of a usage line.
+# A citation: no index, argument of a function, link, or option of a usage line.
 cited=$(comments | grep -P '(?<![A-Za-z0-9_`\]):])\[[A-Z][A-Za-z]*[ \],:]' |
   perl -ne 'my ($at, $text) = /^([^:]*:[0-9]*):(.*)/;
     while ($text =~ /(?<![A-Za-z0-9_`\])])\[([A-Z][A-Za-z]*)((?:[ ,:][^\]`(]*)?)\](?![(\[])/g) { print "$at\t$1\t$2\n" }')
@@ -28,7 +28,7 @@ cited=$(comments | grep -P '(?<![A-Za-z0-9_`\]):])\[[A-Z][A-Za-z]*[ \],:]' |
 
 failed=0
 while IFS=$'\t' read -r at key rest; do
-  # Options of a usage line, and units in a picture of an interface, are written in capitals too.
+  # Options of a usage line and units in a diagram are capitals as well.
   case $key in ARM | BUILD | FILE | FIRMWARE | FOLDER | NAME | OUTPUT | PICTURE | PRESET | PROGRAM | REGEX | SCENE | THREADS | TIMEOUT | APART | HARD_CASES) continue ;; esac
   if ! grep -qx "$key" <<<"$keys"; then
     echo "$at: [$key$rest] is not in $pages/references.md"
@@ -52,14 +52,14 @@ while IFS=$'\t' read -r at key rest; do
   done
 done <<<"$cited"
 
-# A test that a page names exists.
+# Tests that a page names must exist.
 for name in $(grep -hoP '`\K[A-Z]\w+\.[A-Z]\w+(?=`)' $pages/*.md | sort -u); do
   grep -rqE "^(TEST|TEST_F|TEST_P)\(${name%.*}, ${name#*.}\)" tests || {
     echo "$pages names the test $name, which does not exist"
     failed=1
   }
 done
-# Names of tests. A suite is planted that is too long, and one that no case has.
+# Names of tests. Two suites are planted: one with too long a name, one without a case.
 tests_named=$(find tests -name '*.cpp' -print0 | xargs -0 perl -0777 -ne '
   while (/^(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+)\s*,\s*(\w+)\s*\)/mg) { print "$ARGV:$1.$2\n" }')
 wrong_names() { # reads file:Suite.Name

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fails if clang refuses, or warns of, what GCC built of driver, device_sim and render: it reads the sources and builds
-# nothing. `tests/run.sh --long` builds all of the project by clang.
+# Fails if clang refuses or warns about a source of driver, device_sim or render that GCC built. It reads the sources and
+# builds nothing. `tests/run.sh --long` builds the whole project with clang.
 #   clang_accepts.sh BUILD_DIR
-# Ends with 77 where there is no clang.
+# Exits with 77 if clang is missing.
 set -euo pipefail
 command -v clang++ >/dev/null || {
   echo "SKIPPED: nothing was read by clang, which is not installed (tests/fuzz/setup.sh)" >&2
@@ -12,7 +12,7 @@ cd "$1"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# Each source and its options, without what is GCC's own or would be written.
+# Each source and its options, without options of GCC and without output files.
 /usr/bin/python3 - >"$folder/sources" <<'EOF'
 import json, shlex
 
@@ -28,7 +28,7 @@ for entry in json.load(open('compile_commands.json')):
 EOF
 [ -s "$folder/sources" ] || { echo "No source of the libraries in $1/compile_commands.json" >&2 && exit 1; }
 
-# What all of them read, once for each set of options.
+# Common headers, precompiled once for each set of options.
 bad=0
 while IFS=$'\t' read -r source options; do
   headers=$folder/$(md5sum <<<"$options" | cut -c1-32)

@@ -167,7 +167,7 @@ def compiles(calls, build, tree, path):
         if skip:
             skip = False
         elif word in ("-o", "-c", "-include"):
-            skip = True  # the precompiled headers are of the tree as it is
+            skip = True  # the precompiled headers belong to the unchanged tree
         elif not word.startswith("-O"):
             if word.startswith(f"-I{home}") and not word.startswith(f"-I{build}"):
                 call.append(word.replace(home, str(tree), 1))
@@ -205,7 +205,7 @@ def check(source, build, only):
                 shutil.copy(source / path, tree / path)
 
     with tempfile.TemporaryDirectory() as folder:
-        tree = pathlib.Path(folder) / "all"  # with all additions, one on top of the other
+        tree = pathlib.Path(folder) / "all"  # with all additions together
         for section in sections:
             check_list(source, section, faults)
             try:

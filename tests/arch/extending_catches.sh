@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests extending.py: each kind of fault in a copy of the guide's page or of the tree is found, and the tree as it is has none.
+# Tests extending.py: it finds each kind of fault in a copy of the guide's page or of the tree, and none in the unchanged tree.
 #   extending_catches.sh SOURCE_FOLDER [BUILD]
 set -euo pipefail
 source=$(realpath "$1") build=${2:+$(realpath "$2")}
@@ -10,7 +10,7 @@ cd "$scratch/tree"
 page=app/guide/pages/extending.md
 (cd "$source" && cp --parents $page .clang-format $(python3 tests/arch/extending.py . --files) "$scratch/tree")
 failures=0
-finds() {  # finds PATTERN FILE SED [BUILD]: the fault that SED makes of FILE is found
+finds() {  # finds PATTERN FILE SED [BUILD]: extending.py finds the fault that SED makes in FILE
   local status=0
   cp "$2" "$scratch/kept"
   sed -i "$3" "$2"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every source and header is as clang-format leaves it (.clang-format). Debian 12's version 14 decides;
+# Each source and header is formatted with clang-format (.clang-format). Debian 12's version 14 decides;
 # without it the test is skipped.
 #   format.sh SOURCE_FOLDER
 set -euo pipefail

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Fails if a module includes what it must not know (the table in app/guide/pages/concepts.md), if a layer of render
-# includes one above it (the table in render/README.md), if a library of app includes one above it
-# (app/CMakeLists.txt), if a folder is too full, or if a source needs a header of its neighbour's.
+# Fails if a module includes a header that it must not use (the table in app/guide/pages/concepts.md), if a layer of render
+# includes a layer above it (the table in render/README.md), if a library of app includes a library above it
+# (app/CMakeLists.txt), if a folder has too many sources, or if a source relies on an include of another one.
 #   tests/arch/layering.sh [SOURCE_DIR]
 set -euo pipefail
 cd "${1:-$(dirname "$0")/../..}"
@@ -38,9 +38,9 @@ forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\
 forbid render/include '(mesh|compact_mesh|search|track|body|disk_paging|multirate|field|surface|effect)/|[a-z_]*\.h"' \
   "a header beside the sources: it is not installed"
 
-# The layers of render: LAYER: what it may include. Some headers are no part of the folder they lie
-# in: what all layers hand on (state), what an effect is told (settings), what a scene runs (touch),
-# and what builds it out of everything (build).
+# The layers of render: LAYER: what it may include. Some headers do not belong to the layer of their folder:
+# types that all layers pass on (state), settings of effects (settings), the law of a scene (touch),
+# and the code that builds it from all layers (build).
 layers='
   state:
   settings:
@@ -90,25 +90,25 @@ if [ -n "$upward" ]; then
   bad=1
 fi
 
-# The installed headers of app: nothing beside the sources, and no library that a user need not know.
+# The installed headers of app include no private headers, and no library that a user need not know.
 forbid app/scene/include '(yaml|arm_policy)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
 forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a header beside the sources, or HDF5"
-# Python binds what C++ programs link; of the rest it reads the warnings alone.
+# Python binds the same headers as C++ programs; in addition it uses the warnings only.
 forbid app/python '(yaml|arm_policy|recording|share|observers|report|studies|view|bringup|hil|cli)/|stability/(draw|rest|stability|wall)' \
   "what a C++ program that links thimble::session cannot reach"
 
-# The libraries of app, the lowest first: FOLDER: what it must not know.
+# The libraries of app, the lowest first: FOLDER: what it must not include.
 forbid_app() {
   forbid "app/$1" "$2" "a library above it or beside it"
 }
 forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
-# What writes files knows nothing of what is written.
+# Code that writes files does not depend on their content.
 forbid app/scene/src/output '(log|yaml|files|arm_policy|hand|meshes|quality|arm)/|thimble/(device_sim|render|scene)/' \
   "the rest of the scene library"
 forbid_app scene 'thimble/session/|(recording|share|events|report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
 forbid_app session '(report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
-# What a program of somebody else's includes needs nothing beside the sources; and observers of a run's
-# ticks know nothing of each other: only who registers them knows them all (run_records.h).
+# Headers for users' programs need no private headers. Observers of a run's ticks do not include each
+# other; only the code that registers them includes them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
   "a header beside the sources, or a library behind it"
 for observer in observers/black_box observers/dent_record observers/latest_tick observers/page_server \
@@ -133,7 +133,7 @@ forbid_app hil '(identified|share|events|view|compat|ros2|web|cli)/'
 forbid_app twin '(share|events|studies|view|bringup|hil|compat|ros2|web|cli)/'
 forbid_app compat '(report|stability|studies|view|bringup|hil|web|cli)/'
 forbid_app ros2 '(report|stability|studies|view|bringup|hil|compat|web|cli)/'
-# Libraries that another maker's program loads bring none of ours with them, and know the core alone.
+# Libraries of the compatibility layer link no other library of Thimble, and use only its core.
 for part in core haply hd hdphantom dhd; do
   [ -d "app/compat/$part" ] || continue
   forbid "app/compat/$part" 'compat/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
@@ -149,9 +149,9 @@ for folder in bag scene session report web stability studies bringup identified 
   forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
 done
 
-# Eigen declares the cross product and the inverse in one header and defines them in another: a source that leaves the
-# second to the sources it is joined with, or to a precompiled header, does not link where there are none (presets dev, mutants).
-needs() {  # needs CALL HEADERS: who calls it includes one of the headers, or its own header does
+# Eigen declares the cross product and the inverse in one header and defines them in another. A source that relies on a joined
+# source or a precompiled header for the second does not link in builds without these (presets dev, mutants).
+needs() {  # needs CALL HEADERS: a source with CALL, or its own header, includes one of HEADERS
   local source own
   for source in $(grep -rlF ".$1" driver device_sim render app tests --include='*.h' --include='*.cpp'); do
     own=$(basename "${source%.*}").h
@@ -164,8 +164,8 @@ needs() {  # needs CALL HEADERS: who calls it includes one of the headers, or it
 needs 'cross(' 'Geometry'
 needs 'inverse()' 'LU|Geometry|Eigenvalues|Dense'
 
-# One rule for all outputs: what a user names is written through app/scene/src/output. Others write the program's own
-# state, drafts that they rename, and files in a folder that they have just made.
+# One rule for all outputs: files that a user names are written through app/scene/src/output. Other writers write the program's
+# own state, drafts that they rename, and files in a folder that they have just created.
 own_writers='app/(examples/|bag/write_bag|scene/src/(output/|arm/calibration|heat_keeper|files/kept_scene|arm_policy/feel_check_record)|session/src/share/steer/save_knobs|compat/server/free_scene)|render/src/mesh/file/save_mesh'
 written=$(grep -rnE 'std::ofstream|fopen\([^)]*"[wa]' app render driver device_sim --include='*.h' --include='*.cpp' |
   grep -vE "^($own_writers)" || true)
@@ -175,7 +175,7 @@ if [ -n "$written" ]; then
   bad=1
 fi
 
-# Who looks for something reads a folder from end to end: headers and sources of a layer of render count together.
+# A reader searches a folder as a whole: headers and sources of a layer of render are counted together.
 full=$(find driver device_sim render app tests -name '*.h' -o -name '*.cpp' -o -name '*.inc' |
   sed -E 's#^render/(include/thimble/render|src)/#render/#; s#/[^/]*$##' |
   sort | uniq -c | awk '$1 > 40 {print $2 ": " $1 " files, more than 40"}')

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Proves that layering.sh can fail: plants forbidden includes of each kind in a copy, all at once, and sees
-# that each is named.
+# Tests layering.sh: plants forbidden includes of each kind in a copy, all at once, and checks
+# that each is reported.
 #   tests/arch/layering_catches.sh SOURCE_DIR
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -84,7 +84,7 @@ plant app/view/window.h '"report/report.h"'
 plant app/bringup/doctor.h '"thimble/session/session.h"'
 plant app/report/report.h '<epoxy/gl.h>'
 plant app/bringup/doctor.h '<CLI/CLI.hpp>'
-# Is each of it named, by its file?
+# Each must be reported with its file.
 if bash "$here/layering.sh" "$copy" >"$said"; then
   echo "layering.sh noticed nothing of what was planted"
   exit 1
@@ -99,7 +99,7 @@ done <"$planted"
 [ $missed = 0 ]
 echo "$(wc -l <"$planted") forbidden includes, each named"
 
-# A source that leaves an include to the sources it is joined with; folders that are too full.
+# A source that relies on the includes of joined sources; folders with too many sources.
 make_copy
 sed -i '/Eigen.Geometry/d' "$copy/app/stability/rest_warnings.cpp" "$copy/tests/unit/render/search/built_in_halves_test.cpp"
 sed -i '/Eigen.LU/d' "$copy/app/twin/drive_train_twin.cpp"

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Fails if a build is configured with an option under which arithmetic has other bits, or if a usual one is not.
+# Fails if a build accepts an option that changes results of arithmetic, or refuses a usual one.
 #   tests/arch/loose_arithmetic_is_refused.sh SOURCE_DIR
 set -euo pipefail
 source=$1 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 bad=0
 
-# look VARIABLE=VALUE: what is said of an option, by the file that the project includes before it declares anything.
+# look VARIABLE=VALUE: the answer to an option, by the file that the project includes before it declares targets.
 look() { cmake -DCMAKE_SYSTEM_PROCESSOR=x86_64 -DCMAKE_BUILD_TYPE=Release "-D$1" -P "$source/driver/src/math/refuse_loose_arithmetic.cmake" 2>&1 || true; }
 
 for option in -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only \
@@ -25,13 +25,13 @@ for options in '-O2 -g' '-march=x86-64 -mtune=native -O2' '-O3 -DNDEBUG'; do
     bad=1
   fi
 done
-# And the project includes it.
+# The project must include that file.
 if ! { cmake -S "$source" -B "$folder/build" -DCMAKE_CXX_FLAGS=-ffast-math 2>&1 || true; } | grep -q 'forces would'; then
   echo "the project was configured with -ffast-math"
   bad=1
 fi
 
-# What comes in beside CMake's variables is refused by the compiler.
+# Options outside of CMake's variables are refused by the compiler.
 for option in -ffast-math -Ofast -ffinite-math-only -march=haswell -mfma -mavx -msse4; do
   said=$(echo '#include "math/double_double.h"' | c++ -std=c++20 -O2 $option -I"$1/driver/src" -fsyntax-only -x c++ - 2>&1 || true)
   if ! grep -q 'forces would have other bits' <<<"$said"; then

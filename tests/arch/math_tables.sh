@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tables of driver/src/math are what its script writes.
+# The tables of driver/src/math must equal the output of their script.
 #   math_tables.sh SOURCE_DIR
 set -euo pipefail
 folder=$1/driver/src/math

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Fails if what moves an arm, a hand or an object, or decides about it, calls a sine, an exponential or the like of
-# the C library, whose last bit hangs on the processor, or computes in long double, whose size does.
-# math/elementary.h has them all. Pictures, reports, studies and windows may call what they like.
+# Fails if code that moves an arm, a hand or an object, or decides about it, calls a sine, an exponential or the like of
+# the C library, whose last bit depends on the processor, or computes in long double, whose size depends on it.
+# math/elementary.h has all of these functions. Pictures, reports, studies and windows may call any function.
 #   one_mathematics.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Fails if a function of 16-byte lanes is called that sse2_elsewhere.h has not: what calls it builds on x86-64 alone.
-# Lanes of 32 bytes stand where x86-64 alone reads them.
+# Fails if code calls a function of 16-byte lanes that sse2_elsewhere.h does not have, because it would build on x86-64 only.
+# Lanes of 32 bytes are allowed in code that is for x86-64 only.
 #   other_processors.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"

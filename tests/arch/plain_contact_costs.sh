@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Counts the instructions of a tick in plain contact, a mesh without any effect, and where they go; fails if they
-# are more than the bounds below. They are the same in every run of the same program.
+# Counts the instructions of a tick in plain contact, a mesh without any effect, and of its parts. Fails if they
+# exceed the bounds below. They are equal in every run of the same program.
 #   plain_contact_costs.sh SCENE_TICKS SOURCE_DIR COMPILER MESHES
-# The bounds are what GCC 12 gave for x86-64 with FMA and AVX2, and 8 % more: searches choose by the processor.
-# Of another compiler figures are only printed. The elephant needs its scanned mesh.
+# The bounds are the counts of GCC 12 for x86-64 with FMA and AVX2 plus 8 %: searches depend on the processor.
+# For another compiler the figures are only printed. The elephant needs its scanned mesh.
 set -euo pipefail
 program=$1 source=$2 compiler=$3 meshes=$4
 command -v valgrind >/dev/null || {
@@ -25,7 +25,7 @@ bound() {
   printf '  %-34s %6d, at most %6d%s\n' "$1" "$2" "$3" "$said"
 }
 
-# count SCENE WHOLE LAW: with the most that the whole tick and its force law may take. The parts add up to the whole.
+# count SCENE WHOLE LAW: WHOLE and LAW are the bounds of the tick and of its force law. The parts add up to the whole.
 count() {
   local tag contact whole law observers arm_read arm_write link_read read write
   tag=$(basename "$1" .yaml)

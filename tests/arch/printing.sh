@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Fails if a source prints by itself: all texts of the program go through scene::write_text, print_format and Console,
-# which leave out what a terminal would obey (names come from files of unknown origin). First it plants a print of
+# Fails if a source prints directly: all texts of the program go through scene::write_text, print_format and Console,
+# which remove terminal control sequences (names come from untrusted files). First it plants a print of
 # each kind in a copy and checks that each is found.
 #   tests/arch/printing.sh SOURCE_DIR
 set -euo pipefail
 source=$1
 
-# prints FOLDER: file:line of every print to a terminal in its sources.
+# prints FOLDER: file:line of each direct print in its sources.
 prints() {
   (
     cd "$1"
-    # A file of its own (std::fprintf(file_, ...)) is no terminal.
+    # An opened file (std::fprintf(file_, ...)) is no terminal.
     grep -rnE '\b(printf|vprintf|puts|putchar|perror|psignal)\(|\bfprintf\((stdout|stderr)|\b(fputs|fputc|fwrite|putc|vfprintf)\(.*\bstd(out|err)\b|\bstd::(cout|cerr|clog)\b|\bfmt::print\(|\bwrite\((1|2|STDOUT_FILENO|STDERR_FILENO),|\bdprintf\(' \
       app driver render device_sim --include='*.h' --include='*.cpp' |
       grep -vE '^app/examples/|^app/scene/src/log/(console|printed_text)\.(h|cpp):|gnu::format\(printf|//.*printf' |
-      # In programs of others: the error of their library, which `thimble exec` made printable.
+      # In the process of another program: the error text of its library, which `thimble exec` has cleaned.
       grep -vE '^app/compat/hd/hd_device\.cpp:|^app/compat/include/' || true
   )
 }

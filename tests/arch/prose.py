@@ -15,12 +15,12 @@ CEILING = 14
 # Files whose patterns are the text of other programs: compilers, doxygen, lintian, QEMU, dpkg.
 OTHER_PROGRAMS = {"tests/tidy.sh", "tests/program/symbols_test.sh", "tests/program/headers_test.sh", "tests/program/reference_test.sh",
                   "tests/usb/virtual_machine.sh", "tests/program/package_test.sh", "tests/core.sh"}
-# Terms that a message cannot do without to be understood, and that the guide uses for nothing else.
+# Terms that messages need, and that the guide uses for nothing else.
 TERMS = {"empty", "missing", "folder", "recording", "terminal", "damaged", "tab", "simulated", "window", "screen", "unit", "scene"}
 # Values of options, states, levels of the log, and commands of the system, which messages name.
 VALUES = {"virtual", "paced", "draft", "normal", "reference", "auto", "quick", "full", "apt", "install", "sudo", "modprobe", "usbhid",
           "unplug", "lost", "ms", "ready", "running", "paused", "info", "error", "tick"}
-# Commands whose output is not the program's text.
+# Commands of the system, whose output is not the program's text.
 OTHERS = {"awk", "stat", "wc", "echo", "ls", "cmp", "test", "sha256sum", "ffprobe", "ps", "id", "mkdir", "rm", "[", "git", "lasts", "differ", "gain"}
 STRUCTURED = (".json", ".csv", ".yaml", ".xml", ".svg", ".db3", ".jsonl", ".png", ".gif", ".off", ".h5", ".pages", ".gp",
               "CMakeLists.txt", ".cff", ".pc", "CPackConfig.cmake")
@@ -78,7 +78,7 @@ def prose(pattern, names):
     plain = set()
     text = re.sub(r"\^[A-Za-z]+\b", "", text)  # the name of a row
     for token in re.split(r"[\s|()^$+?*]+", text):
-        if re.match(r"[-.\"']", token):  # an option, an ending, a value of the user's
+        if re.match(r"[-.\"']", token):  # an option, a file ending, a value from the user
             continue
         token = token.strip(".,;:!`'\"\\-{}")
         if re.fullmatch(r"[A-Za-z]{2,}('s)?", token) and token not in names and not token.isupper():
@@ -113,7 +113,7 @@ def expectations(path, names):
                     yield line, " ".join(found)[:160]
 
 
-# What must be found, and what must not.
+# Patterns that must count as wording (True) and that must not (False).
 PLANTED = [("^Loop +200 ticks per second", True), ("there is no such file", True), ("--rate 100 50000 \"five\"", False),
            ("changed.yaml:# stiffness N/m", False), ("^NOT MET: .*margin", False), ("ticks .* published", True)]
 

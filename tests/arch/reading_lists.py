@@ -72,7 +72,7 @@ def faults_of(readme):
         count, earlier = 0, []
         for line in section.splitlines():
             if not re.match(r'\d', line):
-                # What the page names between the lines is read on the way as well.
+                # Files that the page names between the lines are read on the way as well.
                 earlier += [path for path in re.findall(r'`([\w/]+\.(?:h|cpp))`', line) if os.path.exists(path)]
                 continue
             count += 1
@@ -86,7 +86,7 @@ def faults_of(readme):
                 continue
             if not names or not has(path, names[0]):
                 faults.append(f'{title}, {count}: {path} does not have {names[0] if names else "a name"}')
-            own = [name for name in names if has(path, name)]  # a line may also say what comes next
+            own = [name for name in names if has(path, name)]  # a line may also name the next step
             if count > 1 and not any(reaches(before, path, own) for before in earlier):
                 faults.append(f'{title}, {count}: no earlier file reaches {path}')
             earlier.append(path)

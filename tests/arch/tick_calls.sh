@@ -1,8 +1,8 @@
-# What a tick of a scene calls and executes, counted by callgrind; sourced by tests beside it.
+# Calls and instructions of a tick of a scene, counted by callgrind; sourced by other tests of this folder.
 #   tick_calls SCENE_TICKS SCENE FOLDER TAG     writes FOLDER/TAG.calls: a line per caller and callee with calls and
 #                                               instructions (the callee's, all below it included) per tick, and
 #                                               FOLDER/TAG.ticks: instructions per tick, share of ticks in contact
-# Both from two runs that differ by 2000 ticks, so that nothing of the way there is in it.
+# Both are the difference of two runs whose length differs by 2000 ticks, so that start-up does not count.
 tick_calls() {
   local program=$1 scene=$2 folder=$3 tag=$4 ticks
   for ticks in 1000 3000; do
@@ -25,13 +25,13 @@ tick_calls() {
     awk '{ printf "%.0f %.3f\n", ($2 - $1) / 2000, ($4 - $3) / 2000 }' >"$folder/$tag.ticks"
 }
 
-# callees FILE CALLER: what a function whose name has CALLER in it calls, without arguments.
+# callees FILE CALLER: the functions that a function with CALLER in its name calls, without arguments.
 callees() {
   awk -F'\t' -v caller="$2" 'index($1, caller) { print $2 }' "$1" |
     sed -E ':inner; s/<[^<>]*>//; t inner; s/\([^()]*\)( const)?$//' | sort -u
 }
 
-# instructions_of FILE CALLEE: of a tick, in calls of functions whose name has CALLEE in it, by others.
+# instructions_of FILE CALLEE: per tick, in calls of functions with CALLEE in their name, from other functions.
 instructions_of() {
   awk -F'\t' -v callee="$2" 'index($2, callee) && !index($1, callee) { sum += $4 } END { printf "%.0f\n", sum }' "$1"
 }

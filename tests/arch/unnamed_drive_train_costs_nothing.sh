@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Shows that what an arm file does not name of the simulated plant costs nothing: without a drive train, weight, jitter, loss and missed edges,
-# and with each of them named as zero, a tick executes the same instructions, and no function of any of them runs. Prints what each term costs.
+# Shows that parts of the simulated plant cost nothing if an arm file does not name them. With drive train, weight, jitter, loss
+# and missed edges absent or zero, a tick executes the same instructions and none of their functions. Prints the cost of each term.
 #   unnamed_drive_train_costs_nothing.sh PLANT_TICKS SOURCE_DIR
 set -euo pipefail
 program=$1 source=$2
@@ -14,7 +14,7 @@ arm=$source/app/arms/vintage_phantom.yaml
 ticks=200
 bad=0
 
-# variant NAME [SED...]: the arm's file with lines of its own.
+# variant NAME [SED...]: the arm's file with other lines.
 variant() {
   local name=$1
   shift
@@ -36,14 +36,14 @@ variant jitter 's/^  wire:/&\n    jitter: 0.0001/'
 variant loss 's/^  wire:/&\n    loss: 0.01/'
 variant missed_edges 's/^  firmware:/&\n    missed_edges: 0.001/'
 
-# Symbols are bound before, so that no tick has the linker's work in it.
+# Symbols are bound at load, so that no tick includes the linker's work.
 export LD_BIND_NOW=1
-# count NAME: instructions of a tick; the functions that ran stand in NAME.out.
+# count NAME: instructions of a tick; the called functions are in NAME.out.
 count() {
   valgrind --tool=callgrind --compress-strings=no --toggle-collect='*counted_ticks*' --callgrind-out-file="$folder/$1.out" \
     "$program" "$folder/$1.yaml" $ticks 2>&1 >"$folder/$1.moved" | sed -n 's/.*Collected : //p'
 }
-# ran NAME FUNCTIONS: whether any of them did.
+# ran NAME FUNCTIONS: whether any of the functions was called.
 ran() { grep -qE "^c?fn=.*($2)" "$folder/$1.out"; }
 train_functions='DriveTrain(Plant<.*>)?::(ask|step|sub_step|turn_rotors|cable_pull|set_currents|advance)'
 
@@ -72,7 +72,7 @@ for name in weight current_lag cogging ripple cables cables_and_play; do
   ran "$name" "$train_functions" || { echo "$name: no function of the drive train ran: this test could not fail"; bad=1; }
 done
 for name in jitter loss missed_edges; do
-  # What draws by chance stands in its caller, and is seen by what it costs.
+  # Random draws are inlined into their caller, so only their cost shows them.
   [ "$(cat "$folder/$name.count")" -gt "$(cat "$folder/none.count")" ] || { echo "$name: nothing was drawn: this test could not fail"; bad=1; }
 done
 exit $bad

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Shows that an energy stage or a heat guard which no file names costs a device nothing: no function of it is ever
-# called (a name stands at its first place in the file, be it as caller or as called); what a tick pays is three tests of one flag (guarded_ in device.h).
+# Shows that an energy stage or a heat guard that no file names costs nothing: none of its functions is called
+# (callgrind names a function once, as caller or callee). A tick only pays three tests of one flag (guarded_ in device.h).
 #   unnamed_gate_stage_costs_nothing.sh GATE_TICKS
 set -euo pipefail
 program=$1
@@ -13,7 +13,7 @@ trap 'rm -rf "$folder"' EXIT
 stages='pass_guarded|WorkAccount::(flow|hold|sent)|PassivityObserver|bounded_force'
 heat='HeatGuard::(advance|sent|limit)'
 
-# instructions STAGE TICKS: all that the run executes; the functions that it called are in STAGE.out.
+# instructions STAGE TICKS: instructions of the whole run; the called functions are in STAGE.out.
 instructions() {
   valgrind --tool=callgrind --callgrind-out-file="$folder/$1.out" "$program" "$1" "$2" 2>&1 >/dev/null |
     sed -n 's/.*Collected : //p'

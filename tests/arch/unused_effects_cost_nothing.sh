@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Shows that an effect which a scene does not name costs it nothing: the same scene executes the same
-# instructions per tick and holds the same bytes in a program that has all effects as in one that was
+# Shows that an effect that a scene does not name costs nothing: the same scene executes the same
+# instructions per tick and holds the same bytes in a program with all effects and in one that was
 # built without them.
 #   unused_effects_cost_nothing.sh ALL NONE ONLY_BRISTLE SOURCE_DIR
-# The first three are effect_ticks, linked with all effects, with none, with friction: bristle alone.
-# Without valgrind only bytes are compared, and that nobody but the table knows the effects.
+# The first three are effect_ticks, linked with all effects, with none, and with friction: bristle only.
+# Without valgrind only bytes are compared, and that only the table includes the effects.
 set -euo pipefail
 all=$1 none=$2 only_bristle=$3 source=$4
 bad=0
 
-# Nobody but the table (and an effect itself) may include an effect.
+# Only the table and an effect itself may include an effect.
 known=$(grep -rlE '#include "(thimble/render/)?surface/(friction|texture)/' "$source/render" |
   grep -vE '/surface/(friction|texture)/|/effect/effect_table.cpp$' || true)
 if [ -n "$known" ]; then

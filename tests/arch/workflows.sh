@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The GitHub workflows, and the one that users copy: each is YAML, its steps are bash, every file of the sources that a step
-# runs exists and may be run, and jobs wait for jobs that exist.
+# Checks the GitHub workflows, and the one that users copy: each is YAML, its steps are bash, each file that a step runs exists
+# and is executable, and jobs wait for existing jobs.
 #   workflows.sh SOURCE_FOLDER
 set -euo pipefail
 cd "$1"

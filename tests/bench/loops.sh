@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Measures how long each loop of a contributor takes on this machine (CONTRIBUTING.md names them); no pass criterion.
+# Measures the times of a contributor's loops on this machine (CONTRIBUTING.md names them); no pass criterion.
 #   tests/bench/loops.sh edit      one changed source of render, driver and app: rebuilt in preset dev, its tests run
-#   tests/bench/loops.sh build     what app/demo.sh builds, then everything, from an empty folder
-# Prints seconds by the clock, processor seconds and, of builds, the sum of their steps. No compiler cache is used.
+#   tests/bench/loops.sh build     the build of app/demo.sh, then everything, from an empty folder
+# Prints elapsed seconds, processor seconds and, for builds, the sum of their steps. No compiler cache is used.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 export CCACHE_DISABLE=1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# measure WHAT COMMAND...: runs it and prints what it took.
+# measure WHAT COMMAND...: runs it and prints its times.
 measure() {
   local what=$1
   shift

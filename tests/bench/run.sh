@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Measures how long a tick takes on this machine, whole and part by part, contact on meshes of many
-# sizes against other libraries where they are installed (Debian: libembree-dev libcgal-dev
-# libfcl-dev), contact with pages on the disk (640 MB for two minutes), many arms side by side, and
-# what it costs to watch (Debian: chromium python3-websockets libjs-three libjs-dygraphs);
-# prints tables and writes figures.json. Figures are reported, never pass criteria.
+# Measures the time of a tick on this machine, as a whole and by part, contact on meshes of many
+# sizes compared with other libraries if they are installed (Debian: libembree-dev libcgal-dev
+# libfcl-dev), contact with meshes on disk (640 MB for two minutes), many arms in one process, and
+# the cost of watching a run (Debian: chromium python3-websockets libjs-three libjs-dygraphs).
+# Prints tables and writes figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
 cd "$(dirname "$0")/../.."

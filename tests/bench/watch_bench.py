@@ -24,11 +24,11 @@ import websockets
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "program"))
 from page_browser import DRAWN, Tab, in_chromium  # noqa: E402
 
-PAIRS = 3  # a median of fewer moves with one run that was disturbed
+PAIRS = 3  # fewer runs would let one disturbed run change the median
 LIVE_PAIRS = 3
 LIVE_SECONDS = 10
 PICTURE_MS = 1000 / 30  # at 30 pictures a second
-CORES = 2  # that a picture may use: a computer of a lab has two at least
+CORES = 2  # cores that a picture may use: a lab computer has at least two
 
 
 def figure(name, value, unit, most=None, note=""):
@@ -59,11 +59,11 @@ def processor_seconds(pid):
 
 def measure_page(thimble, scene, folder):
     """The page of a run, on top of the run and its report."""
-    without = dict(os.environ, XDG_DATA_DIRS=str(folder / "nowhere"))  # there is nothing to make it of
+    without = dict(os.environ, XDG_DATA_DIRS=str(folder / "nowhere"))  # the libraries of the page are missing there
     clock, processor = [], []
     for _ in range(PAIRS):
         plain = spend([thimble, "run", scene, "--no-view", "--report", folder / "plain"], env=without,
-                      stderr=subprocess.DEVNULL)  # which says that there is no page
+                      stderr=subprocess.DEVNULL)  # hides the message that there is no page
         paged = spend([thimble, "run", scene, "--no-view", "--report", folder / "paged"])
         clock.append(paged[0] - plain[0])
         processor.append(paged[1] - plain[1])

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The libraries that stand in for others' export the names of their tables, all of them and nothing else; need no
-# library but the system's; and a struct of 12 bytes comes back by value as callers of either ABI read it.
+# The libraries of the compatibility layer export exactly the names of their tables and need only system
+# libraries, and a struct of 12 bytes is returned by value as callers of either ABI read it.
 #   abi_test.sh FACES_LIB_DIR SOURCE_DIR FACE=LIBRARY...
 set -euo pipefail
 libraries=$1 source=$2

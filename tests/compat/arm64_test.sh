@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The libraries that stand in for others', and programs in C, built for 64-bit ARM and run there by QEMU, under
-# the `thimble exec` of this machine: the same names are exported, structs come back by value, and memory that is
-# shared with a process of another kind of processor has the same form. Only with THIMBLE_LONG.
+# The libraries of the compatibility layer, and C programs, built for 64-bit ARM and run under QEMU, with
+# the `thimble exec` of this machine: the exported names are equal, structs are returned by value, and memory
+# shared between the two processors has the same layout. Only with THIMBLE_LONG.
 #   arm64_test.sh THIMBLE SOURCE_DIR WORK_DIR EIGEN_INCLUDE_DIR VERSION_INCLUDE_DIR
 skip() {
   echo "SKIPPED: other makers' interfaces were NOT tested on 64-bit ARM: $1" >&2
@@ -18,7 +18,7 @@ compat=$source_dir/app/compat
 headers=$compat/include/thimble/compat
 mkdir lib clients
 
-# library NAME FACE [FLAG...]: libNAME.so of the sources of a face and of the core, as app/compat/CMakeLists.txt makes it.
+# library NAME FACE [FLAG...]: libNAME.so from the sources of an API and of the core, as app/compat/CMakeLists.txt makes it.
 library() {
   local name=$1 face=$2 source objects=()
   mkdir -p "$face"
@@ -63,7 +63,7 @@ for pair in hd=HD hdphantom=hdPhantom dhd=drd; do
     echo same"
 done
 
-# The emulated program has its own libraries in front, the emulator itself ours of this machine.
+# The emulated program searches its own libraries first; the emulator uses those of this machine.
 arm() {
   local options=()
   while [ "$1" != -- ]; do options+=("$1") && shift; done

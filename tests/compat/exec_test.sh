@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Programs written for other arms, under `thimble exec`: they run unchanged, their forces reach the simulated
-# motors, and what goes wrong is told by name.
+# Programs written for other arms, under `thimble exec`: they run unmodified, their forces reach the simulated
+# motors, and faults are reported by name.
 #   exec_test.sh THIMBLE SOURCE_DIR WORK_DIR CLIENTS_DIR
 source "$(dirname "$0")/../program/expect.sh" "$1" "$2" "$3"
 clients=$4
 export TMPDIR=$work
 run() { "$thimble" exec "$@"; }
 
-# A hand that presses into the sphere that hello_sphere draws, 8 mm deep, and out again.
+# A hand that presses 8 mm deep into the sphere of hello_sphere, and out again.
 printf '0 0 0 0.03\n1 0 0 0.012\n2 0.003 0 0.012\n3 0.003 0 0.03\n' >press.txt
-# In virtual time: on a busy machine a program gets no turn for 20 ms now and then, and the gate opens anew.
+# In virtual time: on a busy machine a program may get no time for 20 ms, and the gate would reopen.
 expect_own 0 'vintage_phantom by Thimble' run --clock virtual --hand press.txt --record sphere.h5 "$clients/hello_sphere" 2 asked.txt
 expect 0 'hello_sphere .*HDAPI.* [0-9]{4} ' run --hand press.txt "$clients/hello_sphere"
 [ -s sphere.h5 ] || { echo "FAILED: no recording"; failures=$((failures + 1)); }
-# In the recording: what the gate got is what the program asked for (its axes: right, up, to the user) and nothing else, and
-# what the motors were sent.
+# In the recording: the gate got exactly the force that the program asked for (its axes: right, up, to the user), and the
+# motors got that force.
 expect 0 '' "$thimble" export sphere.h5 --csv sphere.csv
 expect 0 '^[0-9]{3,} ticks with force, 0 that nobody asked for, most 0\.0' awk '
   NR == FNR { asked[sprintf("%.9f %.9f %.9f", $3, $1, $2)] = 1; next }
@@ -35,8 +35,8 @@ expect_own 0 '0\.[23][0-9]+ N at the end' run "$clients/force_ramp"
 expect_own 0 '0 presses in' run "$clients/buttons"
 expect_own 0 'errors by value: right' run --arm vintage_phantom --arm falcon "$clients/wrong_calls"
 
-# A loop that the set-force call paces, for a while: what it held is told, not judged; a program that waits for a tick has
-# fewer turns than there were ticks.
+# A loop paced by its set-force calls. Its rate is printed but not checked: a program that waits for a tick has
+# fewer cycles than there were ticks.
 seconds=${THIMBLE_LONG:+60}
 run "$clients/chai_loop" "${seconds:-2}000" >loop.log 2>&1
 grep -E 'turns in|^Program' loop.log
@@ -46,17 +46,17 @@ expect_words 0 'chai_loop hdPhantom # #' cat loop.log
 # In Python, with ctypes.
 expect_own 0 'both libraries: right' run --hand press.txt python3 "$source_dir/tests/compat/clients/hello_sphere.py"
 
-# With a scene both are felt: its own objects push where the program asks for nothing.
+# With a scene: its own objects push as well where the program asks for nothing.
 expect 0 '' run --scene rubber --record rubber.h5 "$clients/chai_loop"
 expect 0 '' "$thimble" export rubber.h5 --csv rubber.csv
 expect_own 0 '^touched$' awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^depth/) d = i; next } $d > 0 { print "touched"; exit }' rubber.csv
 
-# A program that hangs is told by name, and its force goes.
+# A program that hangs is named, and its force is removed.
 expect_words 0 'hangs HDAPI vintage_phantom 20 ms' run "$clients/hangs"
 expect 0 '^Stalls +hangs .* [1-9]' run "$clients/hangs"
 expect 0 'left with zero force' run "$clients/hangs" and_leaves
 
-# Without `thimble exec`, and other things that go wrong.
+# Without `thimble exec`, and other errors.
 expect 2 'hdInitDevice.*`thimble exec' \
   env -u THIMBLE_EXEC LD_LIBRARY_PATH="$(dirname "$thimble")/compat/lib" "$clients/hello_sphere"
 expect_words 2 './nowhere' run ./nowhere
@@ -66,6 +66,6 @@ expect_words 137 'signal 9' run sh -c 'kill -9 $$'
 expect_words 2 'nonesuch vintage_phantom' run --arm nonesuch "$clients/calibration"
 echo 'zero 0 0' >bad.txt
 expect_words 2 'bad.txt:1 "t x y z"' run --hand bad.txt "$clients/calibration"
-# Nothing is left behind.
+# No files and processes remain.
 expect 1 '^$' sh -c 'ls "${TMPDIR:-/tmp}"/thimble-free-* 2>/dev/null || { echo; exit 1; }'
 finish

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A program of somebody else in our window: `thimble exec --view` shows the scene and the tip, and the mouse
-# leads the hand of the program's arm. On a screen in memory (Debian: xvfb, xdotool).
+# A program for another arm with Thimble's window: `thimble exec --view` shows the scene and the tip, and the mouse
+# leads the hand of the program's arm. On a virtual screen (Debian: xvfb, xdotool).
 #   view_test.sh THIMBLE SOURCE_DIR WORK_DIR CLIENTS_DIR
 for tool in Xvfb xdotool; do
   command -v $tool >/dev/null || {
@@ -20,7 +20,7 @@ wait_for 30 xdotool search --onlyvisible --name Thimble
 window=$(xdotool search --onlyvisible --name Thimble | head -1)
 expect 0 '^WIDTH=[0-9]{3}' xdotool getwindowgeometry --shell "$window"
 eval "$(xdotool getwindowgeometry --shell "$window")"
-# From the middle of the window to the right and up, in steps as a hand's; again where the first frame was not yet drawn.
+# From the middle of the window to the right and up, in small steps; repeated if the first frame was not drawn yet.
 drag() {
   xdotool mousemove $((X + WIDTH / 3)) $((Y + HEIGHT / 2)) mousedown 1
   for _ in $(seq 20); do
@@ -35,10 +35,10 @@ drag() {
 wait_for 40 drag
 cp Xvfb_screen0 screen.xwd
 expect_own 0 '^led [1-9][0-9].* mm: [1-9].* to the right, [1-9].* up' cat led.txt
-# The screen with the program's own window on it: an empty one packs into 10 kB.
+# The screen with the program's own window: an empty one compresses to 10 kB.
 expect 0 '^[0-9]{6,}$' bash -c 'gzip -c screen.xwd | wc -c'
 expect 0 '' "$thimble" view two_boxes --for 2 --picture window.png
-expect 0 '^[0-9]{6,}$' stat -c %s window.png # a window with nothing in it takes 11 kB
+expect 0 '^[0-9]{6,}$' stat -c %s window.png # an empty window takes 11 kB
 wait $run
 status=$?
 expect 0 '^0$' echo $status

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Fuzzes what reads the messages of arms, what reads USB/IP and what reads the memory shared with viewers
-# for 4 s each (THIMBLE_FUZZ_SECONDS says another time), or with THIMBLE_LONG every decoder of them alone
-# for 60 s, as many at once as there are processors. Skipped where the fuzzer was not built.
+# Fuzzes the readers of arm messages, of USB/IP and of the memory shared with viewers, for 4 s each
+# (THIMBLE_FUZZ_SECONDS sets another time), or with THIMBLE_LONG every single decoder for 60 s,
+# one per processor at a time. Skipped if the fuzzer was not built.
 #   tests/fuzz/run.sh BUILD_DIR CORPUS
 set -euo pipefail
 fuzzer=$(realpath "$1")/fuzz_decoders
@@ -12,7 +12,7 @@ if [ ! -x "$fuzzer" ]; then
 fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# New files go to the working folder, a crash too: copy it into the corpus, named after the fault.
+# New files go to the working folder, and so do crashes: copy these into the corpus, named after the fault.
 cd "$work"
 fuzz() {  # fuzz NAME DECODERS SECONDS
   mkdir "found_$1"
@@ -26,7 +26,7 @@ fuzz() {  # fuzz NAME DECODERS SECONDS
   }
   echo "$1: $(grep -oE 'number_of_executed_units: *[0-9]+' "$1.log")"
 }
-# By their numbers in decode_anything.
+# Numbers as in decode_anything.
 arms=0-8 usbip=9-10 memory=11-11
 if [ -z "${THIMBLE_LONG:-}" ]; then
   for name in arms usbip memory; do fuzz "$name" "${!name}" "${THIMBLE_FUZZ_SECONDS:-4}"; done

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Fuzzes what reads scenes and arms, what reads meshes, what reads pages and what reads recordings, each kind of
-# file for 60 s (THIMBLE_FUZZ_SECONDS says another time), as many at once as there are processors. In the long form
-# (THIMBLE_LONG) it builds the fuzzer before; without it and without a fuzzer it is skipped.
+# Fuzzes the readers of scenes and arms, of meshes, of page files and of recordings, each for 60 s
+# (THIMBLE_FUZZ_SECONDS sets another time), one per processor at a time. The long form (THIMBLE_LONG)
+# builds the fuzzer first; otherwise the test is skipped without a fuzzer.
 #   tests/fuzz/run_files.sh BUILD_DIR CORPUS
 set -euo pipefail
 fuzzer=$(realpath "$1")/fuzz_files
@@ -14,14 +14,14 @@ fi
 seconds=${THIMBLE_FUZZ_SECONDS:-60}
 [ -n "${TMPDIR:-}" ] || [ ! -w /dev/shm ] || export TMPDIR=/dev/shm  # some disks are slow
 work=$(mktemp -d)
-export TMPDIR=$work  # the files that are read
+export TMPDIR=$work  # for the files under test
 trap 'rm -rf "$work"' EXIT
-# What assimp and HDF5 leak or ask for is theirs; a refused allocation is an error for them, and ours
-# to tell.
+# Leaks and large allocations inside assimp and HDF5 are theirs. A refused allocation is an error in them, which
+# Thimble must report.
 export LSAN_OPTIONS=suppressions=$(realpath "$(dirname "$0")/../support/lsan_suppressions.txt"):print_suppressions=0
 export ASAN_OPTIONS=allocator_may_return_null=1
 cd "$work"
-# A crash is shown: copy it into the corpus of its kind, named after the fault.
+# A crash is printed: copy it into the corpus of its kind, named after the fault.
 fuzz() {  # fuzz KIND
   mkdir "found_$1"
   THIMBLE_FILE_KIND=$1 "$fuzzer" -max_total_time="$seconds" -max_len=2000 -timeout=20 \

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Checks a real arm by `thimble hil`. See README.md.
 #   tests/hardware/arm_test.sh THIMBLE SOURCE_DIR      with THIMBLE_ARM=app/arms/FILE.yaml
-# Never let SIGKILL end the program: it may hold a force, which then stands until the watchdog of the arm. Three
+# Never let SIGKILL end the program: it may hold a force, which then remains until the arm's watchdog acts. Three
 # limits follow each other: --timeout of the program, SIGTERM a minute later, and the TIMEOUT of CTest, which kills,
-# far beyond both (CMakeLists.txt).
+# far above both (CMakeLists.txt).
 set -euo pipefail
 if [ -z "${THIMBLE_ARM:-}" ]; then
   echo "HARDWARE TEST SKIPPED: plug an arm in and name its file, e.g. THIMBLE_ARM=app/arms/woodenhaptics.yaml"
@@ -23,8 +23,8 @@ firmware=()
 [ -z "${THIMBLE_FIRMWARE:-}" ] || firmware=(--firmware "$THIMBLE_FIRMWARE")
 "$thimble" devices
 "$thimble" doctor
-# Pushes only if the arm has passed its feel check; else it reads it with zero force and fails. No --kill-after: what
-# does not end by SIGTERM is left to the person at the arm.
+# Pushes only if the arm has passed its feel check; otherwise it reads the arm with zero force and fails. No --kill-after:
+# a program that ignores SIGTERM is left to the person at the arm.
 timeout --foreground --signal=TERM "$((limit + grace))" \
   "$thimble" hil --require-device --device "${THIMBLE_DEVICE:-auto}" --arm "$THIMBLE_ARM" "${firmware[@]}" \
   --suite "$suite" --timeout "$limit"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The test of arm_test.sh: a program that stands in for thimble notes how it is called and how it is ended.
+# Tests arm_test.sh with a program instead of thimble that notes its arguments and how it ends.
 #   limits_test.sh ARM_TEST WORK_DIR CTEST_TIMEOUT
 set -u
 arm_test=$1 work=$2 ctest_timeout=$3
@@ -24,13 +24,13 @@ check() { # WHAT EXPECTED FOUND
 run() { bash "$arm_test" "$work/thimble" "$work" >output 2>&1; }
 export THIMBLE_ARM=app/arms/any.yaml
 
-# How the suite ends is how the test ends.
+# The test ends with the result of the suite.
 for code in 0 3 4 5; do
   echo $code >code
   run
   check "exit code of the suite" $code $?
 done
-# Both suites end by themselves, after more than they need (150 s, 70 minutes) and long before CTest kills.
+# Both suites end by themselves, later than they need (150 s, 70 minutes) and long before CTest kills.
 for suite in "quick 150" "full 4200"; do
   set -- $suite
   rm -f calls
@@ -41,7 +41,7 @@ for suite in "quick 150" "full 4200"; do
   check "the limit of $1 is 10 minutes below CTest's" yes "$([ $((limit + 600)) -lt "$ctest_timeout" ] && echo yes)"
 done
 check "only a real arm counts" 1 "$(grep -c -- '--require-device' calls)"
-# A suite that does not end is ended by SIGTERM, which it can answer by zero force.
+# A suite that does not end gets SIGTERM, and can answer with zero force.
 touch hangs
 THIMBLE_LIMIT=1 THIMBLE_GRACE=1 run
 check "a suite that hangs is no success" yes "$([ $? -ne 0 ] && echo yes)"

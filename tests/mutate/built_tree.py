@@ -8,7 +8,7 @@ import sys
 from places import Mutant
 from schemata import with_mutants
 
-ROUNDS = 8  # of dropping what does not compile
+ROUNDS = 8  # of removing mutants that do not compile
 
 
 class BuiltTree:
@@ -19,7 +19,7 @@ class BuiltTree:
         self.build = copy / plan["build"]
         self.dropped_file = copy.parent / "uncompilable.json"
         self.dropped = set(json.loads(self.dropped_file.read_text())) if self.dropped_file.exists() else set()
-        self.lines = {}  # of each mutated file: line -> ids
+        self.lines = {}  # per mutated file: line -> ids
 
     def write(self, chosen: dict[int, Mutant]):
         """Makes the copy the same as the project, but for the mutants."""

@@ -35,7 +35,7 @@ class Region:
 
     kind: str
     first: int
-    last: int  # the one after its last token
+    last: int  # index after its last token
     type: str = ""
     const: bool = False
 

@@ -74,7 +74,7 @@ def main():
     results_file = options.work / "results.json"
     ends = known_results(results_file, options, chosen)
 
-    def keep():  # so that a run that was interrupted goes on with --survivors
+    def keep():  # so that --survivors can continue an interrupted run
         if not options.again:
             results_file.write_text(json.dumps({chosen[i].title(): end for i, end in ends.items()}, indent=0))
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Shows that the mutants' tool tells what it must, on a small project of its own (sample): which mutants are
-# killed, which survive, which hang or do not compile, and that its exit code says whether enough are killed.
+# Tests the mutation tool on a small project (sample): which mutants are killed, which survive, which hang
+# or do not compile, and that its exit code shows whether enough are killed.
 set -euo pipefail
 [ -n "${THIMBLE_LONG:-}" ] || { echo "SKIPPED: the mutants' tool is tried in the long form, which runs it." && exit 77; }
 for tool in python3 git ninja; do command -v "$tool" >/dev/null || exit 77; done
@@ -37,7 +37,7 @@ has '`return x + x;` -> `return x - x;` | operator | not looked at yet |' "$scra
 grep -qE '\| counting \| [1-9][0-9]* \| 4 \| 0 \|' "$scratch/table.md" || fail "Wrongly counted."
 [ "$(cat counting/* | cksum)" = "$sources" ] || fail "The sources are changed."
 
-# An equivalent mutant does not count, its reason is kept, and a new test makes the rest enough.
+# An equivalent mutant does not count and its reason is kept; with a new test enough mutants are killed.
 sed -i '/x >= most/s/not looked at yet/equivalent: both are the most/' "$scratch/table.md"
 sed -i 's/^  doubled(2);/  EXPECT_EQ(doubled(2) + tripled(5), 11);/' counting_test.cpp
 run --survivors
@@ -45,7 +45,7 @@ run --survivors
 has "0 survived, 1 equivalent: 100.0 %" "$scratch/log"
 has "equivalent: both are the most" "$scratch/table.md"
 
-# Without a mutant every test must pass; one line alone can be tried.
+# Without a mutant every test must pass; a single line can be tested.
 run --again counting/counting.cpp:5
 [ $code = 0 ] || fail "One line alone ends with $code."
 sed -i 's/at_most(3, 5), 3/at_most(3, 5), 4/' counting_test.cpp

@@ -13,13 +13,13 @@ class Mutant:
     file: str
     line: int  # from 1
     kind: str
-    old: str  # the line as it is, and as it becomes
+    old: str  # the line before and after the change
     new: str
-    region: int  # of the file's regions
-    begin: int  # in the file's text
+    region: int  # index in the file's regions
+    begin: int  # offset in the file's text
     end: int
     text: str
-    number: int = 1  # among mutants of the same words in this file
+    number: int = 1  # counts mutants with the same text in this file
 
     def title(self):
         again = f" ({self.number})" if self.number > 1 else ""
@@ -66,7 +66,7 @@ def changes_of(code, region):
     if region.kind == "statement" and (at(first) != "return" or at(first + 1) == ";"):
         yield "removed", begin, end, ";"
     if re.search(r"\b(kill|unlink|remove|rename)\(", whole):
-        return  # what would happen outside of the test
+        return  # a mutant of these could act outside of the test
     for i in range(first, last):
         token = tokens[i]
         spaced = (0 < i < len(tokens) - 1 and tokens[i - 1].end < token.begin and token.end < tokens[i + 1].begin)

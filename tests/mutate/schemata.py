@@ -41,7 +41,7 @@ def pieces_of(code, region, here):
         return
     cast = "static_cast<bool>" if region.kind == "condition" else f"static_cast<{region.type}>" if region.type else ""
     yield "\n", set()
-    # The compiler works out a constant where it can, and so would never ask for the mutant.
+    # The compiler evaluates constants at build time, so the mutant would never be selected at run time.
     macro = "THIMBLE_MUTANT_NOW" if region.const else "THIMBLE_MUTANT"
     for ident, mutant in here:
         yield f"({macro}({ident}) ? {cast}({mutated(code, region, mutant)}) :", {ident}

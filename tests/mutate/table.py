@@ -1,7 +1,7 @@
 """The table of what became of the mutants, tests/MUTANTS.md."""
 import re
 
-EQUIVALENT = "equivalent"  # a reason that begins so says that nothing could notice
+EQUIVALENT = "equivalent"  # a reason with this prefix means that no test can detect the mutant
 HEAD = """# Mutants
 
 Made by `tests/mutate.sh`: single places of driver and render are broken, one at a time (a relation, an operator, a

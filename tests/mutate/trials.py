@@ -13,8 +13,8 @@ import tempfile
 import time
 
 MOST = 65536  # kMost of mutant.h
-QUICK = 0.25  # s of processor time: such tests of a program run together
-LIMIT_TIMES, LIMIT_MORE = 8, 5  # a run that takes so many times as much, and so many s, hangs
+QUICK = 0.25  # s of processor time: tests of a program below it run together
+LIMIT_TIMES, LIMIT_MORE = 8, 5  # a run hangs after LIMIT_TIMES its usual time plus LIMIT_MORE s
 MEMORY = 6 << 30
 
 
@@ -52,12 +52,12 @@ class Trials:
                 cwd=scratch, env=environment, stdout=log, stderr=log, start_new_session=True, preexec_fn=bounds)
             begin = time.monotonic()
             try:
-                code = child.wait(10 * limit)  # the machine may have something else to do
+                code = child.wait(10 * limit)  # the machine may be busy
             except subprocess.TimeoutExpired:
                 code = None
             seconds = time.monotonic() - begin
             try:
-                os.killpg(child.pid, signal.SIGKILL)  # and whatever it has left behind
+                os.killpg(child.pid, signal.SIGKILL)  # and its child processes
             except ProcessLookupError:
                 pass
             child.wait()

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What accuracy costs, as a script sees it: the page, its parts, and counts that are the same again.
+# thimble study accuracy as a script sees it: the page, its parts, and counts that are repeatable.
 source "$(dirname "$0")/expect.sh" "$@"
 
 rm -rf out
@@ -10,17 +10,17 @@ for file in index.html velocity.csv summary.json figures.json; do
   expect 0 '' test -s "out/$file"
 done
 expect_links out/index.html 1
-# Two diagrams of one axis, each with a title of its own.
+# Two diagrams of one axis, each with its own title.
 if command -v gnuplot >/dev/null; then
   expect 0 '^2 2$' bash -c 'titles=$(grep -h -m 1 "^set title \"" out/data/*.gp); echo "$(wc -l <<<"$titles") $(sort -u <<<"$titles" | wc -l)"'
 fi
 expect_links out/runs/index.html 3
 expect 1 '' grep -E 'src="http|href="http' out/index.html
 expect 0 '"default_point"' cat out/summary.json
-# Nothing is drawn over what a pipe has got.
+# A pipe gets no progress line.
 expect 1 '^0$' bash -c '"$0" study accuracy --axis velocity --no-count --out piped 2>&1 | grep -c "$(printf "\r")"' "$thimble"
 
-# Ctrl-C stops it as any study, a person sees how long it takes; --resume continues with the axes that were measured, by the same numbers.
+# Ctrl-C stops it, a terminal shows the remaining time, and --resume continues after the measured axes with the same numbers.
 stopped() {
   local pid
   setsid "$thimble" study accuracy --axis velocity --axis encoder --out stopped "$@" >stopped.txt 2>&1 &
@@ -30,7 +30,7 @@ stopped() {
     if [ -z "${child:-}" ]; then [ "$(wc -l 2>/dev/null <stopped/accuracy.journal || echo 0)" -ge 2 ] && break; fi
     sleep 0.05
   done
-  kill -TERM -- -$pid  # a shell lets those in the background ignore SIGINT
+  kill -TERM -- -$pid  # a shell makes background jobs ignore SIGINT
   wait $pid
 }
 expect 130 '[0-9]+:[0-9]{2} left' /usr/bin/python3 "$source_dir/tests/program/at_terminal.py" wait ' left' keys '\x03' -- \
@@ -61,7 +61,7 @@ if command -v valgrind >/dev/null; then
       --callgrind-out-file=/dev/null "$thimble-studies" cost-probe "accuracy/$1" 1 2>&1 \
       >/dev/null | awk '/Collected/ {print $4}'
   }
-  # A method alone, a tick that is found to be the worst, and an effect with what is taken off.
+  # A method by itself, a tick that is searched for as the worst, and an effect with its baseline subtracted.
   for subject in velocity/window/8 tracking/edge_planes/300mm_s effects/effects/friction.bristle; do
     first=$(count "$subject")
     again=$(count "$subject")

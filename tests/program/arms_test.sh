@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# What the program says of arms that are not there, and what it does with the simulated one.
+# Reports about missing arms, and runs on the simulated arm.
 source "$(dirname "$0")/expect.sh" "$@"
 export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
 vintage=$source_dir/app/arms/vintage_phantom.yaml
 
-# A machine below a folder: one WoodenHaptics arm without rule and without node.
+# A system below a folder: one WoodenHaptics arm without udev rule and without node.
 mkdir -p root/sys/bus/usb/devices/1-1/power
 cd root/sys/bus/usb/devices/1-1
 echo 1234 >idVendor
@@ -14,7 +14,7 @@ echo 1 >busnum
 echo 4 >devnum
 echo auto >power/control
 cd "$work"
-# Without a driver nobody knows what its reports are, so it may be anything.
+# Without a driver the size of its reports is unknown, so its kind is unknown.
 expect_words 0 'WH01 mbed HID USB 1 4 - doctor' \
   "$thimble" devices --root root
 expect_words 3 'PROBLEM udev' "$thimble" doctor --root root
@@ -23,8 +23,8 @@ expect 3 'power/control' "$thimble" doctor --root root
 mkdir -p root/etc/udev/rules.d
 cp "$source_dir/udev/70-thimble.rules" root/etc/udev/rules.d/
 expect 3 '^ok .*/etc/udev/rules\.d' "$thimble" doctor --root root
-# With one it is a board with reports of 8 bytes, which proves itself when it is opened; of 14, which may be
-# anything; and a second one of the same serial number is named by its socket.
+# With a driver: a board with reports of 8 bytes, which is identified when it is opened; one of 14 bytes, whose kind is
+# unknown; and a second one with the same serial number, which is named by its socket.
 hid=root/sys/bus/usb/devices/1-1/1-1:1.0/0003:1234:0006.0001
 mkdir -p $hid/hidraw/hidraw3 root/dev
 : >root/dev/hidraw3
@@ -43,8 +43,8 @@ expect 1 '' bash -c '"$0" doctor --root root | grep -E "mbed|WH01|usb-1"' "$thim
 
 expect_words 3 "'WH02'" \
   "$thimble" run "$source_dir/tests/data/scenes/stroke.yaml" --device WH02
-# Every arm file runs on its own simulated arm; the Falcon takes the firmware that it is given, or any.
-# One behind its vendor's software is not simulated, and says so.
+# Each arm file runs on its own simulated arm; the Falcon takes the given firmware, or any.
+# An arm behind its vendor's software is not simulated, and this is reported.
 for arm in "$source_dir"/app/arms/*.yaml; do
   if grep -qE '^protocol: (haply_service|dhd_library|hd_library)' "$arm"; then
     expect_words 2 'simulated' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
@@ -63,8 +63,8 @@ expect_words 2 "'simulation'" "$thimble" run "$source_dir/tests/data/scenes/two_
 expect_words 2 'firmware' "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
   --arm "$source_dir/app/arms/falcon.yaml" --firmware empty.bin
 
-# Where no arm is plugged in, that the simulated one is used stands in the first and the last line,
-# whether all went well or not, and nothing is kept.
+# Without a plugged-in arm the first and the last line say that the simulated one is used,
+# with or without success, and nothing is saved.
 for options in "" "--device sim"; do
   expect 0 '^home_counts +0 7700 0$' "$thimble" calibrate $options --arm "$vintage"
   expect 0 '^ok +watchdog' "$thimble" feel-check $options --arm "$vintage"
@@ -84,8 +84,8 @@ expect 1 '' test -e state/thimble/feel_checks
 expect_words 3 '--arm NAME' "$thimble" feel-check
 expect_words 3 '--arm NAME' "$thimble" calibrate --device auto
 
-# What was identified goes into a new file, which runs; nobody's file is written over, and a motor that is
-# turned round is named before anything follows the motion.
+# Identified constants go into a new file, which runs; no existing file is overwritten, and a reversed
+# motor is named before any motion depends on it.
 expect_words 0 'twin.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 --places 0 \
   --output twin.yaml
 expect 0 'mass: 0\.07[45][0-9]*  # kg, apparent \[I ' cat twin.yaml
@@ -106,7 +106,7 @@ if command -v gnuplot >/dev/null; then
   expect_plot report/identify_fit report/identify_rest report/identify_friction report/identify_lines
   expect 0 '^4$' grep -c '^<svg' report/index.html
 fi
-# Links are measured over the workspace; a file that names others gets what was seen.
+# Links are measured over the workspace; a file with other links gets the measured ones.
 sed 's/^simulation:/&\n  links: {inertia: [0.0004, 0.0005, 0.0003], yaw_b: 0.0005, yaw_c: 0.0003}/' "$vintage" >linked.yaml
 expect 0 '' "$thimble" identify --arm linked.yaml --seconds 10 --output links.yaml \
   --report links
@@ -131,14 +131,14 @@ sed 's/damping: \[0.01/coulomb: [0, 0.02, 0], &/' springy.yaml >sticky.yaml
 expect 0 ' 2 +(19|20)[.0-9]* \+- .* mN m ' "$thimble" identify --arm sticky.yaml --seconds 10 \
   --output stuck.yaml
 expect 0 'coulomb: \[0, 0\.0(19|20)[0-9]*, 0\]' cat stuck.yaml
-# Arms whose motors are code: what was found stands in the new file, from which they run.
+# Arms whose motors are built in: the results are in the new file, which runs.
 expect 0 '' "$thimble" identify --arm falcon --seconds 10 --output found.yaml
 expect 0 'torque_constant: .* 1 A being 1000 motor values \[I ' cat found.yaml
 expect 0 '^ *# delay from force to motion: 0\.00[0-9]* ' cat found.yaml
 expect_run 0 .ticks == 100 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm found.yaml --duration 0.1
 expect_error 4 vendor "$thimble" identify --arm inverse3
 
-# Limits that protect nobody: an error with file and line, whoever names them.
+# Unsafe limits: an error with file and line, in any file.
 for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0/' \
   's/soft_start: 0.3/soft_start: 1e-9/' 's/watchdog: 0.1 /watchdog: 10 /' \
   's/rise_max: 2000/rise_max: 1e6/' 's/stall: 0.02 /stall: 0.1 /'; do

@@ -52,7 +52,7 @@ class Terminal:
         if self.status is None:
             done, status = os.waitpid(self.child, os.WNOHANG)
             self.status = status if done else None
-            return True  # once more for its last words
+            return True  # read the last output
         return False
 
     def until(self, true, what):

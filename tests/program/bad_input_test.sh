@@ -52,14 +52,14 @@ cp good.off good.xyz
 expect 2 'good\.xyz' "$thimble" mesh good.xyz
 mkdir folder.off
 expect_words 2 'folder.off' "$thimble" mesh folder.off
-# Faces that are no triangles are split: a cube of six squares can be touched.
+# Faces with more corners are split: a cube of six squares can be touched.
 printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' >cube.off
 expect 0 '' "$thimble" mesh cube.off --json cube.json
 expect_json cube.json .triangles == 12
 
 # Scenes.
 good_scene
-# Keys with an old name are read as before, with one warning each that tells the new one.
+# Keys with an old name are read as before, each with one warning that gives the new name.
 sed '0,/wavelength:/s//grain:/' scenes/sandpaper.yaml >scenes/old_keys.yaml
 expect_words 0 'old_keys.yaml:# grain wavelength' "$thimble" run scenes/old_keys.yaml
 expect 0 '^1$' sh -c "'$thimble' run scenes/old_keys.yaml 2>&1 | grep -c 'old_keys.*grain'"
@@ -85,7 +85,7 @@ scene_with 's/^( *)stiffness:.*/\1stiffness: .nan/'
 expect 2 'changed\.yaml:[0-9]+: stiffness' "$thimble" run scenes/changed.yaml
 scene_with 's/^( *)stiffness:(.*)/\1stifness:\2/'
 expect_words 2 'changed.yaml:# stifness stiffness' "$thimble" run scenes/changed.yaml
-# A value that is wrong is told by itself, without the checks that would compare with it.
+# A wrong value is reported by itself, without the checks that would compare with it.
 for seed in 7.5 0x1f 9007199254740993 -1 "'7'"; do
   sed "s/^seed:.*/seed: $seed/" scenes/box.yaml >scenes/changed.yaml
   expect_error 2 'changed.yaml:# seed 0 9007199254740992' "$thimble" run scenes/changed.yaml
@@ -105,7 +105,7 @@ hand: {path: [{t: 0, at: [0, 0, 0]}, {t: 1, at: [0, 0, 0]}]}
 END
 expect_words 2 'damped.yaml:6 damping 0 1000 N s/m "5000"' "$thimble" run scenes/damped.yaml
 expect 0 '^2$' bash -c '"$0" run scenes/damped.yaml 2>&1 | wc -l' "$thimble"
-# Characters that do not belong there, by line and column; a pipe; very many keys.
+# Invalid characters, by line and column; a pipe; very many keys.
 printf 'name: caf\xe9\n' >scenes/latin1.yaml
 expect_words 2 'latin1.yaml:1:10 0xE9 UTF-8' "$thimble" run scenes/latin1.yaml
 printf 'name: a\nobjects:\n\t- {name: b}\n' >scenes/tab.yaml
@@ -127,18 +127,18 @@ cp good.off open.off noise.off scenes/
 scene_with 's/^( *)mesh:.*/\1mesh: open.off/'
 expect_words 2 'open.off' "$thimble" run scenes/changed.yaml
 
-# What was to be printed and is lost; a reader that has seen enough is no trouble.
+# Output that is lost is an error; a reader that closes the pipe is not.
 expect 1 '^thimble: ' bash -c '"$0" run --list >/dev/full' "$thimble"
 expect 1 '^thimble: ' bash -c '"$0" --help >/dev/full' "$thimble"
 expect 0 . bash -c 'set -o pipefail; "$0" run --list | head -1' "$thimble"
-# A recording in place of the scene that it is of.
+# A recording instead of its scene.
 cp scenes/box.yaml scenes/mine.yaml
 expect_words 2 'mine.yaml recording' \
   "$thimble" run scenes/mine.yaml --duration 0.1 --record scenes/mine.yaml
 expect 0 '' cmp scenes/box.yaml scenes/mine.yaml
 sed 's/^seed:.*/rate: 40/' scenes/box.yaml >scenes/slow.yaml
 expect_words 2 'slow.yaml:11 rate 50 40' "$thimble" run scenes/slow.yaml
-# A viewer that is told when to leave leaves, though there is no run.
+# A viewer ends at the given time although there is no run.
 expect 0 . timeout 20 "$thimble" view no_such_run --text --for 0.2
 
 # A report that cannot be written.

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# A bag of ROS 2 leads the simulated hand, touches a scene again, and is written out of a recording. Bags are made
+# A ROS 2 bag leads the simulated hand, touches a scene, and is written from a recording. Bags are made
 # and read by Python as well.
 source "$(dirname "$0")/expect.sh" "$@"
 python3 -c 'import sqlite3' 2>/dev/null || { echo "Needs Python's sqlite3"; exit 77; }
 maker=$source_dir/tests/program/bag_maker.py
 export XDG_STATE_HOME=$PWD/state
-# A shape without friction or texture: its force depends on nothing but the place.
+# A shape without friction or texture: its force depends only on the position.
 scene() {
   cat <<END
 name: $1
@@ -27,7 +27,7 @@ if "$thimble" run from_bag.yaml --duration 0.01 2>&1 | grep -q 'knows no ROS bag
   exit 77
 fi
 
-# The hand goes where the bag says: 2 s, along x by a sine, down into the box.
+# The hand follows the bag: 2 s, along x by a sine, down into the box.
 expect 0 '' "$thimble" run from_bag.yaml --duration 2 --record hand.h5
 expect 0 '' "$thimble" export hand.h5 --csv hand.csv --bag out
 expect 0 '^2000$' grep -c '^[0-9]' hand.csv
@@ -37,7 +37,7 @@ expect 0 'message_count: 6000' cat out/metadata.yaml
 expect 0 '^/pose geometry_msgs/msg/PoseStamped 2000 ' python3 "$maker" show out
 expect 0 '^/wrench geometry_msgs/msg/WrenchStamped 2000 ' python3 "$maker" show out
 expect_words 2 'folder empty' "$thimble" export hand.h5 --bag out
-# A bag that cannot be completed leaves nothing: another attempt finds no folder in its way.
+# A bag that cannot be completed is removed, so another attempt finds no folder.
 cat >on_full_disk.sh <<'END'
 mkdir -p disk
 mount -t tmpfs -o size=100k tmpfs disk || exit 77
@@ -57,12 +57,12 @@ else
 fi
 expect 2 'csv|bag' "$thimble" export hand.h5
 
-# Round trip: the law feels the same along the exported positions.
+# Round trip: the law gives the same forces along the exported positions.
 expect 0 ' ([0-9.]+e-(09|1[0-9])|0) N' "$thimble" replay out --scene from_bag.yaml \
   --wrench-topic /wrench_wanted --csv again.csv --record again.h5
 expect 0 '^2001$' grep -c '' again.csv
 expect 0 '' "$thimble" replay out/out_0.db3 --scene from_bag.yaml
-# ... and the hand that follows them goes there: in the air, within 1 mm (0.63 measured; the bag has the tip, and the hand pulls the tip by a spring).
+# ... and the hand follows them in the air within 1 mm (0.63 measured: the bag has the tip, and the hand pulls it by a spring).
 scene again '{bag: out, topic: /pose}' >again.yaml
 expect 0 '' "$thimble" run again.yaml --duration 2 --record followed.h5
 "$thimble" export followed.h5 --csv followed.csv >/dev/null
@@ -70,20 +70,20 @@ cat >compare.py <<'END'
 import csv
 def path(name):
     rows = csv.DictReader(open(name))
-    return [[float(row["p_WT.%s [m]" % c]) for c in "xyz"] for row in rows][:900]  # in the air: what is pressed into gives way twice
+    return [[float(row["p_WT.%s [m]" % c]) for c in "xyz"] for row in rows][:900]  # in the air: in contact the compliance counts twice
 a, b = path("hand.csv"), path("followed.csv")
 most = max(max(abs(p - q) for p, q in zip(u, v)) for u, v in zip(a, b))
 print("close" if most < 0.001 and len(a) == len(b) else "far", most)
 END
 expect 0 '^close' python3 compare.py
 
-# The bag of somebody else touches a scene.
+# A bag from another program touches a scene.
 expect 0 '2001 .*from_bag.* [1-9][0-9]* ' \
   "$thimble" replay circle.db3 --scene from_bag.yaml --topic /arm/pose
 expect_words 2 '--scene' "$thimble" replay circle.db3
 expect_words 2 'topic /pose /arm/pose' "$thimble" replay circle.db3 --scene from_bag.yaml --topic /pose
 
-# What is wrong with a bag is said at the line of the scene.
+# An error in a bag is reported at the line of the scene.
 for kind in nan back; do
   python3 "$maker" make $kind.db3 $kind
   scene $kind "{bag: $kind.db3}" >$kind.yaml

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The workflow that users copy (app/examples/11_check_in_ci.yml): the commands of its steps pass with a scene and an arm that
-# are right, and fail where they should. Installing is replaced by a check of what it would install.
+# The workflow that users copy (app/examples/11_check_in_ci.yml): the commands of its steps pass with a correct scene and
+# arm, and fail where they should. Instead of an installation, the names of its packages are checked.
 source "$(dirname "$0")/expect.sh" "$@"
 workflow=$source_dir/app/examples/11_check_in_ci.yml
 /usr/bin/python3 -c 'import yaml' 2>/dev/null || {
@@ -47,7 +47,7 @@ cp "$source_dir/app/scenes/box.yaml" repository/scene.yaml
 cp "$source_dir/app/arms/vintage_phantom.yaml" repository/arm.yaml
 cp "$source_dir"/app/scenes/*.png repository/ 2>/dev/null
 
-# step NUMBER: runs its commands as a workflow does in a container: in the repository, with sh, ending at the first failure.
+# step NUMBER: runs its commands as a workflow in a container does: in the repository, with sh, up to the first failure.
 step() {
   (
     source steps/env
@@ -55,7 +55,7 @@ step() {
     cd repository && sh -e "../steps/$1.sh"
   )
 }
-number_of() { # number_of NAME: of the step that is called so
+number_of() { # number_of NAME: number of the step with this name
   local file
   file=$(grep -lx "$1" steps/*.name) || return 1
   basename "$file" .name
@@ -66,7 +66,7 @@ expect_own 0 'installs ./packages/thimble_0.3.0_amd64.deb' step "$(number_of 'In
 while read -r file; do expect 0 '' test -e "repository/$file"; done <steps/uploaded
 expect 0 'failures="0"' cat repository/hil.xml
 
-# What must fail, fails: without it the green workflow would mean nothing.
+# Wrong inputs must fail: otherwise the green workflow would mean nothing.
 right=$(cat repository/scene.yaml)
 rm repository/touch.h5
 echo "stifness: 3" >>repository/scene.yaml

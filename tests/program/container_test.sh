@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the image of app/install/Containerfile with buildah, on a bare Debian 12 in place of the one that it
-# would fetch, and touches in it by the program and by Python. In the long form alone and as root: it builds
-# Thimble anew, half an hour.
+# Builds the image of app/install/Containerfile with buildah, on a bare Debian 12 instead of a downloaded
+# one, and touches in it with the program and with Python. Only in the long form and as root: it builds
+# Thimble again, half an hour.
 #   container_test.sh SOURCE_FOLDER
 set -euo pipefail
 source=$1
@@ -9,7 +9,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 bare=$work/bare
 source "$here/bare_system.sh"
-# Nothing of the user's images is seen or changed; no engine's own privileges are asked for.
+# The user's images are neither read nor changed; no engine privileges are needed.
 export BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs
 buildah() { command buildah --root "$work/storage" --runroot "$work/running" "$@"; }
 leave() {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What app/demo.sh builds: runs, draws and reports as the whole program does, and says of the rest what to build.
+# The build of app/demo.sh runs, draws and reports like the whole program, and names the build for other commands.
 source "$(dirname "$0")/expect.sh" "$@"
 unset DISPLAY WAYLAND_DISPLAY
 scenes=$source_dir/app/scenes
@@ -12,11 +12,11 @@ for command in "study friction --out x" "bench box --seconds 1" "mesh a.off" doc
   expect 2 'app/setup.sh release thimble' "$thimble" $command
 done
 expect 0 '^  study +[A-Z]' "$thimble" --help
-# Others may run something on this machine meanwhile.
+# Other runs may exist on this machine.
 expect 0 'thimble run|\(sim\)' "$thimble" view --list
 expect_words 2 'window' "$thimble" view nobody
 
-# No window is looked for where there is none, on whatever screen.
+# Without a viewer in the build no window is started, with or without a screen.
 DISPLAY=:987 expect_words 0 'window' "$thimble" run "$scenes/box.yaml" --duration 0.2 \
   --clock wall --view
 finish

@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# Names of unknown origin never move a terminal: escapes, C1 controls, reordered and broken UTF-8 in names of files,
-# scenes, objects, runs, topics and options come out of no command, whatever it prints and logs.
+# Names of unknown origin cannot control a terminal: escapes, C1 controls, reordered and broken UTF-8 in names of files,
+# scenes, objects, runs, topics and options appear in no output or log of any command.
 source "$(dirname "$0")/expect.sh" "$@"
 export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data
 mkdir -p "$HOME" "$XDG_STATE_HOME"
 
 hostile=$'n\e]0;title\a\e[31m\x08\r\x7f\xc2\x9b31m\xe2\x80\xae\xe2\x81\xa6\xff\xc0\x80x'
-# The same as YAML writes it; a scalar holds no broken UTF-8.
+# The same in YAML; a scalar cannot hold broken UTF-8.
 yaml_hostile='n\e]0;title\a\e[31m\b\r\x7f\u009b31m\u202e\u2066x'
 
-# bad_bytes FILE: its lines with a control character but line feed and tab, with C1, with a character that reorders
+# bad_bytes FILE: its lines with a control character except line feed and tab, with C1, with a character that reorders
 # text, or with bytes that are no UTF-8.
 bad_bytes() {
   LC_ALL=C grep -naP '[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80[\x8e\x8f\xa8-\xae]|\xe2\x81[\xa6-\xaf]' "$1"
   iconv -f UTF-8 -t UTF-8 "$1" >/dev/null 2>&1 || echo "no UTF-8"
 }
 
-# plain COMMAND...: prints something, and nothing that a terminal would obey.
+# plain COMMAND...: prints text, without control sequences for a terminal.
 plain() {
   local bad
   checks=$((checks + 1))
@@ -46,7 +46,7 @@ sed -E "s/^name: .*/name: \"$yaml_hostile\"/; s/name: entry_face/name: \"$yaml_h
 cp scenes/hostile.yaml "scenes/$hostile.yaml"
 scene=scenes/hostile.yaml
 
-# A scene with such names, and every way to run it.
+# A scene with such names, in every kind of run.
 plain "$thimble" run $scene --duration 0.05 --record rec.h5 --report report --save-mesh all.off --log run.log
 plain "$thimble" run $scene --duration 0.05 --save-mesh one.off --save-object absent
 plain "$thimble" run "scenes/$hostile.yaml" --duration 0.05 --record "$hostile.h5" --report "$hostile" --save-mesh "$hostile.off"
@@ -95,7 +95,7 @@ sed -E "s/^name: .*/name: \"$yaml_hostile\"/" arms/vintage_phantom.yaml >arms/ho
 plain "$thimble" run $scene --duration 0.05 --arm arms/hostile.yaml --record arm.h5
 plain "$thimble" doctor --arm arms/hostile.yaml
 
-# Meshes and pictures whose readers, and others' libraries, quote them.
+# Meshes and pictures whose names appear in errors of their readers and of libraries.
 for ending in off obj stl ply gltf glb 3mf dae amf 3ds; do
   printf '%s' "$hostile" >"bad.$ending"
   plain "$thimble" mesh "bad.$ending"
@@ -125,17 +125,17 @@ plain "$thimble" replay path.csv --scene $scene --frame "$hostile"
 printf '%s' "$hostile" >"$hostile.db3"
 plain "$thimble" replay "$hostile.db3" --scene $scene
 
-# The logs that a person looks at.
+# The logs.
 for log in run.log "$XDG_STATE_HOME"/thimble/log/*.log; do
   checks=$((checks + 1))
   bad=$(bad_bytes "$log" | head -3 | cat -v)
   [ -z "$bad" ] || { echo "FAILED: $log: $bad"; failures=$((failures + 1)); }
 done
-# Files that a browser or a program reads stay what they are.
+# Files for a browser or a program keep the names unchanged.
 checks=$((checks + 1))
 python3 -c 'import json; json.load(open("report/report.json"))' ||
   { echo "FAILED: report.json is no JSON"; failures=$((failures + 1)); }
-# That the names were printed at all.
+# The names were printed at all.
 checks=$((checks + 1))
 [ "$(grep -c 'n?]0;title??\[31m' all)" -gt 20 ] ||
   { echo "FAILED: the names are in few texts"; failures=$((failures + 1)); }

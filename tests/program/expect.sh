@@ -10,14 +10,14 @@ cd "$work"
 failures=0
 checks=0
 
-# fail_check MESSAGE: counts a check that failed, and shows what was printed (output).
+# fail_check MESSAGE: counts a failed check, and prints the output.
 fail_check() {
   echo "FAILED: $1"
   [ -z "${output:-}" ] || head -20 <<<"$output" | sed 's/^/    /'
   failures=$((failures + 1))
 }
 
-# ends_with CODE COMMAND...: runs COMMAND, keeps what it prints on standard output and error in output, and returns whether its exit
+# ends_with CODE COMMAND...: runs COMMAND, keeps its standard output and error in output, and returns whether its exit
 # code is CODE.
 ends_with() {
   local code=$1 status
@@ -30,9 +30,9 @@ ends_with() {
   return 1
 }
 
-# expect CODE PATTERN COMMAND...: COMMAND must exit with CODE and print a line matching PATTERN (an
+# expect CODE PATTERN COMMAND...: COMMAND must exit with CODE and print a line that matches PATTERN (an
 # extended regular expression) on standard output or error; it may never die from a signal. For files and structured output;
-# arch.prose counts the patterns that are wording of the program.
+# arch.prose counts patterns that are wording of the program.
 expect() {
   local code=$1 pattern=$2
   shift 2
@@ -40,7 +40,7 @@ expect() {
   grep -qE -- "$pattern" <<<"$output" || fail_check "$* : no line matches: $pattern"
 }
 
-# expect_own CODE PATTERN COMMAND...: the same of texts that programs of the tests print.
+# expect_own CODE PATTERN COMMAND...: the same for output of the tests' own programs.
 expect_own() { expect "$@"; }
 
 # line_with WORDS: the Perl regular expression of a line that has each of the blank-separated WORDS.
@@ -54,8 +54,8 @@ line_with() {
   echo "$pattern"
 }
 
-# expect_words CODE WORDS COMMAND...: COMMAND must exit with CODE and print a line that has each of the blank-separated WORDS, whole,
-# in any order; # in a word stands for a number. For messages: names of options, commands, files, keys and packages, line
+# expect_words CODE WORDS COMMAND...: COMMAND must exit with CODE and print a line with each of the blank-separated WORDS, whole
+# and in any order; # in a word means a number. For messages: names of options, commands, files, keys and packages, line
 # numbers, values and limits, never the sentence around them.
 expect_words() {
   local code=$1 words=$2
@@ -64,7 +64,7 @@ expect_words() {
   LC_ALL=C grep -qaP -- "$(line_with "$words")" <<<"$output" || fail_check "$* : no line has: $words"
 }
 
-# expect_error CODE WORDS COMMAND...: the same of an error's line, which begins with "thimble: ".
+# expect_error CODE WORDS COMMAND...: the same for the line of an error, which begins with "thimble: ".
 expect_error() {
   local code=$1 words=$2
   shift 2
@@ -78,7 +78,7 @@ expect_json() {
   output=$(/usr/bin/python3 "$source_dir/tests/program/json_value.py" "$@" 2>&1) || fail_check "expect_json $*"
 }
 
-# expect_ticks RECORDING OPERATOR COUNT: a recording can be exported and holds so many ticks (-eq, -ge: see test).
+# expect_ticks RECORDING OPERATOR COUNT: a recording can be exported, and OPERATOR holds for its ticks and COUNT (-eq, -ge).
 expect_ticks() {
   ends_with 0 "$thimble" export "$1" --csv "$work/ticks_of.csv" || return
   local ticks
@@ -87,7 +87,7 @@ expect_ticks() {
   [ "$ticks" "$2" "$3" ] || fail_check "$1 holds $ticks ticks, expected $2 $3"
 }
 
-# expect_run CODE PATH OPERATOR VALUE COMMAND...: COMMAND, `thimble run` of a scene, exits with CODE and its report.json, which
+# expect_run CODE PATH OPERATOR VALUE COMMAND...: COMMAND, `thimble run` of a scene, exits with CODE, and its report.json, which
 # stays in run_report, has such a value. No pictures are drawn.
 expect_run() {
   local code=$1 path=$2 operator=$3 value=$4
@@ -100,8 +100,8 @@ expect_run() {
   ends_with "$code" "$@" --report run_report && expect_json run_report/report.json "$path" "$operator" "$value"
 }
 
-# expect_links PAGE COUNT: PAGE links COUNT files, which are there, and those that are pages are below 10 MB each. Where what pages of
-# runs are made of is not installed, the page says so, and links fewer.
+# expect_links PAGE COUNT: PAGE links COUNT existing files, and each page among them is below 10 MB. Without the libraries for
+# pages of runs, the page says so and links fewer.
 expect_links() {
   local page=$1 count=$2 links found=0 target
   links=$(grep -oE 'href="[^"#]+"' "$page" | sed 's/href="//; s/"$//')
@@ -113,7 +113,7 @@ expect_links() {
   expect 0 "^$count\$" echo "$found"
 }
 
-# expect_plot STEM...: there are STEM.png and STEM.svg, and they are what their names say.
+# expect_plot STEM...: STEM.png and STEM.svg exist and have the formats of their names.
 expect_plot() {
   local stem
   for stem; do
@@ -129,7 +129,7 @@ finish() {
   exit 0
 }
 
-# leave_out WHAT: says that WHAT is not tested, so that the test ends as skipped; where CI is set, as failed.
+# leave_out WHAT: prints that WHAT is not tested; the test then counts as skipped, or as failed if CI is set.
 leave_out() {
   echo "NOT TESTED: $1" >&2
   left_out=yes

@@ -44,7 +44,7 @@ def without_arguments(name):
     name = re.sub(r'^(?:guard variable for|(?:non-)?virtual thunk to) ', '', name).replace('(anonymous namespace)', 'hidden')
     name = re.sub(r'operator(\(\)|[^\w\s(]+|\s[^(]*|\[\])(?=\()', 'operator', name)
     arguments, count = '', 1
-    while count:  # the innermost first; before the arguments of the function only
+    while count:  # the innermost first, only before the arguments of the function
         head, bracket, tail = name.partition('(')
         inner = re.findall(r'<([^<>]*)>', head)
         arguments += ' '.join(inner)
@@ -61,7 +61,7 @@ class Headers:
         self.functions = collections.defaultdict(list)  # name: [(marked, public, place)]
 
     def read(self, path, public, place):
-        blocks, statement = [], ''  # the namespaces around a line, and None for a class or a function
+        blocks, statement = [], ''  # the namespaces around a line; None inside a class or a function
         for number, line in enumerate(path.read_text().split('\n'), 1):
             line = re.sub(r'\s*//.*', '', line)
             if not line.strip() or line.startswith('#'):
@@ -112,7 +112,7 @@ def main():
     defined, wanted = {}, {}
     uses = [path for path in build.rglob('*.a') if '/tests/' not in str(path)]
     uses += [path for path in (build / 'app').rglob('*.o') if '/thimble.dir/' in str(path) or '/thimble_python.dir/' in str(path)]
-    # Weak symbols that it does not define itself come from a class with a source, or from a template that a source instantiates.
+    # Weak symbols that a library does not define come from a class with a source, or from a template instantiated in a source.
     uses = {path: symbols([path], 'U', '-u') - symbols([path], KINDS, '--defined-only') for path in uses}
     for library in FOLDERS:
         own = archive(build, library)
@@ -120,18 +120,18 @@ def main():
         wanted[library] = set().union(*(names for path, names in uses.items() if path != own)) & defined[library]
         defined[library] -= symbols([own], 'W', '--defined-only') - wanted[library]
 
-    looked, missing = {}, {}  # by place; looked: whether it is public
+    looked, missing = {}, {}  # by place; values of looked: whether it is public
     for library in FOLDERS:
         names = demangled(defined[library])
         for symbol in sorted(defined[library]):
             name, arguments = without_arguments(names[symbol])
             if not name.startswith('thimble::') or arguments and symbol not in wanted[library]:
-                continue  # what is instantiated where it is used
-            # An instance of a template is as hidden as its arguments are.
+                continue  # instantiated by its users
+            # An instance of a template is hidden if one of its arguments is hidden.
             for argument in re.findall(r'thimble::[\w:]+', arguments) if symbol in wanted[library] else []:
                 if argument in headers.classes and not headers.classes[argument][0]:
                     missing[headers.classes[argument][2]] = f'class {argument}: another library needs {names[symbol]}'
-            # A member of a class, or of a class in it.
+            # A member of a class, or of a nested class.
             above = name
             while '::' in above and above not in headers.classes:
                 above = above.rpartition('::')[0]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks that what shared libraries have to export carries THIMBLE_EXPORT (export_marks.py), without building any: every
-# public function and class, and what another library or the program refers to. Then a mark that is removed must be missed.
+# Checks that all exports of shared libraries have THIMBLE_EXPORT (export_marks.py), without building the libraries. These
+# are public functions and classes, and symbols that another library or the program uses. A removed mark must be reported.
 # tests/shared.sh builds the shared libraries.
 #   exports_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
@@ -18,7 +18,7 @@ read -r public _ <<<"$said"
 
 (cd "$source" && find driver device_sim render app/scene app/bag app/session -name '*.h' -exec cp --parents -t "$work" {} +)
 look "$work" >"$work/said" || fail "a copy is not read as the headers are: $(cat "$work/said")"
-# remove_mark HEADER DECLARATION: removes the mark in front of it.
+# remove_mark HEADER DECLARATION: removes the mark before the declaration.
 remove_mark() {
   grep -q "THIMBLE_EXPORT $2" "$work/$1" || fail "$1 has no THIMBLE_EXPORT $2"
   sed -i "s/THIMBLE_EXPORT $2/$2/" "$work/$1"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Real processes in trouble: signals, a servo or a viewer that stands still, a full disk, shared
-# memory that is taken away, a date that jumps, no real-time priority, no processor to spare. In each
-# phase the arm is left with zero force, the cause is named, and no recorded tick is lost. The same in
+# Real processes under faults: signals, a stopped servo or viewer, a full disk, removed shared
+# memory, a jump of the date, no real-time priority, no spare processor. In each
+# phase the arm gets zero force at the end, the cause is named, and no recorded tick is lost. The same in
 # simulated time: tests/sim/fault_matrix_test.cpp. Appends to the file that THIMBLE_FAULTS names.
 source "$(dirname "$0")/expect.sh" "$@"
 scenes=$source_dir/app/scenes
@@ -9,7 +9,7 @@ export XDG_STATE_HOME=$PWD/state
 unset DISPLAY WAYLAND_DISPLAY
 me=faults$$
 
-# cell FAULT PHASE PROMISE: what was expected since the last cell is the result of this one.
+# cell FAULT PHASE PROMISE: the checks since the last cell are the result of this one.
 before=0
 cell() {
   local result=met
@@ -22,18 +22,18 @@ not_tested() {  # not_tested FAULT PHASE WHY
   [ -z "${THIMBLE_FAULTS:-}" ] || echo "FAULT|$1|process|$2|-|not tested here: $3|" >>"$THIMBLE_FAULTS"
 }
 
-# No pictures are drawn, for they take longer than the runs; one is looked for.
+# No pictures are drawn, because they take longer than the runs; one is checked for.
 mkdir -p tools
 printf '#!/bin/sh\ntouch mesh.png\n' >tools/gnuplot
 chmod +x tools/gnuplot
 PATH=$PWD/tools:$PATH
 
-# Each phase is a scene and a time (s) at which its hand is about that.
+# Each phase is a scene and the time (s) at which its hand is in this phase.
 phases=("opening rubber 0.02" "free rubber 0.5" "sliding rubber 1.6" "deforming trampoline 1.8")
 [ -n "${THIMBLE_LONG:-}" ] || phases=("opening rubber 0.02" "sliding rubber 1.6" "deforming trampoline 1.8")
 
-# trouble SCENE SECONDS COMMAND...: runs a scene on the wall clock, recorded, and COMMAND with the
-# process number after so many seconds of touch; leaves exit code, output, report and recording.
+# trouble SCENE SECONDS COMMAND...: runs a scene on the wall clock, recorded, and after SECONDS of touch
+# COMMAND with the process number; leaves exit code, output, report and recording.
 trouble() {
   local scene=$1 seconds=$2 pid
   shift 2
@@ -41,14 +41,14 @@ trouble() {
   "$thimble" run "$scenes/$scene.yaml" --clock wall --duration 30 --no-view --report report \
     --record run.h5 >out 2>&1 </dev/null &
   pid=$!
-  # Touch begins when the recording is there; a slow machine takes its time to open.
+  # The touch begins when the recording exists; a slow machine needs time to open it.
   for _ in $(seq 200); do [ -e run.h5 ] && break; sleep 0.02; done
   sleep "$seconds"
   "$@" $pid
   wait $pid
   status=$?
 }
-# A machine that pauses for 100 ms makes the watchdog's fault come first, which is right too.
+# If the machine pauses for 100 ms, the watchdog's fault comes first, which is correct as well.
 left_well() {  # left_well CODE REASON
   if [ "$1" != 4 ] && [ "$status" = 4 ] && grep -q loop_stalled report/report.json 2>/dev/null; then
     echo "(this machine paused for 100 ms: $1 came as loop_stalled)"
@@ -66,7 +66,7 @@ for signal in INT TERM HUP; do
   for phase in "${phases[@]}"; do
     read -r name scene seconds <<<"$phase"
     [ "$signal" = HUP ] && [ "$name" != sliding ] && [ -z "${THIMBLE_LONG:-}" ] && continue
-    # What a script runs beside itself ignores SIGINT until the program asks for it.
+    # A background job of a script ignores SIGINT until the program installs its handler.
     [ "$signal $name" = "INT opening" ] && continue
     trouble "$scene" "$seconds" send $signal
     if [ "$name" = opening ] && [ ! -e report/report.json ]; then  # before any force
@@ -93,7 +93,7 @@ for phase in "${phases[@]}"; do
     "zero force, loop_stalled, every tick recorded, black box"
 done
 
-# What stands beside the servo may stand still, go, or be taken away.
+# Processes outside of the servo may stop, end, or lose their memory.
 if [ -d /dev/shm ]; then
   segment=/dev/shm/thimble-$(id -u)-$me
   "$thimble" run "$scenes/rubber.yaml" --clock wall --duration 3 --name "$me" --record watched.h5 --report watched_report \
@@ -124,7 +124,7 @@ else
   not_tested "shared memory removed" sliding "no POSIX shared memory"
 fi
 
-# The disk. A file that may not grow is the same to a program, and anybody can make it so.
+# The disk. A file size limit has the same effect and needs no privileges.
 expect_words 2 'small.h5' bash -c \
   'ulimit -f 100; exec "$0" run "$1" --duration 60 --no-view --record small.h5' "$thimble" "$scenes/rubber.yaml"
 cell "file size limit" "opening" "refused with a sentence, no crash"
@@ -162,9 +162,9 @@ expect 0 '^0$' bash -c '"$0" run "$1" --duration 0.5 --no-view | true; echo ${PI
   "$thimble" "$scenes/rubber.yaml"
 cell "reader of the output gone" "sliding" "the run goes on to its end"
 
-# Nothing of the servo looks at the date.
+# The servo does not use the date.
 jump=$(dirname "$work")/libclock_jump.so
-ends_well() {  # ends_well COMMAND...: a touch on the wall clock, whatever the machine does
+ends_well() {  # ends_well COMMAND...: a touch on the wall clock, under any load of the machine
   "$@" run "$scenes/rubber.yaml" --clock wall --duration 1.5 --no-view --report report >out 2>&1
   status=$?
   expect 0 '^[04]$' echo "$status"
@@ -173,7 +173,7 @@ ends_well() {  # ends_well COMMAND...: a touch on the wall clock, whatever the m
 }
 if [ -e "$jump" ]; then
   ends_well env LD_PRELOAD="$jump" "$thimble"
-  # 1.5 s are 1500 ticks, less what the machine missed; a servo on the date would have millions, or none.
+  # 1.5 s are 1500 ticks, less the missed ones; a servo on the date would have millions, or none.
   ticks=$(grep -oE '^  "ticks": [0-9]+' report/report.json | grep -oE '[0-9]+')
   expect 0 '^yes$' echo "$([ "$ticks" -ge 20 ] && [ "$ticks" -le 1501 ] && echo yes || echo "$ticks ticks")"
   cell "date jumps by a day and back" "sliding" "the servo does not notice"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Prints every command that the guide and the README promise, one per line: page, tab, command. Those of the
-# guide are its blocks marked "sh", in its order. Studies take minutes and have tests of their own: without
-# THIMBLE_LONG they are only begun.
+# Prints every command of the guide and the README, one per line: page, tab, command. Those of the
+# guide are its blocks marked "sh", in order. Studies take minutes and have their own tests: without
+# THIMBLE_LONG they are only started.
 #   guide_commands.sh SOURCE_FOLDER
 set -euo pipefail
 source=$1
@@ -15,7 +15,7 @@ commands_of() {  # PAGE FILE
   sed -nE 's|^build/release/app/(thimble [^#]*[^# ]) *(#.*)?$|README.md\t\1|p' "$source/README.md"
 } | while IFS=$'\t' read -r page line; do
   if [[ $line == "thimble study "* ]] && [ -z "${THIMBLE_LONG:-}" ]; then
-    # What is refused is refused at once; what has begun is interrupted.
+    # Errors appear at once; a started command is interrupted.
     line="timeout -s INT 1 $line || [ \$? = 124 ]"
   fi
   printf '%s\t%s\n' "$page" "$line"

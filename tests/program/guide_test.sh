@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every command that the guide and the README promise (guide_commands.sh), and looks whether its pages are
-# what the program and the sources say.
+# Runs every command of the guide and the README (guide_commands.sh), and checks that the pages agree with
+# the program and the sources.
 #   guide_test.sh PROGRAM SOURCE_FOLDER WORK_FOLDER
 set -euo pipefail
 program=$1 source=$2 work=$3
@@ -9,7 +9,7 @@ mkdir -p "$work/bin"
 ln -s "$program" "$work/bin/thimble"
 ln -s "$source/app" "$work/app"
 export PATH=$work/bin:$PATH
-# The Python package of this build, if it has one, with the Python that it is for.
+# The Python package of this build, if there is one, with its Python version.
 python=$(dirname "$program")/python
 if [ -d "$python/thimble" ] && /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
   ln -s /usr/bin/python3 "$work/bin/python3"
@@ -36,7 +36,7 @@ grep -q $'^README.md\tthimble run tin_can --record can.h5$' commands ||
 [ "$commands" -ge 12 ] || { echo "FAILED: only $commands commands were found" >&2 && exit 1; }
 echo "$commands commands of $(cut -f 1 commands | sort -u | wc -l) pages ran."
 
-# What the guide writes in Python, all of it in one go.
+# The guide's Python code, all of it in one run.
 if [ -n "$python" ]; then
   awk '/^```python$/ { inside = 1; next } /^```/ { inside = 0 } inside' \
     "$source/app/guide/pages/python.md" >guide.py
@@ -44,7 +44,7 @@ if [ -n "$python" ]; then
   python3 guide.py >said 2>&1 || { echo "FAILED: the guide's Python" >&2 && cat said >&2 && exit 1; }
 fi
 
-# The scenes that the guide writes out are some; the bowl is one that no repair closes.
+# The guide's scenes; the bowl is one that no repair closes.
 awk -v to="$work" '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^name: / { out = to "/" $2 ".yaml" }
   inside { print >out }' "$source/app/guide/pages/scenes.md"
 sed -i "s|\.\./arms|$source/app/arms|" my_*.yaml
@@ -54,7 +54,7 @@ for scene in my_ball my_bowl; do
 done
 grep -qE ' sheet .*4 triangles' said || { echo "FAILED: nothing is told of the sheet" >&2 && exit 1; }
 
-# The page of all keys is what the readers ask for.
+# The page of all keys equals the list of the readers.
 bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||
   { echo "FAILED: app/guide/pages/keys.md is old; app/guide/keys.sh writes it" >&2 && exit 1; }
 
@@ -68,8 +68,8 @@ for group in friction texture field; do
   done <names
 done
 
-# What the guide tells of peers is what the folders of the source have measured: ticks that are hot and in the loop, and
-# the peer's times of searches.
+# The guide's figures of peers equal those in the folders of the sources: hot ticks, ticks in the loop, and
+# times of searches.
 compare=$source/app/guide/pages/compare.md packed=$source/render/src/compact_mesh/README.md
 hot() { sed -nE 's/^\| (10\^[0-9])[^|]*\| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \| ([0-9]+), [0-9]+ \(([0-9]+), [0-9]+\) \|.*/| \1 | \2 | \3 | \4 | \5 |/p'; }
 in_the_loop() { grep -E '^\| 10\^[0-9] (\| [0-9]+, [0-9]+ ){3}\| [0-9.]+, [0-9.]+ \|$'; }
@@ -89,7 +89,7 @@ for row in 'ball, segment' 'torus, segment' 'ball, nearest point' 'torus, neares
     { echo "FAILED: compare.md gives other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
 done
 
-# The guide as a site, strictly: no dead link, no page out of the menu.
+# The guide as a site, strictly: no dead link, no page outside the menu.
 bash "$source/app/guide/site.sh" "$work/pages" || {
   [ $? = 3 ] || { echo "FAILED: the guide's pages" >&2 && exit 1; }
   echo "NOT TESTED: the guide as web pages; install mkdocs."

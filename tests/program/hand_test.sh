@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# The keyboard leads the simulated hand in the window, and the touch is heard, on a screen and a sound card in memory
+# The keyboard leads the simulated hand in the window, and the touch is audible, on a virtual screen and sound card
 # (Debian: xvfb, xdotool, libasound2).
 source "$(dirname "$0")/expect.sh" "$@"
 unset DISPLAY WAYLAND_DISPLAY
 scene=$source_dir/tests/data/scenes/two_boxes.yaml
 me=hand$$
 
-# What does not go together is refused, with what to write instead.
+# Options that exclude each other are refused, with the correct usage.
 expect_words 2 '--rumble --view' "$thimble" run "$scene" --sound
 expect_words 2 '--clock' "$thimble" run "$scene" --view --clock virtual --sound
 expect_words 2 'gamepad simulated' \
   "$thimble" run "$scene" --device auto --hand gamepad
 expect_words 2 'gamepad' "$thimble" run "$scene" --hand gamepad --clock virtual
 
-# A recording as sound: a WAV file as long as the run, that is not silent.
+# A recording as sound: a WAV file of the length of the run that is not silent.
 expect 0 '' "$thimble" run "$scene" --record touch.h5 --no-view
 expect_words 0 'touch.wav 3000' "$thimble" export touch.h5 --sound touch.wav
 expect 0 '^288044$' stat -c %s touch.wav # 3 s of 48000 samples of 2 bytes
@@ -28,7 +28,7 @@ for tool in Xvfb xdotool; do
 done
 source "$(dirname "$0")/screen.sh"
 
-# A floor below the hand, and a card that writes what it plays into a file.
+# A floor below the hand, and a card that writes its samples into a file.
 cat >floor.yaml <<END
 name: floor
 duration: 1
@@ -52,7 +52,7 @@ run=$!
 wait_for 60 xdotool search --onlyvisible --name "Thimble: floor"
 window=$(xdotool search --onlyvisible --name "Thimble: floor" | head -1)
 xdotool windowfocus "$window" 2>/dev/null
-# Down, onto the floor, as often as it takes: the first pictures are slow where the processor draws them.
+# Down to the floor, as often as necessary: the first pictures are slow with software rendering.
 touches() {
   xdotool keydown Down
   sleep 0.5
@@ -62,7 +62,7 @@ touches() {
 expect_own 0 '^touched$' bash -c "$(declare -f wait_for touches); thimble='$thimble' me='$me'; wait_for 60 touches && echo touched"
 xdotool key BackSpace
 expect 0 '' "$thimble" view "$me" --for 2 --hand keyboard --picture window.png
-expect 0 '^[0-9]{5,}$' stat -c %s window.png # a window with nothing in it takes 11 kB
+expect 0 '^[0-9]{5,}$' stat -c %s window.png # an empty window takes 11 kB
 "$thimble" view "$me" --stop
 wait $run
 expect 0 '^0$' echo $?

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An Inverse3 by its vendor's service, as a person meets it: devices, doctor, run.
+# An Inverse3 behind its vendor's service, as a user sees it: devices, doctor, run.
 source "$(dirname "$0")/expect.sh" "$@"
 python=/usr/bin/python3  # Debian's
 [ -x $python ] || python=python3
@@ -8,7 +8,7 @@ if ! $python -c 'import websockets' 2>/dev/null; then
   exit 77
 fi
 export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
-# Nobody listens on this port of this computer: only root may.
+# Only root may listen on this port, so it is closed.
 export THIMBLE_HAPLY_PORT=1
 expect 0 '^sim ' "$thimble" devices
 expect_words 3 "'049D'" "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --device 049D
@@ -25,7 +25,7 @@ expect 0 '^049D .*Inverse3 .* [0-9]+ +ws://localhost:[0-9]+ +ready' "$thimble" d
 "$thimble" doctor >doctor.txt 2>&1
 expect_words 0 'Inverse3 049D port #' cat doctor.txt
 expect_error 2 calibrated "$thimble" calibrate --device 049D
-# Without real-time priority no command pushes a real arm unless the user says so, and doctor names that as a problem.
+# Without real-time priority no command pushes a real arm unless the user allows it, and doctor names that as a problem.
 weak() { # COMMAND...
   if [ "$(id -u)" = 0 ]; then
     prlimit --rtprio=0 setpriv --bounding-set=-sys_nice "$@"
@@ -38,7 +38,7 @@ for command in feel-check identify hil; do
 done
 expect_words 2 'feel-check' weak "$thimble" identify --device 049D --no-real-time
 expect_words 3 'PROBLEM real-time 80' weak "$thimble" doctor
-# In real time, where a busy machine may give the service no turn for longer than the gate waits for a report.
+# In real time. On a busy machine the service may pause longer than the gate waits for a report.
 touch_it() {
   for _ in 1 2 3 4 5; do
     "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --device auto --yes --no-real-time --no-view --duration 1 && return
@@ -48,11 +48,11 @@ touch_it() {
 }
 expect_words 0 'inverse3.yaml Inverse3' touch_it
 expect 0 '^049D ' tail -n 1 forces.txt
-# A millisecond each, less what a busy machine left out; and the last of them is zero.
+# One per millisecond, less those that a busy machine missed; the last is zero.
 expect 0 '^[1-9][0-9][0-9]+ ' wc -l forces.txt
 expect 0 '^049D -?0\.?0* -?0\.?0* -?0\.?0*$' tail -n 1 forces.txt
 
-# Several arms: which? Two behind the service, and two kinds: one there and one on USB, if the kernel lets us show one.
+# Several arms to choose from: two behind the service, then one there and one on USB, if the kernel can simulate it.
 rm port
 kill $service
 wait $service 2>/dev/null
@@ -66,7 +66,7 @@ THIMBLE_HAPLY_PORT=$(cat port)
 scene=$source_dir/tests/data/scenes/two_boxes.yaml
 expect_words 3 "'auto' 049D Inverse3 0A11 --device NAME" \
   "$thimble" run "$scene" --device auto --yes --no-real-time --no-view
-# exec needs the libraries that stand in for others; a build with a sanitizer has none.
+# exec needs the compatibility layer; a build with a sanitizer has none.
 if [ -e "$(dirname "$(readlink -f "$thimble")")/compat/lib/libHD.so" ]; then
   expect_words 3 '--device NAME' "$thimble" exec --serve haply --port 0 --device auto --yes --no-real-time true
 fi
@@ -83,5 +83,5 @@ if unshare -rm bash with_falcon.sh true 2>/dev/null; then
 else
   echo "NOT TESTED: two kinds of arms with --device auto: no namespaces of one's own"
 fi
-expect 0 '^0$' stat -c %s forces.txt  # nobody was chosen, so nobody was told anything
+expect 0 '^0$' stat -c %s forces.txt  # no arm was chosen, so none got a message
 finish

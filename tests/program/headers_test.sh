@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Looks at the headers that are installed: there are few enough for a person to know what to include, each
-# compiles alone with nothing but Eigen beside it, none names a library that a user need not know, and each
-# has its page in the reference. In the short form all of them are compiled in one program, in both orders.
+# Checks the installed headers: their number is limited, each compiles by itself with only Eigen
+# installed, none names a library that a user need not know, and each has its page in the reference.
+# In the short form all of them are compiled in one program, in both orders.
 #   headers_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -15,7 +15,7 @@ fail() {
 
 cmake --install "$build" --component dev --prefix "$work/usr" >"$work/log" || fail "$(cat "$work/log")"
 cd "$work/usr/include"
-# Those in thimble/compat are other makers' interfaces: nobody who uses ours includes them, so they do not count.
+# Those in thimble/compat are other makers' APIs, which users of Thimble's API do not include: they do not count.
 find thimble -path thimble/compat -prune -o -name '*.h' -print | sort >"$work/headers"
 cut -d/ -f2 "$work/headers" | sort | uniq -c
 # thimble/version.h, which CMake writes (driver/version.h.in), and thimble/driver/export.h declare nothing, and other headers
@@ -30,8 +30,8 @@ if grep -nE '#include *"' -r thimble --exclude-dir=compat | grep -v '"thimble/';
   fail "the lines above include what is not installed"
 fi
 
-# Each alone, in a program without any other include. Eigen's headers, which most of them begin with, are parsed
-# once: a header gets that one which it includes itself.
+# Each by itself, in a program without any other include. Eigen's headers, which most of them begin with, are parsed
+# once: a header gets the one that it includes itself.
 check() {  # ARGUMENTS...
   "${CXX:-c++}" -std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -I. -isystem "$eigen" "$@"
 }
@@ -60,7 +60,7 @@ else
 fi
 [ ! -s "$work/bad" ] || fail "do not $alone: $(sort "$work/bad" | tr '\n' ' ')"
 
-# The reference is made of the same folders.
+# The reference is made from the same folders.
 while read -r header; do
   [ "$header" != thimble/version.h ] || continue
   module=$(cut -d/ -f2 <<<"$header")
@@ -71,7 +71,7 @@ while read -r header; do
   [ -f "$source/$folder/$header" ] || fail "$header is installed, but does not come from $folder"
 done <"$work/headers"
 
-# Other makers' interfaces: each header alone, those without C++ in it in C as well.
+# Other makers' APIs: each header by itself, those without C++ in C as well.
 others=0
 while read -r header; do
   others=$((others + 1))

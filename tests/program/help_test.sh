@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Every command explains itself.
+# Each command has a help text.
 source "$(dirname "$0")/expect.sh" "$@"
 
 expect 0 '0 [a-z]+, 1 [a-z ]+, 2 [a-z ]+, 3 ' "$thimble" --help
 expect 0 '^thimble [0-9]+\.[0-9]+\.[0-9]+ \(' "$thimble" --version
-# Every command of the table (app/cli/commands.inc) that help lists, and its row in the guide.
+# Each command of the table (app/cli/commands.inc) is in the help, and has a row in the guide.
 mapfile -t commands < <("$thimble" --help | sed -n '/^Subcommands:/,$s/^  \([a-z][a-z-]*\).*/\1/p')
 for command in run exec view devices doctor calibrate feel-check identify twin hil mesh plug bench; do
   expect 0 . grep -xe "$command" <(printf '%s\n' "${commands[@]}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The checks of an arm as a test server runs them: what is printed, both files, exit codes.
+# The checks of an arm on a test server: output, both files, exit codes.
 source "$(dirname "$0")/expect.sh" "$@"
 
 expect 0 '' \
@@ -27,7 +27,7 @@ cases = suite.findall("testcase")
 print(suite.get("tests"), suite.get("failures"), suite.get("skipped"), len(cases),
       len([case for case in cases if case.find("skipped") is not None]))'
 
-# A motor that is turned round: named, nothing pushes after it, and a server sees a failure.
+# A reversed motor is named, nothing pushes after it, and the exit code is a failure.
 sed 's/^simulation:/&\n  wiring: {motor_gain: [1, -1, 1]}/' "$source_dir/app/arms/vintage_phantom.yaml" >reversed.yaml
 expect_words 5 'FAILED feel_check Motor 2' "$thimble" hil --device sim --arm reversed.yaml --junit bad.xml
 expect 0 '^1 True$' /usr/bin/python3 -c '
@@ -49,10 +49,10 @@ for attribute, tag in kinds.items():
 assert int(suite.get("tests")) == len(cases)
 print(suite.get("tests"), *[suite.get(attribute) for attribute in kinds])
 end
-# What did not run is an error, so that a server cannot take the file for a green one.
+# A check that did not run is an error, so that the file cannot count as a success.
 expect 0 '^11 1 7 1$' /usr/bin/python3 summary.py bad.xml
 
-# Without an arm there is no result: the simulated arm is checked only where it is asked for, and an old file does not stay.
+# Without an arm there is no result: the simulated arm is checked only on request, and an old file is removed.
 cp good.xml old.xml
 cp good.json old.json
 expect_words 3 '--device sim' "$thimble" hil --arm vintage_phantom --junit old.xml --json old.json
@@ -64,7 +64,7 @@ print(whole["end"], whole["exit_code"], *{one["outcome"] for one in whole["check
 expect 3 '--require-device' "$thimble" hil --device sim --arm vintage_phantom --require-device
 expect_words 2 '--check reports' "$thimble" hil --device sim --arm vintage_phantom --check weight
 
-# One check, and what it needs before it pushes.
+# One check, and those that it requires before it pushes.
 expect 0 '' "$thimble" hil --device sim --arm vintage_phantom --check reports --json one.json
 expect_json one.json '.checks#' == 1
 expect_json one.json '.checks[0].outcome' == passed
@@ -74,14 +74,14 @@ expect 0 '^2 0 0 0$' /usr/bin/python3 summary.py one.xml
 expect 0 '^\[2/2\] friction_at_rest$' "$thimble" hil --device sim --arm vintage_phantom --check friction_at_rest
 expect_words 5 'cable_pull' "$thimble" hil --device sim --arm vintage_phantom --check cable_pull
 
-# Out of time, and ended by a signal: zero force, and both files say what did not run.
+# At the time limit and at a signal: zero force, and both files name the checks that did not run.
 expect 5 'NOT RUN' "$thimble" hil --device sim --arm vintage_phantom --check soak --soak 60 --timeout 3 --junit late.xml
 expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py late.xml
 cp good.xml ended.xml
 expect_words 130 'NOT RUN' timeout -s TERM --preserve-status 3 \
   "$thimble" hil --device sim --arm vintage_phantom --soak 60 --check reports --check soak --junit ended.xml
 expect 0 '^3 0 1 0$' /usr/bin/python3 summary.py ended.xml
-# Even SIGKILL leaves no old result behind.
+# After SIGKILL no old result remains.
 cp good.xml killed.xml
 expect 137 '' timeout -s KILL 3 "$thimble" hil --device sim --arm vintage_phantom --soak 60 --check soak --junit killed.xml
 expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py killed.xml
@@ -89,7 +89,7 @@ expect 0 '^2 0 1 0$' /usr/bin/python3 summary.py killed.xml
 # A pipe gets one text, with the results of all checks.
 expect 0 '^1 0 0 0$' bash -c '"$0" hil --device sim --arm vintage_phantom --check reports --junit /dev/stderr 2>&1 >/dev/null |
   cat >piped.xml && /usr/bin/python3 summary.py piped.xml' "$thimble"
-# Any name is XML.
+# Any name gives valid XML.
 printf 'name: "a <b> & \\\"c\\\" \\x01 \\uFFFE"\n' >named.yaml
 sed '/^name:/d' "$source_dir/app/arms/vintage_phantom.yaml" >>named.yaml
 expect 0 . "$thimble" hil --device sim --arm named.yaml --check reports --junit named.xml

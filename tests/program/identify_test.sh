@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# Identifying an arm as a person at a terminal meets it: keys that stop, questions, largest force; and what a script gets.
+# thimble identify at a terminal (keys that stop, questions, largest force) and in a script.
 source "$(dirname "$0")/expect.sh" "$@"
 python=/usr/bin/python3
 at_terminal="$python $source_dir/tests/program/at_terminal.py"
 arm=$source_dir/app/arms/vintage_phantom.yaml
 brief="identify --device sim --arm vintage_phantom --seconds 10 --places 0"
-# Motion of ten minutes is simulated for much longer than it takes to press a key.
+# The simulation of a motion of ten minutes takes much longer than a press of a key.
 endless="identify --device sim --arm vintage_phantom --seconds 600"
 
-# Any key ends it while the tip moves, and so does Ctrl-C; then the terminal is what it was.
+# Any key, and Ctrl-C, ends it while the tip moves, and the terminal is restored.
 expect 130 '' $at_terminal wait ' ends it' raw keys x -- "$thimble" $endless --output never.yaml
 expect_own 130 '^The terminal was left as it was' $at_terminal wait ' ends it' raw keys ' ' -- "$thimble" $endless --output never.yaml
 expect 130 '' $at_terminal wait ' ends it' raw keys '\x03' -- "$thimble" $endless --output never.yaml
 expect_own 130 '^The terminal was left as it was' $at_terminal wait ' ends it' raw keys '\x03' -- "$thimble" $endless --output never.yaml
-# A terminal that is gone ends it as well.
+# A closed terminal ends it as well.
 expect 130 '' $at_terminal wait ' ends it' hangup -- "$thimble" $endless --output never.yaml
 expect 1 '' test -e never.yaml
-# What is no terminal stops nothing, whatever comes out of it.
+# Input from anything other than a terminal stops nothing.
 expect_words 0 'Ctrl-C' bash -c '(sleep 0.3; echo x) | "$@"' _ "$thimble" $brief --output piped.yaml
 expect 0 'mass: ' cat piped.yaml
 
@@ -28,18 +28,18 @@ expect 0 'mass: 0\.07.*\[I ' cat asked.yaml
 expect_words 2 'asked.yaml' $at_terminal -- "$thimble" $endless --output asked.yaml
 expect 0 '' $at_terminal -- "$thimble" $brief --output said.yaml --yes
 expect 0 'mass: ' cat said.yaml
-# A script says it by --output or --yes.
+# A script uses --output or --yes.
 expect_words 0 '--output --yes' "$thimble" $brief
 expect 1 '' test -e vintage_phantom_identified.yaml
 expect_words 0 'vintage_phantom_identified.yaml' "$thimble" $brief --yes
 expect 0 'mass: ' cat vintage_phantom_identified.yaml
 
-# A bad fit is written by name alone, and says so in each mark; a yes is not enough.
-# A joint rubs whose cable is too stiff to be seen.
+# A bad fit is written only with its own option, and each mark contains it; a yes is not enough.
+# A joint with friction, whose cable is too stiff to be detected.
 sed 's/^simulation:/&\n  drive_train: {coulomb: [0, 0.03, 0], stiffness: [2000, 2000, 2000], inertia: [0.00001, 0.00001, 0.00001], damping: [0.01, 0.01, 0.01]}/' \
   "$arm" >sticky.yaml
 expect_words 5 'BAD FIT Joint 2' "$thimble" identify --device sim --arm sticky.yaml --seconds 10 --places 0
-# Amplifiers saturate far below what the file says, which is seen sooner.
+# Amplifiers that saturate far below the value of the file, which is detected sooner.
 sed 's/current_max: 6 .*/current_max: 0.3/' "$arm" >weak.yaml
 bad="identify --device sim --arm weak.yaml --seconds 10 --places 0 --output bad.yaml"
 expect_words 5 'BAD FIT Motor 3' "$thimble" $bad
@@ -52,8 +52,8 @@ expect 0 '^# BAD FIT: ' head -n 1 bad.yaml
 expect 0 'class="verdict bad"' cat bad/index.html
 expect 0 '^[1-9][0-9]* 0$' bash -c 'echo "$(grep -c "\[I .*BAD FIT" bad.yaml) $(grep "\[I " bad.yaml | grep -vc "BAD FIT")"'
 
-# The largest force is the user's, and the arm file's at the most.
-most() { # FILE: the largest force that was asked for, N
+# The user sets the largest force, up to the limit of the arm file.
+most() { # FILE: the largest requested force, N
   "$thimble" export "$1" --csv "$1.csv" >/dev/null
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^f_wanted_W\.[xyz]/) at[++n] = i; next }
     n == 3 { s = $at[1] ^ 2 + $at[2] ^ 2 + $at[3] ^ 2; if (s > most) most = s }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the build into a folder of its own, builds the eight examples against it as somebody else's
-# project would, runs them, and looks at what was installed beside them.
+# Installs the build into a folder, builds the eight examples against it as another
+# project would, runs them, and checks the other installed files.
 #   install_test.sh BUILD_FOLDER EXAMPLES_FOLDER
 set -euo pipefail
 build=$1 examples=$2
@@ -27,7 +27,7 @@ done
 [ "$(wc -l <touch.csv)" = 2001 ] || fail "06_record left $(wc -l <touch.csv) lines"
 [ "$("$work/usr/bin/thimble" export touch.h5 --csv same.csv >/dev/null && wc -l <same.csv)" -gt 1000 ] ||
   fail "09_run_a_scene left no recording that the program reads"
-# Names are found where the libraries were installed, and a name that nobody knows is answered with those.
+# Names are found next to the installed libraries; the error of an unknown name lists them.
 mkdir elsewhere
 (cd elsewhere && XDG_DATA_DIRS=/nonexistent "$work/examples/09_run_a_scene" no_such_scene 2>&1) >said &&
   fail "09_run_a_scene ran a scene that is not there"
@@ -40,7 +40,7 @@ for page in README.md app/guide/pages/cpp.md; do
   sed -n '/^```cpp$/,/^```$/p' "$examples/../../$page" | sed '/^```/d' >by_pkg_config.cpp
   "${CXX:-c++}" $(pkg-config --cflags thimble) -Wall -Wextra -Werror by_pkg_config.cpp -o by_pkg_config \
     $(pkg-config --libs thimble) >log 2>&1 || fail "$page: $(cat log)"
-  # As after a bare `cmake --install`: a user without files, and no scans.
+  # As after a plain `cmake --install`: a user without files, and no scans.
   rm -rf touch.h5 nothing && mkdir nothing
   env -i HOME="$work/nothing" PATH="$PATH" XDG_DATA_DIRS="$work/usr/share" ./by_pkg_config >said 2>&1 || fail "$page: $(cat said)"
   grep -q '^Force ' said || fail "$page printed: $(cat said)"
@@ -141,7 +141,7 @@ done < <(grep -oHP '\]\(\K[A-Za-z0-9_./-]+(?=(#[^)]*)?\))' "$documents"/*.md "$d
 [ "$links" -ge 70 ] || fail "only $links links of $documents were found"
 diff "$examples/../guide/pages/keys.md" "$documents/guide/keys.md" || fail "the guide has other keys"
 
-# Nothing of the folder that it was built in: scans are looked for where it is installed.
+# No path of the build folder: scans are searched for in the installation.
 mkdir -p home "$work/usr/share/thimble/meshes"
 printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n' >tetrahedron.off
 in_place() { env -u THIMBLE_MESHES HOME="$work/home" XDG_CACHE_HOME="$work/home/cache" "$program" "$@"; }

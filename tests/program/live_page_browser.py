@@ -51,14 +51,14 @@ async def look(address, page, picture, stop):
             return {}
         found = await steer(tab)
 
-        # It goes along with the run.
+        # The page follows the run.
         before = await tab.value("thimblePage.state()")
         await tab.wait_for(f"thimblePage.state().t > {before['t']} + 1.5 && thimblePage.state().drawn > {before['drawn']} + 1")
         await tab.value(DRAWN)
         await tab.picture(picture)
         found["followed"] = (await tab.value("thimblePage.state()"))["following"]
 
-        # Who goes back stays there while the run goes on, and comes back by a button.
+        # After a seek the page stays at its moment while the run continues; a button returns to live.
         await tab.value("thimblePage.seek(thimblePage.state().t - 1)")
         held = await tab.value("thimblePage.state()")
         await tab.wait_for(f"thimblePage.duration > {held['t']} + 1.5")
@@ -70,7 +70,7 @@ async def look(address, page, picture, stop):
         now = await tab.value("thimblePage.state()")
         found["came_back"] = now["following"] and now["t"] > held["t"] + 1
 
-        # It ends with the run, and what it has can still be looked at.
+        # The page ends with the run, and its data can still be viewed.
         subprocess.run(stop, check=True)
         await tab.wait_for("thimblePage.state().live.state === 'ended'")
         await tab.value(DRAWN)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# thimble mesh: what is put right on loading, what a repair mends, and what it leaves.
+# thimble mesh: corrections on load, repairs, and faults that remain.
 source "$(dirname "$0")/expect.sh" "$@"
 
 tetrahedron() {
@@ -18,7 +18,7 @@ expect 0 '' "$thimble" mesh flipped.off --repair turned.off --json mesh.json
 expect_json mesh.json '.repaired.changes[kind=turned_triangle].count' == 1
 expect 0 '' "$thimble" mesh turned.off --json mesh.json
 expect_json mesh.json .watertight == true
-# A fifth vertex a hair beside the fourth tears the tip open.
+# A fifth vertex very close to the fourth opens the tip.
 printf 'OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 1.000001\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 4\n' >torn.off
 expect 2 '' "$thimble" mesh torn.off --json mesh.json
 expect_json mesh.json '.faults[kind=open_edge].count' '>' 0
@@ -35,7 +35,7 @@ expect 0 '' "$thimble" mesh open.off --repair closed.off --json mesh.json
 expect_json mesh.json '.repaired.changes[kind=filled_hole].count' == 1
 expect 0 '' "$thimble" mesh closed.off --json mesh.json
 expect_json mesh.json .watertight == true
-# A sheet stays one, until it is made a thin body.
+# A sheet stays a sheet unless it is made a thin body.
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >sheet.off
 expect_words 2 '--repair OUT.off --thicken 0.01' "$thimble" mesh sheet.off --repair still_open.off --json mesh.json
 expect_json mesh.json .repaired.remedy.sheet_triangles == 1
@@ -49,7 +49,7 @@ expect_json mesh.json .repaired.sheet_triangles == 1
 expect 0 '' "$thimble" mesh thin.off --json mesh.json
 expect_json mesh.json .watertight == true
 expect_words 2 '--thicken --repair' "$thimble" mesh sheet.off --thicken 0.01
-# What others' programs write.
+# Files of other programs.
 for ending in gltf glb 3mf amf dae 3ds; do
   expect 0 '' "$thimble" mesh "$source_dir/tests/data/meshes/box.$ending" --json mesh.json
   expect_json mesh.json .watertight == true
@@ -60,7 +60,7 @@ expect 0 '' "$thimble" mesh "$source_dir/tests/data/meshes/box.gltf" --json mesh
 expect_json mesh.json .up == y
 expect 0 '' "$thimble" mesh "$source_dir/tests/data/meshes/placed_box.gltf" --json mesh.json
 expect_json mesh.json '.notes#' == 1
-# Formats without a unit, and shapes that a format does not let through.
+# Formats without a unit, and shapes that a format cannot express.
 meshes="$source_dir/tests/data/meshes"
 expect_words 0 '50 m scale size STL unit scale: 0.001' "$thimble" mesh "$meshes/mm50.stl" --json mesh.json
 expect_json mesh.json .unit_doubtful == true
@@ -75,7 +75,7 @@ expect_json mesh.json .turned_on_load == 12
 expect_words 2 '"FOO_bar"' "$thimble" mesh "$meshes/unknown_required.gltf"
 printf 'v 0 0 0\nv 1mm 0 0\nv 0 1 0\nf 1 2 3\n' >unit.obj
 expect_words 2 'unit.obj:2 "1mm" 2' "$thimble" mesh unit.obj
-# The same in a scene: refused, with the remedy; reported, where it is only doubtful.
+# The same in a scene: refused, with the remedy; only reported if doubtful.
 scene_of() {
   printf 'name: part\narm: vintage_phantom\nduration: 0.1\nobjects:\n  - {name: part, mesh: %s, stiffness: 500, position: [0, 0, -0.05]%s}\nhand:\n  path:\n    - {t: 0, at: [0, 0, 0.05]}\n    - {t: 0.1, at: [0, 0, 0.051]}\n' "$1" "$2"
 }
@@ -95,12 +95,12 @@ expect_run 0 .contact.inside_at_start == '["part"]' "$thimble" run inside.yaml
 expect_words 0 'Start part' "$thimble" run inside.yaml
 expect_words 2 '.off' "$thimble" mesh good.off --repair good.stl
 expect_words 2 'no_folder/good.off folder' "$thimble" mesh good.off --repair no_folder/good.off
-# Cutting a mesh into pages.
+# Division of a mesh into pages.
 expect_words 0 'good.pages 4 1' "$thimble" mesh page good.off good.pages
 expect 0 'THMBPAGE' head -c 8 good.pages
 expect_words 2 'open.off # edges' "$thimble" mesh page open.off open.pages
 expect_words 2 'no_folder/good.pages folder' "$thimble" mesh page good.off no_folder/good.pages
-# What a page file is, and one of any size.
+# Description of a page file, and one of any size.
 expect 0 '' "$thimble" mesh good.pages --json mesh.json
 expect_json mesh.json .damaged_pages == 0
 expect_json mesh.json .pages == 1

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Scenes and arms are found by name: in the user's folder, beside the program, in XDG_DATA_DIRS, in this order and never in the
-# working folder; and what is not found is answered with what there is.
+# Scenes and arms are found by name: in the user's folder, next to the program, in XDG_DATA_DIRS, in this order and never in the
+# working folder. The error of an unknown name lists the known ones.
 source "$(dirname "$0")/expect.sh" "$@"
 export HOME=$work/home XDG_DATA_DIRS=$work/other/share
 unset XDG_DATA_HOME
 
-# box_at FILE DURATION: the box, as a scene that lasts so long.
+# box_at FILE DURATION: the box, as a scene of this duration.
 box_at() {
   mkdir -p "$(dirname "$1")"
   sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: $2/" "$source_dir/app/scenes/box.yaml" >"$1"
 }
 
-# From a folder without scenes: those of the source, for the program lies below it.
+# From a folder without scenes: those of the source, because the program is below it.
 expect_run 0 .ticks == 200 "$thimble" run box --duration 0.2
 expect_run 0 .ticks == 200 "$thimble" run box.yaml --duration 0.2 --arm vintage_phantom
 expect 0 '^  elephant .*/elephant\.yaml$' "$thimble" run --list
@@ -24,7 +24,7 @@ expect_words 2 'vintage vintage_phantom' "$thimble" run box --arm vintage
 expect 2 'folder/elephant' "$thimble" run folder/elephant
 expect_words 2 'SCENE missing' "$thimble" run --duration 1
 
-# Nearer ones go before: other folders of the system, the user's own.
+# Nearer folders come first: other folders of the system, the user's own.
 expect_words 2 'only_there' "$thimble" run only_there
 box_at other/share/thimble/scenes/only_there.yaml 0.02
 expect_run 0 .ticks == 20 "$thimble" run only_there
@@ -46,7 +46,7 @@ expect 0 '^ok .*[^ ]*home/\.local/share/thimble ' \
 box_at xdg/thimble/scenes/only_there.yaml 0.04
 expect_run 0 .ticks == 40 env XDG_DATA_HOME="$work/xdg" "$thimble" run only_there
 
-# The working folder may be a stranger's: nothing there is found by name, only by path.
+# The working folder may be untrusted: its files are found by path only, never by name.
 box_at app/scenes/only_there.yaml 0.05
 box_at app/scenes/box.yaml 0.05
 box_at scenes/box.yaml 0.05
@@ -68,21 +68,21 @@ mkdir only_there  # a folder is no scene
 expect_run 0 .ticks == 30 "$thimble" run only_there
 rm -rf app arms scenes box.yaml
 
-# What is broken is listed without its words, and says why when it is run.
+# A broken scene is listed without description, and a run reports the reason.
 printf '{[' >home/.local/share/thimble/scenes/broken.yaml
 expect 0 '^  broken .*/scenes/broken\.yaml$' "$thimble" run --list
 expect 2 'broken\.yaml:1' "$thimble" run broken
-# Without HOME, the system's list of users says where the user's folder is; relative folders count for nothing.
+# Without HOME, the system's list of users gives the user's folder; relative folders are ignored.
 home_of_user=$(getent passwd "$(id -u)" | cut -d: -f6)
 expect 0 "^ok .* $home_of_user/\.local/share/thimble[, ]" bash -c 'env -u HOME "$0" doctor || true' "$thimble"
 expect 0 "^ok .* $home_of_user/\.local/share/thimble[, ]" bash -c 'HOME=here XDG_DATA_HOME=there "$0" doctor || true' "$thimble"
 
-# A program that lies alone knows nothing by name, and says so.
+# A program without its files finds no name, and reports this.
 mkdir -p alone && cp "$thimble" alone/thimble
 (
   cd alone
   export XDG_DATA_DIRS=$work/none HOME=$work/none
-  # Below the source it would find that; so it stands where nothing is above.
+  # Below the source it would find the source's files, so it is copied elsewhere.
   away=$(mktemp -d)
   cp thimble "$away/"
   cd "$away"

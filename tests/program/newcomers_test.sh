@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Five newcomers (newcomers/*.sh) follow what README and guide say, each in an empty folder and with nothing but
-# what was installed: side by side against this build installed into a folder; with THIMBLE_LONG and as root one by
-# one in a bare Debian 12 with the packages. How long each takes is printed and never judged.
+# Five newcomers (newcomers/*.sh) follow README and guide, each in an empty folder with only the
+# installation: side by side with this build installed into a folder; with THIMBLE_LONG and as root one by
+# one in a bare Debian 12 with the packages. Their times are printed and never checked.
 #   newcomers_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1
@@ -51,8 +51,8 @@ export PATH=$work/usr/bin:$PATH DOCUMENTS=$work/usr/share/doc/thimble
 export PYTHONPATH=$work/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1
 PKG_CONFIG_PATH=$(dirname "$(find "$work/usr" -name thimble.pc)")
 export PKG_CONFIG_PATH CMAKE_PREFIX_PATH=$work/usr
-ln -s /usr/bin/python3 "$work/usr/bin/python3"  # the one that the package is for
-follow() {  # NEWCOMER, in a folder and a home of its own
+ln -s /usr/bin/python3 "$work/usr/bin/python3"  # the script that the package is for
+follow() {  # NEWCOMER, in a separate folder and home
   local begin=$EPOCHREALTIME status=0
   mkdir -p "$work/$1/home"
   (cd "$work/$1" && HOME=$PWD/home XDG_STATE_HOME=$PWD/home/state XDG_CONFIG_HOME=$PWD/home/config \

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Other users of the computer, and clients that misbehave: they can neither stop our commands nor fill the memory.
+# Other users of the computer, and clients that misbehave, can neither stop commands nor fill the memory.
 source "$(dirname "$0")/expect.sh" "$@"
 python=/usr/bin/python3
 export XDG_STATE_HOME=$work/state
 port_of() { sed -n 's/.* on port \([0-9]*\) as USB device.*/\1/p' "$1"; }
 
-# A client of `plug` that takes transfers back and never reads: what waits for it is bounded.
+# A client of `plug` that takes transfers back and never reads: its queue is bounded.
 cat >flood.py <<'P'
 import socket, struct, sys, time
 client = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
@@ -24,7 +24,7 @@ while time.monotonic() < end:
         break
 print(sent, "bytes taken")
 P
-# Clients that ask for nothing, and one that asks for the list of devices.
+# Clients that send nothing, and one that requests the list of devices.
 cat >idle.py <<'P'
 import socket, struct, sys
 idle = [socket.create_connection(("127.0.0.1", int(sys.argv[1]))) for _ in range(40)]
@@ -55,7 +55,7 @@ if [ "$(id -u)" != 0 ] || ! command -v setpriv >/dev/null; then
 fi
 as_other() { setpriv --reuid 65534 --regid 65534 --clear-groups "$@"; }
 
-# A pipe of another user under the name of a run's shared memory: no command waits for it.
+# A pipe of another user with the name of a run's shared memory: no command waits for it.
 name=other-users-$$
 pipe=/dev/shm/thimble-0-$name
 as_other mkfifo -m 666 "$pipe"
@@ -76,7 +76,7 @@ wait $run
 status=$?
 expect 0 '^130$' echo $status
 
-# A service of another user that says it has an Inverse3.
+# A service of another user that claims to have an Inverse3.
 if "$python" -c 'import websockets' 2>/dev/null; then
   mkdir -m 777 service
   as_other "$python" "$source_dir/tests/program/haply_service.py" service/port >service/forces.txt 2>service/errors.txt &

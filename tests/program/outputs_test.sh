@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# No output destroys anything: every output option of every command, in one table (`file` and `folder` below), is refused before the
-# work begins where it names an input, a file of another kind, a folder that does not exist or cannot be written to, or what another
-# process writes. The end looks whether an option of the program is missing in the table.
+# No output destroys anything: one table has every output option of every command (`file` and `folder` below). It is refused
+# before the work begins if it names an input, a file of another kind, a missing or read-only folder, or a file that another
+# process writes. At the end, every output option of the program must be in the table.
 source "$(dirname "$0")/expect.sh" "$@"
 scenes=$source_dir/app/scenes
 sed "s#^arm: .*#arm: $source_dir/app/arms/vintage_phantom.yaml#" "$scenes/box.yaml" >scene.yaml
@@ -14,8 +14,8 @@ printf 't x y z\n0 0 0 0.03\n1 0 0 0.02\n' >probe.traj
 printf 'precious\n# a, b\nname: kept\n' >precious
 table=" "
 
-# refused FILE PATTERN COMMAND...: the command ends with 2 and a matching sentence within the time in which no work is done, and FILE is
-# as it was.
+# refused FILE PATTERN COMMAND...: the command exits with 2 and a matching sentence, too early for any work, and FILE is
+# unchanged.
 refused() {
   local file=$1 pattern=$2 before
   shift 2
@@ -26,7 +26,7 @@ refused() {
   echo "FAILED: $* changed $file"
   failures=$((failures + 1))
 }
-# with OUT COMMAND...: prints the words of the command, a line each, with OUT in place of its word OUT.
+# with OUT COMMAND...: prints the words of the command, one per line, with OUT instead of its word OUT.
 with() {
   local out=$1 word
   shift
@@ -114,8 +114,8 @@ for log in scene.yaml precious in.h5 mesh.off; do
 done
 table="$table all:--log "
 
-# Options that name outputs, as the manual describes them, are in the table; --save-as and --save-knobs write new files only, --control
-# makes a pipe, and --record of view asks the run to record.
+# Options that name outputs in the manual are in the table. --save-as and --save-knobs only write new files, --control
+# makes a pipe, and --record of view sends a request to the run.
 "$thimble" manual >manual
 awk '/^\.SS/ { command = $2; next } /^\.TP/ { getline; option = $0; getline
     if (/[Tt]o write|^Write|Folder for|OFF file for|File to log to/) print (command == "" ? "all" : command), option }' manual |
@@ -131,19 +131,19 @@ done <writes
 checks=$((checks + 1))
 [ "$(wc -l <writes)" -ge 25 ] || { echo "FAILED: the manual names few outputs" && failures=$((failures + 1)); }
 
-# Two outputs of one name, and through a link.
+# Two outputs with one name, and through a link.
 refused in.h5 '--csv.*--sound' "$thimble" export in.h5 --csv same --sound same
 ln -sf new_name link_to_new
 refused in.h5 '--csv.*--sound' "$thimble" export in.h5 --csv new_name --sound link_to_new
 
-# A recording is a measurement: it is replaced only with --force, and links stay.
+# Recordings are measurements: they are replaced only with --force, and links stay.
 "$thimble" run scene.yaml --duration 0.05 --record once.h5 >/dev/null 2>&1
 refused once.h5 'once\.h5.*--force' "$thimble" "${run[@]}" --record once.h5
 expect 0 '' "$thimble" "${run[@]}" --record once.h5 --force
 ln -s once.h5 linked.h5
 expect 0 '' "$thimble" "${run[@]}" --record linked.h5 --force
 expect 0 '' test -L linked.h5
-# An HDF5 file of another program is not replaced, with --force either.
+# An HDF5 file of another program is not replaced, even with --force.
 printf '\x89HDF\r\n\x1a\n of another program' >other.h5
 refused other.h5 'other\.h5' "$thimble" "${run[@]}" --record other.h5 --force
 # Other outputs of the same kind are replaced, and their mode is kept.
@@ -152,7 +152,7 @@ chmod 640 table.csv
 expect 0 '' "$thimble" export in.h5 --csv table.csv
 expect 0 '^640$' stat -c %a table.csv
 
-# Two runs at once: of one recording, and of one folder.
+# Two runs at once: with one recording, and with one folder.
 "$thimble" run scene.yaml --clock wall --duration 20 --no-view --record busy.h5 --report busy >busy.txt 2>&1 &
 pid=$!
 for _ in $(seq 500); do [ -e busy.h5 ] && break; sleep 0.02; done
@@ -162,12 +162,12 @@ kill -INT $pid
 wait $pid
 expect_ticks busy.h5 -ge 1
 
-# Recordings, logs and black boxes can be read by their owner only, whatever the umask.
+# Only their owner can read recordings, logs and black boxes, for any umask.
 (umask 0 && XDG_STATE_HOME=$PWD/state "$thimble" run scene.yaml --duration 0.05 --record secret.h5 --log secret.log) >/dev/null 2>&1
 (umask 0 && XDG_STATE_HOME=$PWD/state "$thimble" run scene.yaml --duration 0.05) >/dev/null 2>&1
 for secret in secret.h5 secret.log state/thimble/log/thimble.log; do expect 0 '^600$' stat -c %a $secret; done
 
-# Closed standard streams: no output gets their numbers.
+# Closed standard streams: no output gets their descriptors.
 expect 0 '' bash -c 'exec 2>&-; "$0" run scene.yaml --duration 0.05 --record closed.h5 --log /dev/stderr' "$thimble"
 expect_ticks closed.h5 -eq 50
 for closed in '0<&-' '1>&-' '2>&-' '0<&- 1>&- 2>&-'; do
@@ -176,25 +176,25 @@ for closed in '0<&-' '1>&-' '2>&-' '0<&- 1>&- 2>&-'; do
   expect_ticks closed.h5 -eq 50
 done
 
-# Killed while it makes a recording: there is none, or one that can be opened.
+# Killed while it creates a recording: there is none, or one that can be opened.
 unreadable=0
 [ -n "${THIMBLE_LONG:-}" ] && tries=300 || tries=40
 for _ in $(seq $tries); do
   rm -f killed*.h5
   "$thimble" run scene.yaml --clock wall --duration 20 --no-view --record killed.h5 >/dev/null 2>&1 &
   pid=$!
-  # Until the first bytes of it are there, under any name.
+  # Until its first bytes exist, under either name.
   for _ in $(seq 2000); do [ -e killed.h5 ] || [ -e killed.thimble-part.h5 ] && break; done
   kill -9 $pid
   wait $pid 2>/dev/null
   [ -e killed.h5 ] && ! "$thimble" export killed.h5 --csv killed.csv >/dev/null 2>&1 && unreadable=$((unreadable + 1))
 done
 expect 0 '^0$' echo $unreadable
-# What is left of it is used again.
+# The next run reuses the rest.
 expect 0 '' "$thimble" "${run[@]}" --record killed.h5 --force
 expect 1 '' test -e killed.thimble-part.h5
 
-# A full disk, and one that cannot be written to, are found before the run; nothing is left.
+# A full or read-only disk is detected before the run; nothing remains.
 cat >disks.sh <<'END'
 mkdir -p full readonly
 mount -t tmpfs -o size=64k tmpfs full && mount -t tmpfs -o ro tmpfs readonly || exit 77

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Makes the Debian packages, lets lintian judge them, looks at what each holds and how large it is with its dependencies, and asks
-# the program for each command with and without the other packages. With THIMBLE_LONG and as
-# root it installs them into a bare Debian 12 and there touches without and with the scans, publishes topics of ROS 2, runs
-# every command of the guide (of studies the first second: they take minutes and have tests of their own), and builds and
+# Makes the Debian packages, checks them with lintian, checks their contents and their sizes with dependencies, and calls
+# each command of the program with and without the other packages. With THIMBLE_LONG and as
+# root it installs them into a bare Debian 12. There it touches without and with the scans, publishes ROS 2 topics, runs
+# every command of the guide (the first second of studies: they take minutes and have their own tests), and builds and
 # runs the examples.
 #   package_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
@@ -38,7 +38,7 @@ holds() {  # DEB FILE
 made=$(cd "$work" && ls -- *.deb | cut -d _ -f 1 | LC_ALL=C sort | tr '\n' ' ')
 [[ $made == "libthimble-dev "* && ${made/python3-thimble /} == *"thimble thimble-compat thimble-mesh-formats "* &&
   $made == *"thimble-studies thimble-viewer " ]] || fail "the packages are $made"
-# PACKAGE FILE, of a part each.
+# PACKAGE FILE, one of each part.
 while read -r package file; do
   holds "$(deb "$package")" "$file"
 done <<'END'
@@ -64,7 +64,7 @@ for line in 'thimble \.SS study' 'thimble See thimble\\-studies(1)' 'thimble See
   manual "${line%% *}" >page
   grep -q "^${line#* }" page || fail "the manual page of ${line%% *} has no line ${line#* }"
 done
-# Of a folder that only one package may have: PACKAGE FOLDER.
+# A folder that only one package may have: PACKAGE FOLDER.
 while read -r package folder; do
   for other in "$work"/*.deb; do
     [ "$other" = "$(deb "$package")" ] || ! grep -q " \./$folder" "$other.contents" ||
@@ -81,10 +81,10 @@ for file in usr/include/thimble/driver/safety_gate.h usr/include/thimble/scene/s
   "usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)/pkgconfig/thimble.pc"; do
   holds "$development" "$file"
 done
-# What two packages hold, dpkg does not install.
+# dpkg refuses packages that share a file.
 cat ./*.deb.contents | awk '{ print $6 }' | grep -v '/$' | sort | uniq -d >twice
 [ ! -s twice ] || fail "two packages hold $(tr '\n' ' ' <twice)"
-# What thimbleConfig.cmake asks for, by the names that pkg-config and then Debian know it by.
+# Dependencies in thimbleConfig.cmake, by their names for pkg-config and then Debian.
 dpkg-deb --field "$development" Depends >asked
 dpkg-deb --fsys-tarfile "$development" | tar -xO --wildcards '*/thimbleConfig.cmake' >config
 needed=$(sed -nE 's/^ *find_dependency\(([^ )]*).*/\1/p; s/^ *pkg_check_modules\(.* ([^ )]*)\)$/\1/p' config |
@@ -94,7 +94,7 @@ for module in $needed pkg-config thimble; do
   case $module in png) module=libpng ;; esac
   library=$module
   if file=$(pkg-config --path "$module" 2>/dev/null) && [ -n "$file" ]; then
-    library=$(dpkg -S "$(realpath "$file")" 2>/dev/null | cut -d : -f 1) || continue  # of nobody's package
+    library=$(dpkg -S "$(realpath "$file")" 2>/dev/null | cut -d : -f 1) || continue  # in no package
   fi
   grep -qE "(^|, )$library( |,|$)" asked || fail "libthimble-dev does not ask for $library: $(cat asked)"
 done
@@ -109,13 +109,13 @@ for package in "$work"/*.deb; do
     fail "$(basename "$package") does not ask for thimble of its version"
 done
 
-# 40 MB in units of 1024 bytes, as Installed-Size has.
+# 40 MB in units of 1024 bytes, as in Installed-Size.
 bash "$source/app/debian_packages.sh" "$work"/*.deb >sizes || fail "the sizes of the packages: $(cat sizes)"
 cat sizes
 size=$(awk '$1 == "thimble" { print $4 }' sizes)
 [ "${size:-0}" -gt 5000 ] || fail "thimble takes $size kB with what it depends on"
 [ "$size" -lt $((40 * 1000 * 1000 / 1024)) ] || fail "thimble takes $size kB with what it depends on: not below 40 MB"
-# What makes the difference to the other packages: these must not be needed by it, not even through others.
+# The size of the other packages comes from these libraries: thimble must not need them, even indirectly.
 for package in thimble-viewer thimble-mesh-formats; do
   awk -v package=$package -v limit="$size" '$1 == package && $4 > limit + 9000 { found = 1 } END { exit !found }' sizes ||
     fail "with $package as much is installed as without"
@@ -128,7 +128,7 @@ run_alone() { env -u THIMBLE_MESHES HOME="$work/home" XDG_STATE_HOME="$work/home
 run_alone --help >help || fail "thimble alone: $(cat help)"
 sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p' help >commands_alone
 [ "$(wc -l <commands_alone)" -ge 18 ] || fail "the help lists $(wc -l <commands_alone) commands"
-lacking() {  # PACKAGE COMMAND...: it answers with the package, and the exit code is that of wrong arguments, or $ends
+lacking() {  # PACKAGE COMMAND...: it names the package, and the exit code is that of wrong arguments, or $ends
   local status=0
   run_alone "${@:2}" >said 2>&1 || status=$?
   [ $status = "${ends:-2}" ] || fail "without $1: thimble ${*:2} ended with $status: $(cat said)"
@@ -189,7 +189,7 @@ install_into_root --configure thimble
 install_into_root --unpack "$(deb thimble-compat)"
 install_into_root --unpack "$program"
 [ -s root/usr/lib/thimble/compat/libHD.so ] || fail "the files of thimble-compat went with the earlier package thimble"
-# Of the folders of the machine that built it, only what stands in every program: names of sources.
+# Of the folders of the build machine, the program may name sources only, as every program does.
 dpkg-deb --fsys-tarfile "$program" | tar -xO ./usr/bin/thimble >held
 for folder in build/meshes "$source/app" "$source/build"; do
   grep -qF "$folder" <(strings held | grep -vE '\.(cpp|h|inc)$') && fail "the program names $folder"
@@ -219,7 +219,7 @@ inside 'apt-get update -q'
 inside 'dpkg-query -W -f "\${Installed-Size}\n" | awk "{ sum += \$1 } END { print sum }"'
 before=$(cat log)
 inside 'apt-get install -y -q --no-install-recommends ./root/thimble_*.deb'
-# As much as was printed: nothing that a bare system lacks was left out. This one has libssl3 for its certificates.
+# The growth equals the printed size: no missing dependency of a bare system was left out. This one has libssl3 for certificates.
 inside 'dpkg-query -W -f "\${Installed-Size}\n" | awk "{ sum += \$1 } END { print sum }"'
 after=$(cat log)
 inside 'dpkg-query -W -f "\${Installed-Size}" libssl3'
@@ -271,7 +271,7 @@ if [ -e "$bare/usr/lib/python3/dist-packages/thimble" ]; then
   inside 'cd /root/touch && python3 guide.py'
   echo "  the guide's Python"
 fi
-# By each: the guide's C++ by pkg-config, the examples by CMake.
+# With each: the guide's C++ by pkg-config, the examples by CMake.
 sed -n '/^```cpp$/,/^```$/p' "$source/app/guide/pages/cpp.md" | sed '/^```/d' >"$bare/root/touch/guide.cpp"
 inside 'cd /root/touch && c++ $(pkg-config --cflags thimble) guide.cpp -o guide $(pkg-config --libs thimble) && ./guide'
 inside 'cmake -S /usr/share/doc/thimble/examples -B /root/built && cmake --build /root/built'

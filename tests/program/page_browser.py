@@ -58,7 +58,7 @@ class Tab:
         pathlib.Path(path).write_bytes(base64.b64decode(shot["data"]))
 
 
-# Waits until the browser has drawn what was asked for.
+# Waits until the browser has drawn the requested state.
 DRAWN = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
 
 
@@ -73,7 +73,7 @@ def said(events):
             words.append(" ".join(str(one.get("value", one.get("description"))) for one in parameters["args"]))
         if event.get("method") == "Log.entryAdded" and parameters["entry"]["level"] in ("error", "warning"):
             words.append(parameters["entry"]["text"])
-    # Chromium's own words about drawing without a graphics card.
+    # Chromium's messages about drawing without a graphics card.
     return [one for one in words if "GPU stall" not in one and "swiftshader" not in one.lower()]
 
 
@@ -96,7 +96,7 @@ async def look(address, page, picture, times):
         await tab.value(DRAWN)
         await tab.picture(picture.replace(".png", "_small.png"), 1 / 8)
 
-        # It plays: time goes on by itself, pictures are drawn, and a pause holds it.
+        # Playback: time advances, pictures are drawn, and a pause stops it.
         await tab.value("thimblePage.seek(0); document.getElementById('speed').value = '0.25';"
                         "document.getElementById('speed').dispatchEvent(new Event('change'));"
                         "document.getElementById('play').click()")
@@ -108,7 +108,7 @@ async def look(address, page, picture, times):
         found["played"] = paused["t"] > 0 and not paused["playing"]
         found["held"] = (await tab.value("thimblePage.state()"))["t"] == paused["t"]
 
-        # It scrubs: a press in the middle of the strip goes there.
+        # Scrubbing: a press in the middle of the time line seeks there.
         middle = await tab.value("(() => { const box = document.getElementById('strip').getBoundingClientRect();"
                                  "return [box.left + box.width / 2, box.top + box.height / 2]; })()")
         for kind in ("mousePressed", "mouseReleased"):
@@ -116,7 +116,7 @@ async def look(address, page, picture, times):
                            buttons=1, clickCount=1)
         found["scrubbed"] = (await tab.value("thimblePage.state()"))["t"]
 
-        # A zoom shows the part, with the plots' windows alike; a channel can be taken away.
+        # A zoom applies to the windows of all plots; a channel can be hidden.
         await tab.value(f"thimblePage.zoom({found['duration'] / 4}, {found['duration'] / 2})")
         found["window"] = (await tab.value("thimblePage.state()"))["window"]
         await tab.value("document.querySelector('[data-channel=depth]').click()")
@@ -162,7 +162,7 @@ def in_chromium(chromium, work):
                     break
             else:
                 raise RuntimeError("Chromium does not start")
-            # What it says from here on nobody reads; the pipe must not fill.
+            # Reads and drops later output, so that the pipe cannot fill.
             threading.Thread(target=lambda: [None for _ in browser.stderr], daemon=True).start()
             open_ones = json.load(urllib.request.urlopen(f"http://127.0.0.1:{port}/json"))
             return asyncio.run(work(next(one["webSocketDebuggerUrl"] for one in open_ones if one["type"] == "page")))

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The page that plays a touch, in a real browser: it plays, scrubs, shows the forces that were recorded, says nothing to the
-# console and asks for nothing. Without Chromium its files alone are looked at, and the test counts as skipped; where the
-# environment has CI, as at the usual services, what is missing fails it.
+# The page that plays a touch, in a real browser: it plays, scrubs, shows the recorded forces, prints nothing on the console
+# and makes no requests. Without Chromium only its files are checked, and the test counts as skipped; if
+# CI is set in the environment, as on CI services, a missing tool is a failure.
 source "$(dirname "$0")/expect.sh" "$@"
 here=$source_dir/tests/program
 scenes=$source_dir/app/scenes
 
-# Without what it is made of there is none; the run and its report go on.
+# Without its libraries there is no page; the run and its report continue.
 expect_words 0 'none/index.html apt install libjs-three libjs-dygraphs' \
   env XDG_DATA_DIRS=/nowhere "$thimble" run "$scenes/box.yaml" --duration 0.5 --report none
 expect_json none/report.json .ticks == 500
@@ -15,7 +15,7 @@ expect 0 '' "$thimble" run "$scenes/box.yaml" --duration 0.5 --record box.h5
 expect_words 1 'box.html apt install' env XDG_DATA_DIRS=/nowhere "$thimble" replay box.h5 --page box.html
 expect 1 '' test -e box.html
 
-# leave_out WHAT PACKAGES: ends the test here, loudly.
+# leave_out WHAT PACKAGES: ends the test here with a message.
 leave_out() {
   echo "NOT TESTED: $1; install $2."
   if [ -n "${CI:-}" ]; then
@@ -28,7 +28,7 @@ leave_out() {
 dpkg-query -W -f='${db:Status-Status}\n' libjs-three libjs-dygraphs 2>/dev/null | grep -c '^installed$' >there
 [ "$(cat there)" = 2 ] || leave_out "the page that plays a touch" "libjs-three libjs-dygraphs"
 
-# A run, and the same from its recording: a body that floats, and clay that keeps its print.
+# A run and its recording: a floating body, and clay that keeps its print.
 expect_words 0 'float/index.html' \
   "$thimble" run "$scenes/floating_block.yaml" --report float --record float.h5
 expect_words 0 'float.html' "$thimble" replay float.h5 --page float.html
@@ -37,7 +37,7 @@ expect_words 0 'two/index.html' "$thimble" run "$scenes/two_hands.yaml" --report
 expect 0 '^MIT|Permission ' cat float/index.html
 expect 0 '^thimble: .*--page' bash -c '"$0" replay "$1" --page x.html --scene box; [ $? = 2 ]' "$thimble" "$scenes/box.yaml"
 
-# A minute at 1 kHz is below 10 MB, the largest scan of ours with it.
+# A minute at 1 kHz is below 10 MB, with the largest shipped scan.
 scene=water_balloon
 [ -f "${THIMBLE_MESHES:-}/elephant.off" ] && scene=elephant
 expect 0 '' "$thimble" run "$scenes/$scene.yaml" --duration 60 --report minute
@@ -47,7 +47,7 @@ if ! command -v chromium >/dev/null || ! /usr/bin/python3 -c 'import websockets'
   leave_out "the page in a real browser" "chromium python3-websockets"
 fi
 
-# browse PAGE RECORDING TIME...: drives the page, and compares its forces with the ticks that were recorded.
+# browse PAGE RECORDING TIME...: drives the page, and compares its forces with the recorded ticks.
 browse() {
   local page=$1 recording=$2
   shift 2
@@ -62,7 +62,7 @@ browse() {
 browse float/index.html float.h5 0.8005 3.6004 5.8006
 browse float.html float.h5 0.8005 3.6004 5.8006
 browse clay/index.html clay.h5 0.9003 1.8001 3.6008
-# What they look like; THIMBLE_WRITE_SHOTS=1 keeps what there is now, after a change that is meant.
+# The appearance; after an intended change THIMBLE_WRITE_SHOTS=1 stores the new pictures.
 kept() {
   local stored=$source_dir/tests/data/shots/$1.png
   [ -z "${THIMBLE_WRITE_SHOTS:-}" ] || cp "$2" "$stored"
@@ -71,7 +71,7 @@ kept() {
 kept page_float float/index_small.png
 kept page_clay clay/index_small.png
 
-# serve RUN: serves the run's page; its address is in $address, who serves it in $viewer.
+# serve RUN: serves the run's page; sets $address, its address, and $viewer, the serving process.
 serve() {
   timeout 300 "$thimble" view "$1" --web >view.txt 2>&1 &
   viewer=$!
@@ -79,7 +79,7 @@ serve() {
   address=$(sed -n 's/^Open //p' view.txt)
 }
 
-# What it looks like live: a run that stands at a tick that is always the same one.
+# The live appearance: a run that is paused at a fixed tick.
 "$thimble" run "$scenes/tin_can.yaml" --clock paced --speed 4 --duration 60 --name "stands_$$" --no-view >stands.txt 2>&1 &
 run=$!
 for _ in $(seq 300); do "$thimble" view "stands_$$" --pause >/dev/null 2>&1 && break; sleep 0.1; done
@@ -94,9 +94,9 @@ kept page_live live_small.png
 expect 0 '' "$thimble" view "stands_$$" --stop
 wait "$run" "$viewer"
 
-# The same live: it is steered from there, goes along, holds, ends with the run, and its forces are ticks of the run.
-# The hand stays in the clay, so that there is something to be felt however long the browser takes, and sways there: an
-# arm that lies still for long looks like a broken one.
+# The live page: it steers the run, follows it, pauses, ends with it, and its forces are ticks of the run.
+# The hand stays in the clay, so that there is a force however slow the browser is. It sways there, because an
+# arm that does not move for long looks like a faulty one.
 sed "/t: 8.0/d; s#arm: .*#arm: vintage_phantom#; s#clay_ball.off#$scenes/clay_ball.off#" "$scenes/clay.yaml" >pressed.yaml
 for second in $(seq 9 2 299); do
   echo "    - {t: $second.0, on: ball, near: [$((second / 2 % 2 * 4 + 6)).0e-3, 0.01, 0.0], press: 0.006}" >>pressed.yaml

@@ -9,9 +9,9 @@ import struct
 import sys
 import zlib
 
-MEAN_MOST = 2.5  # of 255, over all; another version's edges: below 1
-OFF = 40  # of 255: a place that is off
-OFF_SHARE_MOST = 0.01  # of all places
+MEAN_MOST = 2.5  # of 255, mean over all pixels; edges of another version: below 1
+OFF = 40  # of 255: a pixel that differs
+OFF_SHARE_MOST = 0.01  # of all pixels
 
 
 def pixels(path):

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A simulated arm on a USB plug: it says what to do, takes faults while it runs, and ends by Ctrl-C.
+# A simulated arm on a USB plug: it prints what to do, takes faults while it runs, and ends on Ctrl-C.
 source "$(dirname "$0")/expect.sh" "$@"
 
 for arm in woodenhaptics polhem polhem-64 falcon; do
@@ -21,12 +21,12 @@ if [ ! -e /sys/devices/platform/vhci_hcd.0 ]; then
   expect_words 1 'vhci-hcd' "$thimble" plug polhem --port 0 --attach
 fi
 
-# An arm of other constants, on the board that drives it.
+# An arm with other constants, on the board that drives it.
 expect_error 2 "'falcon'" "$thimble" plug falcon --port 0 --arm polhem
 expect_words 2 "'simulation'" "$thimble" plug polhem --port 0 --arm inverse3
 expect 0 '^ +--arm ' "$thimble" plug --help
 
-# It runs until it is told to end; meanwhile the pipe takes orders.
+# It runs until it is stopped; meanwhile the pipe takes orders.
 "$thimble" plug woodenhaptics --port 0 --arm woodenhaptics --hand none --control pipe --trace trace.txt >out.txt 2>&1 &
 plug=$!
 for _ in $(seq 100); do

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every tick is recorded, whatever becomes of the program, and the last seconds before a fault always.
+# Every tick is recorded, even if the program is killed, and the last seconds before a fault always.
 source "$(dirname "$0")/expect.sh" "$@"
 [ -f "$THIMBLE_MESHES/elephant.off" ] || { echo "Needs the scanned meshes"; exit 77; }
 scene=$source_dir/app/scenes/elephant.yaml
@@ -11,7 +11,7 @@ expect_words 0 'run.csv 2000 elephant 1000' "$thimble" export run.h5 --csv run.c
 expect 0 'p_WT.x \[m\],p_WT.y \[m\]' head -1 run.csv
 expect 0 '^2001$' grep -c '' run.csv
 
-# The recorded hand touches again: the same scene feels the same to the bit, another one does not.
+# The recorded hand touches again: the same scene gives bit-identical forces, another one does not.
 for name in elephant tin_can honey; do
   expect 0 '' "$thimble" run "$source_dir/app/scenes/$name.yaml" --duration 3 --record again.h5 --force
   expect_ticks again.h5 -eq 3000
@@ -20,12 +20,12 @@ done
 sed "s/stiffness: 800/stiffness: 700/; s#\.\./arms#$source_dir/app/arms#" "$scene" >softer.yaml
 expect 0 '' "$thimble" replay run.h5 --scene softer.yaml --record softer.h5
 expect_words 0 'softer.csv 2000 elephant' "$thimble" export softer.h5 --csv softer.csv
-# What the force law wanted differs in some ticks.
+# The requested force differs in some ticks.
 wanted() { awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^f_wanted_W/) at[++n] = i; next } { print $at[1], $at[2], $at[3] }' "$1"; }
 expect 0 '^[1-9]' bash -c "$(declare -f wanted); diff <(wanted run.csv) <(wanted softer.csv) | wc -l"
 expect_error 2 '--verify scene' "$thimble" replay run.h5 --scene softer.yaml --verify
 
-# A probe that somebody else has recorded touches a scene, and its forces are compared.
+# A trajectory from another program touches a scene, and its forces are compared.
 printf 't x y z fx fy fz\n0 0 0 20 0 0 0\n1 0 0 5 0 0 1\n2 10 0 5 0 0 1\n' >probe.traj
 rubber=$source_dir/app/scenes/rubber.yaml
 expect_words 0 'Force N # direction' "$thimble" replay probe.traj --scene "$rubber" \
@@ -36,12 +36,12 @@ expect_words 2 '--scene' "$thimble" replay probe.traj
 expect_words 2 'probe.traj line 2' "$thimble" replay probe.traj --scene "$rubber"
 expect_words 2 'scene "mouse"' "$thimble" replay probe.traj --scene "$rubber" --frame mouse
 
-# The disk says no.
+# A disk that refuses writes.
 expect 2 'no/such/folder' "$thimble" run "$scene" --duration 1 --record no/such/folder/run.h5
 expect_words 2 'recording' "$thimble" export "$scene" --csv x.csv
 expect_words 2 'none.h5' "$thimble" export none.h5 --csv x.csv
 
-# Killed in the middle, the recording can be read all the same.
+# Killed in the middle, the recording can still be read.
 "$thimble" run "$scene" --clock wall --duration 60 --record killed.h5 >/dev/null 2>&1 &
 pid=$!
 sleep 2
@@ -50,7 +50,7 @@ wait $pid 2>/dev/null
 expect_words 0 'killed.csv # elephant 1000 recording cut' \
   "$thimble" export killed.h5 --csv killed.csv
 
-# A loop that stood still is a fault: the seconds before it are kept without being asked for.
+# A stalled loop is a fault: the seconds before it are always saved.
 "$thimble" run "$scene" --clock wall --duration 60 >stalled 2>&1 &
 pid=$!
 sleep 2

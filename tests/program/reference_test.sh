@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Writes the reference, and fails for each public member without a word and each installed header that it
-# does not name. Then a header with such a member must be found out.
+# Builds the reference, and fails for each undocumented public member and each installed header that it
+# does not name. Then a header with such a member must be detected.
 #   reference_test.sh DOXYFILE SOURCE_FOLDER WORK_FOLDER
 set -euo pipefail
 doxyfile=$1 source=$2 work=$3
@@ -11,7 +11,7 @@ command -v doxygen >/dev/null || {
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
-write() {  # FOLDER [SETTING...]: what doxygen warns of, if it is written there
+write() {  # FOLDER [SETTING...]: the warnings of doxygen if the reference is written there
   mkdir -p "$1"
   { cat "$doxyfile"; echo "OUTPUT_DIRECTORY = $1"; echo "WARN_LOGFILE = $1/warnings.txt"; printf '%s\n' "${@:2}"; } >"$1/Doxyfile"
   doxygen "$1/Doxyfile" >"$1/log" 2>&1 || { cat "$1/log" >&2; exit 1; }
@@ -26,13 +26,13 @@ fi
 for page in index.html classthimble_1_1driver_1_1SafetyGate.html; do
   [ -s "whole/$page" ] || { echo "FAILED: no $page" >&2; exit 1; }
 done
-# Each header that is installed is named; those of other makers' interfaces (thimble/compat) are no part of ours.
+# Each installed header is named; those of other makers' APIs (thimble/compat) do not belong to Thimble's reference.
 for header in $(cd "$source" && find driver/include device_sim/include render/include app/*/include -name '*.h' \
     -not -path '*/thimble/compat/*'); do
   grep -qF "$(basename "$header")</" whole/files.html || { echo "FAILED: $header is not in the reference" >&2; exit 1; }
 done
 grep -q '>THIMBLE_VERSION_AT_LEAST<' whole/version_8h.html || { echo "FAILED: no page of thimble/version.h" >&2; exit 1; }
-# What a page says to include is what a program can include.
+# The include line of each page can be included by a program.
 grep -rhoE '#include &lt;<a[^>]*>[^<]*' whole/*.html | sed 's/.*>//' | sort -u >included
 [ "$(wc -l <included)" -gt 50 ] || { echo "FAILED: only $(wc -l <included) headers are named for #include" >&2; exit 1; }
 if grep -v '^thimble/' included >&2; then

@@ -11,7 +11,7 @@ expect_json out/report.json .contact.lost == 0
 expect_json out/report.json .contact.touch_downs '>' 0
 expect 0 '"met": true' cat out/figures.json
 expect_plot out/{force_and_depth,path_on_mesh}
-expect 1 '' test -e out/period_histogram.png  # in virtual time there is nothing to see
+expect 1 '' test -e out/period_histogram.png  # in virtual time periods are constant
 expect 0 '' "$thimble" run "$source_dir/app/scenes/box.yaml" --clock wall --duration 0.3 --report wall
 expect_plot wall/period_histogram
 expect_json out/report.json .energy_to_hand_J.max '<' 0.000005
@@ -23,16 +23,16 @@ expect 0 '"elephant.margin"' cat tuned/figures.json
 sed 's/stiffness: 800/stiffness: 8000/' "$source_dir/app/scenes/elephant.yaml" >stiff.yaml
 expect_words 5 '8000 N/m stiffness' "$thimble" tune stiff.yaml
 expect_words 0 '8000 N/m tune' "$thimble" run stiff.yaml --duration 0.5
-# Too much damping: no stiffness is carried, so the damping is what to change.
+# Too much damping: no stiffness is possible, so the damping must change.
 sed 's/damping: 1 .*/damping: 200/' "$source_dir/app/scenes/elephant.yaml" >damped.yaml
 expect_words 5 'damping 200 N s/m #' "$thimble" tune damped.yaml --out damped
 expect 1 '' grep -iE 'nan|inf|null' damped/figures.json
 expect_words 0 'damping 200 N s/m' "$thimble" run damped.yaml --duration 0.5
-# What it names is accepted.
+# The named damping is accepted.
 less=$("$thimble" run damped.yaml --duration 0.1 2>&1 | grep '200 N s/m' | grep -oE '[0-9.]+ N s/m' | grep -v '^200 ' | sed 's/ .*//; s/[.]$//' | head -1)
 sed "s/damping: 1 .*/damping: ${less:-none}/" "$source_dir/app/scenes/elephant.yaml" >less.yaml
 expect 1 '' bash -c '"$0" run less.yaml --duration 0.1 2>&1 | grep -E "damping.*N s/m"' "$thimble"
-# The reports of the arm bound what a fast loop carries.
+# The report period of the arm limits the stiffness of a fast loop.
 sed -E 's/^rate: .*//; s/stiffness: 800/stiffness: 3000/; $ a rate: 10000' "$source_dir/app/scenes/elephant.yaml" >fast.yaml
 expect_words 0 '3000 N/m 1 ms' "$thimble" run fast.yaml --duration 0.1
 finish

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Each option of `thimble run` either leaves the result of a run as it is, or is in its recording, which then repeats to
-# the last bit. The table below names every option: a new one has to be classified before this test passes.
+# Each option of `thimble run` either leaves the result of a run unchanged, or is in its recording, whose replay is then
+# bit-identical. The table below names every option: classify a new one there.
 source "$(dirname "$0")/expect.sh" "$@"
 export HOME=$work/home XDG_STATE_HOME=$work/state
 mkdir -p "$HOME" "$XDG_STATE_HOME"
@@ -11,9 +11,9 @@ scene=scenes/water_balloon.yaml
 
 # option | class | arguments to try (none: it is named without a trial) | why
 #   same      the ticks are those of the run without it
-#   recorded  the recording holds it: a replay gives every recorded force
-#   hand      the recording holds what it does to the hand: the state of the arm in each tick
-#   arm       of a real arm or of forces from outside: the recording says so in each tick, or by its device
+#   recorded  the recording has it: a replay gives every recorded force
+#   hand      the recording has its effect on the hand: the state of the arm in each tick
+#   arm       for a real arm or external forces: the recording has them in each tick, or its device
 table='
 --device        | arm      |                           | a real arm: its state is in each tick, its name in device
 --arm           | recorded | --arm arms/other.yaml      | arm_file and arm_text
@@ -64,7 +64,7 @@ table='
 row() { grep -E "^$1 +\|" <<<"$table"; }
 field() { cut -d'|' -f"$1" | sed 's/^ *//; s/ *$//'; }
 
-# Every option of the command and of the program is in the table, and the table names no option that is not there.
+# The table names exactly the options of the command and of the program.
 { "$thimble" run --help && "$thimble" --help; } 2>&1 | grep -oE '^ +(-[a-zA-Z],)?--[a-z0-9-]+(, *--[a-z0-9-]+|,--[a-z0-9-]+)*|\{false\}|!--[a-z-]+' |
   grep -oE -- '--[a-z0-9-]+' | sort -u >options
 checks=$((checks + 1))

@@ -1,6 +1,6 @@
-# A screen in memory for the rest of a test, which is its DISPLAY. Source it after expect.sh, where Xvfb is.
-#   $work/Xvfb_screen0: what it shows
-# Its number is this shell's: two that look for a free one at the same moment may take the same.
+# A virtual screen for the rest of a test, set as DISPLAY. Source it after expect.sh, if Xvfb is installed.
+#   $work/Xvfb_screen0: its content
+# Its number comes from this shell: two tests that search for a free number at once may take the same one.
 Xvfb :$((100 + $$ % 50000)) -displayfd 3 -screen 0 1300x820x24 -fbdir "$work" 3>display.txt 2>/dev/null &
 xvfb=$!
 trap 'kill $xvfb' EXIT

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# app/setup.sh and tests/run.sh on a project of their own, with package tools that install nothing: packages that were
-# installed or removed are noticed, an absent part fails, and only tests that depend on the wall clock are repeated.
+# app/setup.sh and tests/run.sh on a small project, with package tools that install nothing. Installed and removed packages
+# are noticed, an absent part fails, and only tests that depend on the wall clock are repeated.
 #   setup_test.sh SOURCE_FOLDER
 set -euo pipefail
 source=$1
@@ -12,7 +12,7 @@ fail() {
   exit 1
 }
 
-# A Debian whose packages are lines of a file.
+# A Debian system whose packages are lines of a file.
 export FAKE=$work/debian
 mkdir -p "$FAKE/bin"
 : >"$FAKE/installed"
@@ -44,7 +44,7 @@ printf '#!/usr/bin/env bash\n[ "$1" = -n ] || exec "$@"\n' >"$FAKE/bin/sudo"
 chmod +x "$FAKE"/bin/*
 export PATH=$FAKE/bin:$PATH
 
-# A project whose parts need their packages and nothing else; each part has a test.
+# A project whose parts only need their packages; each part has a test.
 project=$work/project
 mkdir -p "$project"/{app,tests/usb}
 cp "$source"/app/{setup.sh,optional_parts.sh,optional_parts.list,debian_packages.sh} "$project/app/"
@@ -89,7 +89,7 @@ string(REPLACE "\n" ";" parts "${parts}")
 foreach(part ${parts})
   add_test(NAME part.${part} COMMAND ${CMAKE_COMMAND} -E true)
 endforeach()
-# Fail as often as a file says.
+# Tests that fail as often as a file states.
 foreach(name clock/slow.one clock.slow plain)
   string(REPLACE "/" "_" file ${name})
   add_test(NAME ${name} COMMAND bash "${CMAKE_SOURCE_DIR}/fails.sh" ${file} ${name})
@@ -137,7 +137,7 @@ run 0 tests/run.sh release
 expect_configured 0 "nothing has changed since tests/run.sh"
 run 0 tests/run.sh
 says '^== Tests: release$'
-silent_on '^== Tests: [^r]'  # the sanitizers are for --sanitizers and --long
+silent_on '^== Tests: [^r]'  # sanitizers run only with --sanitizers and --long
 says '^ +[0-9]+ s  installation$'
 says '^ +[0-9]+ s  build release$'
 says '^ +[0-9]+ s  tests release$'
@@ -149,7 +149,7 @@ run 1 tests/run.sh release
 expect_configured 1 "after a package was removed"
 says '^NOTE: guide as web pages: .*mkdocs'
 says '^ +missing +guide '
-says '^ +on +animations '  # the package beside it is installed all the same
+says '^ +on +animations '  # the other package is still installed
 says '^Absent in release: guide\.'
 says '100% tests passed'
 run 0 tests/run.sh --without guide release

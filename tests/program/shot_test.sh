@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Pictures without a screen, and mistakes in what was asked for; then the window, on a screen in
-# memory where there is one (Debian: xvfb).
+# Pictures without a screen, and errors in their options; then the window, on a virtual
+# screen if there is one (Debian: xvfb).
 source "$(dirname "$0")/expect.sh" "$@"
 scene=$source_dir/app/scenes/water_balloon.yaml
 
@@ -23,11 +23,11 @@ expect 0 '' "$thimble" shot "$scene" --at 1 --size 160x120 --plots --edge-planes
 expect 0 'PNG' head -c 4 a.png
 expect 0 '' "$thimble" shot "$scene" --at 1 --size 160x120 --plots --edge-planes \
   --shading gouraud --edges on --camera 40 20 --out b.png
-expect 0 '' cmp a.png b.png  # the same to the bit
+expect 0 '' cmp a.png b.png  # bit-identical
 expect 0 '' "$thimble" shot "$scene" --at 1 --until 1.2 --pace 10 --size 160x120 \
   --animate c.png
 expect 0 '^[1-9]' grep -ac fcTL c.png
-# Each moment is drawn at its own tick: where objects dent, where they move, and where they do neither.
+# Each moment is drawn at its own tick, for objects that dent, that move, and that do neither.
 differ() { ! cmp -s "$1" "$2" && echo differ; }
 for moving in water_balloon floating_block sandpaper; do
   for at in 2.001 2.007; do
@@ -36,7 +36,7 @@ for moving in water_balloon floating_block sandpaper; do
   done
   expect 0 'differ' differ $moving-2.001.png $moving-2.007.png
 done
-# An animation lasts as long as it should, to one unit of its file: the sum of what its pictures ask for.
+# An animation has the requested length, to one unit of its file: the sum of the delays of its pictures.
 lasts() {
   python3 - "$1" <<'END'
 import struct, sys
@@ -76,15 +76,15 @@ film paced.png 2 60
 expect 0 '^60 pictures last 1\.0000 s' lasts paced.png
 film paced.png 2 29.97
 expect 0 '^30 pictures last 1\.0010 s' lasts paced.png
-film paced.png 1.3 10  # 1 + 2 / 10 and 0.3 * 10 are no round numbers in binary
+film paced.png 1.3 10  # 1 + 2 / 10 and 0.3 * 10 are not exact in binary
 expect 0 '^3 pictures last 0\.3000 s' lasts paced.png
 expect_words 2 '--pace 60 GIF 50' "$thimble" shot "$scene" --at 1 --pace 60 --animate paced.gif
 expect_words 2 '--pace 51 GIF' "$thimble" shot "$scene" --at 1 --pace 51 --animate paced.GIF
-# Without ffmpeg a sentence, before anything is drawn.
+# Without ffmpeg an error, before anything is drawn.
 mkdir -p nothing
 expect_words 1 'apt install ffmpeg .png' env PATH="$PWD/nothing" "$thimble" shot "$scene" --at 1 --animate d.mp4
 if command -v ffmpeg >/dev/null; then
-  # An odd size: an MP4 has none.
+  # An odd size, which MP4 does not support.
   expect_words 0 'c.mp4 ffmpeg 3 161 121 0.3' "$thimble" shot "$scene" --at 1 --until 1.3 \
     --pace 10 --size 161x121 --animate c.mp4
   expect 0 '^162,122,3$' ffprobe -v error -select_streams v -count_frames -show_entries \
@@ -109,17 +109,17 @@ if command -v Xvfb >/dev/null; then
   listed() { "$thimble" view --list | grep -q "^$1:"; }
   wait_for 10 listed shot_test_$$
   expect 0 '' "$thimble" view shot_test_$$ --for 2 --picture window.png
-  # A window with nothing in it takes 11 kB.
+  # An empty window takes 11 kB.
   expect 0 '^[0-9]{6,}$' stat -c %s window.png
   kill -INT $run
   wait $run
   expect 0 '' "$thimble" view shot_test_$$ --for 1 --picture none.png  # waits for a run
 
-  # The window is no reader of what the run prints: a pipe ends with the run, though the window stays.
+  # The window does not hold the run's output: a pipe ends with the run, although the window stays open.
   expect 0 'vintage_phantom' timeout 60 bash -c '"$0" run "$1" --duration 1 --view --name "$2" 2>/dev/null | cat' \
     "$thimble" "$scene" shot_pipe_$$
   for viewer in $(pgrep -f "view shot_pipe_$$"); do kill "$viewer"; done
-  # Whose hand was in a window that is gone ends as if it had been closed.
+  # A run whose hand was led in a killed window ends as after closing it.
   "$thimble" run "$scene" --hand mouse --name shot_gone_$$ >run.txt 2>&1 &
   run=$!
   for _ in $(seq 200); do
@@ -130,7 +130,7 @@ if command -v Xvfb >/dev/null; then
   kill -9 "$viewer"
   expect 0 '' timeout 30 tail --pid=$run -f /dev/null
   kill -9 $run 2>/dev/null
-  # So does a run that restarts for the person at its window.
+  # So does a run that restarts for its window.
   "$thimble" run "$scene" --duration 1 --view --loop --name shot_loop_$$ >run.txt 2>&1 &
   run=$!
   for _ in $(seq 200); do

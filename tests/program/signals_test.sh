@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Every signal that ends a program leaves by zero force, with the recording and the report finished
-# and exit code 130. A burst of signals is one request. A further one ends the program at once only
-# when nothing is at stake any more.
+# Every signal that ends a program leads to zero force, a complete recording and report,
+# and exit code 130. A burst of signals is one request. A further signal ends the program at once only
+# when the arm has zero force and the recording is closed.
 source "$(dirname "$0")/expect.sh" "$@"
 unset DISPLAY WAYLAND_DISPLAY
 scene=$source_dir/app/scenes/rubber.yaml
-# No pictures are drawn: they take longer than the runs.
+# No pictures are drawn, because they take longer than the runs.
 mkdir -p tools
 printf '#!/bin/sh\ntouch mesh.png\n' >tools/gnuplot
 chmod +x tools/gnuplot
 PATH=$PWD/tools:$PATH
 
-# begin: starts a recorded run on the wall clock; returns when it touches. Leaves its number in pid.
+# begin: starts a recorded run on the wall clock; returns when it touches. Sets pid to its number.
 begin() {
   rm -rf report run.h5 run.csv out
   "$thimble" run "$scene" --clock wall --duration 60 --no-view --report report --record run.h5 \
@@ -23,13 +23,13 @@ begin() {
   done
   sleep 0.4
 }
-early=0 # runs that a signal met before they began
-# left_well WHAT: the run has ended with zero force, report and recording are whole.
+early=0 # runs that got a signal before they began
+# left_well WHAT: the run has ended with zero force; report and recording are complete.
 left_well() {
   wait $pid
   status=$?
   checks=$((checks + 1))
-  # A machine that pauses for 100 ms makes the watchdog's fault come first, which is right too.
+  # If the machine pauses for 100 ms, the watchdog's fault comes first, which is correct as well.
   local reason='"stopped"' code=130
   if [ "$status" = 4 ] && grep -q loop_stalled report/report.json; then
     reason=loop_stalled code=4
@@ -38,7 +38,7 @@ left_well() {
   said=$("$thimble" export run.h5 --csv run.csv 2>&1)
   local rows
   rows=$(grep -c '^[0-9]' run.csv)
-  # A busy machine may not have begun the run yet: then it is not begun, and there is no report.
+  # On a busy machine the signal may come before the run begins: then it does not run, and there is no report.
   if [ "$status" = 130 ] && [ ! -e report/report.json ] && [ -s run.csv ] && [ "$rows" = 0 ]; then
     early=$((early + 1))
     return
@@ -60,7 +60,7 @@ for signal in INT TERM HUP QUIT USR1 USR2 ALRM VTALRM PROF XCPU IO PWR STKFLT RT
   left_well "SIG$signal"
 done
 
-# Bursts: the pauses are 0 to some 20 ms, which a shell keeps as well as it can.
+# Bursts: the pauses are 0 to about 20 ms, as exactly as a shell can.
 for burst in "INT INT" "INT 0.001 INT" "TERM 0.003 TERM" "INT 0.01 INT" "TERM 0.02 INT 0.002 TERM" \
   "HUP 0.001 HUP 0.001 HUP 0.001 HUP" "HUP TERM HUP" "QUIT 0.005 QUIT" "USR1 0.001 INT 0.004 USR2"; do
   for _ in 1 2; do
@@ -75,7 +75,7 @@ for burst in "INT INT" "INT 0.001 INT" "TERM 0.003 TERM" "INT 0.01 INT" "TERM 0.
   done
 done
 
-# A terminal that is closed: its shell and the kernel both say so, the kernel with a SIGCONT.
+# A closed terminal: its shell and the kernel both signal it, the kernel with a SIGCONT.
 if command -v script >/dev/null; then
   for _ in 1 2 3; do
     rm -rf report run.h5 out pid code
@@ -101,7 +101,7 @@ else
   echo "NOT TESTED: a closed terminal: script is not installed"
 fi
 
-# Zero force is out and the recording closed, but pictures take their time: now a signal ends it.
+# Zero force was sent and the recording is closed, but pictures take time: now a signal ends it.
 printf '#!/bin/sh\ntouch drawing\nexec sleep 60\n' >tools/gnuplot
 begin
 kill -s TERM $pid

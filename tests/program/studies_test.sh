@@ -3,7 +3,7 @@
 # their goals, pictures.
 source "$(dirname "$0")/expect.sh" "$@"
 
-plots() {  # plots STEM...: they are there, where there is something to draw with
+plots() {  # plots STEM...: they exist, if gnuplot is installed
   ! command -v gnuplot >/dev/null || expect_plot "$@"
 }
 
@@ -14,8 +14,8 @@ expect 0 '.' head -1 texture/spectra.csv
 expect 0 '.' head -1 texture/lines.csv
 plots texture/texture_spectra
 
-# A plate of 2 mm and 1 N/mm lets a tip through at 1 N if it is felt in wedges, and never by the face
-# that the tip came in by.
+# A plate of 2 mm and 1 N/mm lets a tip through at 1 N with contact by wedges, and never with contact by
+# the entry face.
 expect 0 '' "$thimble" study box --out box
 expect_json box/figures.json '[name=plate_2mm_pops_at_in_wedges].value' '>=' 0.9999995
 expect_json box/figures.json '[name=plate_2mm_pops_at_in_wedges].value' '<' 1.0012
@@ -30,7 +30,7 @@ expect 1 '' grep -q '"met": false' integrators/figures.json
 expect 0 '.' head -1 integrators/integrators.csv
 plots integrators/integrators_membrane
 
-# How long a tick takes is told and never judged; instructions are counted where valgrind is.
+# The time of a tick is printed and never checked; instructions are counted if valgrind is installed.
 expect 0 ': .* [0-9.e-]+ %' "$thimble" study cost --out cost
 expect 0 ': memory' cat cost/figures.json
 expect 0 '.' head -1 cost/cost.csv

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Sweeps: the laws agree with what is measured, nothing goes wrong in random scenes, and a sweep
-# gives the same bytes whether it was killed and resumed, or shared by any number of processes.
+# Sweeps: the laws agree with the measurements, random scenes break no promise, and a sweep
+# gives the same bytes if it was killed and resumed, or shared by any number of processes.
 source "$(dirname "$0")/expect.sh" "$@"
 
 arm=$source_dir/app/arms/vintage_phantom.yaml
-# What was compared: everything but the pictures.
-# Of a page of a run the times that its ticks took differ.
+# The compared files: all except pictures.
+# In a page of a run, the times of its ticks differ.
 results() { (cd "$1" && find . -type f ! -name '*.png' ! -name '*.svg' ! -path './data/*' ! -path './worst/[0-9]*.html' -exec sha256sum {} + | sort -k 2); }
 same() {
   checks=$((checks + 1))
@@ -16,7 +16,7 @@ same() {
   fi
 }
 
-# The laws, on few points.
+# The laws, with few points.
 expect 0 'limit_cycles_rest_as_predicted' "$thimble" study stability --arm "$arm" --coarse --out laws
 expect 1 '' grep -q '"met": false' laws/figures.json
 expect 0 '"z_width.area"' cat laws/summary.json
@@ -30,25 +30,25 @@ if command -v gnuplot >/dev/null; then
       END { print titles, "titles" }' laws/data/kb_map.gp
 fi
 
-# The same without a hand, where the damping is the arm's alone and slow: also through its own gate.
+# The same without a hand: only the arm damps, and slowly. Also through its own gate.
 expect 0 '' "$thimble" study stability --arm "$arm" --hand none --coarse --out free
 expect_json free/figures.json '[name=agreement.edge_with_exact_map].met' == true
 expect 0 '^[1-9][0-9]* of them apart by less than 10 %$' awk -F, 'NR > 1 && $1 < 1 {
     if ($2 > 1.1 * $3 || $2 < 0.9 * $3) exit 1
     ++rows
   } END { print rows + 0, "of them apart by less than 10 %" }' free/kb_edge_arm.csv
-# Across the axes several encoders step, so a law of one dimension is a bound, and is told to be one.
+# Across the axes several encoders step, so a law of one dimension is only a bound, which the result states.
 expect 0 '' \
   "$thimble" study stability --arm "$arm" --direction 1 1 1 --coarse --out across
 expect 0 '"one_dimensional": false' cat across/summary.json
-# A linkage, along whose axes several encoders step; and a high rate, at which oscillations take longer to die.
+# A linkage, along whose axes several encoders step; and a high rate, at which oscillations take longer to decay.
 if [ -n "${THIMBLE_LONG:-}" ]; then
   expect 0 'rate_with_exact_map .* met' "$thimble" study stability \
     --arm "$source_dir/app/arms/polhem.yaml" --coarse --out linkage
   expect 0 'largest_flicker .* met' "$thimble" study stability \
     --arm "$source_dir/app/arms/woodenhaptics.yaml" --rate 4000 --coarse --out fast
 fi
-# Motors whose current has steps of 0.1 N are not those of the laws: the last line and the exit code tell.
+# Motors with current steps of 0.1 N do not fulfil the laws: the last line and the exit code report it.
 sed 's/torque_constant: .*/torque_constant: [2.34, 2.34, 2.34]/' "$arm" >coarse_motors.yaml
 expect_words 5 'NOT MET 28 agreement.edge_with_exact_map' \
   "$thimble" study stability --arm coarse_motors.yaml --coarse --out unmet
@@ -62,7 +62,7 @@ expect 1 '' grep -q '"met": false' whole/figures.json
 expect 0 '^10$' bash -c 'ls whole/worst/*.yaml | wc -l'
 expect_links whole/worst/index.html 13
 
-# Killed in the middle, again and again, then resumed.
+# Killed in the middle several times, then resumed.
 small=("$thimble" study trouble --arm "$arm" --count 60)
 expect 0 'scenes ' "${small[@]}" --out plain
 for kill in 1 2; do
@@ -72,7 +72,7 @@ for kill in 1 2; do
     kill -0 $running 2>/dev/null || break
     sleep 0.01
   done
-  if [ $kill = 1 ]; then # a second one on the same folder, while the first holds its breath
+  if [ $kill = 1 ]; then # a second one on the same folder, while the first is stopped
     kill -STOP $running
     expect_words 2 "killed $running" "${small[@]}" --out killed --resume
   fi
@@ -97,8 +97,8 @@ if ! command -v mpirun >/dev/null || [ ! -f "$mpi" ]; then
   echo "NOT TESTED: sweeps shared by mpirun; install openmpi-bin and libopenmpi-dev, then build again."
 else
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-  # OpenMPI leaks on some machines at its end (what it found of the hardware), so under the address
-  # sanitizer no leaks are looked for in runs shared by it; the same sweep ran above with leaks sought.
+  # OpenMPI leaks on some machines at its end (its data about the hardware), so under the address
+  # sanitizer leaks are not checked in shared runs; the same sweep ran above with leak checks.
   export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
   for ranks in 1 2 4; do
     expect 0 'scenes ' mpirun --oversubscribe -n $ranks "${small[@]}" --out mpi$ranks

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Looks at what the installed archives define for the linker: every strong symbol is in namespace thimble and declared by a
-# header, so that no function of a user's program has the name of one of ours, and what no header declares has internal
-# linkage. Then a library with such functions must be found.
+# Checks the symbols of the installed archives: every strong symbol is in namespace thimble and declared by a
+# header, so that no function of a user's program can have the same name, and everything else has internal
+# linkage. Then a library with violations must be detected.
 #   symbols_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -12,24 +12,24 @@ fail() {
   exit 1
 }
 cd "$work"
-# C functions that are meant for others, one per line: none.
+# C functions for users, one per line: none.
 : >c_functions
 cmake --install "$build" --component dev --prefix "$work/usr" >log || fail "$(cat log)"
 (cd "$source" && find driver device_sim render app -name '*.h' -print0 | xargs -0 cat) | grep -oE '[A-Za-z_][A-Za-z_0-9]*' | sort -u >declared
 
-# strong ARCHIVE: prints each strong external symbol that it defines, as the linker knows it.
+# strong ARCHIVE: prints each strong external symbol that it defines.
 strong() { nm -gP --defined-only "$1" | awk '$2 ~ /^[TDBRSG]$/ { print $1 }' | sort -u; }
 
 # In namespace thimble: a function or an object, a table of a class, a function that corrects its `this`.
 ours='^_Z(TV|TI|TS|TT|TC|GV|Th?n?[0-9]+_|Tvn?[0-9]+_n?[0-9]+_)?Z?N[VKRO]*7thimble'
 
-# look_at ARCHIVE: prints a line for each symbol that should not be there.
+# look_at ARCHIVE: prints a line for each forbidden symbol.
 look_at() {
   strong "$1" >symbols
   grep -vE "$ours" symbols | grep -vxF -f c_functions |
     sed "s/$/ is not in namespace thimble/" || true
-  # The last two parts of a name without arguments, such as "SafetyGate pass". A class that a header names may have
-  # members that only its source knows.
+  # The last two parts of a name without arguments, such as "SafetyGate pass". A class of a header may have
+  # members that only its source uses.
   { grep -E "$ours" symbols || true; } | c++filt >demangled
   sed -E 's/^(vtable|typeinfo|typeinfo name|VTT|guard variable|(non-)?virtual thunk) (for|to) //; s/\[abi:[a-z0-9]+\]//g; s/\(anonymous namespace\)/hidden/g
           :again; s/<[^<>]*>//g; t again
@@ -50,7 +50,7 @@ done < <(find "$work/usr" -name '*.a')
 [ "$count" -gt 1000 ] || fail "only $count symbols were looked at"
 [ ! -s found ] || fail "$(cat found)"
 
-# A program may use any name of its own, such as those of our signal handlers once.
+# A program may use any name, such as former names of Thimble's signal handlers.
 cat >leaks.cpp <<'END'
 extern "C" void on_signal(int) {}
 void helper(int) {}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An arm that is recorded while it is identified, and its twin: what is printed, files, exit codes.
+# An arm that is recorded while it is identified, and its twin: output, files, exit codes.
 source "$(dirname "$0")/expect.sh" "$@"
 arm=$source_dir/app/arms/vintage_phantom.yaml
 
@@ -17,7 +17,7 @@ assert figures["error"]["value"] < 1.1 * figures["error_of_encoders"]["value"], 
 if command -v gnuplot >/dev/null; then
   expect_plot same/twin_motion same/twin_error same/twin_spectrum
 fi
-# gain ARGUMENTS...: the constant of which another value changes the error most, and that value, if it changes it by 1 %.
+# gain ARGUMENTS...: the constant whose change reduces the error most, and its new value, if the reduction is 1 % or more.
 gain() {
   "$thimble" twin "$@" | awk '!n && / % +[-0-9.]+ %$/ { ++n; print (($(NF - 3) <= -1 || $(NF - 3) >= 1) ? $1 " " $3 : "none") }'
 }
@@ -25,7 +25,7 @@ expect 0 '' "$thimble" twin free.h5 --arm same.yaml
 expect 0 '^none$' gain free.h5 --arm same.yaml
 expect 0 '^none$' gain free.h5 --arm vintage_phantom
 
-# An arm file that says that the arm is heavier than it is.
+# An arm file with too high a mass.
 sed 's/mass: 0\.075 /mass: 0.0975 /' "$arm" >heavy.yaml
 expect 5 '' \
   "$thimble" twin free.h5 --arm heavy.yaml --fit-least 95 --from 2 --until 8

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Command lines with a mistake: the wrong word, what was expected, the nearest known word, and where to read on.
+# Command lines with an error: the wrong word, the expected one, the nearest known word, and where to find help.
 source "$(dirname "$0")/expect.sh" "$@"
 unset DISPLAY WAYLAND_DISPLAY
 export XDG_STATE_HOME=$work/state
@@ -27,7 +27,7 @@ expect_own 0 '^hello$' "$thimble" exec -- echo hello
 expect_own 0 '^hello -- you$' "$thimble" exec --arm polhem -- echo hello -- you
 expect_error 2 '--csv' "$thimble" export a.h5 --csv -
 expect_words 2 'empty' "$thimble" run ''
-# A variable of a script that is not set: no option does as if it were not there.
+# An unset variable of a script: an option with an empty value is an error, not ignored.
 expect_error 2 '--hold-to-run empty' "$thimble" run box --no-view --duration 0.1 --hold-to-run ''
 expect_error 2 '--hold-to-run empty' "$thimble" exec --hold-to-run '' -- true
 expect_error 2 '--record empty' "$thimble" run box --no-view --duration 0.1 --record ''
@@ -35,13 +35,13 @@ expect_error 2 '--junit empty' "$thimble" hil --device sim --arm vintage_phantom
 expect_error 2 '--csv empty' "$thimble" export a.h5 --csv ''
 expect_own 0 '^hello  you$' "$thimble" exec -- echo hello '' you
 expect_error 2 '--recrod exec --record' "$thimble" exec --recrod a.h5 true
-# A wrong letter is like every other letter; the beginning of a name is not.
+# A wrong letter gets no suggestion, the beginning of a name does.
 expect_error 2 '-z run' "$thimble" run box -z
 expect_error 2 '-x5 run' "$thimble" run box -x5
 expect_error 2 '-o shot --out' "$thimble" shot box -o a.png
 expect_error 2 'RUN run' "$thimble" RUN box
 expect_error 2 '--duration 2' "$thimble" run box --duration 1 --duration 2
-# A word too many for a command below `mesh` is not the file of `mesh`.
+# An extra word for a command below `mesh` is not taken as the file of `mesh`.
 expect_error 2 '"in.off" mesh generate' "$thimble" mesh generate 1000 in.off
 expect 1 '' test -e 1000
 expect_error 2 '"more" mesh page' "$thimble" mesh page in.off out.pages more
@@ -87,7 +87,7 @@ expect_error 2 '--save-object scene "wegdes" wedges' \
   "$thimble" run box --duration 0.01 --save-mesh a.off --save-object wegdes
 expect_error 2 'polhm polhem' "$thimble" plug polhm
 
-# What one command is asked in vain.
+# Requests that a command cannot fulfil.
 expect_error 2 '--device sim --arm NAME' "$thimble" calibrate --device sim
 for command in feel-check identify hil; do
   expect_error 2 '--device sim' "$thimble" $command --device sim
@@ -96,13 +96,13 @@ for hand in keyboard mouse gamepad; do
   expect_error 2 "--hand $hand window screen" "$thimble" run box --hand $hand
 done
 
-# --quiet prints errors only, and a run says what it has to say without.
+# --quiet prints errors only; without it a run prints its summary.
 expect 0 . "$thimble" run box --duration 0.1
 expect 0 '^0$' bash -c '"$0" run box --duration 0.1 --quiet --quality auto --record q.h5 --report q --save-mesh q.off --view 2>&1 | wc -c' "$thimble"
 expect 0 '' test -s q.h5 -a -s q/report.json -a -s q.off
 expect 2 '^thimble: ' "$thimble" run no_such --quiet
 
-# A scene that asks for too much, and one that cannot be opened.
+# A scene beyond the limits, and one that cannot be opened.
 sed "s/stiffness: .*/stiffness: 20000/; s#\.\./arms#$source_dir/app/arms#" "$source_dir/app/scenes/box.yaml" >stiff.yaml
 expect 5 '' "$thimble" tune stiff.yaml --out unmet
 expect_json unmet/figures.json '[name=entry_face.margin].met' == false
@@ -119,7 +119,7 @@ hand: {path: [{t: 0, at: [0, 0, 0]}, {t: 1, at: [0, 0, 0]}]}
 END
 expect 2 '^thimble: .*empty\.off' "$thimble" tune broken.yaml
 
-# The twin of an arm that touched something is none.
+# A recording with contact cannot be used for a twin.
 expect 0 '' "$thimble" run box --record touch.h5
 expect_error 2 'objects recording --from --until' \
   "$thimble" twin touch.h5 --arm vintage_phantom

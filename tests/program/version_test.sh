@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The version stands in one place, CMake's project(); what people see is that, and the documents that
-# have to repeat it agree: the changelog's newest section, the citation and the examples.
+# The version has one source, CMake's project(). The program prints it, and the documents that
+# repeat it agree: the changelog's newest section, the citation and the examples.
 source "$(dirname "$0")/expect.sh" "$@"
 
 version=$(sed -n 's/^project(thimble VERSION \([0-9.]*\) .*/\1/p' "$source_dir/CMakeLists.txt")

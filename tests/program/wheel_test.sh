@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes the wheel of a build by pip, and touches from it in a virtual environment, where nothing else of Thimble is.
-# With THIMBLE_LONG it is built from the sources by `pip install .`: isolated, as pip does unless told otherwise, with what it
-# builds by taken from Debian's wheels instead of an index.
+# Makes the wheel of a build with pip, and touches from it in a virtual environment without any other file of Thimble.
+# With THIMBLE_LONG it is built from the sources by `pip install .`: isolated, as pip does by default, with its build
+# dependencies from Debian's wheels instead of an index.
 #   wheel_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -16,7 +16,7 @@ fail() {
   echo "NOT TESTED: the wheel; install python3-pip python3-setuptools python3-wheel python3-venv python3-numpy."
   exit 77
 }
-# setuptools writes beside the sources, so it gets a copy.
+# setuptools writes next to the sources, so it gets a copy.
 mkdir "$work/source"
 tar -C "$source" --exclude=./build --exclude=./.git -c . | tar -C "$work/source" -x
 cd "$work"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What the window looks like, on a screen in memory (Debian: xvfb, xdotool): a recording that stands still, light, dark and as
-# small as a window may be, and the target of a hand that the keyboard leads, against kept pictures that are smaller.
-# THIMBLE_WRITE_SHOTS=1 keeps what there is now, after a change that is meant.
+# The appearance of the window on a virtual screen (Debian: xvfb, xdotool), compared with stored smaller pictures: a paused
+# recording, light, dark and in the smallest window, and the target of a hand led by the keyboard.
+# After an intended change THIMBLE_WRITE_SHOTS=1 stores the new pictures.
 source "$(dirname "$0")/expect.sh" "$@"
 unset DISPLAY WAYLAND_DISPLAY
 here=$source_dir/tests/program
@@ -15,14 +15,14 @@ source "$here/screen.sh"
 
 expect 0 '' "$thimble" run "$source_dir/app/scenes/tin_can.yaml" --record touch.h5 --no-view
 
-# same_as_kept NAME PICTURE TIMES...: the picture, or the part that follows (left, top, width, height), so many times smaller, is the kept one.
+# same_as_kept NAME PICTURE FACTOR...: PICTURE, or its given part (left, top, width, height), reduced by FACTOR, equals the stored one
 same_as_kept() {
   local kept=$source_dir/tests/data/shots/window_$1.png
   /usr/bin/python3 "$here/shrink_picture.py" "$2" "$1.small.png" "${@:3}"
   [ -z "${THIMBLE_WRITE_SHOTS:-}" ] || cp "$1.small.png" "$kept"
   expect 0 '^the same' /usr/bin/python3 "$here/picture_near.py" "$kept" "$1.small.png"
 }
-# looks NAME WIDTH HEIGHT OPTION...: the window of that size shows what is kept.
+# looks NAME WIDTH HEIGHT OPTION...: the window of this size equals the stored picture.
 looks() {
   local name=$1 width=$2 height=$3
   shift 3
@@ -38,7 +38,7 @@ looks light 960 640
 looks dark 960 640 --theme dark
 looks least 700 420
 
-# The hand is led into the side of a rough cube, as far as the target goes from the tip.
+# The hand is led into the side of a rough cube, until the target has its largest distance from the tip.
 cat >cube.yaml <<END
 name: cube
 duration: 1
@@ -71,6 +71,6 @@ expect 0 '^0$' echo $?
 xdotool keyup Left
 "$thimble" view "$me" --stop
 wait $run
-# The target and the line from it to the tip, alone: in a larger part they would hardly count.
+# Only the target and the line from it to the tip: in a larger part they would hardly count.
 same_as_kept led led.png 2 50 330 280 30
 finish

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs one file of tests with pytest, from a folder of its own.
+# Runs one file of tests with pytest, in a separate folder.
 #   pytest.sh PYTHON FILE WORK_FOLDER
 set -euo pipefail
 python=$1 file=$2 work=$3

@@ -100,7 +100,7 @@ def test_staircase_step_by_step():
     assert staircase.levels == [10, 10, 6, 6, 2, 3, 3, 2]
     assert staircase.reversals == [2, 3, 2] and staircase.over and staircase.condition() is None
     assert staircase.threshold == 2.5 and staircase.spread == pytest.approx(math.sqrt(0.5))
-    # It stays between its bounds, and ends by trials if it never turns.
+    # It stays within its bounds, and ends by the number of trials if its direction never changes.
     staircase = experiment.Staircase(10, 4, down=1, lowest=0, trials_most=10)
     while staircase.condition() is not None:
         staircase.take({"correct": True})
@@ -119,7 +119,7 @@ def test_fit_recovers_the_parameters_and_its_errors_are_what_they_say(shape, gue
     middles, widths = np.array([one.middle for one in fits]), np.array([one.width for one in fits])
     assert np.mean(middles) == pytest.approx(10, abs=0.1)
     assert np.mean(widths) == pytest.approx(1.5, rel=0.06)
-    # The standard errors: as wide as the fits scatter, and 95 % of intervals hold the truth.
+    # The standard errors agree with the scatter of the fits, and 95 % of intervals contain the truth.
     errors = np.array([one.middle_error for one in fits])
     assert np.mean(errors) == pytest.approx(np.std(middles), rel=0.15)
     held = np.abs(middles - 10) < 1.96 * errors
@@ -182,7 +182,7 @@ def test_answers_without_a_width_are_warned_of_and_flat_ones_refused():
     with pytest.warns(RuntimeWarning, match="do not hold the curve's width"):
         found = experiment.fit([1, 2, 3, 4], [0, 0, 10, 10], 10)
     assert 2 < found.middle < 3 and math.isnan(found.middle_error) and math.isnan(found.width_error)
-    with pytest.warns(RuntimeWarning, match="do not hold the curve's width"):  # it has one, and knows nothing of it
+    with pytest.warns(RuntimeWarning, match="do not hold the curve's width"):  # the attribute exists without a value
         found = experiment.fit([1, 2, 3, 4], [5, 6, 10, 10], 10, guess=0.5)
     assert math.isnan(found.middle_error) and math.isnan(found.width_error)
     for said in ([5, 5, 5], [9, 5, 1], [10, 10, 10], [0, 0, 0]):
@@ -220,7 +220,7 @@ def test_no_curve_of_a_dense_grid_is_likelier(guess):
         k = random.binomial(n.astype(int), logistic(x, random.uniform(0, 1), width, guess, 0.02)).astype(float)
         try:
             curve = experiment.fit(x, k, n, guess=guess, lapse=0.02)
-        except thimble.ArgumentError:  # answers that do not rise
+        except thimble.ArgumentError:  # answers that do not increase with the level
             continue
         p = np.clip(curve(x), 1e-12, 1 - 1e-12)
         own = float(-(k * np.log(p) + (n - k) * np.log(1 - p)).sum())

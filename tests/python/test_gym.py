@@ -236,7 +236,7 @@ def test_an_exception_in_an_environment_comes_out_here():
 
 @pytest.mark.parametrize("start", ["spawn", "forkserver"])
 def test_processes_end_when_the_parent_is_killed(start, tmp_path):
-    script = tmp_path / "parent.py"  # without a guard: what needs nothing of it does not run it again
+    script = tmp_path / "parent.py"  # without a main guard: a process that needs nothing from the script does not run it
     script.write_text(
         f"""
 import functools, time, thimble.gym

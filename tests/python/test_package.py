@@ -184,7 +184,7 @@ except thimble.ArgumentError as wrong:
     assert done.returncode == 0, done.stderr
     assert "'latin1': ''" in done.stdout and "'utf8': 'caf\u00e9'" in done.stdout and "'broken': ''" in done.stdout
     assert "pipe" not in done.stdout and "'caf\\udce9'" in done.stdout
-    assert "ArgumentError" in done.stdout and "caf\\ufffd" in done.stdout  # the names that there are
+    assert "ArgumentError" in done.stdout and "caf\\ufffd" in done.stdout  # the known names
 
 
 def test_hands_are_led_only_if_all_arms_reach_theirs():
@@ -206,7 +206,7 @@ def test_a_simulated_arm_is_pushed_by_hand():
     rest = [arm.step() for _ in range(300)][-1]
     pushed = [arm.step(force=(0.5, 0, 0)) for _ in range(600)][-1]
     assert pushed.time == pytest.approx(0.899) and pushed.fault == ""
-    # The hand's spring gives way to the force, in its direction most.
+    # The hand's spring is displaced by the force, most along its direction.
     way = pushed.tip - rest.tip
     assert way[0] > 5e-4 and abs(way[0]) > 2 * max(abs(way[1]), abs(way[2]))
     np.testing.assert_allclose(arm.true_force, [0.5, 0, 0], atol=0.05)
@@ -264,7 +264,7 @@ def test_real_time_is_watched_from_the_side():
     assert not live.running and live.end == "stopped"
     assert live.ticks()[-1].time >= 0.05
     assert "zero force" in live.summary()
-    live.stop()  # again is nothing
+    live.stop()  # a second close has no effect
 
 
 def test_real_time_takes_no_law_and_no_steps():
@@ -305,7 +305,7 @@ def test_auto_without_an_arm_is_an_error_and_not_the_simulated_one():
 def _arms_plugged_in():
     try:
         return thimble.devices()
-    except thimble.Error:  # no USB at all
+    except thimble.Error:  # no USB
         return []
 
 
@@ -345,7 +345,7 @@ print("on", flush=True)
         code = python.wait(timeout=60)
     by_signal = -getattr(signal, way_out) if way_out.startswith("SIG") else 0
     assert code == {"end": 0, "exception": 3}.get(way_out, by_signal)
-    # Closed after the loop had ended, which is by zero force.
+    # Closed after the loop had ended with zero force.
     assert thimble.read_recording(record).complete
 
 

@@ -49,9 +49,9 @@ def test_gives_arrays_with_shapes_and_units():
         assert array.shape == (n, 3) and array.dtype == np.float64
     assert run.in_contact.dtype == np.bool_ and run.in_contact.any() and not run.in_contact.all()
     np.testing.assert_allclose(np.diff(run.time), 1e-3, rtol=1e-9)  # s
-    assert np.abs(run.tip).max() < 0.3  # m, an arm on a desk
+    assert np.abs(run.tip).max() < 0.3  # m, above an arm on a desk
     assert 0.1 < np.linalg.norm(run.force, axis=1).max() < 9  # N
-    # The velocity is that of the tip: its integral is the way, but for the lag of the estimate.
+    # The velocity is that of the tip: its integral is the path, except for the lag of the estimate.
     way = np.cumsum(run.velocity, axis=0) * 1e-3
     assert np.abs(way - (run.tip - run.tip[0])).max() < 2e-3
     # A spring of the scene's 500 N/m or less on the depth, along the normal, while nothing moves.
@@ -120,7 +120,7 @@ def test_a_hand_is_led():
     goal = stepper.tick.tip + [0.0, 0.0, 0.02]
     while stepper.step(hand=goal):
         pass
-    # The arm's own weight and friction hang on the hand's spring.
+    # The hand's spring carries the arm's weight and friction.
     assert np.linalg.norm(stepper.tick.tip - goal) < 5e-3
 
 
@@ -213,7 +213,7 @@ def test_a_scene_with_several_arms_gives_each_of_them():
     assert len(left) == len(right) == len(run) == 2000
     assert np.array_equal(left.force, run.force)  # the run itself is its first arm
     assert not np.array_equal(left.force, right.force)
-    # Lifted, each bears its half of the beam, and they lean against each other.
+    # Lifted, each hand carries half of the beam, and they press against each other.
     assert left.force[-1, 2] < -0.3 and right.force[-1, 2] < -0.3
     assert (left.tip[:, 1] < 0).all() and (right.tip[:, 1] > 0).all()
     assert left.info["arm_in_scene"] == "left" and right.info["seed"] == left.info["seed"] + 1

@@ -68,7 +68,7 @@ def test_set_is_the_scene_written_otherwise():
 
 
 def test_set_changes_scenes_known_by_name():
-    for scene in ("clay", "rubber"):  # one with a mesh beside it, one without
+    for scene in ("clay", "rubber"):  # one with a mesh next to it, one without
         stepper = thimble.Stepper(scene, seconds=0.1)
         name = stepper.objects[0]
         softer = thimble.run(scene, set={f"{name}.stiffness": 100})

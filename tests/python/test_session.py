@@ -93,7 +93,7 @@ def test_a_session_that_is_ended_goes_on_as_if_it_had_not_been(stop, tmp_path):
         with pytest.raises(thimble.Error, match="over"):
             session.answer(True)
     assert path.read_bytes() == (tmp_path / "whole.jsonl").read_bytes()
-    assert whole(path) == whole(tmp_path / "whole.jsonl")  # of a log that is whole: only read
+    assert whole(path) == whole(tmp_path / "whole.jsonl")  # a complete log is only read
 
 
 def test_a_half_written_line_is_dropped_with_a_warning_wherever_it_was_cut(tmp_path):
@@ -111,7 +111,7 @@ def test_a_half_written_line_is_dropped_with_a_warning_wherever_it_was_cut(tmp_p
             assert session.resumed == 5 and path.read_bytes() == before
             session.run(felt)
         assert path.read_bytes() == text
-    path.write_bytes(lines[0][:10])  # it ended in the very first line
+    path.write_bytes(lines[0][:10])  # the log ends within its first line
     with pytest.warns(RuntimeWarning, match="half written"):
         whole(path)
     assert path.read_bytes() == text
@@ -209,7 +209,7 @@ def test_the_example_finds_what_its_subject_is_made_of_and_goes_on_when_killed(s
         left.kill()
     said = subprocess.run(example, check=True, capture_output=True, text=True).stdout
     assert re.search(r"Goes on after [1-9]", said)
-    # Noise of 0.1 and strokes that scatter by 0.2 by themselves: sqrt(2) * 0.22 * 0.674 is 21 %.
+    # Noise of 0.1 and strokes with a scatter of 0.2: sqrt(2) * 0.22 * 0.674 is 21 %.
     threshold = float(re.search(r"told in 79 % at ([0-9.]+)", said)[1])
     equal, jnd = (float(one) for one in re.search(r"equal at ([0-9.]+) .*JND ([0-9.]+) %", said).groups())
     assert 1.15 < threshold < 1.5 and 0.85 < equal < 1.15 and 14 < jnd < 30

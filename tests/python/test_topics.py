@@ -2,7 +2,7 @@
 import pytest
 import thimble
 
-# Nothing leaves this machine.
+# No message leaves this machine.
 ALONE = (
     '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="true"/>'
     "</Interfaces></General></Domain></CycloneDDS>"

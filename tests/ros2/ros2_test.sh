@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A run as ROS 2 topics, heard and moved by a program of another vendor's DDS: it finds us, hears every topic, asks for
-# a force, is killed; and it sends what nobody should.
+# A run as ROS 2 topics, with a program of another vendor's DDS: it finds the run, receives every topic, requests
+# a force, is killed, and sends invalid messages.
 #   ros2_test.sh THIMBLE PEER WORK_DIR
 source "$(dirname "$0")/../program/expect.sh" "$1" "$(cd "$(dirname "$0")/../.." && pwd)" "$3"
 peer=$2
@@ -8,7 +8,7 @@ if ! grep -q '127\.0\.0\.1' /proc/net/fib_trie 2>/dev/null; then
   echo "ROS 2 TEST SKIPPED: the interface lo is down; as root: ip link set lo up"
   exit 77
 fi
-# Nothing leaves this machine.
+# No message leaves this machine.
 export CYCLONEDDS_URI='<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
 cat >lo.xml <<'X'
 <?xml version="1.0" encoding="UTF-8"?>
@@ -21,7 +21,7 @@ cat >lo.xml <<'X'
 </profiles>
 X
 export FASTRTPS_DEFAULT_PROFILES_FILE=$work/lo.xml
-# A hand that waits above the ball, and sways so that the encoders count: what is felt is what the topic asks for.
+# A hand that waits above the ball, and sways so that the encoders count: the only force is that of the topic.
 cat >rest.yaml <<Y
 name: rest
 description: A hand rests above a ball.
@@ -46,20 +46,20 @@ seconds=${seconds:-3}
 # play SECONDS OPTIONS...: a run with topics.
 play() { "$thimble" run rest.yaml --no-view --ros2 --ros-domain "$domain" --duration "$@"; }
 
-# Hears and asks.
+# Receives topics and requests a force.
 play $((seconds + 2)) --ros-force replace --ros-limit 2 --record asked.h5 >run.log 2>&1 &
 run=$!
 "$peer" "$domain" "$seconds" 0.7 >peer.log
 wait "$run"
 cat run.log peer.log
 for topic in joint_states pose twist wrench button tf; do
-  # Of a thousand a second: how many a busy machine loses is not looked at.
+  # Of 1000 per second: the loss on a busy machine is not checked.
   expect 0 heard awk -v topic="rt/$topic" -v least=$((seconds * 20)) '$1 == topic && $2 >= least { print "heard" }' peer.log
 done
-expect_own 0 '^rt/robot_description 1$' cat peer.log # which was said before it came
+expect_own 0 '^rt/robot_description 1$' cat peer.log # published before the peer joined
 expect_own 0 '^rt/diagnostics [1-9]' cat peer.log
 expect_own 0 '^bad 0$' cat peer.log
-expect_own 0 '^object ball in world$' cat peer.log # as a marker, also for those who come later
+expect_own 0 '^object ball in world$' cat peer.log # as a marker, also for late subscribers
 expect_own 0 '^triangles [1-9][0-9]+$' cat peer.log
 for topic in pose wrench tf objects; do
   expect_own 0 "^rt/$topic says typehash=RIHS01_[0-9a-f]{64};\$" cat peer.log
@@ -68,7 +68,7 @@ expect_words 0 '# ms median' cat run.log
 expect_own 0 '^force [0-9.]+ most 0\.(69|70)' cat peer.log
 expect 0 '^ROS 2 +[0-9]+ .* [1-9][0-9]+ ' cat run.log
 
-# It is killed: the force is gone within the time that a force counts, and stays so.
+# The peer is killed: the force ends within its time of validity, and stays zero.
 play 5 --ros-force replace --record killed.h5 >killed.log 2>&1 &
 run=$!
 "$peer" "$domain" 20 0.7 >/dev/null &
@@ -77,7 +77,7 @@ sleep 3
 kill -KILL "$asks"
 wait "$run"
 expect 0 '^ROS 2 +[1-9][0-9]* .*renewed' cat killed.log
-# The force of the recording, N along x: there once, never more than asked for, gone in the last second, and for good.
+# The recorded force, N along x: present once, never above the request, and permanently zero by the last second.
 force() {
   "$thimble" export "$1" --csv force.csv >/dev/null &&
     awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^f_sent_W.x/) x = i; next }
@@ -86,7 +86,7 @@ force() {
 }
 expect_own 0 'ticks, most 0\.(69|70)[0-9]* N, off for the last [0-9]{4}$' force killed.h5
 
-# Garbage: named, counted; nothing is felt beyond the limit.
+# Invalid messages: named, counted; no force above the limit.
 play 4 --ros-force replace --ros-limit 1 --record garbage.h5 >garbage.log 2>&1 &
 run=$!
 "$peer" "$domain" 3 garbage >peer.log
@@ -99,7 +99,7 @@ expect 0 '[1-9][0-9]* .*skipped' cat garbage.log
 expect 0 '[1-9][0-9]* .*limit' cat garbage.log
 expect_own 0 'ticks, most (1\.000|0\.9[0-9]+) N' force garbage.h5
 
-# A body that moves has a frame that moves: a block that the hand pushes.
+# A moving body has a moving frame: a block that the hand pushes.
 "$thimble" run held_block --no-view --ros2 --ros-domain "$domain" --duration 4 --clock wall >block.log 2>&1 &
 run=$!
 "$peer" "$domain" 5 0 >peer.log
@@ -114,7 +114,7 @@ wait "$run"
 expect 0 '^2$' grep -cE '^ROS 2 +[1-9]' two.log
 for hand in left right; do expect_own 0 "^rt/$hand/pose says typehash" cat peer.log; done
 
-# What programs of other arms do, as topics: here those of an Inverse3.
+# Programs of other arms as topics: here one of an Inverse3.
 timeout -s INT 4 "$thimble" exec --serve haply --port 0 --ros2 --ros-domain "$domain" --ros-namespace /other >/dev/null 2>exec.log &
 run=$!
 "$peer" "$domain" 3 0 >peer.log
@@ -134,7 +134,7 @@ expect 0 '[1-9][0-9]+ .* hand ' cat hand.log
 expect_own 0 'off 0\.00' cat peer.log
 expect_words 2 '--hand topic --ros2' "$thimble" run rest.yaml --no-view --hand topic
 
-# As the drivers of the Omni: 20 mm above the origin is z, a force of theirs along y is along our -x.
+# As with the drivers of the Omni: 20 mm above the origin is z, a force along their y is along -x here.
 play 5 --ros-names omni --ros-force replace --record omni.h5 >omni.log 2>&1 &
 run=$!
 "$peer" "$domain" 3 omni >peer.log
@@ -152,11 +152,11 @@ least() {
 }
 expect_own 0 'least -0\.(59|60)' least omni.h5
 
-# What the way over the topics costs a wall that another program makes.
+# The cost of the delay over the topics for the stiffest wall of another program.
 expect_words 0 '# ms median 99 %' \
   "$thimble" tune rest.yaml --ros2 --ros-domain "$domain"
 
-# Stepped: each step is answered, the same bits each time, faster than the world's time.
+# Stepped: each step is answered, bit-identically each time, and faster than real time.
 step() { # step SCENE SECONDS PART OPTIONS...
   for run in one two; do
     timeout 80 "$thimble" run "$1" --no-view --ros2 --ros-domain "$domain" --clock virtual --duration "$2" "${@:4}" \
@@ -176,7 +176,7 @@ same() { # same RECORDING RECORDING
 step rubber 1 step --ros-force replace
 expect 0 '^clock 0\.999$' cat rubber_one.log
 expect 0 '' same rubber_one rubber_two
-# With two arms the topics of both have the run's time.
+# With two arms the topics of both have the time of the run.
 step two_hands 1 step_two
 for hand in left right; do expect 0 '' same "two_hands_one_$hand" "two_hands_two_$hand"; done
 finish

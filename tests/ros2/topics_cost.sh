@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What topics of ROS 2 cost a tick of the servo's thread, in instructions: nothing where they only tell of the run, 60
-# at most where a force is listened for, of some 5,000.
+# The cost of ROS 2 topics for a tick of the servo thread, in instructions: nothing if they only publish the run, at
+# most 60 of about 5,000 if a force is subscribed.
 #   topics_cost.sh TOPICS_TICKS SOURCE_DIR
 set -euo pipefail
 program=$1 source=$2

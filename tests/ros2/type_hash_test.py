@@ -84,7 +84,7 @@ def main():
         if computed != told:
             print(f"{dds_name}: the table says {told}, the IDL {computed}")
             wrong += 1
-    # What ROS 2 Kilted generates for these [S hpmicro/hpm_sdk, middleware/microros/kilted].
+    # Hashes that ROS 2 Kilted generates for these [S hpmicro/hpm_sdk, middleware/microros/kilted].
     published = {
         "geometry_msgs/msg/PoseStamped": "RIHS01_10f3786d7d40fd2b54367835614bff85d4ad3b5dab62bf8bca0cc232d73b4cd8",
         "sensor_msgs/msg/JointState": "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",

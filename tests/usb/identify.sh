@@ -1,11 +1,11 @@
-# Identifies simulated arms of hidden constants through this kernel, as a person does it: feel check, then
-# `thimble identify` with a known mass, the arm file being the shipped one, which is wrong. Read by init.sh.
+# Identifies simulated arms with hidden constants through this kernel, like a user: feel check, then
+# `thimble identify` with a known mass and the shipped arm file, which is wrong. Sourced by init.sh.
 
 seconds=15  # of each motion
 known=0.025 # kg
 
-# Waits for the prompt number COUNT in a log. Not in a hurry: every look takes time from the servo, with
-# which it shares the one processor.
+# Waits for prompt number COUNT in a log. Polls seldom: every read of the log takes time from the servo, with
+# which it shares the only processor.
 prompted() { # LOG COUNT
   for i in $(seq 1000); do
     [ "$(grep -c 'Press Enter to begin' "$1")" -ge "$2" ] && return 0
@@ -18,10 +18,10 @@ press() { # LOG COUNT
   prompted "$1" "$2" && echo >&8
 }
 
-# The hand goes from the middle of the workspace, m along the world's axes.
+# Moves the hand from the middle of the workspace by X Y Z, m along the world axes.
 lead() { # ARM X Y Z
   case $1 in
-    woodenhaptics) echo "$2 $3 $4" | awk '{ print "hand", $1 - 0.025, $2, $3 - 0.205 }' ;; # it begins in its home
+    woodenhaptics) echo "$2 $3 $4" | awk '{ print "hand", $1 - 0.025, $2, $3 - 0.205 }' ;; # it starts in its home pose
     falcon) echo "hand $3 $4 $2" ;; # its base has x to the right, y up, z to the user
     *) echo "hand $2 $3 $4" ;;
   esac >$control
@@ -52,7 +52,7 @@ feel_check() { # ARM OPTIONS
   wait $asking
 }
 
-# Holds the mass from below, and lets go once it is carried.
+# Holds the mass from below, and releases it once the motors carry it.
 hold_mass() { # ARM
   lead $1 0 0 0
   echo "hand on" >$control
@@ -60,7 +60,7 @@ hold_mass() { # ARM
   echo "mass $known" >$control
   usleep 300000
   echo >&8
-  # Some arms take a while to connect.
+  # Some arms need time to connect.
   for i in $(seq 100); do
     tail -n 1 /tmp/device.trace | awk '{ exit !(NF == 22 && $20 && ($11 || $12 || $13)) }' && break
     usleep 100000
@@ -69,14 +69,14 @@ hold_mass() { # ARM
   echo "hand off" >$control
 }
 
-# One arm, drawn by SEED; NAME_cables: NAME with cables that stretch.
+# One arm, drawn by SEED; NAME_cables: NAME with elastic cables.
 identify() { # ARM SEED
   named=$1 arm=${1%_cables} cables=
   [ $named = $arm ] || cables=cables
   file=/data/app/arms/$arm.yaml
   options="--arm $file"
   [ $arm != falcon ] || options="$options --firmware /etc/falcon.bin"
-  usb_check hide $file $2 $cables >/tmp/hidden.yaml || { cat /tmp/hidden.yaml; return; } # a FAIL line
+  usb_check hide $file $2 $cables >/tmp/hidden.yaml || { cat /tmp/hidden.yaml; return; } # prints a FAIL line
   begun=$(uptime)
   plug $arm /tmp/device.trace --hand rest --arm /tmp/hidden.yaml
   options="--device $(usb_check name $arm) $options"
@@ -105,7 +105,7 @@ identify() { # ARM SEED
   unplug
   sed -n 's/^Unplugged\. /NOTE '$named': /p' /tmp/plug.log
   as tester "thimble export /tmp/motion.h5 --csv /tmp/motion.csv"
-  # What stood in each tick, as usb_check keeps it, in the arm's base.
+  # The state of each tick from usb_check's trace, in the arm's base frame.
   awk -F, -v falcon=$([ $arm = falcon ] && echo 1 || echo 0) '
     !named { for (i = 1; i <= NF; ++i) { sub(/ .*/, "", $i); at[$i] = i }; named = 1; print 0; next }
     { x = $at["f_sent_W.x"]; y = $at["f_sent_W.y"]; z = $at["f_sent_W.z"]

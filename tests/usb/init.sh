@@ -1,6 +1,6 @@
 #!/bin/busybox sh
-# The first and only process of the virtual machine: plugs each simulated arm into this kernel by
-# `thimble plug --attach` and lets an unprivileged user drive it with usb_check. Says PASS, FAIL and
+# The first and only process of the virtual machine. Plugs each simulated arm into this kernel by
+# `thimble plug --attach` and drives it with usb_check as an unprivileged user. Prints PASS, FAIL and
 # FIGURE lines, then END, then switches the machine off.
 /bin/busybox --install -s /bin
 export PATH=/bin:/usr/bin
@@ -49,8 +49,8 @@ unplug() {
   udevadm settle --timeout=20
 }
 
-# Programs written for other arms, each with a sphere of its own below the place where the hand goes up
-# and down: the forces that they log are those that the board's motors get. The short form takes the first.
+# Programs written for other arms, each with its own sphere below the vertical path of the hand. The forces
+# in their logs equal those of the board's motors. The short form tests the first.
 programs() {
   arm=$1
   while read -r program axes centre; do
@@ -74,7 +74,7 @@ dhd_client_sphere xyz 0.025 0 0.180
 EOF
 }
 
-# What a real arm may do stands in an installed arm file: here in the tester's own folder.
+# The limits of a real arm come from an installed arm file: here in the tester's folder.
 mkdir -p /tmp/.config/thimble
 cp -r /data/app/arms /tmp/.config/thimble/arm_files
 
@@ -83,8 +83,8 @@ for arm in $arms; do
   [ $arm = falcon ] && image=/etc/falcon.bin
   usb_check vector $arm
 
-  # A Teensy may be anything, so the installed rule leaves it alone; the doctor says which line lets
-  # its owner in.
+  # The kind of a Teensy is unknown, so the installed rule ignores it; doctor prints the rule that gives
+  # its owner access.
   if [ $arm = polhem-64 ]; then
     plug $arm /tmp/device.trace
     as tester "usb_check denied $arm" | sed "s/closed to strangers/closed until its owner says so/"
@@ -108,7 +108,7 @@ for arm in $arms; do
   sed -n 's/^Unplugged\. /NOTE '$arm': /p' /tmp/plug.log
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace
 
-  # The program itself, by the name that it lists; then another program after it.
+  # The program itself, with the listed name; then another program after it.
   plug $arm /tmp/run.trace
   name=$(usb_check name $arm)
   program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/${arm%-64}.yaml"
@@ -125,15 +125,15 @@ for arm in $arms; do
 
   [ $arm != woodenhaptics ] || programs $arm
 
-  # The padded board differs from the other in its reports only.
+  # The padded board differs from the other only in its reports.
   [ $arm = polhem-64 ] && [ $ticks -lt 10000 ] && { echo "NOTE $arm done after $(uptime) s"; continue; }
 
   plug $arm /tmp/replug.trace
   as tester "usb_check replug $arm $control $image"
   unplug
 
-  # A driver that is killed in contact: the arm's own watchdog is what is left. Its time is that from
-  # the last message to the motors' end, in the arm's own frames.
+  # A driver that is killed in contact: only the arm's watchdog remains. Its time is from
+  # the last message to the end of the motor currents, in the arm's own frames.
   plug $arm /tmp/killed.trace
   as tester "exec usb_check hang $arm $image" >/tmp/hang.log &
   for i in $(seq 1500); do grep -q touching /tmp/hang.log && break; usleep 10000; done
@@ -143,8 +143,8 @@ for arm in $arms; do
   unplug
   watchdog=500
   early=1
-  # The Falcon's board dates a message by the frame it was last run in; a plug that was held up for a
-  # few frames (six were seen) makes that too early, never too late.
+  # The Falcon's board dates a message by its last frame. A plug that was delayed by some frames
+  # (up to six were seen) makes that too early, never too late.
   [ $arm = falcon ] && watchdog=100 && early=10
   awk -v arm=$arm -v stated=$watchdog -v early=$early '
     !/^#/ && NF == 22 {
@@ -162,7 +162,7 @@ for arm in $arms; do
   echo "NOTE $arm done after $(uptime) s"
 done
 
-# An arm that takes every message and makes nothing of it: one that answers only must be found out.
+# An arm that accepts every message without effect: one that only answers must be detected.
 for arm in $arms; do
   [ $arm != woodenhaptics ] && [ $arm != falcon ] || continue
   case " $faulty " in *" $arm "*) continue ;; esac
@@ -171,9 +171,9 @@ for arm in $arms; do
   unplug
 done
 
-# Every fault, both ways, one after another on the same plug: after each the arm must serve again.
-# All but a stalled message: the kernel never clears that halt for hidraw, only a new plug does; so
-# it comes last. The short form takes those that reach further than the arm's own checks.
+# Every fault, in both directions, one after another on the same plug: after each the arm must work again.
+# The stalled message is last: the kernel never clears that halt for hidraw, only a new plug does.
+# The short form takes the faults whose effects go beyond the arm's own checks.
 kinds="short|long|torn|stale|duplicate|silence|lost|bit_errors rate=0.01|stall"
 [ $ticks -lt 10000 ] && kinds="torn|lost|bit_errors rate=0.01|stall"
 for arm in $faulty; do
@@ -186,7 +186,7 @@ for arm in $faulty; do
     done
   done
   unplug
-  # The arm's side counts too: each kind must have hit packets, or the checks above say nothing.
+  # The arm's side counts too: each kind must have hit packets, otherwise the checks above prove nothing.
   for kind in $(echo "$kinds" | tr '|' '\n' | cut -d' ' -f1); do
     hits=$(sed -n "s/^Fault $kind hit \([0-9]*\) packets.*/\1/p" /tmp/plug.log)
     [ "${hits:-0}" -gt 0 ] || echo "FAIL $arm with faults: no packet was hit by '$kind'"
@@ -202,7 +202,7 @@ for hidden in $(setting identify | tr , ' '); do
   echo "NOTE $hidden identified after $(uptime) s"
 done
 
-# The second way: the kernel's own HID gadget on its own virtual bus, with no USB/IP in between.
+# The second way: the kernel's own HID gadget on its own virtual bus, without USB/IP.
 for arm in $(setting gadgets | tr , ' '); do
   for module in configfs udc-core libcomposite usb_f_hid dummy_hcd; do
     [ -d /sys/module/$(echo $module | tr - _) ] || insmod /lib/modules/$module.ko 2>/dev/null ||

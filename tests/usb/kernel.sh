@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Prints the newest Debian kernel whose modules simulate USB devices: one of this system, else the one in build/kernel
-# (tests/usb/setup.sh). Its modules lie in lib/modules beside its folder. Ends with 1 if there is none.
+# Prints the newest Debian kernel whose modules simulate USB devices: one of this system, or the one in build/kernel
+# (tests/usb/setup.sh). Its modules are in lib/modules next to its folder. Exits with 1 if there is none.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
 for folder in / "$here/build/kernel/"; do

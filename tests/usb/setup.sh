@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what the test in a virtual machine needs: QEMU, a static busybox, udevd and its rules, and a kernel, which is
-# unpacked into build/kernel and not installed.
+# Installs the dependencies of the test in a virtual machine: QEMU, a static busybox, udevd and its rules, and a kernel,
+# which is unpacked into build/kernel and not installed.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 app/optional_parts.sh install usb

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Boots this system's Debian kernel in QEMU and drives every simulated USB arm through it.
 #   virtual_machine.sh THIMBLE USB_CHECK SOURCE_DIR WORK_DIR PROGRAMS_DIR [--long]
-# PROGRAMS_DIR holds the programs in C that were built for others' arms (tests/compat).
-# Ends with 0 if all passed, 1 if not, 77 if this machine lacks what it takes. The whole logs stay in
-# WORK_DIR/console.log and identified.log, the figures in WORK_DIR/figures.json, every fault on every arm that was tried
+# PROGRAMS_DIR holds the C programs that were built for other arms (tests/compat).
+# Exits with 0 if all passed, 1 if not, 77 if this machine lacks a tool. The complete logs are in
+# WORK_DIR/console.log and identified.log, the figures in WORK_DIR/figures.json, every tested fault of every arm
 # in WORK_DIR/faults.md.
 #
 # The machine counts instructions instead of time (-icount): one instruction is 4 ns, and idle time
 # is skipped. Its random numbers have a fixed seed and its date is fixed. So a busy computer makes
-# the test slower, never different. In the long form a second machine identifies arms of hidden
+# the test slower, never different. In the long form a second machine identifies arms with hidden
 # constants (identify.sh).
 set -euo pipefail
 thimble=$1 check=$2 source=$3 work=$4 programs=$5
@@ -42,7 +42,7 @@ cp "$source/tests/usb/identify.sh" "$root/identify.sh"
 chmod +x "$root/init"
 cp "$busybox" "$root/bin/busybox"
 
-# A program and the libraries that it names, each at its own place.
+# A program and its libraries, each at its own path.
 add() {
   local program=$1 place=$2
   cp -L "$program" "$root$place"
@@ -54,13 +54,13 @@ add() {
 }
 add "$thimble" /bin/thimble
 add "$check" /bin/usb_check
-# Programs written for other arms, and the libraries that `thimble exec` puts in front of them.
+# Programs written for other arms, and the libraries that `thimble exec` loads into them.
 for program in clients/hello_sphere clients/chai_sphere dhd/dhd_client_sphere; do
   add "$programs/$program" "/bin/$(basename $program)"
 done
 mkdir -p "$root/bin/compat/lib"
 cp -L "$(dirname "$thimble")"/compat/lib/*.so* "$root/bin/compat/lib/"
-# systemd-udevd and udevadm are one program that looks at its name.
+# systemd-udevd and udevadm are one program that checks its name.
 add /bin/udevadm /bin/udevadm
 add $udevd $udevd
 drivers=${kernel%boot/vmlinuz-*}lib/modules/${kernel##*/vmlinuz-}/kernel/drivers
@@ -68,7 +68,7 @@ for module in usb/common/usb-common usb/core/usbcore hid/hid usb/usbip/usbip-cor
   usb/usbip/vhci-hcd hid/usbhid/usbhid hid/hid-generic; do
   cp "$drivers/$module.ko" "$root/lib/modules/"
 done
-# What a gadget takes is not in every kernel; without it that part is left out.
+# Not every kernel has gadget support; without it that part is omitted.
 gadgets=woodenhaptics,polhem,polhem-64
 for module in ../fs/configfs/configfs usb/gadget/udc/udc-core usb/gadget/libcomposite \
   usb/gadget/function/usb_f_hid usb/gadget/udc/dummy_hcd; do
@@ -99,9 +99,9 @@ echo 'passwd: files' >"$root/etc/nsswitch.conf"
 mkdir -p "$root/data/app" "$root/data/tests/data"
 cp -r "$source/app/arms" "$root/data/app/"
 cp -r "$source/tests/data/scenes" "$source/tests/data/meshes" "$root/data/tests/data/"
-# Any bytes: the simulated Falcon runs whatever it is given.
+# Any bytes: the simulated Falcon runs any firmware.
 head -c 1500 /bin/sh >"$root/etc/falcon.bin"
-# Not packed: the machine would need 6 s of its time to unpack it.
+# Not compressed: unpacking would take 6 s of the machine's time.
 (cd "$root" && find . | cpio -o -H newc --quiet) >"$work/initrd.cpio"
 
 # One machine: its log is WORK_DIR/NAME.log. One instruction takes 2^SHIFT ns.
@@ -127,7 +127,7 @@ boot() { # NAME SHIFT LIMIT_S SETTING...
   exit 1
 }
 
-# The short form leaves out the Polhem, whose reports are as long on its other board, and takes a fifth of the ticks.
+# The short form omits the Polhem, whose reports are as long on its other board, and takes a fifth of the ticks.
 ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem-64,falcon limit=2400 identified=
 if [ -n "$long" ]; then
   ticks=10000 arms=woodenhaptics,polhem,polhem-64,falcon limit=3000 identified=woodenhaptics,polhem,falcon,woodenhaptics_cables
@@ -142,10 +142,10 @@ if [ -n "$arms$faulty$gadgets" ]; then
   boot console 2 $limit ticks=$ticks arms="$arms" faulty="$faulty" gadgets="$gadgets"
   logs=$work/console.log
 fi
-# Identifying computes more in a tick than a touch, and the board's side as well, all on one processor. At
-# 4 ns an instruction a third of the messages come a frame later than the others, and the fit says that the
-# motion is not understood. At 1 ns, which is still slow for a computer, none does.
-# An arm behind cables takes half an hour of a processor, most of it after its motions.
+# A tick of identification computes more than a touch, and so does the board, all on one processor. At
+# 4 ns per instruction a third of the messages come a frame late, and the fit reports motion that the
+# model does not explain. At 1 ns, still slow for a computer, none does.
+# An arm behind cables takes half an hour of processor time, most of it after its motions.
 if [ -n "$identified" ]; then
   boot identified 0 $((3 * limit)) ticks=$ticks identify="$identified"
   logs="$logs $work/identified.log"

@@ -13,7 +13,7 @@ from ._core import ArgumentError
 PathOrName = Union[str, "os.PathLike[str]"]
 Vector = NDArray[np.float64]
 
-_SEED_MOST = 2**64 - 1  # what the program keeps it in
+_SEED_MOST = 2**64 - 1  # limit of the program's type
 
 
 def path_of(name: str, value: PathOrName, meant: str = "a file or a name") -> str:

@@ -22,7 +22,7 @@ from ._ticks import Figure, figure_of
 class Held:
     """What all that run a scene have in common."""
 
-    _run: Any  # a _core.Run, or what is left of one: Past, OfArm
+    _run: Any  # a _core.Run, or the rest of a finished one: Past, OfArm
 
     @property
     def objects(self) -> list[str]:
@@ -119,7 +119,7 @@ def stop_all() -> None:
     for run in list(_open):
         try:
             run.stop()
-        except Exception as wrong:  # the others are stopped all the same
+        except Exception as wrong:  # stop the others in any case
             warnings.warn(str(wrong), RuntimeWarning, stacklevel=2)
 
 

@@ -48,7 +48,7 @@ class Knobs:
 
     def __setitem__(self, name: str, value: float) -> None:
         if name not in self:
-            self[name]  # tells which there are
+            self[name]  # its error lists the known names
         self._run.turn(name, number_of(name, value))
 
     def __getattr__(self, attribute: str) -> Knob:

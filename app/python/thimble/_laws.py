@@ -90,7 +90,7 @@ def core_law(law: Optional[Law]) -> Any:
 
 
 def _is_ctypes(law: object) -> bool:
-    return isinstance(law, LawFunction.__mro__[1])  # ctypes names its class of functions nowhere else
+    return isinstance(law, LawFunction.__mro__[1])  # the only access to ctypes' class of functions
 
 
 def _is_numba_cfunc(law: object) -> bool:
@@ -113,7 +113,7 @@ def _by_numba(function: Callable[..., Any], data: Optional[Vector]) -> Any:
     def plain(time: Any, tip: Any, velocity: Any, wanted: Any, force: Any, data: Any) -> None:
         filled = zeros(3)
         inner(time, carray(tip, 3), carray(velocity, 3), carray(wanted, 3), filled)
-        carray(force, 3)[:] = filled  # not before: what raises leaves no force
+        carray(force, 3)[:] = filled  # not earlier: an exception leaves no force
 
     def with_data(time: Any, tip: Any, velocity: Any, wanted: Any, force: Any, data: Any) -> None:
         filled = zeros(3)

@@ -102,7 +102,7 @@ def open(
     computers can read the topics and give forces. Raises Error with what to do.
     """
     path_of("device", device, "\"sim\", \"auto\" or a name")
-    if device not in ("sim", "auto") and not agree:  # what "auto" finds is asked about beneath
+    if device not in ("sim", "auto") and not agree:  # the C++ part asks about the arm that "auto" finds
         raise Error(
             f"{device} would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
             "say agree=True."
@@ -133,7 +133,7 @@ def open(
     return live
 
 
-# Signals that would end Python at once and can be caught; SIGINT comes as KeyboardInterrupt.
+# Signals that would end Python at once and can be caught; SIGINT arrives as KeyboardInterrupt.
 _ENDING = ("TERM", "HUP", "QUIT", "USR1", "USR2", "ALRM", "VTALRM", "PROF", "XCPU", "IO", "PWR")
 
 
@@ -149,7 +149,7 @@ def _stop_on_signals() -> None:
 
     for name in _ENDING:
         number = getattr(signal, "SIG" + name, None)
-        # Somebody else's stays: his way out runs what is at exit.
+        # A handler of the caller stays: its exit runs the atexit functions.
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, leave)
 

@@ -22,12 +22,12 @@ Scene = Union[PathOrName, Mapping[str, Any]]
 def as_yaml(value: Any) -> str:
     """Write a value as JSON, which YAML understands; numpy's are taken as Python's own, paths as text."""
     try:
-        # Emoji as they are: YAML has no surrogate pairs, which JSON would escape them as.
+        # Keeps emoji: JSON would escape them as surrogate pairs, which YAML does not have.
         text = json.dumps(value, allow_nan=False, ensure_ascii=False, default=_plain)
         text.encode("utf-8")
     except (AttributeError, TypeError, ValueError) as wrong:
         raise ArgumentError(f"A scene cannot hold {value!r}: {wrong}.") from wrong
-    # Characters that end a line for YAML or that it refuses, though JSON takes them as they are.
+    # Characters that end a line in YAML or that YAML refuses, although JSON accepts them.
     return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from . import Figure, Ticks
 
 _AXES = "xyz"
-_WIDTH, _HEIGHT = 560, 90  # of one curve in HTML, in pixels
+_WIDTH, _HEIGHT = 560, 90  # size of one curve in HTML, in pixels
 
 
 def to_pandas(ticks: Ticks) -> Any:

@@ -12,7 +12,7 @@ from ._arguments import PathOrName, Vector, number_of, path_of, rows_of, vector_
 from ._core import ArgumentError
 from ._ticks import Tick, Ticks
 
-_ARMS_MOST = 1_000_000  # 10 GB and more; chosen against a wrong unit
+_ARMS_MOST = 1_000_000  # 10 GB and more; [chosen] to detect a wrong unit
 
 
 class Simulator:

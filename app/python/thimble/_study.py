@@ -30,7 +30,7 @@ def program() -> str:
     return found
 
 
-BAD_INPUT = 2  # the program's exit code of wrong arguments, scene, arm file or mesh
+BAD_INPUT = 2  # exit code of the program for wrong arguments, scenes, arm files or meshes
 
 
 def _studies() -> list[str]:

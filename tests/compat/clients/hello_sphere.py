@@ -1,4 +1,4 @@
-# The sphere in Python, as programs with ctypes have it: libHD with a callback and a struct that comes back
+# The sphere in Python, in the usual style of programs with ctypes: libHD with a callback and a struct returned
 # by value, then libhdPhantom in a loop.
 import ctypes
 import math

@@ -111,7 +111,7 @@ async def stylus():
 async def force(log):
     """Both spellings push; the arm yields; a line for each turn: where it is and what was asked, in Thimble's world."""
     arm = await connect()
-    # After tick n the answer has the state of tick n, and the force that went out in it.
+    # The answer after tick n has the state of tick n and the force sent in it.
     with open(log, "w") as lines:
         asked = (0.0, 0.0, 0.0)
         for turn in range(2500):
@@ -120,7 +120,7 @@ async def force(log):
             x, y, z = three(state["cursor_position"])
             u, v, w = three(state["cursor_velocity"])
             a, b, c = asked
-            # x right, y away, z up, against x to the user, y right, z up; the origin is where inverse3.yaml says.
+            # x right, y away, z up, from x to the user, y right, z up; inverse3.yaml has the origin.
             print(-y - 0.130, x, z - 0.170, -v, u, w, -b, a, c, file=lines)
             if turn > 1000:
                 told = three(state["current_cursor_force"])
@@ -180,9 +180,9 @@ async def huge():
             "set_cursor_force": {"vector": {"x": 0.3, "y": 0, "z": 0}}}}]})
         check(length(state_of(answer)["current_cursor_force"]) == 0, "a force after the fault")
     check(not answer["inverse3"][0]["status"]["ready"], "the fault is not told")
-    await asyncio.sleep(0.3)  # for who reads the log
+    await asyncio.sleep(0.3)  # time for the test to read the log
     await arm.socket.close()
-    # A program that begins anew begins with the simulated arm anew.
+    # A program that connects again gets a restarted simulated arm.
     await opened(await connect())
 
 
@@ -249,7 +249,7 @@ async def doors():
         check(False, "a message of 300 kB was taken")
     except websockets.exceptions.ConnectionClosed as closed:
         check(closed.code == 1009, closed)
-    # Many at once: those beyond what the service bears are turned away, and it lives.
+    # Many clients at once: those above the limit are refused, and the service survives.
     crowd = [await asyncio.open_connection(host, port) for _ in range(60)]
     for _, writer in crowd:
         writer.close()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Programs of the Inverse3 on a simulated arm: `thimble exec --serve haply`, with a program in Python (python3-websockets) and
-# with our own back end, both ways round.
+# Programs of the Inverse3 on a simulated arm: `thimble exec --serve haply`, with a Python program (python3-websockets) and
+# with Thimble's own driver, so that both ends can be compared.
 #   serve_test.sh THIMBLE SOURCE_DIR WORK_DIR
 source "$(dirname "$0")/../../program/expect.sh" "$1" "$2" "$3"
 export TMPDIR=$work XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
@@ -8,11 +8,11 @@ ends=$source_dir/tests/compat/round_trip/both_ends.awk
 program=$source_dir/tests/compat/haply/program.py
 serve() { "$thimble" exec --serve haply --port 0 "$@"; }
 
-# Our own back end behind our own face: a run on an arm that is another program's simulated one. A hand goes into a box
-# of the scene that the inner run alone knows.
+# Thimble's driver as a client of Thimble's service: the arm of the inner run is the simulated arm of the outer run. The hand
+# presses into a box of the inner run's scene.
 printf '0 0.002 -0.03 0.02\n0.05 0.002 -0.03 0.02\n0.5 0.002 -0.03 0.0135\n1 0.004 -0.027 0.011\n3 0 -0.03 0.012\n900 0 -0.03 0.012\n' >press.txt
-# On a busy machine the inner run may miss the arm for 20 ms, and says so: what both knew until then is the same all the same,
-# and it is tried again until the touch was long enough.
+# On a busy machine the inner run may miss the arm for 20 ms, and reports it. Both must agree until then, and it is repeated
+# until the touch was long enough.
 for _ in 1 2 3 4 5 6; do
   rm -f outer.h5 inner.h5
   serve --clock virtual --hand press.txt --record outer.h5 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
@@ -53,7 +53,7 @@ expect 0 '^Wrong +device_id 1 ' run garbage
 expect_own 0 'huge: right' run huge
 expect 0 'went off: .*not a number' run huge
 expect_own 0 'doors: right' run doors
-# The same bits each time, and the same at both ends.
+# Bit-identical each time, and equal at both ends.
 printf '0 0 0 0\n1 0.01 0.012 0.01\n2 -0.01 0 0\n' >hand.txt
 for turn in first second; do
   expect_own 0 'force: right' serve --clock virtual --hand hand.txt --record $turn.h5 $python "$program" force $turn.txt
@@ -62,12 +62,12 @@ done
 expect_own 0 '^same$' sh -c 'cmp first.txt second.txt && cmp first.csv second.csv && echo same'
 expect_own 0 '^2500 ticks here, 0 not there, 0 out of order; [0-9]{4} ticks there with a force from here, [0-9]{4} different, 0 from elsewhere$' \
   awk -f "$ends" -v force_step=1e-9 -v opening=600 first.txt first.csv
-# In real time: force goes when messages do.
+# In real time: the force ends with the messages.
 expect_own 0 'lets_go: right' serve $python "$program" lets_go
 expect_own 0 'cut: right' serve $python "$program" cut
 expect_words 0 'python3 Haply 20 ms' serve $python "$program" lets_go
 
-# Without a program: for those that come by themselves, until Ctrl-C.
+# Without a program: serves clients until Ctrl-C.
 env --default-signal=INT "$thimble" exec --serve haply --port 0 >served.txt 2>&1 &
 service=$!
 trap 'kill $service 2>/dev/null' EXIT

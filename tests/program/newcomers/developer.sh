@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A developer in C++: a program with a session and a force law of his own, by pkg-config or by CMake.
+# A C++ developer: a program with a session and a force law, built with pkg-config or CMake.
 source "$(dirname "$0")/follow.sh"
 
 has c++ || {
@@ -9,7 +9,7 @@ has c++ || {
 says guide/cpp.md 'The program loads a scene by name, halves its force, records the run and replays it'
 awk '/^```cpp$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/cpp.md" >touch.cpp
 grep -q 'set_law' touch.cpp || fail "the guide's program has no law"
-sed -i 's/"elephant"/"rubber"/' touch.cpp  # which needs no scan
+sed -i 's/"elephant"/"rubber"/' touch.cpp  # needs no scan
 says guide/cpp.md '`find_package(thimble)` gives the targets'
 says guide/cpp.md '`pkg-config thimble` works as well'
 if [ -n "${THIMBLE_LONG:-}" ]; then
@@ -24,7 +24,7 @@ if [ -n "${THIMBLE_LONG:-}" ]; then
 fi
 c++ $(pkg-config --cflags thimble) -O0 touch.cpp -o by_pkg_config $(pkg-config --libs thimble) 2>said ||
   fail "pkg-config: $(cat said)"
-# Only below /usr are names found by themselves.
+# Names are found automatically only below /usr.
 says guide/cpp.md 'For another prefix, run `export XDG_DATA_DIRS=~/thimble/share:/usr/share`'
 share=$(pkg-config --variable=prefix thimble)/share
 export XDG_DATA_DIRS=$share:/usr/share

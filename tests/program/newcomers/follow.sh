@@ -1,5 +1,5 @@
-# Shared by the ways of newcomers: each follows what is installed with the program and nothing else.
-# Taken from the environment: DOCUMENTS, the folder of README.md and guide/; THIMBLE_LONG, for the whole way.
+# Shared by the newcomers' scripts: each follows the installed documents and nothing else.
+# From the environment: DOCUMENTS, the folder of README.md and guide/; THIMBLE_LONG, for the whole script.
 set -euo pipefail
 
 fail() {
@@ -7,12 +7,12 @@ fail() {
   exit 1
 }
 
-# says PAGE SENTENCE: the page still says what is followed here, however its lines are broken.
+# says PAGE SENTENCE: the page still has this sentence, with any line breaks.
 says() {
   tr -s ' \n' '  ' <"$DOCUMENTS/$1" | grep -qF -- "$2" || fail "$1 does not say: $2"
 }
 
-# see PATTERN COMMAND...: the command ends well and prints a line that matches.
+# see PATTERN COMMAND...: the command succeeds and prints a matching line.
 see() {
   local pattern=$1 said
   shift
@@ -20,7 +20,7 @@ see() {
   grep -qE -- "$pattern" <<<"$said" || fail "$*: no line matches '$pattern': $said"
 }
 
-# refused PATTERN COMMAND...: the command ends with bad input (2), and says so in a line that matches.
+# refused PATTERN COMMAND...: the command fails with bad input (2) and a matching line.
 refused() {
   local pattern=$1 said status=0
   shift
@@ -29,7 +29,7 @@ refused() {
   grep -qE -- "$pattern" <<<"$said" || fail "$*: no line matches '$pattern': $said"
 }
 
-# wait_for PATTERN FILE: until a line of it matches, a minute at most.
+# wait_for PATTERN FILE: waits until a line matches, a minute at most.
 wait_for() {
   for _ in $(seq 600); do
     if grep -qE -- "$1" "$2" 2>/dev/null; then return; fi

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A maker of an arm: what is plugged in and what is missing, firmware on a USB plug, the checks before the first
-# force, an arm file of his own. All on simulated arms.
+# A maker of an arm: plugged-in and missing parts, firmware on a USB plug, the checks before the first
+# force, a new arm file. All on simulated arms.
 source "$(dirname "$0")/follow.sh"
 
 says guide/first_arm.md 'The command that fixes a problem is printed below it.'
@@ -27,7 +27,7 @@ cp "$came" my_arm.yaml
 sed -i 's/^name: .*/name: my_arm/' my_arm.yaml
 says guide/own_arm.md 'thimble run app/scenes/elephant.yaml --arm app/arms/woodenhaptics.yaml --duration 2'
 see 'the simulated arm my_arm' thimble run rubber --arm my_arm.yaml --duration 2
-# A motor that is wired the wrong way round is found before it pushes anybody.
+# A reversed motor is found before it pushes a user.
 says guide/own_arm.md '`feel-check` names a wire that is dead'
 sed 's/^simulation:/&\n  wiring: {motor_gain: [1, -1, 1]}/' my_arm.yaml >reversed.yaml
 thimble feel-check --device sim --arm reversed.yaml >check.txt 2>&1 </dev/null && fail "reversed: $(cat check.txt)"

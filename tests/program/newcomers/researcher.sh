@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A researcher: a study and its figures, a series over a parameter of her own, a recording as a table, a figure.
+# A researcher: a study and its figures, a series over a parameter, a recording as a table, a figure.
 source "$(dirname "$0")/follow.sh"
 
 says guide/commands.md 'measures accuracy, cost, stability, friction and more, with figures and pictures'

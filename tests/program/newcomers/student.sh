@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# A student without an arm: a first touch, a scene of her own out of one that came with Thimble, a plot of her own.
+# A student without an arm: a first touch, a new scene from a shipped one, a plot.
 source "$(dirname "$0")/follow.sh"
 
 says guide/index.md 'Without an arm on the desk you use a simulated one'
 says guide/index.md 'thimble run elephant --report out'
 says guide/index.md 'The summary lists contacts, forces and how evenly the loop ran.'
-scene=water_balloon  # which needs no scan
+scene=water_balloon  # needs no scan
 [ -z "${THIMBLE_LONG:-}" ] || scene=elephant
 see '^Force +[0-9.]+ N at most' thimble run $scene --report out
 says guide/index.md '`out/` holds pictures, `report.json`, and `index.html`'

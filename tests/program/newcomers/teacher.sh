@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A teacher before a class: a run that others follow as text, a page for everybody's browser, a picture, an animation.
+# A teacher in class: a run that others follow as text, a page for any browser, a picture, an animation.
 source "$(dirname "$0")/follow.sh"
 
 says guide/viewer.md '`thimble view RUN --text` does so without a screen'

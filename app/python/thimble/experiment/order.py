@@ -67,7 +67,7 @@ class Trials:
         row = list(itertools.chain.from_iterable(places))
         if order == "random":
             row = random.permutation(row).tolist()
-        self.conditions = [each[at] for at in row]  #: of all trials, in their order
+        self.conditions = [each[at] for at in row]  #: conditions of all trials, in order
         self._next = 0
 
     def condition(self) -> Optional[dict[str, Any]]:

@@ -14,14 +14,14 @@ from .. import ArgumentError
 
 Array = NDArray[np.float64]
 
-_QUARTILE = {"logistic": math.log(3.0), "probit": 0.6744897501960817}  # from the middle to 75 %, in widths
-_LAPSES = np.linspace(0.0, 0.06, 13)  # looked through with lapse="fit"; more would be no lapse [chosen]
-# A grid to begin at, over the levels' span, and how many of its valleys are refined.
+_QUARTILE = {"logistic": math.log(3.0), "probit": 0.6744897501960817}  # distance from the middle to 75 %, in widths
+_LAPSES = np.linspace(0.0, 0.06, 13)  # upper bound of the search with lapse="fit"; more would be no lapse [chosen]
+# Size of the initial grid over the levels' span, and number of its minima that are refined.
 _MIDDLES = np.linspace(-0.5, 1.5, 41)
 _LOG_WIDTHS = np.linspace(math.log(0.005), math.log(4.0), 14)
 _BEGINS_MOST = 8
 _STEPS_MOST = 100
-_NARROWEST = 1e-3  # width over the levels' span; what is narrower is a step as far as answers tell
+_NARROWEST = 1e-3  # width relative to the levels' span; the data cannot distinguish a narrower one from a step
 
 
 def rising(shape: str, z: ArrayLike) -> Array:
@@ -141,7 +141,7 @@ def _fitted(
 ) -> tuple[Psychometric, bool]:
     """Fit middle and log of the width by Fisher's scoring with halved steps, from each of a few valleys."""
     first, span = float(x[0]), float(x[-1] - x[0])
-    x = (x - first) / span  # from 0 to 1, whatever the unit
+    x = (x - first) / span  # level scaled to 0 to 1
     range_ = 1.0 - guess - lapse
     narrowest = math.log(_NARROWEST)
 
@@ -152,7 +152,7 @@ def _fitted(
     def information(values: Array) -> tuple[Array, Array]:
         p, z = at(values)
         steep = range_ * _slope(shape, z)
-        by = np.stack([-steep / math.exp(values[1]), -steep * z])  # of p by middle and by log width
+        by = np.stack([-steep / math.exp(values[1]), -steep * z])  # derivatives of p by middle and log width
         weight = 1.0 / (p * (1.0 - p))
         return (by * weight * n) @ by.T, by @ (weight * (k - n * p))
 
@@ -170,7 +170,7 @@ def _fitted(
         loss = _loss(at(values)[0], k, n)
         for _ in range(_STEPS_MOST):
             matrix, ascent = information(values)
-            # Where one level decides, the matrix is all but singular, and damped steps get on better.
+            # If one level decides, the matrix is nearly singular, and damped steps converge better.
             there, tried = loss, values
             for damping in (1e-9, 1e-3, 1.0):
                 damped = matrix + (damping * np.trace(matrix) + 1e-300) * np.eye(2)
@@ -191,7 +191,7 @@ def _fitted(
     held = narrowest + 1e-6 < best[1] < narrowest + 13.9 and bool(np.linalg.cond(matrix) < 1e12)
     if held:
         told = np.sqrt(np.diag(np.linalg.inv(matrix)))
-        held = bool(told[1] < 1.0)  # the width is known better than by itself
+        held = bool(told[1] < 1.0)  # the standard error of the log width is below 1
         errors = told if held else errors
     own = _loss(k / n, k, n)
     width = span * math.exp(best[1])
@@ -223,7 +223,7 @@ def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
     valleys = np.argwhere(grid <= np.min(near, axis=0)).tolist()
     chosen: list[list[int]] = []
     for valley in sorted(valleys, key=lambda one: float(grid[one[0], one[1]])):
-        # Points of one flat place begin alike.
+        # Start points of one flat region lead to the same minimum.
         if all(max(abs(valley[0] - one[0]), abs(valley[1] - one[1])) > 2 for one in chosen):
             chosen.append(valley)
         if len(chosen) == _BEGINS_MOST:

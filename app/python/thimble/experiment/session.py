@@ -37,9 +37,9 @@ def _check(procedure: Procedure, answer: Mapping[str, Any]) -> None:
 class Trial(NamedTuple):
     """A trial that is to be presented."""
 
-    number: int  #: from 0 on
+    number: int  #: number of the trial, from 0 on
     condition: dict[str, Any]
-    random: np.random.Generator  #: of this trial alone, from the session's seed and the trial's number
+    random: np.random.Generator  #: seed of this trial, from the session's seed and the trial's number
 
 
 Answer = Union[bool, Mapping[str, Any]]
@@ -108,7 +108,7 @@ class Session:
         self.procedure = procedure
         self._seed = int(seed)
         self._log = SubjectLog(log, {"seed": self._seed, "about": dict(about or {}), "plan": procedure.plan()})
-        self.resumed = len(self._log.lines)  #: trials that the log had already
+        self.resumed = len(self._log.lines)  #: number of trials that were already in the log
         self._number = 0
         try:
             for line in self._log.lines:

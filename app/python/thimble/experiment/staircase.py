@@ -53,12 +53,12 @@ class Staircase:
         self._start, self._up_ratio = float(start), float(up_ratio)
         self._lowest, self._highest = float(lowest), float(highest)
         self._reversals_most, self._last, self._trials_most = int(reversals), int(last), int(trials_most)
-        self.level = float(start)  #: of the next trial
-        self.levels: list[float] = []  #: of the trials so far
-        self.answers: list[bool] = []  #: to them, whether correct
-        self.reversals: list[float] = []  #: levels at which it turned
-        self._right = self._wrong = 0  # in a row
-        self._heading = 0  # -1 while it goes down, 1 while it goes up
+        self.level = float(start)  #: level of the next trial
+        self.levels: list[float] = []  #: levels of all trials so far
+        self.answers: list[bool] = []  #: answers to them, whether correct
+        self.reversals: list[float] = []  #: levels at which the direction changed
+        self._right = self._wrong = 0  # answers of each kind in a row
+        self._heading = 0  # direction: -1 downwards, 1 upwards
 
     @property
     def over(self) -> bool:

@@ -24,7 +24,7 @@ class SubjectLog:
     def __init__(self, path: PathOrName, about: Mapping[str, Any]) -> None:
         """Open or begin the file; about: the first line, the same each time."""
         self.path = Path(path)
-        self.lines: list[dict[str, Any]] = []  #: of the trials so far
+        self.lines: list[dict[str, Any]] = []  #: all trials so far
         wanted = json.loads(line_of(about))
         begins = not self.path.exists()
         try:
@@ -80,7 +80,7 @@ class SubjectLog:
         for at, piece in enumerate(pieces):
             line = _line(piece)
             if line is None:
-                # After a lost power the last may be there in its length and not in its content.
+                # After a power loss the last line may have its length but not its content.
                 if at + 1 < len(pieces) or rest:
                     raise Error(f"{self.path}:{at + 1}: no line of a log; nothing was changed.")
                 rest = piece
@@ -99,7 +99,7 @@ class SubjectLog:
 
     def _append(self, text: str) -> None:
         data = (text + "\n").encode()
-        while data:  # a full disk or a signal may take a part
+        while data:  # on a full disk or a signal, write() may write only a part
             data = data[os.write(self._file, data) :]
         os.fsync(self._file)
 

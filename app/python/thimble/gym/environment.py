@@ -62,7 +62,7 @@ class TouchEnv(Base):
         self._terminated = terminated
         self._frame_skip = int(frame_skip)
         self._seconds = float(seconds)
-        # A second more than asked: this class ends the episode, and knows by its own count when.
+        # One second longer than requested: this class counts ticks and ends the episode.
         self._options: dict[str, Any] = {"set": set, "arm": arm, "quality": quality, "seconds": self._seconds + 1.0}
         self._options["meshes"] = Meshes() if meshes is None else meshes
         self._scene = scene
@@ -137,7 +137,7 @@ class TouchEnv(Base):
 
     def _tick(self) -> Tick:
         tick = self.stepper.tick
-        assert tick is not None  # one ran in reset()
+        assert tick is not None  # reset() ran the first one
         return tick
 
     @staticmethod
@@ -156,7 +156,7 @@ def _lead(stepper: Stepper, goal: Vector) -> bool:
     except Error as wrong:
         if "does not reach" not in str(wrong):
             raise
-    stepper.step()  # the point was refused before anything ran
+    stepper.step()  # the target was refused before a tick ran
     return False
 
 

@@ -18,7 +18,7 @@ try:
     from gymnasium.vector import VectorEnv as VectorBase
 
     Base: Any = gymnasium.Env
-    # How episodes of several begin anew; older versions have no word for it.
+    # Autoreset mode of vector environments; older versions of Gymnasium do not have it.
     NEXT_STEP: Any = getattr(getattr(gymnasium.vector, "AutoresetMode", None), "NEXT_STEP", "NextStep")
 except ImportError:
     NEXT_STEP = "NextStep"

@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 Rewards = Callable[[Ticks, Vector], ArrayLike]
 Ends = Callable[[Ticks, Vector], ArrayLike]
 
-_ARMS_MOST = 1_000_000  # 100 GB and more; chosen against a wrong unit
+_ARMS_MOST = 1_000_000  # 100 GB and more; [chosen] to detect a wrong unit
 
 
 class TouchVectorEnv(VectorBase):
@@ -34,7 +34,7 @@ class TouchVectorEnv(VectorBase):
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": NEXT_STEP}
-    closed = True  # until there is something to close
+    closed = True  # until a batch is open
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class TouchVectorEnv(VectorBase):
             scene_file(scene, set, keep=False),
             self.num_envs,
             arm=optional_path("arm", arm),
-            # A second more than asked: this class ends the episodes, and knows by its own count when.
+            # One second longer than requested: this class counts ticks and ends the episodes.
             seconds=float(seconds) + 1.0,
             quality=path_of("quality", quality, "draft, normal, reference or auto"),
             meshes=core_meshes(meshes),
@@ -83,7 +83,7 @@ class TouchVectorEnv(VectorBase):
         self.render_mode = None
         self.closed = False
         self._randoms: list[np.random.Generator] = []
-        self._ticks = np.zeros(self.num_envs, np.int64)  # of each episode
+        self._ticks = np.zeros(self.num_envs, np.int64)  # ticks of each episode
         self._over = np.ones(self.num_envs, np.bool_)
         self._newest: Optional[Ticks] = None
 

@@ -38,7 +38,7 @@ class VectorEnv(VectorBase):
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": NEXT_STEP}
-    closed = True  # until there is something to close
+    closed = True  # until the processes run
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class VectorEnv(VectorBase):
         self.num_envs = len(makes)
         self.closed = False
         self._workers: list[_Worker] = []
-        # Also when nobody closes it: at the end of the object or of the program.
+        # Closes at the end of the object or the program if close() was not called.
         self._closer = weakref.finalize(self, _close_all, self._workers)
         try:
             for share in shares:
@@ -141,7 +141,7 @@ class VectorEnv(VectorBase):
                 worker.send((what, [each[i] for i in worker.share]))
             for worker in self._workers:
                 told += worker.receive()
-        except BaseException:  # half an answer is in the pipes: nothing goes on after it, Ctrl-C included
+        except BaseException:  # half an answer is in the pipes, so the object is unusable, also after Ctrl-C
             self.close()
             raise
         return told
@@ -156,13 +156,13 @@ class _Worker:
         self._pipe, theirs = context.Pipe()
         parcel = bytes(ForkingPickler.dumps(makes))
         self.process = context.Process(target=_serve, args=(theirs, parcel), daemon=True)
-        # The caller's script runs in the process only if something of it is needed there.
+        # The caller's script runs in the process only if the process needs something from it.
         with contextlib.nullcontext() if b"__main__" in parcel else _hidden_script():
             self.process.start()
-        theirs.close()  # or the end of the process would not be seen here
+        theirs.close()  # otherwise the end of the process would not be detected here
 
     def send(self, what: Any) -> None:
-        with contextlib.suppress(BrokenPipeError):  # receive() tells of it
+        with contextlib.suppress(BrokenPipeError):  # receive() reports it
             self._pipe.send(what)
 
     def receive(self) -> Any:
@@ -179,7 +179,7 @@ class _Worker:
         return told
 
     def close(self) -> None:
-        self._pipe.close()  # the process ends at that
+        self._pipe.close()  # this ends the process
         self.process.join(timeout=5)
         if self.process.is_alive():
             self.process.kill()
@@ -204,7 +204,7 @@ def _hidden_script() -> Iterator[None]:
 
 def _serve(pipe: Connection, parcel: bytes) -> None:
     """Hold environments, and answer until the other end of the pipe is closed or gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to hear, which then closes
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C and closes
     at = 0
     try:
         environments = []
