@@ -116,7 +116,8 @@ table="$table all:--log "
 
 # Options that name outputs in the manual are in the table. --save-as and --save-knobs only write new files, --control
 # makes a pipe, and --record of view sends a request to the run.
-"$thimble" manual >manual
+# Each program has a manual page of its own commands.
+for program in "$thimble" "$thimble-studies" "$thimble-viewer"; do "$program" manual; done >manual
 awk '/^\.SS/ { command = $2; next } /^\.TP/ { getline; option = $0; getline
     if (/[Tt]o write|^Write|Folder for|OFF file for|File to log to/) print (command == "" ? "all" : command), option }' manual |
   sed -E 's/\\fB|\\fR.*//g; s/\\-/-/g' >writes

@@ -7,9 +7,8 @@
 # in WORK_DIR/faults.md.
 #
 # The machine counts instructions instead of time (-icount): one instruction is 4 ns, and idle time
-# is skipped. Its random numbers have a fixed seed and its date is fixed. So a busy computer makes
-# the test slower, never different. In the long form a second machine identifies arms with hidden
-# constants (identify.sh).
+# is skipped. So a busy computer makes the test slower, never different. In the long form a second
+# machine identifies arms with hidden constants (identify.sh).
 set -euo pipefail
 thimble=$1 check=$2 source=$3 work=$4 programs=$5
 long=${THIMBLE_LONG:+--long}
@@ -110,7 +109,6 @@ boot() { # NAME SHIFT LIMIT_S SETTING...
   begin=$(date +%s)
   shift 3
   timeout "$limit" qemu-system-x86_64 -accel tcg -icount shift="$shift",sleep=off -smp 1 -m 512 \
-    -seed 1 -rtc base=2026-01-01,clock=vm \
     -kernel "$kernel" -initrd "$work/initrd.cpio" -nographic -no-reboot -nodefaults -serial stdio \
     -append "console=ttyS0 quiet panic=-1 mitigations=off nokaslr $(printf 'thimble.%s ' "$@")" \
     </dev/null 2>"$work/qemu.log" >"$log" || status=$?

@@ -36,7 +36,7 @@ MapSettings half() {
 std::vector<std::string> laws_of_folder() {
   std::vector<std::string> names;
   const std::regex name("kName = \"(\\w+)\"");
-  for (const auto& file : std::filesystem::directory_iterator(
+  for (const auto& file : std::filesystem::recursive_directory_iterator(
            std::filesystem::path(THIMBLE_SOURCE_DIR) / "render/src/surface/friction")) {
     if (file.path().extension() != ".h") continue;
     std::ostringstream text;
