@@ -44,7 +44,7 @@ enum class ArmKind : std::uint8_t {
   kHaply,        ///< Haply Inverse3: JSON messages of its service.
   kDhd,          ///< Force Dimension's arms: calls of their library.
   kHd,           ///< Touch and PHANTOM arms: calls of the library of OpenHaptics.
-  kUnsupported,  ///< Nothing that Thimble can drive.
+  kUnsupported,  ///< Not supported by Thimble.
 };
 
 /// Properties of a HID device that exchanges one report each way, from its report descriptor.

@@ -328,17 +328,19 @@ class THIMBLE_EXPORT Device {
   bool extras_;
   bool active_ = false;
   bool waiting_ = false;  // True while waiting for the enabling input.
-  bool started_ = false;  // a tick has been read
+  bool started_ = false;  // True if a tick has been read.
   bool lost_ = false;
-  bool jumped_ = false;          // the newest report was dropped for a jump
-  bool reported_ = false;        // a report came over this link
-  bool known_to_stand_ = false;  // f_sent_W_ is what the arm took last, over this link
-  bool silent_ = false;          // no report for the silence limit, and none since
-  bool spoken_ = false;          // a message was sent, or refused, since the last report
+  bool jumped_ = false;    // True if the newest report was dropped for a jump.
+  bool reported_ = false;  // True if a report arrived over this link.
+  // True if f_sent_W_ is the last force that the arm accepted over this link.
+  bool known_to_stand_ = false;
+  bool silent_ = false;  // True if no report arrived for the silence limit, nor since.
+  bool spoken_ = false;  // True if a message was sent or refused since the last report.
   bool home_needed_ = false;
-  bool insisted_ = false;  // on a zero that was not taken
+  // True if `insist_on_zero` was called for a zero force that was not accepted.
+  bool insisted_ = false;
   int refused_in_a_row_ = 0;
-  int missed_in_a_row_ = 0;  // reads without a report, while it was listened to
+  int missed_in_a_row_ = 0;  // Number of reads without a report while listening.
   std::int64_t refused_since_ns_ = 0;
   std::atomic<ArmLink*> offered_{nullptr}, retired_{nullptr};
   std::atomic<Asked> activation_asked_{Asked::kNo};

@@ -109,7 +109,7 @@ class THIMBLE_EXPORT SafetyGate {
   /// Moves the contents of another gate. The other gate can only be assigned to or destroyed after
   /// that.
   SafetyGate(SafetyGate&& other) noexcept;
-  SafetyGate& operator=(SafetyGate&& other) noexcept;  ///< As above.
+  SafetyGate& operator=(SafetyGate&& other) noexcept;  ///< Moves the contents of another gate.
   SafetyGate(const SafetyGate&) = delete;
   SafetyGate& operator=(const SafetyGate&) = delete;
   ~SafetyGate();

@@ -22,8 +22,8 @@ namespace thimble::scene {
 
 /// Workspace of the tip: a box aligned with the world axes, m.
 struct WorkspaceBox {
-  Eigen::Vector3d min_W{0, 0, 0};  ///< Lowest corner.
-  Eigen::Vector3d max_W{0, 0, 0};  ///< Highest corner.
+  Eigen::Vector3d min_W{0, 0, 0};  ///< Minimum corner, m.
+  Eigen::Vector3d max_W{0, 0, 0};  ///< Maximum corner, m.
 
   /// Returns whether a point (W, m) is inside or on the boundary. Real-time: safe.
   bool holds(const Eigen::Vector3d& p_W) const noexcept {

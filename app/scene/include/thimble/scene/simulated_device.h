@@ -53,7 +53,7 @@ class THIMBLE_EXPORT SimulatedDevice {
   driver::VirtualClock& clock() { return clock_; }  ///< Returns the device's clock.
   /// Returns the simulation of the arm.
   ArmSimulation& simulation() { return *simulation_; }
-  const ArmSimulation& simulation() const { return *simulation_; }  ///< As above.
+  const ArmSimulation& simulation() const { return *simulation_; }  ///< Const overload.
   /// Returns the time between ticks, ns.
   std::int64_t period_ns() const { return period_ns_; }
 

@@ -26,8 +26,8 @@ struct RecordingInfo {
   std::string arm_file;    ///< Path of the arm file.
   std::string arm_text;    ///< Text of the arm file.
   std::string device;      ///< "sim", or the name of the real arm.
-  std::string clock;       ///< "virtual" or "wall".
-  std::string program;     ///< Version, revision, build type and compiler.
+  std::string clock;       ///< Clock: "virtual" or "wall".
+  std::string program;     ///< Program: version, revision, build type and compiler.
   double rate = 0;         ///< Rate of the servo loop, Hz.
   std::uint64_t seed = 0;  ///< Seed of all random numbers in the simulation.
   /// Name of the arm in a scene with several arms, which has one recording per arm; otherwise
@@ -46,7 +46,7 @@ struct RecordingInfo {
 THIMBLE_EXPORT std::filesystem::path file_of_arm(const std::filesystem::path& path,
                                                  const std::string& arm_in_scene);
 
-/// A recording in memory.
+/// Recording in memory.
 struct Recording {
   RecordingInfo info;                     ///< Origin of the recording.
   std::vector<driver::TickRecord> ticks;  ///< All ticks, oldest first.

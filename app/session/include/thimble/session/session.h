@@ -221,17 +221,17 @@ class THIMBLE_EXPORT Session {
   const scene::Scene& scene() const noexcept;
   /// Returns the scene's force law, with its objects (render/scene_touch.h).
   render::SceneTouch& touch() noexcept;
-  const render::SceneTouch& touch() const noexcept;  ///< As above.
+  const render::SceneTouch& touch() const noexcept;  ///< Const overload.
   /// Returns the number of arms in the scene. The functions below number arms from 0.
   std::size_t arms() const noexcept;
   /// Returns the name of an arm in the scene; empty if it is the only one.
   const std::string& arm_name(std::size_t arm) const noexcept;
   /// Returns the device through which the loop drives an arm. Precondition: the arm is open.
   driver::Device& device(std::size_t arm = 0) noexcept;
-  const driver::Device& device(std::size_t arm = 0) const noexcept;  ///< As above.
+  const driver::Device& device(std::size_t arm = 0) const noexcept;  ///< Const overload.
   /// Returns the simulation of an arm (scene/arm_simulation.h); null if the arm is real.
   scene::ArmSimulation* simulation(std::size_t arm = 0) noexcept;
-  const scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept;  ///< As above.
+  const scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept;  ///< Const overload.
   /// Returns whether the run uses wall-clock time.
   bool real_time() const noexcept;
   /// Returns warnings to show the user: mesh repairs, omissions and assumptions. For a real arm
@@ -289,11 +289,11 @@ class THIMBLE_EXPORT Session {
 
   /// Returns the configuration of the run.
   Setup& setup() noexcept;
-  const Setup& setup() const noexcept;  ///< As above.
+  const Setup& setup() const noexcept;  ///< Const overload.
   /// Returns the observers that belong to the session.
   RunRecords& records() noexcept;
-  const RunRecords& records() const noexcept;     ///< As above.
-  RunRecords& records(std::size_t arm) noexcept;  ///< As above, for the given arm.
+  const RunRecords& records() const noexcept;     ///< Const overload.
+  RunRecords& records(std::size_t arm) noexcept;  ///< Returns the observers of the given arm.
   /// Returns the shared state that viewers read; null if the run is not shared.
   SharedRun* shared() noexcept;
   /// Makes a run visible to viewers after it was prepared without, as requested by `options`. If

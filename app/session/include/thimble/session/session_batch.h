@@ -33,7 +33,7 @@ class THIMBLE_EXPORT SessionBatch {
   std::size_t size() const noexcept { return runs_.size(); }
   /// Returns run i; the reference is valid until the run is restarted. Real-time: safe.
   Session& run(std::size_t i) noexcept { return *runs_[i]; }
-  const Session& run(std::size_t i) const noexcept { return *runs_[i]; }  ///< As above.
+  const Session& run(std::size_t i) const noexcept { return *runs_[i]; }  ///< Const overload.
 
   /// Runs `ticks` ticks of each run that is not over, one run after the other. Larger values use
   /// the cache better. Real-time: safe.

@@ -28,7 +28,7 @@ enum class HandMotion : std::uint8_t {
 /// Custom arm on a shelf board: its actual mechanics, motors and encoders, whatever a driver
 /// assumes.
 struct ShelfArm {
-  driver::ArmModel model;  ///< Geometry, motors and encoders.
+  driver::ArmModel model;  ///< Geometry, motors and encoders of the arm.
   /// Settings of the arm. Only tip, hand, weight, drive train, motors, watchdog, wiring and missed
   /// edges are used; protocol and timing are those of the board.
   SimulatedArmSettings settings;
