@@ -113,9 +113,9 @@ struct DriveTrainSettings {
 /// depend on. All zeros: the mass of the arm is at its tip. Angles A, B, C are those of
 /// driver::SerialArm. Consider a link of mass m along B, with its centre at s from the shoulder and
 /// the inertia I about a perpendicular axis through its centre. It adds m s^2 + I to inertia B and
-/// to yaw_b, and m s to moment_b. A link along C that hangs on the elbow adds m length_b^2 to
-/// inertia B and yaw_b, m s^2 + I to inertia C and yaw_c, m length_b s to coupling, m length_b to
-/// moment_b, and m s to moment_c.
+/// to yaw_b, and m s to moment_b. A link along C hangs on the elbow. It adds m length_b^2 to
+/// inertia B and yaw_b, and m s^2 + I to inertia C and yaw_c. It also adds m length_b s to
+/// coupling, m length_b to moment_b, and m s to moment_c.
 struct LinkSettings {
   /// Inertia about the yaw with both links upright, and about B and C, kg m^2. Includes rotors that
   /// turn with the joints, unless the drive train has them.

@@ -88,9 +88,9 @@ struct THIMBLE_EXPORT DeviceSettings {
   /// may then be so wide that they have no effect.
   bool no_motors = false;
 
-  /// Fails if a limit is not a positive finite number or gives no protection (GateLimits), or if
-  /// the place of the base is not a rotation and a position. Real-time: never from the servo
-  /// thread.
+  /// Fails if a limit is not a positive finite number or gives no protection (GateLimits). Also
+  /// fails if the place of the base is not a rotation and a position. Real-time: never from the
+  /// servo thread.
   Result<void> check() const;
 };
 
@@ -129,15 +129,15 @@ enum class HomeCheck : std::uint8_t {
 ///
 /// Some encoders count from the pose in which the arm's board started
 /// (ArmTraits::zero_at_power_on). They are wrong after every restart of the board, with or without
-/// a disconnection. After a new link, a silence, or a jump of the position without a report, such
-/// an arm must therefore return to its home pose before it gets forces (`home_needed`).
+/// a disconnection. Such an arm must return to its home pose (`home_needed`) before it gets forces
+/// after a new link, a silence, or a jump of the position without a report.
 class THIMBLE_EXPORT Device {
  public:
   /// Opens a device on the link to an arm. Waits for the first report up to `timeout_ns` after
   /// `clock_now_ns`, through the link's deadline. Meanwhile it sends zero force, because some arms
-  /// report only when addressed. Fails if no report arrives or none is valid, if the settings are
-  /// invalid (`DeviceSettings::check`), or if they contain heat limits but the link does not expose
-  /// its motors. Real-time: never from the servo thread.
+  /// report only when addressed. Fails if no report arrives or none is valid, or if the settings
+  /// are invalid (`DeviceSettings::check`). Also fails if they contain heat limits but the link
+  /// does not expose its motors. Real-time: never from the servo thread.
   static Result<std::unique_ptr<Device>> open(std::unique_ptr<ArmLink> link,
                                               const DeviceSettings& settings,
                                               std::int64_t clock_now_ns,
@@ -164,10 +164,10 @@ class THIMBLE_EXPORT Device {
   /// a loop. Real-time: safe; waits, and a write may wait as well.
   bool insist_on_zero(Clock& clock) noexcept;
 
-  /// Returns whether the acting force is known to be zero: the last message was zero force, no
-  /// message with a force has failed since, and the last message has left this computer
-  /// (ArmLink::settled). If false, a force may act until the arm's own watchdog switches it off.
-  /// From the thread that uses the device. Real-time: safe.
+  /// Returns whether the acting force is known to be zero. That is so if the last message was zero
+  /// force and has left this computer (ArmLink::settled), and no message with a force has failed
+  /// since. If false, a force may act until the arm's own watchdog switches it off. From the thread
+  /// that uses the device. Real-time: safe.
   bool zero_assured() const noexcept;
 
   /// Starts a tick: reads the newest report and computes the tip's position and velocity. A report

@@ -105,11 +105,11 @@ class THIMBLE_EXPORT PassivityObserver {
   Eigen::Vector3d damping(const Eigen::Vector3d& v_WT, double dt) const noexcept;
 
   /// Returns the fraction of a force that is allowed after `dt` (s). It is 1 up to a debt of
-  /// `onset`, and falls to 0 at twice that. It falls with the debt but does not rise with it: a
-  /// force that followed its debt both ways would be a spring of F^2 / onset, 8 N/mm for 4 N, which
-  /// makes every arm unstable (it oscillated by 0.1 mm at 60 Hz). The fraction recovers over
-  /// kReturn once the debt is below half the onset. Damping reduces a debt but never quite to zero,
-  /// and a force that is off pays nothing.
+  /// `onset`, and falls to 0 at twice that. It falls when the debt grows, but does not rise when
+  /// the debt shrinks. Otherwise the force would act as a spring of F^2 / onset, 8 N/mm for 4 N,
+  /// with which every arm is unstable (it oscillated by 0.1 mm at 60 Hz). The fraction recovers
+  /// over kReturn once the debt is below half the onset. Damping reduces a debt but never quite to
+  /// zero, and a force that is off pays nothing.
   double share(double dt) noexcept;
   /// Time from zero to full force, s [chosen: does not startle the hand].
   static constexpr double kReturn = 2;
@@ -123,8 +123,8 @@ class THIMBLE_EXPORT PassivityObserver {
   double share_ = 1;   // Allowed fraction of the force.
 };
 
-/// Returns the largest magnitude of a force for which the storage |f|^2 / (2 c1) and the friction
-/// of the arm pay for all energy given: |f_last - c1 move| [PHYSICS 1.6, Kim and Ryu; the slope
+/// Returns the largest allowed magnitude of a force: |f_last - c1 move|. The storage |f|^2 / (2 c1)
+/// and the friction of the arm then pay for all energy given [PHYSICS 1.6, Kim and Ryu; the slope
 /// form in 3-D].
 ///
 /// Derivation: a held force f over a displacement s takes -f . s from the hand, and viscous

@@ -36,8 +36,8 @@ struct THIMBLE_EXPORT LinkageArm {
   /// forsslund/hfabapi hfab_api.cpp, getRot]. NaN if the bars cannot close.
   Eigen::Matrix3d last_link(const Eigen::Vector3d& q, const Eigen::Vector3d& p_BT) const noexcept;
 
-  /// Returns the joint angles at which the tip is at p_BT (m), in the configuration in which the
-  /// arm is built: elbow above the line from the front motor to the tip, crank behind its bar.
+  /// Returns the joint angles at which the tip is at p_BT (m). The configuration is that in which
+  /// the arm is built: elbow above the line from the front motor to the tip, crank behind its bar.
   /// Empty if the bars do not reach the point, or if it is not finite.
   std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept;
 };

@@ -43,9 +43,9 @@ struct THIMBLE_EXPORT SerialArm {
   /// computeRotation: a turn about y by 90 degrees less C, "need verification"].
   Eigen::Matrix3d last_link(const Eigen::Vector3d& q, const Eigen::Vector3d& p_BT) const noexcept;
 
-  /// Returns the joint angles at which the tip is at p_BT (m), on the branch in which such an arm
-  /// works: 0 < B + C < pi (folded at 0, stretched at pi, isotropic in between). Empty if the point
-  /// is out of reach, on the yaw axis, or not finite.
+  /// Returns the joint angles at which the tip is at p_BT (m), on the branch 0 < B + C < pi in
+  /// which such an arm works (folded at 0, stretched at pi, isotropic in between). Empty if the
+  /// point is out of reach, on the yaw axis, or not finite.
   std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept;
 };
 

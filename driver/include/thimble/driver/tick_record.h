@@ -24,7 +24,7 @@ enum class DeviceStage : std::uint8_t {
 /// Last stage. A larger value in a file or in shared memory is damaged.
 inline constexpr DeviceStage kLastStage = DeviceStage::kWaiting;
 
-/// State of the link to an arm. It is independent of the fault: an arm whose force is off for
+/// State of the link to an arm. It is independent of the fault. An arm whose force is off for
 /// another reason can be disconnected, and a lost arm can return while its fault is latched.
 enum class LinkState : std::uint8_t {
   kConnected,  ///< Reports arrive.

@@ -99,8 +99,9 @@ struct ArmFile {
 /// Reads an arm file, given by name ("vintage_phantom") or path (see `find_arm_file`).
 /// app/arms/vintage_phantom.yaml is an example. The error lists the known names, or up to five
 /// mistakes of the file, one per line, with file and line. A gate limit that gives no protection is
-/// a mistake: force_max above the declared force, soft_start below 0.05 s, rise_max above 1e5 N/s,
-/// watchdog above 1 s, stall not below watchdog. Real-time: never from the servo thread.
+/// a mistake. Examples are force_max above the declared force, soft_start below 0.05 s, rise_max
+/// above 1e5 N/s, watchdog above 1 s, and stall not below watchdog. Real-time: never from the servo
+/// thread.
 THIMBLE_EXPORT driver::Result<ArmFile> load_arm(const std::filesystem::path& arm);
 
 }  // namespace thimble::scene

@@ -46,9 +46,9 @@ struct NamedMesh {
 /// continuous in time. The hand rests where the kind of segment changes, at the ends, and at
 /// waypoints with `stop`.
 ///
-/// Fails if times do not increase, if a waypoint names an object that is not in `objects`, or if no
-/// path outside of an object connects two of its parts. The error names the times. Real-time: never
-/// from the servo thread.
+/// Fails if times do not increase or a waypoint names an object that is not in `objects`. Also
+/// fails if no path outside of an object connects two of its parts. The error names the times.
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
                                                    const std::vector<NamedMesh>& objects);
 

@@ -29,17 +29,17 @@ struct RealArmSearch {
   std::function<driver::Result<int>(const driver::FoundArm&)> ask_model = {};
 };
 
-/// Returns the arm file of a real arm: the file named by the user, otherwise the file with which
-/// its calibration was made, otherwise the file for its kind or its board's model number. A scene
-/// cannot change the choice.
+/// Returns the arm file of a real arm. It is the file named by the user, or else the file with
+/// which its calibration was made. Without either it is the file for the arm's kind or its board's
+/// model number. A scene cannot change the choice.
 ///
 /// Only an installed file (shipped_files.h) defines the construction and limits of a real arm. Any
 /// other file must agree with the installed one in everything except its limits. Of each limit the
 /// stricter value is used.
 ///
-/// The error says which command to use. It is returned if the arm cannot be identified, if another
-/// file differs from the installed one, if a calibration belongs to another arm file, or if a file
-/// is invalid. Real-time: never from the servo thread.
+/// The error says which command to use. Causes are an arm that cannot be identified, an invalid
+/// file, a file that differs from the installed one, or a calibration of another arm file.
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RealArmFile> find_real_arm_file(const driver::FoundArm& arm,
                                                               const RealArmSearch& search = {});
 

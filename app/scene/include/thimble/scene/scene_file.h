@@ -122,8 +122,8 @@ struct SceneReading {
   /// Folder of the meshes `cgal:NAME`; if empty, the folders that `thimble doctor` lists.
   std::filesystem::path mesh_folder{};
   /// Factor on the loop rate in the file, > 0. Above 1 the simulated board reports at the same
-  /// higher rate. Below 1 every stiffness must be at most half of what the law of the latency
-  /// allows for this arm and hand [PHYSICS 1.1], and every setting must be valid at the new rate.
+  /// higher rate. Below 1, every setting must be valid at the new rate. Every stiffness must then
+  /// be at most half of the limit that latency sets for this arm and hand [PHYSICS 1.1].
   double rate_factor = 1;
   /// True if the caller handles several arms (Scene::arms). If false, a scene with several arms is
   /// an error.

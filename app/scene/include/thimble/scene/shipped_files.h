@@ -10,12 +10,12 @@
 namespace thimble::scene {
 
 // Scenes and arm files are found by name: "elephant" is elephant.yaml in the first folder that
-// contains it. Folders are searched in this order: the user's, $XDG_DATA_HOME/thimble; the data of
-// this program or library, found relative to its own location, or, for another program, relative to
-// the folder into which the libraries were installed; and thimble/ in each folder of $XDG_DATA_DIRS
-// [XDG Base Directory Specification]. Each has scenes/ and arms/. Arm files are searched in
-// own_arm_folder() first. The working folder is never searched: a file there is used only if it is
-// given as a path, with a slash or an extension.
+// contains it. The first folder is the user's, $XDG_DATA_HOME/thimble. The second contains the data
+// of this program or library, found relative to its own location. In other programs it is found
+// relative to the folder into which the libraries were installed. Last is thimble/ in each folder
+// of $XDG_DATA_DIRS [XDG Base Directory Specification]. Each has scenes/ and arms/. Arm files are
+// searched in own_arm_folder() first. The working folder is never searched: a file there is used
+// only if it is given as a path, with a slash or an extension.
 //
 // Two of these folders count as installed: own_arm_folder(), and arms/ in the data of this program.
 // Only arm files there set the limits of a real arm (arm_policy/limits_policy.h). Real-time: none

@@ -42,8 +42,8 @@ struct Box {
 /// with six faces.
 ///
 /// At points equally near to two faces the force changes its direction but not its magnitude. No
-/// closed path gains energy. On a plate of thickness h the tip is pushed out at the back as soon as
-/// it has passed the middle, at stiffness * h / 2 [PHYSICS 3]. This is the counter-example of the
+/// closed path gains energy. Once the tip has passed the middle of a plate of thickness h, at
+/// stiffness * h / 2, it is pushed out at the back [PHYSICS 3]. This is the counter-example of the
 /// paper; EntryFaceContact avoids it.
 struct WedgeBox : Box {
   /// Returns the nearest face of a point (W, m); the first of several. NaN is outside. Real-time:

@@ -72,7 +72,7 @@ struct MeshFindings {
 
 /// Checks a mesh in any unit and frame. Accepts any mesh. A triangle without three finite vertices
 /// is counted and otherwise ignored. The expected orientation of a closed component follows from
-/// the number of components that contain it: a component inside another one is a cavity, whose
+/// the number of components that contain it. A component inside another one is a cavity, whose
 /// normals point towards its own interior. O(n log n) plus O(n) per component that is inside the
 /// bounding box of another. Real-time: never from the servo thread.
 THIMBLE_EXPORT MeshFindings check_mesh(const TriangleMesh& mesh);

@@ -36,13 +36,13 @@ struct MeshFileInfo {
 /// the coordinates is above 1e-6 of the mesh's size, it is reported; above 1e-3, the file is
 /// rejected.
 ///
-/// The error names the file and, for OFF, OBJ and text STL, the line. Errors are: no such file;
-/// unknown format; truncated; no triangles; a coordinate that is not a finite number or is beyond
-/// 1e15 ("1mm", "1,250.5"); an index out of range; an unsupported part of the format, such as a
-/// required glTF extension. Memory grows with the file's size, not with the counts in its header.
-/// glTF, 3MF and the formats of the Assimp library (DAE, AMF, 3DS) are read in a separate process
-/// with limits of time and memory. So no file can crash or block this process. Real-time: never
-/// from the servo thread.
+/// The error names the file and, for OFF, OBJ and text STL, the line. It reports a missing or
+/// truncated file, an unknown format, a mesh without triangles, and an index out of range. It also
+/// reports a coordinate that is not a finite number or is beyond 1e15 ("1mm", "1,250.5"), and an
+/// unsupported part of the format, such as a required glTF extension. Memory grows with the file's
+/// size, not with the counts in its header. glTF, 3MF and the formats of the Assimp library (DAE,
+/// AMF, 3DS) are read in a separate process with limits of time and memory. So no file can crash or
+/// block this process. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,
                                                       MeshFileInfo* info = nullptr);
 
