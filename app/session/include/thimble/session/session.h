@@ -168,8 +168,9 @@ class THIMBLE_EXPORT Session {
   /// never from the servo thread.
   static driver::Result<std::unique_ptr<Session>> prepare(const std::filesystem::path& scene,
                                                           const SessionOptions& options = {});
-  /// Opens the arm of a prepared session. A simulated arm is then active; a real arm is idle, with
-  /// zero force, until `activate`. Call once. Real-time: never from the servo thread.
+  /// Opens the arm of a prepared session. Simulated arms are then active. If any arm of the run is
+  /// real, all arms are idle, with zero force, until `activate`. Call once. Real-time: never from
+  /// the servo thread.
   driver::Result<void> open_arm();
   /// Enables forces on the open arm. If the arm is real, the caller must first have checked that
   /// its tip is at the start pose. Real-time: never from the servo thread.
