@@ -16,8 +16,8 @@
 
 namespace thimble::session {
 
-/// Force of a scene on the hand at one arm: stages 2 to 4 of RunLaw, and what Session::own_law
-/// returns. Stages are set before the first tick, and what they refer to must outlive the law.
+/// Force law of a scene for one arm: stages 2 to 4 of RunLaw, returned by Session::own_law. Stages
+/// are set before the first tick, and the objects to which they refer must outlive the law.
 class SceneLaw {
  public:
   /// Constructs the law for the objects as touched by one arm. Real-time: safe.

@@ -16,7 +16,7 @@ namespace thimble::session {
 // Layout of the memory that a run shares with its viewers, in this order:
 //
 //   SharedHead   written once, before `ready` is set; its hash covers the tables marked (*)
-//   SharedLive   changes while the run goes on: lock-free atomics and snapshots only
+//   SharedLive   changes during the run: lock-free atomics and snapshots only
 //   tables       where the head says: objects*, knobs*, vertices*, triangles*, field, shaped,
 //   splits, ring
 //
