@@ -47,7 +47,7 @@ struct ArmSample {
 
 /// Status of a read or a write.
 enum class LinkStatus : std::uint8_t {
-  kOk,        ///< A new sample was read, or the force was delivered.
+  kOk,        ///< A new sample was read, or the force was sent.
   kNothing,   ///< Nothing new arrived before the deadline.
   kRejected,  ///< The received data is invalid.
   kRepeated,  ///< The received report was a repetition of an earlier one.

@@ -117,7 +117,7 @@ enum class HomeCheck : std::uint8_t {
 ///
 /// Every exit sends zero force: `deactivate`, a fault, and the destructor. A fault latches until
 /// `activate` is called again. A clock that steps back is a fault. Used by one thread at a time,
-/// except `offer`, `close_lost_link` and `ask_to_activate`.
+/// except `offer`, `close_lost_link`, `ask_to_activate` and `hold_until`.
 ///
 /// The fault is the first reason why the force is off. The state of the link (`link_state`) is
 /// independent: an arm can be disconnected because of, or after, any other fault.
