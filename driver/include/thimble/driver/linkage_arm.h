@@ -15,7 +15,7 @@ namespace thimble::driver {
 ///       |     .   / 4                 bar 4 continues the forearm backwards
 ///       |  . o - o                    bar 2 on the back motor, at angle q2
 ///       | o 2  3                      bar 3 joins the ends of 2 and 4
-///   --- back - - front - - r          the motors stand length_0 apart, the yaw axis half-way
+///   --- back - - front - - r          the motors are length_0 apart, the yaw axis half-way
 ///
 /// Frame B: origin on the yaw axis between the motors, z up. Joint vector q = (yaw, q1, q2), rad,
 /// both link angles measured from the r axis. All functions are Real-time: safe.

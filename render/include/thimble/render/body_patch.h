@@ -23,7 +23,7 @@ struct BodyPatch {
     /// triangles of scans could turn over by the rounding of single precision.
     std::array<double, 3> p{};
     /// Normal. Interpolate it over the triangle, then normalise. At the cursor and on edges it
-    /// equals that of the undeformed triangle, so that contact alone changes no shading.
+    /// equals that of the undeformed triangle, so that mere contact changes no shading.
     std::array<float, 3> n{};
     std::int32_t vertex = -1;  ///< Vertex of the mesh; -1: the cursor or a point on an edge.
   };
