@@ -11,38 +11,38 @@
 
 namespace thimble::scene {
 
-/// How a file names the stages, in the order of the enum.
+/// Names of the stages in files, in the order of the enum.
 inline const std::vector<std::string_view> kEnergyStageNames{"none", "passivity", "bounding"};
 
-/// The energy that may go out before the controller acts, J: the most that hard case 11 allows a
-/// guarded wall [PHYSICS 7]. A hand of 0.1 kg is not moved faster than 0.2 m/s by it.
+/// Energy that may be given before the controller acts, J: the largest that hard case 11 allows a
+/// guarded wall [PHYSICS 7]. It moves a hand of 0.1 kg at no more than 0.2 m/s.
 inline constexpr double kEnergyAllowance = 0.002;
 
-/// The debt at which the controller damps as hard as it may, J [chosen: as much again; so it
-/// sets in softly, and what runs away is stopped for sure].
+/// Debt at which the controller applies its maximum damping, J [chosen: as much again; so damping
+/// starts softly, and a runaway is stopped reliably].
 inline constexpr double kEnergyOnset = 0.002;
 
-/// Damping that a hand which holds the arm has for sure, N s/m [chosen: a third of what a pinch
-/// grip has, PHYSICS 0 and 1]. What a sampled field gives beyond its potential is paid for by it.
+/// Guaranteed damping of a hand that holds the arm, N s/m [chosen: a third of what a pinch grip
+/// has, PHYSICS 0 and 1]. It pays for the energy that a sampled field gives beyond its potential.
 inline constexpr double kSureHandDamping = 1;
 
-/// Returns the energy stage's settings for a loop of `rate` (Hz): what the arm file, and a scene in
-/// place of it, say, joined with what follows from the arm: the mass at the tip, the delay, for the
-/// reservoir what a spring of the declared stiffness holds at the declared force, for the slope the
-/// arm's own friction over the latency, b / L [PHYSICS 1.1]. Real-time: never from the servo
-/// thread.
+/// Returns the settings of the energy stage for a loop of `rate` (Hz), from the arm file, or the
+/// scene instead. Missing values follow from the arm: mass at the tip and delay. The reservoir is
+/// the energy of a spring with the declared stiffness at the declared force. The slope is the arm's
+/// own friction over the latency, b / L [PHYSICS 1.1]. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::EnergyGuardSettings energy_settings(
     const ArmFile& arm, double rate, std::optional<driver::EnergyStage> scene);
 
-/// Returns the delay from encoder to motors beyond the hold, s, as far as the arm's file tells;
-/// otherwise a frame for the report and one for the force, 1 ms [PHYSICS 5].
+/// Returns the delay from encoder to motors in addition to the hold, s, if the arm's file defines
+/// it; otherwise a frame for the report and one for the force, 1 ms [PHYSICS 5].
 THIMBLE_EXPORT double loop_delay(const ArmFile& arm);
 
-/// Returns the times of a loop of `rate` (Hz) with the reports that this arm sends. The force
-/// changes with the first tick after each report, so `period` is the larger of both periods in the
-/// mean, `period_spread` what remains where neither divides the other, and `delay` what a report
-/// waits for its tick, on top of `loop_delay`. The first tick comes with the first report, as a run
-/// begins. The jitter of the wire is not in it. Real-time: never from the servo thread.
+/// Returns the times of a loop of `rate` (Hz) with the report rate of this arm. The force changes
+/// with the first tick after each report. Therefore `period` is the larger of both periods on
+/// average, `period_spread` is its remaining variation if neither divides the other, and `delay`
+/// adds the time a report waits for its tick to `loop_delay`. The first tick coincides with the
+/// first report, as at the start of a run. The jitter of the wire is not included. Real-time: never
+/// from the servo thread.
 THIMBLE_EXPORT LoopTimes loop_pace(const ArmFile& arm, double rate);
 
 }  // namespace thimble::scene

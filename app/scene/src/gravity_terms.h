@@ -12,19 +12,19 @@ namespace thimble::scene {
 /// Standard gravity, m/s^2 [CGPM 1901].
 inline constexpr double kGravity = 9.80665;
 
-/// The force at the tip that carries the links of a serial arm in each pose, from their first
-/// moments of mass (ArmFile::carried_moments). Frames: W world, B base.
+/// Force at the tip that compensates the weight of a serial arm's links in each pose, from their
+/// first moments of mass (ArmFile::carried_moments). Frames: W world, B base.
 struct LinkGravity {
-  driver::SerialArm arm;      ///< Its geometry.
-  driver::SerialArm moments;  ///< Moments along B and C in place of lengths, kg m.
+  driver::SerialArm arm;      ///< Geometry of the arm.
+  driver::SerialArm moments;  ///< Moments along B and C instead of lengths, kg m.
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
-  double most = 0;  ///< No pose gets more, N.
+  double most = 0;  ///< Largest compensation force, N.
 
-  /// Returns it at joint angles q (rad), N in the world; zero where the Jacobian is singular.
+  /// Returns the force at joint angles q (rad), N in the world; zero if the Jacobian is singular.
   /// Real-time: safe.
   Eigen::Vector3d carried(const Eigen::Vector3d& q) const noexcept {
     const Eigen::Vector3d up_B = R_WB.transpose() * Eigen::Vector3d(0, 0, kGravity);
-    // The moments hang on the links as the tip does, which is at both lengths.
+    // The moments act on the links as a weight at the tip acts on both lengths.
     const Eigen::Vector3d tau = moments.jacobian(q).transpose() * up_B;
     const Eigen::Vector3d f_W = R_WB * (arm.jacobian(q).transpose().inverse() * tau);
     const double length = f_W.norm();
@@ -33,16 +33,16 @@ struct LinkGravity {
     return f_W * (most / length);
   }
 
-  /// Returns the energy of that force at joint angles q, J: the height of the moments, downwards.
-  /// Real-time: safe.
+  /// Returns the potential of that force at joint angles q, J: minus the height of the moments
+  /// times gravity. Real-time: safe.
   double potential(const Eigen::Vector3d& q) const noexcept {
     const Eigen::Vector3d up_B = R_WB.transpose() * Eigen::Vector3d(0, 0, kGravity);
     return -up_B.dot(moments.forward(q));
   }
 };
 
-/// Returns that of an arm's file. Precondition: it is a serial arm. Real-time: never from the servo
-/// thread.
+/// Returns the compensation of an arm file. Precondition: it is a serial arm. Real-time: never from
+/// the servo thread.
 inline LinkGravity link_gravity(const ArmFile& file) {
   return {.arm = std::get<driver::SerialArm>(file.model.geometry),
           .moments = {.height = 0,

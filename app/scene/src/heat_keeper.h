@@ -10,38 +10,38 @@
 
 namespace thimble::scene {
 
-// The heat of an arm's motors outlasts a run: it is kept under $XDG_STATE_HOME/thimble/heat (or
-// ~/.local/state/thimble/heat), one file for each arm, with the time of the world.
-// Real-time: never from the servo thread.
+// Motor heat is stored between runs under $XDG_STATE_HOME/thimble/heat (or
+// ~/.local/state/thimble/heat), one file per arm, with the wall-clock time. Real-time: none of
+// these functions may be called from the servo thread.
 
-/// Returns the file that keeps the heat of an arm of this name.
+/// Returns the path of the stored heat of an arm.
 std::filesystem::path heat_file(const std::string& name);
 
-/// The heat of an arm's motors at the start of a run.
+/// Heat of an arm's motors at the start of a run.
 struct KnownHeat {
-  std::array<double, 3> heat{};  ///< 0: as cold as the room, 1: the winding's limit
-  std::string note;              ///< What the user should know of it; empty: nothing.
+  /// Heat of each motor. 0: ambient temperature, 1: limit of the winding.
+  std::array<double, 3> heat{};
+  std::string note;  ///< Warning to the user; empty: none.
 };
 
-/// Returns the heat of an arm's motors at `now` (s since 1970), cooled by the time since it was
-/// kept; a clock that went back counts as no time. No file: cold. A file that cannot be understood,
-/// and a run that did not end properly: at the limit.
+/// Returns the heat of an arm's motors at `now` (s since 1970), reduced by cooling since it was
+/// stored. If the clock went back, there is no cooling. Without a file the motors are cold. If the
+/// file is invalid, or a run did not end properly, they are at the limit.
 THIMBLE_EXPORT KnownHeat load_heat(const std::string& name, const driver::HeatSettings& settings,
                                    double now);
 
-/// Keeps the heat of an arm's motors at `now` (s since 1970). `running` says that a run has begun
-/// and has not ended. The file is written whole or not at all. Returns whether it was written.
+/// Saves the heat of an arm's motors at `now` (s since 1970) atomically. `running`: a run has
+/// started and not ended. Returns whether it was saved.
 bool save_heat(const std::string& name, const std::array<double, 3>& heat, double now,
                bool running);
 
-/// Returns the time of the world, s since 1970.
+/// Returns the wall-clock time, s since 1970.
 THIMBLE_EXPORT double world_time();
 
-/// A keeper of an arm's heat for one run: it marks the run when it begins and keeps the heat when
-/// it ends.
+/// Saves an arm's heat during one run: marks the run at its start and saves the heat at its end.
 class THIMBLE_EXPORT HeatKeeper {
  public:
-  /// Takes an arm by name, and the device that must outlive it.
+  /// Constructs it for an arm by name, and its device, which must outlive it.
   HeatKeeper(std::string name, const driver::Device& device);
   HeatKeeper(const HeatKeeper&) = delete;
   HeatKeeper& operator=(const HeatKeeper&) = delete;

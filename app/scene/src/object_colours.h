@@ -5,16 +5,16 @@
 
 namespace thimble::scene {
 
-/// A colour as screens take it: red, green, blue in sRGB, 0 to 1.
+/// Colour: red, green, blue in sRGB, 0 to 1.
 using Colour = std::array<float, 3>;
 
-/// Makes a colour of its usual six hexadecimal digits.
+/// Returns a colour from six hexadecimal digits.
 constexpr Colour colour_of(unsigned hex) {
   return {static_cast<float>((hex >> 16U) & 255U) / 255.0F,
           static_cast<float>((hex >> 8U) & 255U) / 255.0F, static_cast<float>(hex & 255U) / 255.0F};
 }
 
-/// Of the objects of a scene, in order: muted, so that touch and force stand out.
+/// Colours of the objects of a scene, in order: muted, so that touch and force are prominent.
 inline constexpr std::array<Colour, 6> kObjectColours = {colour_of(0x8FB3D1),   // steel blue
                                                          colour_of(0xE0B88A),   // sand
                                                          colour_of(0x96C3AC),   // sage

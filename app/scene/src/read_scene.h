@@ -10,12 +10,12 @@
 
 namespace thimble::scene {
 
-/// Reads a scene from YAML that is already read; `file` is where it lies, beside which its files
-/// are looked for. Errors and time: as `load_scene`.
+/// Reads a scene from parsed YAML. `file` is the path of the scene, to which file names are
+/// relative. Errors and real-time safety: as `load_scene`.
 driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& file,
                                  const SceneReading& reading);
 
-/// Reads an arm from YAML that is already read. Errors and time: as `load_arm`.
+/// Reads an arm from parsed YAML. Errors and real-time safety: as `load_arm`.
 THIMBLE_EXPORT driver::Result<ArmFile> read_arm(YamlFile& yaml);
 
 }  // namespace thimble::scene

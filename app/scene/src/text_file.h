@@ -9,8 +9,8 @@
 
 namespace thimble::scene {
 
-/// Reads a file as it is; empty if it cannot be read, is no regular file or is larger than a scene
-/// or an arm may be. Real-time: never from the servo thread.
+/// Returns the contents of a file; empty if it cannot be read, is not a regular file or is larger
+/// than allowed for a scene or arm file. Real-time: never from the servo thread.
 inline std::string text_of(const std::filesystem::path& file) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 20;
   auto text = driver::read_file(file, kMaxBytes);

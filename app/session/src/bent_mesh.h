@@ -7,8 +7,8 @@
 
 namespace thimble::session {
 
-/// Returns a mesh (m) with the patch of the object that begins at `place` in place of the triangles
-/// it stands for. Real-time: never from the servo thread.
+/// Returns a mesh (m) in which the patch replaces its triangles of the object that begins at
+/// `place`. Real-time: never from the servo thread.
 THIMBLE_EXPORT render::TriangleMesh bent(const render::TriangleMesh& mesh,
                                          const scene::MeshPlace& place,
                                          const render::BodyPatch& patch);

@@ -6,10 +6,10 @@
 
 namespace thimble::session {
 
-/// A dent as it was drawn last. On the servo's thread, or after the run.
+/// Last drawn dent. Used on the servo's thread, or after the run.
 struct DrawnDent {
   render::BodyPatch patch{};
-  std::uint64_t drawings = 0;  ///< How many were drawn so far; 0: `patch` is none yet.
+  std::uint64_t drawings = 0;  ///< Number of drawings so far; 0: `patch` is not valid yet.
 };
 
 }  // namespace thimble::session

@@ -16,50 +16,51 @@ namespace thimble::session {
 
 class Session;
 
-/// Returns the enabling input of this name: "button" or "button1" to "button16", of the arm,
-/// or "key", the space bar of the terminal or a viewer; empty: none. The error lists the names.
+/// Returns the enabling input with the given name. Names are "button" or "button1" to "button16"
+/// for a button of the arm, "key" for the space bar of the terminal or a viewer, and empty for
+/// none. The error lists the names.
 THIMBLE_EXPORT driver::Result<driver::HoldToRun> hold_named(const std::string& name);
 
-/// Whether the space bar is held down at a terminal, which reports presses only: a key that is held
-/// repeats. Held is a key that has come several times, evenly; one press is none. Times are
-/// ns of any clock.
+/// Detects whether the space bar is held at a terminal, which reports only presses: a held key
+/// repeats. A key is held if it has been pressed several times at short intervals; a single press
+/// does not count. Times are ns of any clock.
 class HeldKey {
  public:
   // [chosen: terminals repeat 11 to 30 times a second, after a quarter to two thirds of a second]
   static constexpr std::int64_t kGapMost_ns = 120'000'000;
-  static constexpr std::int64_t kLasts_ns = 150'000'000;  ///< How long one press counts.
+  static constexpr std::int64_t kLasts_ns = 150'000'000;  ///< Time for which one press counts, ns.
   static constexpr int kPressesLeast = 3;
 
-  /// Takes a press.
+  /// Records a press.
   void press(std::int64_t now_ns) noexcept {
     presses_ = now_ns - last_ns_ <= kGapMost_ns ? presses_ + 1 : 1;
     last_ns_ = now_ns;
   }
-  /// Returns until when it counts as held; before `now_ns` if it does not.
+  /// Returns the time until which the key counts as held; before `now_ns` if it is not held.
   std::int64_t until_ns() const noexcept {
     return presses_ >= kPressesLeast ? last_ns_ + kLasts_ns : last_ns_;
   }
 
  private:
-  int presses_ = 0;  // in a row
+  int presses_ = 0;  // Consecutive presses.
   std::int64_t last_ns_ = -1'000'000'000'000;
 };
 
-/// Whether a viewer's window has its key held, by a number that grows with each of its pictures in
-/// which that is so. A window that is closed, hidden or hangs draws no pictures, so that its key is
-/// released. Times are ns of any clock.
+/// Detects whether a key is held in a viewer's window, by a number that grows with each picture
+/// drawn while it is held. A window that is closed, hidden or blocked draws no pictures, so its key
+/// counts as released. Times are ns of any clock.
 class ViewerKey {
  public:
-  /// Begins with the number as it is: what grew before does not count.
+  /// Starts with the current number; earlier growth does not count.
   explicit ViewerKey(std::uint64_t number) noexcept : number_(number) {}
 
-  /// Takes the number as it is now.
+  /// Updates the number.
   void look(std::uint64_t number, std::int64_t now_ns) noexcept {
     if (number == number_) return;
     number_ = number;
     until_ns_ = now_ns + HeldKey::kLasts_ns;
   }
-  /// Returns until when it counts as held; before `now_ns` if it does not.
+  /// Returns the time until which the key counts as held; before `now_ns` if it is not held.
   std::int64_t until_ns() const noexcept { return until_ns_; }
 
  private:
@@ -67,20 +68,20 @@ class ViewerKey {
   std::int64_t until_ns_ = -1'000'000'000'000;
 };
 
-/// The space bar of the terminal, and of the windows of viewers, as the enabling input of all arms
-/// of a session (HoldToRun), for as long as this lives. Keys of the terminal do not wait for Enter
-/// then and are not shown. Real-time: never from the servo thread.
+/// Uses the space bar of the terminal and of viewers' windows as the enabling input of all arms of
+/// a session (HoldToRun) during its lifetime. Meanwhile the terminal does not wait for Enter and
+/// does not show keys. Real-time: never from the servo thread.
 class THIMBLE_EXPORT HoldKey {
  public:
-  /// Fails if standard input is no terminal.
+  /// Fails if standard input is not a terminal.
   static driver::Result<void> check();
-  /// Takes over the terminal; the session's arms must be open and outlive it.
+  /// Takes over the terminal. The session's arms must be open, and the session must outlive it.
   explicit HoldKey(Session& session);
   ~HoldKey();
   HoldKey(const HoldKey&) = delete;
   HoldKey& operator=(const HoldKey&) = delete;
 
-  /// Returns the terminal for other readers of keys: only Enter is left of it.
+  /// Returns the terminal for other readers of keys; they only receive Enter.
   Terminal terminal();
 
  private:

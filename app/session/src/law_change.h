@@ -6,13 +6,15 @@
 
 namespace thimble::session {
 
-/// What was done to the scene's force law in a tick, from outside of the scene.
+/// Changes of the scene's force law in one tick by viewers or programs.
 struct LawChange {
-  std::int16_t setting = driver::TickRecord::kNoSetting;  ///< As TickRecord::setting.
-  double value = 0;                                       ///< What it was asked to become.
-  double gain = 1;                                        ///< Share of the force that is felt.
+  /// Changed setting, as TickRecord::setting.
+  std::int16_t setting = driver::TickRecord::kNoSetting;
+  double value = 0;  ///< Requested value of the setting.
+  /// Fraction of the force that is applied.
+  double gain = 1;
 
-  /// Returns whether anything was done.
+  /// Returns whether there is a change.
   bool any() const noexcept { return setting != driver::TickRecord::kNoSetting || gain < 1; }
 };
 

@@ -9,8 +9,8 @@
 
 namespace thimble::session {
 
-/// Prints as fmt::print does, but printable, and ignores a write that fails (scene::write_text).
-/// Real-time: never from the servo thread.
+/// Prints as fmt::print does, but only printable characters, and ignores write errors
+/// (scene::write_text). Real-time: never from the servo thread.
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Args...> format, Args&&... args) {
   scene::write_text(file, fmt::format(format, std::forward<Args>(args)...));

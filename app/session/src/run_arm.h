@@ -14,36 +14,38 @@
 
 namespace thimble::session {
 
-/// The arm that a run uses.
+/// Arm of a run.
 struct RunArm {
-  std::optional<driver::FoundArm> real;      ///< Empty: the simulated one.
-  std::optional<scene::RealArmTerms> terms;  ///< On which a real one may be used.
-  std::vector<std::string> told;             ///< What the user must know, a sentence each.
+  std::optional<driver::FoundArm> real;      ///< Real arm; empty: the simulated one is used.
+  std::optional<scene::RealArmTerms> terms;  ///< Terms of use of a real arm.
+  std::vector<std::string> told;             ///< Warnings to show the user, one sentence each.
 };
 
-/// What lists the boards that are plugged in; tests write their own.
+/// Function that lists the connected boards; replaced in tests.
 using FindArms = std::function<driver::Result<std::vector<driver::FoundArm>>()>;
 
-/// Chooses the arm of a run: `device` is "sim", for which nobody looks, "auto" or a name
-/// (scene::choose_arm). Boards that cannot be listed count as none. The error says what to do.
+/// Chooses the arm of a run. `device` is "sim", for which no boards are listed, "auto", or a name
+/// (scene::choose_arm). If boards cannot be listed, there are none. The error says what to do.
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RunArm> choose_run_arm(
     const std::string& device, const scene::RealArmRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 
-/// The arms that a run uses, of a scene with one or with several.
+/// Arms of a run, of a scene with one or with several arms.
 struct THIMBLE_EXPORT RunArms {
-  RunArm one;                                                ///< Of a scene with one.
-  std::map<std::string, std::optional<RealArmUse>> several;  ///< See SessionOptions::real_arms.
-  std::vector<std::string> told;  ///< What the user must know, a sentence each.
+  RunArm one;  ///< Arm of a scene with one arm.
+  /// Arms of a scene with several arms; see SessionOptions::real_arms.
+  std::map<std::string, std::optional<RealArmUse>> several;
+  /// Warnings to show the user, one sentence each.
+  std::vector<std::string> told;
 
-  /// Returns whether one of them is real.
+  /// Returns whether one of the arms is real.
   bool real() const;
 };
 
-/// Chooses the arms of a run. `devices`: one word as `choose_run_arm` takes it, or NAME=WORD for
-/// each arm of a scene that shall not be simulated. The error says what to do, also where two names
-/// mean one arm. Real-time: never from the servo thread.
+/// Chooses the arms of a run. `devices` has one word as for `choose_run_arm`, or NAME=WORD for each
+/// real arm of a scene. The error says what to do, also if two names select the same arm.
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RunArms> choose_run_arms(
     const std::vector<std::string>& devices, const scene::RealArmRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });

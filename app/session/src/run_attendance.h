@@ -13,36 +13,36 @@
 
 namespace thimble::session {
 
-/// Returns how far a run is, in a line for the terminal. `total`: s; 0 if unknown.
+/// Returns the progress of a run as a line for the terminal. `total`: s; 0 if unknown.
 std::string progress_line(const driver::TickRecord& record, double total);
 
-/// A warning about the heat of an arm's motors, given once in a run.
+/// Warning about the heat of an arm's motors, given once per run.
 class HeatWarning {
  public:
-  /// Returns the warning with the first tick that is so hot; empty otherwise.
+  /// Returns the warning at the first tick above the limit; empty otherwise.
   std::string look(const driver::TickRecord& record);
 
  private:
   bool given_ = false;
 };
 
-/// Writes the seconds around the faults of all arms (Session::keep_black_boxes), and logs where a
-/// person finds them, or why not. Real-time: never from the servo thread.
+/// Writes the seconds around the faults of all arms (Session::keep_black_boxes), and logs the file
+/// names or the error. Real-time: never from the servo thread.
 THIMBLE_EXPORT void keep_black_boxes(Session& session, bool run_is_over);
 
-/// What is done beside the servo while a run goes on: a pulled arm is watched for, viewers are
-/// heard, the black box is emptied, and the user is told of heat and progress. Real-time: never
-/// from the servo thread.
+/// Tasks outside of the servo loop during a run: detects a reconnected arm, handles requests of
+/// viewers, writes the black box, and reports heat and progress to the user. Real-time: never from
+/// the servo thread.
 class THIMBLE_EXPORT RunAttendance {
  public:
-  /// Attends a session; `watch` and `desk` may be null, and must outlive it. `on_terminal`: a
-  /// person looks at standard error.
+  /// Constructs the tasks of a session. `watch` and `desk` may be null, and must outlive it.
+  /// `on_terminal`: standard error is a terminal.
   RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* desk,
                 bool on_terminal);
 
-  /// Looks once; call it about ten times a second.
+  /// Runs all tasks once; call it about ten times a second.
   void step();
-  /// Takes the line of progress away, after the run.
+  /// Removes the progress line after the run.
   void clear() const;
 
  private:
@@ -52,8 +52,9 @@ class THIMBLE_EXPORT RunAttendance {
   ReplugWatches* watch_;
   ViewerRequestHandler* desk_;
   bool on_terminal_;
-  double total_;                          // s; 0: unknown
-  std::vector<std::uint64_t> withdrawn_;  // of each arm's carried force, as was reported
+  double total_;  // Duration, s; 0: unknown.
+  // Number of withdrawals of each arm's gravity compensation reported so far.
+  std::vector<std::uint64_t> withdrawn_;
   HeatWarning heat_;
 };
 

@@ -16,33 +16,32 @@
 
 namespace thimble::session {
 
-/// Force of a scene on the hand at one arm: stages 2 to 4 of RunLaw, and what Session::own_law
-/// returns. Stages are set before the first tick, and what they refer to must outlive the law.
+/// Force law of a scene for one arm: stages 2 to 4 of RunLaw, returned by Session::own_law. Stages
+/// are set before the first tick, and the objects to which they refer must outlive the law.
 class SceneLaw {
  public:
-  /// Takes the objects of the scene as this arm feels them. Real-time: safe.
+  /// Constructs the law for the objects as touched by one arm. Real-time: safe.
   explicit SceneLaw(render::SceneTouch& objects) noexcept : objects_(objects) {}
 
-  /// Adds the knobs and the pause of viewers. `leads`: the requests of viewers are carried out in
-  /// the ticks of this arm; true for one arm of a run. Real-time: safe.
+  /// Adds the knobs and the pause of viewers. `leads` is true for the one arm of a run in whose
+  /// ticks the requests of viewers are executed. Real-time: safe.
   void set_viewers(LiveControl& viewers, bool leads) noexcept {
     viewers_ = &viewers;
     leads_ = leads;
   }
-  /// Adds the knobs of the program that holds the session; without effect beside viewers.
-  /// Real-time: safe.
+  /// Adds the knobs of the calling program; without effect if viewers are set. Real-time: safe.
   void set_program_knobs(HeldKnobs& knobs) noexcept { program_ = &knobs; }
 
-  /// Returns the law of the stages that are set: of none, the objects themselves. Real-time: safe.
+  /// Returns the law of the stages that are set; without any, that of the objects. Real-time: safe.
   driver::ForceLaw law() noexcept {
     return bare() ? driver::ForceLaw(objects_) : driver::ForceLaw(*this);
   }
-  /// Returns whether there are objects only: no knobs and no pause. Real-time: safe.
+  /// Returns whether there are only objects, without knobs and pause. Real-time: safe.
   bool bare() const noexcept { return viewers_ == nullptr && program_ == nullptr; }
   /// Returns the objects. Real-time: safe.
   render::SceneTouch& objects() noexcept { return objects_; }
 
-  /// Turns knobs and moves the pause by one tick, once per tick. Real-time: safe.
+  /// Advances knobs and pause by one tick; call once per tick. Real-time: safe.
   void take_requests(const driver::DeviceState& state) noexcept {
     if (viewers_ != nullptr) {
       if (leads_) viewers_->begin_tick(state);
@@ -51,7 +50,7 @@ class SceneLaw {
     }
   }
 
-  /// Finds the force of the scene on the hand. Real-time: safe.
+  /// Returns the force of the scene on the hand. Real-time: safe.
   [[gnu::always_inline]] driver::ForceCommand operator()(
       const driver::DeviceState& state) noexcept {
     take_requests(state);
@@ -60,11 +59,12 @@ class SceneLaw {
     return command;
   }
 
-  /// Reads what the objects will need in a tick like this (driver::ForceLaw::prepare).
-  /// Real-time: safe.
+  /// Prefetches the memory of the objects for a tick with about this state
+  /// (driver::ForceLaw::prepare). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept { objects_.prepare(expected); }
 
-  /// Returns what was done to the law in the last tick; null if nothing can be. Real-time: safe.
+  /// Returns the changes of the law in the last tick; null if it cannot be changed. Real-time:
+  /// safe.
   const LawChange* change() const noexcept {
     if (viewers_ != nullptr) return &viewers_->change();
     return program_ != nullptr ? &program_->change() : nullptr;
@@ -77,8 +77,8 @@ class SceneLaw {
   HeldKnobs* program_ = nullptr;
 };
 
-/// The force law of one arm of a run, from the state of the arm to the force that is requested from
-/// its gate. Stages of a tick, in this order; a run has only those that it needs:
+/// Force law of one arm of a run, from the state of the arm to the force requested from its gate. A
+/// tick executes these stages in order; a run has only those that it needs:
 ///
 ///   1. fault     an arm in fault feels nothing            runs with several arms
 ///   2. knobs     settings of objects move                 viewers (LiveControl) or program
@@ -86,11 +86,11 @@ class SceneLaw {
 ///   4. pause     the force fades out and in               viewers, in real time
 ///   5. weight    gravity compensation is added            arm file (CarriedForce)
 ///
-/// A law of the caller (Session::set_servo_law) replaces 2 to 4 and may ask for them. Stages are
-/// set before the first tick. A run that needs stage 3 alone calls the objects themselves.
+/// A law of the caller (Session::set_servo_law) replaces stages 2 to 4 and may call them. Stages
+/// are set before the first tick. A run with only stage 3 calls the objects directly.
 class RunLaw {
  public:
-  /// Takes the objects as the arm feels them, and what the arm's file says about its weight.
+  /// Constructs the law for the objects as touched by the arm and for the weight in the arm's file.
   /// Real-time: never from the servo thread.
   RunLaw(render::SceneTouch& objects, const scene::ArmFile& arm) : scene_(objects) {
     carried_.take(arm);
@@ -101,8 +101,8 @@ class RunLaw {
 
   /// Returns stages 2 to 4. Real-time: safe.
   SceneLaw& scene() noexcept { return scene_; }
-  /// Lets the law request no force, apart from that of stage 5, while `device`, which must outlive
-  /// it, is in fault: what other hands hold is not pulled by this one. Real-time: safe.
+  /// Suppresses all forces except that of stage 5 while `device` is in fault, so that this arm does
+  /// not move what other hands hold. `device` must outlive the law. Real-time: safe.
   void stop_in_fault(const driver::Device& device) noexcept { device_ = &device; }
   /// Replaces stages 2 to 4. Real-time: safe.
   void set_caller(driver::ForceLaw law) noexcept { caller_ = law; }
@@ -110,15 +110,16 @@ class RunLaw {
   /// Returns the law of the stages that are set, for the servo loop. Real-time: safe.
   driver::ForceLaw law() noexcept;
 
-  /// Finds the requested force of a tick. Real-time: safe if the law of the caller is.
+  /// Returns the requested force of a tick. Real-time: safe if the law of the caller is.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
-  /// Reads what the law will need in a tick like this (driver::ForceLaw::prepare).
-  /// Real-time: safe, as above.
+  /// Prefetches the memory for a tick with about this state (driver::ForceLaw::prepare). Real-time:
+  /// safe, as above.
   void prepare(const driver::DeviceState& expected) const noexcept;
 
-  /// Returns what was done to the law in the last tick; null if nothing can be. Real-time: safe.
+  /// Returns the changes of the law in the last tick; null if it cannot be changed. Real-time:
+  /// safe.
   const LawChange* change() const noexcept;
-  /// Returns how often the force of stage 5 was taken away because the tip moved with it
+  /// Returns how often the force of stage 5 was switched off because the tip moved along it
   /// (CarriedTrust). Any thread.
   std::uint64_t carry_withdrawn() const noexcept { return carried_.withdrawn(); }
 
@@ -132,7 +133,8 @@ class RunLaw {
   const driver::Device* device_ = nullptr;
   SceneLaw scene_;
   std::optional<driver::ForceLaw> caller_;
-  bool objects_only_ = false;  // of stages 2 to 4; once the law is asked for
+  // Only the objects of stages 2 to 4 are used; valid once the law was requested.
+  bool objects_only_ = false;
   bool carries_ = false;
   CarriedForce carried_;
 };

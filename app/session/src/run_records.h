@@ -16,13 +16,13 @@
 
 namespace thimble::session {
 
-/// What a session keeps of all of its ticks.
+/// Data that a session keeps of all its ticks.
 struct KeptTicks {
-  /// Makes room for a run of `ticks` (0: unknown) at `rate` (Hz).
+  /// Allocates memory for a run of `ticks` (0: unknown) at `rate` (Hz).
   KeptTicks(std::uint64_t ticks, double rate)
       : trace(ticks, ticks == 0 ? kRowsOfEndless : Trace::kDefaultRowsMax), black_box(rate) {}
 
-  /// Rows of the trace of a run whose end nobody knows: 80 MB, 5 min at 1 kHz. [chosen]
+  /// Rows of the trace of a run of unknown duration: 80 MB, 5 min at 1 kHz. [chosen]
   static constexpr std::size_t kRowsOfEndless = 300'000;
 
   RunStatistics statistics;
@@ -30,15 +30,14 @@ struct KeptTicks {
   BlackBox black_box;
 };
 
-/// What a session keeps of its own run: observers that know nothing of each other.
+/// Observers that belong to a session; independent of each other.
 struct RunRecords {
-  /// Makes room for a run of `ticks` (0: unknown) at `rate` (Hz), of which it keeps as much as
-  /// `keep` says.
+  /// Allocates memory for a run of `ticks` (0: unknown) at `rate` (Hz), as selected by `keep`.
   RunRecords(std::uint64_t ticks, double rate, Keep keep) {
     if (keep == Keep::kRun) kept = std::make_unique<KeptTicks>(ticks, rate);
   }
 
-  /// Lets a loop tell them of each tick, apart from dents, poses and recording.
+  /// Adds the observers to a loop, except dents, poses and recording.
   void join(RunLoop& loop) {
     loop.add(latest);
     if (!kept) return;
@@ -48,10 +47,13 @@ struct RunRecords {
   }
 
   LatestTick latest;
-  std::unique_ptr<KeptTicks> kept;    ///< Null if the newest tick alone is kept.
-  std::unique_ptr<DentRecord> dents;  ///< Null likewise, and if no object of the scene can dent.
-  std::unique_ptr<PoseRecord> poses;  ///< Null likewise, and if no object of the scene moves.
-  RecordingSwitch recording;          ///< From one thread beside the servo's, and after the run.
+  std::unique_ptr<KeptTicks> kept;  ///< Null if only the newest tick is kept.
+  /// Null if only the newest tick is kept, or if no object can dent.
+  std::unique_ptr<DentRecord> dents;
+  /// Null if only the newest tick is kept, or if no object moves.
+  std::unique_ptr<PoseRecord> poses;
+  /// Used from one thread besides the servo's, and after the run.
+  RecordingSwitch recording;
 };
 
 }  // namespace thimble::session

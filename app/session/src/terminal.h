@@ -8,16 +8,17 @@
 
 namespace thimble::session {
 
-/// The user at the terminal; tests write their own.
+/// Terminal of the user; replaced in tests.
 struct Terminal {
-  bool there = false;                            ///< Somebody can be asked.
-  std::function<EnterKey()> key;                 ///< Looks, without waiting, what he did.
-  std::function<void(const std::string&)> tell;  ///< Shows him a line.
-  std::function<void(const std::string&)> ask =
-      {};  ///< Shows him a question; the line stays open for the answer.
+  bool there = false;  ///< True if a user can be asked.
+  /// Returns the action of the user, without waiting.
+  std::function<EnterKey()> key;
+  std::function<void(const std::string&)> tell;  ///< Prints a line.
+  /// Prints a question; the line stays open for the answer.
+  std::function<void(const std::string&)> ask = {};
 };
 
-/// Returns standard input and error. Real-time: never from the servo thread.
+/// Returns the terminal on standard input and error. Real-time: never from the servo thread.
 THIMBLE_EXPORT Terminal user_terminal();
 
 }  // namespace thimble::session

@@ -13,43 +13,44 @@
 
 namespace thimble::scene {
 
-// What differs from one arm to the next of its kind: where its encoders have their zero, and which
-// way they and the motors count. Kept per name of the arm (FoundArm::name) under
-// $XDG_CONFIG_HOME/thimble/arms (or ~/.config/thimble/arms). Real-time: never from the servo
-// thread.
+// Calibration: data that differs between arms of one kind. It consists of the zeros of the encoders
+// and the signs of encoders and motors. Stored by the name of the arm (FoundArm::name) under
+// $XDG_CONFIG_HOME/thimble/arms (or ~/.config/thimble/arms). Real-time: none of these functions may
+// be called from the servo thread.
 
-/// The calibration of one arm.
+/// Calibration of one arm.
 struct Calibration {
-  std::array<std::int32_t, 3> home_counts{};  ///< What the encoders read in the home pose.
-  std::array<int, 3> encoder_sign{1, 1, 1};   ///< 1 or -1 per axis.
-  std::array<int, 3> motor_sign{1, 1, 1};     ///< 1 or -1 per axis.
-  /// Name of the installed arm file that it was found with; it is the arm's from then on. Empty:
-  /// not known.
+  std::array<std::int32_t, 3> home_counts{};  ///< Encoder counts in the home pose.
+  std::array<int, 3> encoder_sign{1, 1, 1};   ///< Sign of each encoder, 1 or -1.
+  std::array<int, 3> motor_sign{1, 1, 1};     ///< Sign of each motor, 1 or -1.
+  /// Name of the installed arm file used for the calibration, which is the arm's file from then on.
+  /// Empty: unknown.
   std::string arm_file{};
 
-  /// Compares all of it.
+  /// Compares all members.
   friend bool operator==(const Calibration&, const Calibration&) = default;
 };
 
-/// Returns the file that holds the calibration of an arm of this name. Signs that do not belong
-/// into a file name become '_'.
+/// Returns the path of the calibration of an arm. Characters that are not allowed in a file name
+/// become '_'.
 THIMBLE_EXPORT std::filesystem::path calibration_file(const std::string& name);
 
-/// Returns the calibration of an arm; empty if it has none. Fails on a file that is wrong, with
+/// Returns the calibration of an arm; empty if it has none. Fails if the file is invalid, with its
 /// line.
 driver::Result<std::optional<Calibration>> load_calibration(const std::string& name);
 
-/// Keeps the calibration of an arm: written whole or not at all.
+/// Saves the calibration of an arm atomically.
 THIMBLE_EXPORT driver::Result<void> save_calibration(const std::string& name,
                                                      const Calibration& calibration);
 
-/// Puts a calibration into an arm file's data.
+/// Applies a calibration to the contents of an arm file.
 void apply(const Calibration& calibration, ArmFile& file);
 
-/// Returns the calibration found from what the arm reported in its home pose, and after the user
-/// moved the grip from there towards him (x), to his right (y), and up (z). Motors keep the
-/// direction that they have to their encoders in the file; `thimble feel-check` proves it. Fails if
-/// the movements were too small (below 20 mm) or did not tell one set of signs from another.
+/// Returns the calibration computed from the readings of the arm in its home pose, and after the
+/// user moved the grip from there towards the body (x), to the right (y), and up (z). The
+/// directions of the motors relative to their encoders are those of the file; `thimble feel-check`
+/// verifies them. Fails if the movements were too small (below 20 mm) or do not determine the
+/// signs.
 THIMBLE_EXPORT driver::Result<Calibration> find_calibration(
     const ArmFile& file, driver::ArmKind kind, const driver::ArmReading& home,
     const std::array<driver::ArmReading, 3>& moved);

@@ -5,7 +5,7 @@
 
 namespace thimble::scene {
 
-/// Returns a time of a file (s) in ns.
+/// Converts a time of a file (s) to ns.
 inline std::int64_t to_ns(double seconds) {
   return std::llround(seconds * 1e9);
 }

@@ -6,9 +6,9 @@
 
 namespace thimble::scene {
 
-/// Reads how an arm is simulated: the section `simulation` of its file, after all others. A
-/// Falcon's converter and board are code, so that its file has nothing to say of them, nor of its
-/// drive train. Mistakes are noted in the map. Real-time: never from the servo thread.
+/// Reads the section `simulation` of an arm file, after all other sections. The file of a Falcon
+/// has no settings of board and drive train, because these are code. Mistakes are recorded in the
+/// map. Real-time: never from the servo thread.
 device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm);
 
 }  // namespace thimble::scene

@@ -10,36 +10,37 @@
 
 namespace thimble::scene {
 
-// What a passed feel check says, it says of one arm as it was then: its name, its arm file with the
-// calibration, what the driver makes of both, and its firmware. A record is kept per arm in
-// state_folder()/feel_checks. It holds against mistakes, not against a user who forges his own.
-// Real-time: never from the servo thread.
+// A passed feel check is valid for one arm in one state: its name, its arm file with the
+// calibration, the driver's results for both, and its firmware. One record per arm is stored in
+// state_folder()/feel_checks. It protects against mistakes, not against forgery by the user.
+// Real-time: none of these functions may be called from the servo thread.
 
-/// An arm as a feel check found it.
+/// State of an arm at a feel check.
 struct CheckedArm {
-  std::string name;      ///< What `thimble devices` calls it.
+  std::string name;      ///< Name of the arm in `thimble devices`.
   std::string arm_file;  ///< Name and checksum of the installed arm file's text.
   std::string data;      ///< Checksum of calibration, poses and messages.
-  std::string firmware;  ///< What is known of the firmware; empty: too little for a record.
+  /// Firmware of the arm; empty if it is not known well enough for a record.
+  std::string firmware;
 };
 
-/// Returns what a real arm is now. `arm` is its file with the calibration; `firmware` is the image
-/// that the user named, without which the firmware of a Falcon is not known.
+/// Returns the current state of a real arm. `arm` is its file with the calibration. `firmware` is
+/// the image that the user named; without it the firmware of a Falcon is unknown.
 THIMBLE_EXPORT CheckedArm describe_checked(const driver::FoundArm& found, const RealArmFile& arm,
                                            const std::filesystem::path& firmware);
 
-/// Returns the file that holds the record of an arm of this name.
+/// Returns the path of the record of an arm.
 THIMBLE_EXPORT std::filesystem::path feel_check_file(const std::string& name);
 
-/// Returns whether this arm, as it is, passed a feel check. A record that is damaged, of something
-/// else or of another user counts as none.
+/// Returns whether this arm passed a feel check in its current state. A record that is damaged, of
+/// another state or of another user is ignored.
 THIMBLE_EXPORT bool has_passed(const CheckedArm& arm);
 
-/// Keeps that an arm passed: written whole or not at all. Fails, with a sentence, where its
-/// firmware is not known or the file cannot be written.
+/// Saves atomically that an arm passed. Fails if its firmware is unknown or the file cannot be
+/// written.
 THIMBLE_EXPORT driver::Result<void> keep_passed(const CheckedArm& arm);
 
-/// Removes the record of an arm that failed. Fails if it is there and stays.
+/// Removes the record of an arm that failed. Fails if it exists and cannot be removed.
 THIMBLE_EXPORT driver::Result<void> forget_passed(const std::string& name);
 
 }  // namespace thimble::scene

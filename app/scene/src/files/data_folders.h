@@ -7,14 +7,13 @@
 
 namespace thimble::scene {
 
-/// Returns what came with this program: PREFIX/share/thimble, or app/ of the sources it was built
-/// in; else, for a program of somebody else, what came with the libraries that it was built with.
-/// Empty if there is none. Real-time: never from the servo thread.
+/// Returns the data folder of this program: PREFIX/share/thimble, or app/ of the sources from which
+/// it was built. For another program it is that of the libraries with which it was built. Empty if
+/// there is none. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::filesystem::path own_folder();
 
-/// Returns the folders that hold scenes/ and arms/, in the order in which names are looked for
-/// (shipped_files.h). Some may be missing, and `own_folder` may be empty. Real-time: never from the
-/// servo thread.
+/// Returns the folders with scenes/ and arms/, in search order (shipped_files.h). Some may be
+/// missing, and `own_folder` may be empty. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::vector<std::filesystem::path> data_folders();
 
 }  // namespace thimble::scene

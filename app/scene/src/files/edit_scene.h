@@ -10,34 +10,35 @@
 
 namespace thimble::scene {
 
-/// A number of a scene's file as it shall be.
+/// New value of a number in a scene file.
 struct SceneNumber {
-  std::string object;   ///< Whose it is, by its name.
-  std::string group;    ///< Of the effect whose it is ("friction"); empty: the object's own.
-  std::string key;      ///< Under which it stands.
-  int which = 1;        ///< Of the object's effects of that group with that key, counted from 1.
-  double value = 0;     ///< What it shall be.
-  bool scales = false;  ///< `value` is a factor of what stands there.
+  std::string object;   ///< Name of the object.
+  std::string group;    ///< Group of the effect ("friction"); empty: the object itself.
+  std::string key;      ///< Key of the number.
+  int which = 1;        ///< Number of the effect among those of that group with that key, from 1.
+  double value = 0;     ///< New value.
+  bool scales = false;  ///< True if `value` is a factor on the existing value.
 };
 
-/// A scene's text with other numbers.
+/// Text of a scene with new numbers.
 struct EditedScene {
   std::string text;
-  std::vector<std::size_t> absent;  ///< Which of the numbers have no key in it.
+  std::vector<std::size_t> absent;  ///< Indices of the numbers without a key in the text.
 };
 
-/// Returns a scene's text with numbers put where they belong; comments, order and all else stay as
-/// they are. The error says what is wrong with the text. Real-time: never from the servo thread.
+/// Returns the text of a scene with numbers replaced; comments, order and all other text are kept.
+/// The error describes the fault of the text. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<EditedScene> put_numbers(const std::string& text,
                                                        const std::vector<SceneNumber>& numbers);
 
-/// Returns a scene's text for another folder: what names a file beside the scene, in `folder`,
-/// names it by its whole path then. As above.
+/// Returns the text of a scene for use in another folder: relative names of files in `folder`
+/// become absolute paths. The error describes the fault of the text. Real-time: never from the
+/// servo thread.
 THIMBLE_EXPORT driver::Result<std::string> with_whole_paths(const std::string& text,
                                                             const std::filesystem::path& folder);
 
-/// Returns whether a scene came with Thimble: it lies in one of the folders where names are looked
-/// for (shipped_files.h) other than the user's own. Real-time: never from the servo thread.
+/// Returns whether a scene was shipped with Thimble: it is in one of the search folders
+/// (shipped_files.h) other than the user's. Real-time: never from the servo thread.
 THIMBLE_EXPORT bool is_shipped_scene(const std::filesystem::path& file);
 
 }  // namespace thimble::scene

@@ -9,20 +9,20 @@
 
 namespace thimble::scene {
 
-/// A value of a scene to be written otherwise.
+/// Change of a value in a scene.
 struct SceneChange {
-  /// Where it stands: keys and numbers of list items, parted by points. An item of a list may be
-  /// named by its `name` or by a key that it alone has, an object without "objects" before it:
-  /// "ball.stiffness", "ball.effects.friction.coefficient", "hand.path.1.press", "rate".
+  /// Path of the value: keys and list indices, separated by dots. A list item may be identified by
+  /// its `name` or by a key that only it has, and an object without "objects": "ball.stiffness",
+  /// "ball.effects.friction.coefficient", "hand.path.1.press", "rate".
   std::string place;
-  std::string value;  ///< YAML: "300", "[0, 0, 0.1]".
+  std::string value;  ///< New value as YAML: "300", "[0, 0, 0.1]".
 };
 
-/// Writes a scene that is given as text into a file, from which it is run, recorded and replayed as
-/// any other. Files that it names beside it are those in `beside`. The file's name tells its
-/// content: the same text is the same file. The error names the place that a change does not find,
-/// or the line of what is no YAML; whether the scene is a good one is for whoever loads it.
-/// Real-time: never from the servo thread.
+/// Writes a scene given as text to a file, from which it can be run, recorded and replayed like any
+/// other. Relative file names refer to `beside`. The name of the file depends on its contents only,
+/// so the same text gives the same file. The error names a path that was not found, or the line of
+/// invalid YAML. Whether the scene is valid is checked when it is loaded. Real-time: never from the
+/// servo thread.
 THIMBLE_EXPORT driver::Result<std::filesystem::path> keep_scene(
     const std::string& text, const std::vector<SceneChange>& changes,
     const std::filesystem::path& beside, const std::filesystem::path& into);

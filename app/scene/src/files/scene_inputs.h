@@ -7,10 +7,9 @@
 
 namespace thimble::scene {
 
-/// Returns the files that a scene is made of, as far as its text names them: itself, its arms,
-/// meshes, height maps and hand paths. What it names need not be right, and names that are no files
-/// are left out: an output of the same command must not be any of them. Real-time: never from the
-/// servo thread.
+/// Returns the files that the text of a scene names: itself, its arms, meshes, height maps and hand
+/// paths. Used to reject outputs of a command that would overwrite an input. The scene need not be
+/// valid; names without a file are omitted. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::vector<std::filesystem::path> scene_inputs(const std::filesystem::path& scene);
 
 }  // namespace thimble::scene

@@ -6,17 +6,16 @@
 
 namespace thimble::scene {
 
-// What a scene's keys mean by a file. `folder` is the scene's own; a file that is not there is a
-// mistake of the key's line. Real-time: never from the servo thread.
+// Resolution of file names in scenes. `folder` is that of the scene; a missing file is a mistake in
+// the line of the key. Real-time: none of these functions may be called from the servo thread.
 
-/// Returns the file that `mesh:` means: a path beside the scene; a file's name that
-/// is not there, among the scenes of `data_folders`, so that a copied scene finds its mesh; or
-/// `cgal:NAME`, a scan in `mesh_folder`; if that is empty, as `find_scan` finds it.
+/// Returns the file for `mesh:`. It is a path relative to the scene, or, if that does not exist, a
+/// file of that name among the scenes of `data_folders`, so that a copied scene finds its mesh.
+/// `cgal:NAME` is a scan in `mesh_folder`, or, if that is empty, found by `find_scan`.
 std::filesystem::path find_mesh_file(YamlMap& map, const std::filesystem::path& folder,
                                      const std::filesystem::path& mesh_folder);
 
-/// Returns the file that `arm:` means: a path beside the scene, or else a name as on the command
-/// line.
+/// Returns the file for `arm:`: a path relative to the scene, or a name as on the command line.
 std::filesystem::path find_own_arm_file(YamlMap& map, const std::filesystem::path& folder);
 
 }  // namespace thimble::scene

@@ -11,10 +11,10 @@
 
 namespace thimble::scene {
 
-/// Reads the path of a simulated hand out of a ROS bag (bag/read_bag.h): a station per message, at
-/// least 10 ms apart, and the last one. Times count from the first message. `axes`: those of the
-/// bag. The error says what to mend, also where a position is beyond 2 m or the bag lasts for more
-/// than a day. Real-time: never from the servo thread.
+/// Reads the path of a simulated hand from a ROS bag (bag/read_bag.h): one waypoint per message, at
+/// least 10 ms apart, and the last message. Times are relative to the first message. `axes`: those
+/// of the bag. Fails if a position is beyond 2 m or the bag lasts more than a day. The error says
+/// how to fix the problem. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<std::vector<HandWaypoint>> read_bag_hand(
     const std::filesystem::path& bag, const std::string& topic, bag::BagAxes axes);
 

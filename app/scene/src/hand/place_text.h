@@ -10,7 +10,7 @@
 
 namespace thimble::scene {
 
-/// Returns "(x, y, z)" with so many digits behind the point. What rounds to nothing is 0, never -0.
+/// Returns "(x, y, z)" with `digits` decimal places. Values that round to zero are 0, never -0.
 /// Real-time: never from the servo thread.
 inline std::string place_text(const Eigen::Vector3d& p, int digits) {
   const double scale = math::pow(10.0, digits);

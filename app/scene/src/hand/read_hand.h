@@ -10,9 +10,9 @@
 
 namespace thimble::scene {
 
-/// Reads what a simulated hand does among `objects`, and how it holds the arm (`grip`) where the
-/// scene wants another grip than the arm's file. `folder`: the scene's, where a bag lies. Mistakes
-/// are noted in the map. Real-time: never from the servo thread.
+/// Reads the path of a simulated hand among `objects`, and its `grip` if the scene defines another
+/// one than the arm file. `folder`: that of the scene, for bags. Mistakes are recorded in the map.
+/// Real-time: never from the servo thread.
 std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>& objects,
                                     const std::filesystem::path& folder,
                                     device_sim::HandSettings& grip);

@@ -9,16 +9,16 @@
 
 namespace thimble::scene {
 
-/// Reads the list `arms` of a scene, and `faults`. Gives the maps of the list, whose hands
-/// `read_hands` reads once the objects are known. `folder`: where the scene lies. Mistakes of form
-/// are noted in the maps; the error is of an arm's file, or that the reader knows of one arm alone.
-/// Real-time: never from the servo thread.
+/// Reads the list `arms` of a scene, and `faults`. Sets `arms` to the maps of the list;
+/// `read_hands` reads their hands once the objects are known. `folder`: that of the scene. Formal
+/// mistakes are recorded in the maps. Fails on an error in an arm file, or if the caller supports
+/// only one arm. Real-time: never from the servo thread.
 driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folder,
                                const SceneReading& reading, std::vector<YamlMap>& arms,
                                Scene& scene);
 
-/// Reads the hands of the arms that `read_arms` read. Precondition: the scene's objects are read.
-/// `folder`: the scene's. Real-time: never from the servo thread.
+/// Reads the hands of the arms from `read_arms`. Precondition: the scene's objects are read.
+/// `folder`: that of the scene. Real-time: never from the servo thread.
 void read_hands(std::vector<YamlMap>& arms, const std::filesystem::path& folder, Scene& scene);
 
 }  // namespace thimble::scene

@@ -11,23 +11,23 @@
 
 namespace thimble::scene {
 
-/// Finds paths from one point of a surface to another: over the surface where it hangs together,
-/// else in the free over what lies between.
+/// Finds paths from one point of a surface to another: over the surface if it is connected,
+/// otherwise through free space.
 class SurfaceRoute {
  public:
-  /// Takes a mesh with at least one triangle (W, m) and its probe, and keeps references to both.
-  /// Real-time: never from the servo thread.
+  /// Constructs it for a mesh with at least one triangle (W, m) and its probe; keeps references to
+  /// both. Real-time: never from the servo thread.
   SurfaceRoute(const render::TriangleMesh& mesh_W, SurfaceProbe& probe);
   ~SurfaceRoute();
 
-  /// Returns the path as points not far apart, from the one to the other (W, m), nearly the
-  /// shortest over the surface; empty if the surface does not hang together between them.
+  /// Returns the path as closely spaced points from one point to the other (W, m), nearly the
+  /// shortest over the surface; empty if the surface is not connected between them.
   std::vector<Eigen::Vector3d> over_surface(const Eigen::Vector3d& p_from,
                                             const Eigen::Vector3d& p_to);
 
-  /// Returns the corners of a path that leaves the surface, passes what lies between, and comes
-  /// back. It stays outside on a grid of some 30 cells across. Empty if there is none: the goal
-  /// lies inside another part.
+  /// Returns the corners of a path that leaves the surface, passes over the space between, and
+  /// returns. It stays outside of the mesh on a grid of about 30 cells across. Empty if there is
+  /// none because the goal is inside another part.
   std::vector<Eigen::Vector3d> over_the_gap(const Eigen::Vector3d& p_from,
                                             const Eigen::Vector3d& p_to);
 
@@ -40,9 +40,9 @@ class SurfaceRoute {
 
   const render::TriangleMesh& mesh_;
   SurfaceProbe& probe_;
-  std::unique_ptr<Graph> graph_;  // made when it is first needed
-  Eigen::AlignedBox3d box_;       // of the mesh and a little beyond, m
-  double size_ = 0;               // diagonal of the mesh's box, m
+  std::unique_ptr<Graph> graph_;  // Created on first use.
+  Eigen::AlignedBox3d box_;       // Bounding box of the mesh with a margin, m.
+  double size_ = 0;               // Diagonal of the mesh's bounding box, m.
 };
 
 }  // namespace thimble::scene

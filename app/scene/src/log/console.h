@@ -10,13 +10,13 @@
 
 namespace thimble::scene {
 
-/// Standard error as the whole process shares it: whole lines, and below them one line of progress
-/// that stays the last one. From any thread. Real-time: never from the servo thread.
+/// Standard error of the process: whole lines, and below them one progress line. From any thread.
+/// Real-time: never from the servo thread.
 class THIMBLE_EXPORT Console {
  public:
-  /// Writes a line, above the progress if one is shown.
+  /// Writes a line, above the progress line if one is shown.
   void write(std::string_view line);
-  /// Shows a line of progress in place of the one before; an empty one takes it away.
+  /// Replaces the progress line; an empty one removes it.
   void show(std::string progress);
 
  private:
@@ -24,10 +24,10 @@ class THIMBLE_EXPORT Console {
   std::string progress_;
 };
 
-/// Returns the one console of this process.
+/// Returns the only console of this process.
 THIMBLE_EXPORT Console& console();
 
-/// What a logger says on the console, each message in lines of its own.
+/// Log sink that writes each message to the console in separate lines.
 class ConsoleSink final : public spdlog::sinks::base_sink<std::mutex> {
  private:
   void sink_it_(const spdlog::details::log_msg& message) override;

@@ -12,27 +12,26 @@
 
 namespace thimble::scene {
 
-/// The file that a process logs to: a line per message with the time (ISO 8601), the level, the
-/// number of the process and who says it. Only its owner can read it (mode 0600), and a file that
-/// is no log is never appended to. Opened with the first message. Where it cannot be written the
-/// log ends, the user is told once, and everything else goes on. From any thread. Real-time: never
-/// from the servo thread.
+/// Log file of a process: one line per message with time (ISO 8601), level, process id and logger.
+/// Only its owner can read it (mode 0600), and a file that is not a log is never appended to.
+/// Opened with the first message. If it cannot be written, logging to it ends, the user is informed
+/// once, and the program continues. From any thread. Real-time: never from the servo thread.
 class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
  public:
-  /// Bytes of a file and number of files that are kept when it rotates: 5 MB. [chosen: an hour of
-  /// touch leaves about 100 kB]
+  /// Largest size of a file, bytes, and number of files kept by rotation: 5 MB. [chosen: an hour of
+  /// touch produces about 100 kB]
   static constexpr std::size_t kBytesMost = 1'000'000, kFilesMost = 5;
 
-  /// How a file grows.
+  /// Growth of a log file.
   enum class Growth {
-    kRotates,  ///< At kBytesMost it gives way to a new one (NAME.1.log, ...).
-    kEndless,  ///< As its user named it.
+    kRotates,  ///< Replaced by a new file at kBytesMost (NAME.1.log, ...).
+    kEndless,  ///< Unlimited; for a file named by the user.
   };
 
-  /// Logs to `path`; `heading` is what the process says first.
+  /// Constructs a log to `path`; `heading` is the first message of the process.
   LogFile(std::filesystem::path path, Growth growth, std::string heading);
 
-  /// Opens the file now. The error says which file, and why not.
+  /// Opens the file now. The error names the file and the reason.
   driver::Result<void> open();
 
   const std::filesystem::path& path() const noexcept { return path_; }
@@ -46,7 +45,7 @@ class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
   std::filesystem::path path_;
   Growth growth_;
   std::string heading_;
-  std::shared_ptr<spdlog::sinks::sink> file_;  // once it is open
+  std::shared_ptr<spdlog::sinks::sink> file_;  // Set once it is open.
   bool ended_ = false;
 };
 

@@ -11,47 +11,49 @@
 
 namespace thimble::scene {
 
-// Who says what to a person. Levels: info for what happened, warn for what the user should look at,
-// error for what failed; debug and trace for whoever searches a fault.
+// Console and file logging. Levels: info for events, warn for events that the user should check,
+// error for failures; debug and trace for debugging.
 //
-// Until `begin_log` there is a console and no file, as suits a program of somebody else's.
-// From any thread, but for `begin_log`. Real-time: never from the servo thread.
+// Before `begin_log` there is console output but no log file, which suits programs that use Thimble
+// as a library. From any thread, except `begin_log`. Real-time: none of these functions may be
+// called from the servo thread.
 
-/// Returns what speaks to the user: warnings and errors on the console ("thimble: ..."), and all
-/// of it in the file.
+/// Returns the main logger: warnings and errors on the console ("thimble: ..."), all messages in
+/// the file.
 THIMBLE_EXPORT spdlog::logger& logger();
 
-/// Returns what a person at the terminal is asked and answers to: on the console word by word, and
-/// in the file.
+/// Returns the logger for prompts and answers at the terminal: unchanged on the console, and in the
+/// file.
 THIMBLE_EXPORT spdlog::logger& terminal();
 
-/// Returns a logger for what happens in a run called `run`: in the file, and on the console where
-/// the user wants to hear more.
+/// Returns a logger for events of a run called `run`: in the file, and on the console if the user
+/// requested more output.
 THIMBLE_EXPORT std::shared_ptr<spdlog::logger> run_logger(const std::string& run);
 
-/// How much a person hears on the console.
+/// Verbosity of the console.
 enum class Talk {
-  kQuiet,   ///< Errors.
-  kNormal,  ///< Warnings as well.
-  kDebug,   ///< And what happens.
-  kTrace,   ///< And all of it, which the file then holds as well.
+  kQuiet,   ///< Errors only.
+  kNormal,  ///< Errors and warnings.
+  kDebug,   ///< Also events.
+  kTrace,   ///< All messages, also in the file.
 };
 
-/// Returns how much a person hears on the console, as `begin_log` was asked.
+/// Returns the verbosity of the console requested from `begin_log`.
 THIMBLE_EXPORT Talk talk();
 
-/// Where a process logs to.
+/// Logging options of a process.
 struct LogChoice {
   Talk talk = Talk::kNormal;
-  std::filesystem::path file = {};  ///< Empty: `default_log_file`, which rotates.
-  std::string heading = {};         ///< What the file hears first: which program, and its command.
+  std::filesystem::path file = {};  ///< Log file; empty: `default_log_file`, which rotates.
+  std::string heading = {};         ///< First message in the file: program and command.
 };
 
-/// Begins to log to a file as well. Fails if a file that the user named cannot be written; where
-/// the default one cannot be, he is told with the first message. Before other threads log.
+/// Starts logging to a file. Fails if a file named by the user cannot be written. If the default
+/// file cannot be written, the user is informed with the first message. Call it before other
+/// threads log.
 THIMBLE_EXPORT driver::Result<void> begin_log(const LogChoice& choice);
 
-/// Returns the file that a process logs to unless it is told another: below the state folder.
+/// Returns the default log file of a process: in the state folder.
 THIMBLE_EXPORT std::filesystem::path default_log_file();
 
 }  // namespace thimble::scene

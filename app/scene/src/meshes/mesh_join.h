@@ -6,7 +6,7 @@
 
 namespace thimble::scene {
 
-/// Adds the triangles of one mesh to another. Real-time: never from the servo thread.
+/// Appends the triangles of one mesh to another. Real-time: never from the servo thread.
 inline void append(const render::TriangleMesh& mesh, render::TriangleMesh& whole) {
   const auto first = static_cast<std::int32_t>(whole.vertices.size());
   whole.vertices.insert(whole.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());

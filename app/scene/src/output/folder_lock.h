@@ -8,13 +8,14 @@
 
 namespace thimble::output {
 
-/// Keeps a folder for one process; a second one is refused with the name of the first. The kernel
-/// releases it however the process ends (flock on the folder itself, so that no file is left
-/// behind). All locks of one process on one folder are one. Real-time: never from the servo thread.
+/// Locks a folder for one process; another process gets an error with the name of the first. The
+/// kernel releases the lock however the process ends (flock on the folder itself, so that no file
+/// remains). All locks of one process on one folder are shared. Real-time: never from the servo
+/// thread.
 class THIMBLE_EXPORT FolderLock {
  public:
-  /// Takes it. Fails if another process has it. On a file system that locks no folders (some over
-  /// a network), and where the folder does not exist, it is taken without being held.
+  /// Locks a folder. Fails if another process holds the lock. On a file system without folder locks
+  /// (some network file systems), and for a missing folder, it succeeds without a lock.
   static driver::Result<FolderLock> take(const std::filesystem::path& folder);
 
  private:

@@ -10,42 +10,43 @@
 
 namespace thimble::output {
 
-/// A file that is being written: beside its target and locked, until it is complete. Devices and
+/// File that is being written: next to its target and locked, until it is complete. Devices and
 /// pipes are written directly. Real-time: never from the servo thread.
 class THIMBLE_EXPORT OutputFile {
  public:
-  /// Opens it, empty. `replace`: the user allows that an existing file of a kind that is not simply
-  /// replaced (Existing::kReplaceForced) is. Fails if the folder does not exist or cannot be
-  /// written to, if a file of another kind has the name, or if another writer has it. An output
-  /// that an OutputPlan of this process keeps for its writer is taken over.
+  /// Opens an empty output. `replace` allows overwriting an existing file of a kind with
+  /// Existing::kReplaceForced. Fails if the folder does not exist or is not writable, if a file of
+  /// another kind has the name, or if another writer has locked it. Takes over an output that an
+  /// OutputPlan of this process has reserved.
   static driver::Result<OutputFile> open(const std::filesystem::path& path, const OutputKind& kind,
                                          bool replace = false);
-  /// Opens another part of this output, which takes the place of what was published of it.
+  /// Opens another part of this output, which replaces the part published before.
   driver::Result<OutputFile> open_again(const OutputKind& kind) const;
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  /// Removes what was not published.
+  /// Removes an unpublished file.
   ~OutputFile();
 
-  /// Returns the name to write to, for libraries that open files themselves: the part, or the
-  /// device.
+  /// Returns the name to write to, for libraries that open files themselves: that of the part or
+  /// the device.
   const std::filesystem::path& part() const noexcept { return part_; }
-  /// Returns the file that it becomes, links followed.
+  /// Returns the final path, with links resolved.
   const std::filesystem::path& target() const noexcept { return place_.target; }
-  /// Returns the descriptor, which is open for writing (a file: and reading).
+  /// Returns the descriptor, which is open for writing, and for reading if it is a file.
   int descriptor() const noexcept { return descriptor_; }
   /// Returns whether this is a device or pipe.
   bool stream() const noexcept { return place_.stream; }
 
-  /// Writes bytes at the end.
+  /// Appends bytes.
   driver::Result<void> write(std::string_view bytes);
-  /// Gives the part its name. It stays open, and locked against other writers but not readers.
+  /// Renames the part to the final name. It stays open, and locked against other writers but not
+  /// readers.
   driver::Result<void> publish();
-  /// Publishes the file, unless that was done, and closes it. The error says what is wrong.
+  /// Publishes the file if it is not published yet, and closes it. The error describes the problem.
   driver::Result<void> commit();
-  /// Returns an error of a library that names the part, with the output's own name.
+  /// Returns an error of a library with the name of the part replaced by that of the output.
   driver::Error named(const driver::Error& error) const;
 
  private:
@@ -55,28 +56,28 @@ class THIMBLE_EXPORT OutputFile {
   driver::Result<void> open_part(const OutputKind& kind);
   void close_now() noexcept;
 
-  std::filesystem::path name_;  // as the user gave it
+  std::filesystem::path name_;  // As given by the user.
   OutputPath place_;
   std::filesystem::path part_;
   int descriptor_ = -1;
   bool published_ = false;
 };
 
-/// Fails if what exists under a name may not be replaced by an output of this kind, or is being
-/// written. `path` is the name as the user gave it.
+/// Fails if an existing file may not be replaced by an output of this kind, or is being written.
+/// `path` is the name as given by the user.
 THIMBLE_EXPORT driver::Result<void> check_replaceable(const std::filesystem::path& path,
                                                       const OutputPath& place,
                                                       const OutputKind& kind, bool replace);
 
-/// Opens an output and keeps it for the writer in this process that opens it next. Returns the key
-/// for `release_output`. Fails as OutputFile::open.
+/// Opens an output and reserves it for the next writer in this process that opens it. Returns the
+/// key for `release_output`. Fails as OutputFile::open.
 driver::Result<std::filesystem::path> reserve_output(const std::filesystem::path& path,
                                                      const OutputKind& kind, bool replace);
 
-/// Removes an output that is still kept.
+/// Removes an output that is still reserved.
 void release_output(const std::filesystem::path& key);
 
-/// Writes a whole file. Fails as OutputFile::open, or says why it could not be written.
+/// Writes a whole file. Fails as OutputFile::open, or if it cannot be written.
 THIMBLE_EXPORT driver::Result<void> write_file(const std::filesystem::path& path,
                                                const OutputKind& kind, std::string_view bytes);
 

@@ -12,33 +12,33 @@
 
 namespace thimble::output {
 
-/// The inputs and outputs of a command. It checks all of them before the work begins, and keeps the
+/// Inputs and outputs of a command. Checks all of them before the work begins, and keeps the
 /// outputs locked until their writers open them. Real-time: never from the servo thread.
 class THIMBLE_EXPORT OutputPlan {
  public:
   OutputPlan() = default;
   OutputPlan(const OutputPlan&) = delete;
   OutputPlan& operator=(const OutputPlan&) = delete;
-  /// Removes outputs that were not written, and folders that it made and that are empty.
+  /// Removes unwritten outputs, and empty folders that it created.
   ~OutputPlan();
 
-  /// Adds a file or folder that is read. An empty name is none.
+  /// Adds an input file or folder. An empty name is ignored.
   void read(const std::filesystem::path& path);
-  /// Adds a file that is written. `option` names it to the user ("--csv"). An empty name is none.
+  /// Adds an output file. `option` is its option, for messages ("--csv"). An empty name is ignored.
   /// `replace` as for OutputFile::open.
   void write(const std::string& option, const std::filesystem::path& path, const OutputKind& kind,
              bool replace = false);
-  /// As `write`, of a file that its writer opens before the work begins: it is only checked.
+  /// As `write`, for a file that its writer opens before the work begins: it is checked only.
   void check(const std::string& option, const std::filesystem::path& path, const OutputKind& kind,
              bool replace = false);
-  /// Adds a folder of results. `names`: files that are written there and may exist.
+  /// Adds a folder of results. `names`: files written there, which may exist.
   void write_folder(const std::string& option, const std::filesystem::path& path,
                     const std::vector<std::string>& names);
   /// Adds a folder that must be new or empty.
   void write_new_folder(const std::string& option, const std::filesystem::path& path);
 
-  /// Checks everything, makes and locks the folders, and opens the files. The error names the
-  /// option and the remedy. May be called again after more was added.
+  /// Checks all entries, creates and locks the folders, and opens the files. The error names the
+  /// option and the fix. May be called again after more entries were added.
   driver::Result<void> begin();
 
  private:
@@ -49,7 +49,7 @@ class THIMBLE_EXPORT OutputPlan {
     const OutputKind* kind;
     Use use;
     bool replace = false;
-    std::vector<std::string> names = {};  // in a folder
+    std::vector<std::string> names = {};  // Names in a folder.
     bool begun = false;
   };
   struct Place {
@@ -65,8 +65,8 @@ class THIMBLE_EXPORT OutputPlan {
   std::vector<std::filesystem::path> inputs_;
   std::vector<Output> outputs_;
   std::vector<FolderLock> locks_;
-  std::vector<std::filesystem::path> made_;  // folders, the outermost first
-  std::vector<std::filesystem::path> kept_;  // keys of outputs
+  std::vector<std::filesystem::path> made_;  // Created folders, outermost first.
+  std::vector<std::filesystem::path> kept_;  // Keys of reserved outputs.
 };
 
 }  // namespace thimble::output

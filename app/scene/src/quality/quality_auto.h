@@ -8,13 +8,14 @@
 
 namespace thimble::scene {
 
-/// Puts each object of a scene on the best point over all knobs that the scene leaves open, from
-/// the stored diagrams (quality_table.h): without a budget the cheapest at which nothing wrong can
-/// be felt; with one (ns per tick, of all objects) the one whose largest error is smallest. Returns
-/// a sentence per object and one about the whole. Real-time: never from the servo thread.
+/// Chooses the best point of the stored diagrams (quality_table.h) for each object of a scene, over
+/// all settings that the scene leaves open. Without a budget it is the cheapest point with errors
+/// below perception. With a budget (ns per tick, for all objects) it is the point with the smallest
+/// largest error. Returns a sentence per object and one about the total. Real-time: never from the
+/// servo thread.
 std::vector<std::string> choose_quality(Scene& scene, std::optional<double> budget);
 
-/// Returns whether an object leaves open how its surface is felt.
+/// Returns whether the rendering of an object's surface is left open.
 bool leaves_surface_open(const SceneObject& object);
 
 }  // namespace thimble::scene

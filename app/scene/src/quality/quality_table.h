@@ -11,50 +11,52 @@
 
 namespace thimble::scene {
 
-// The diagrams that `--quality auto` chooses on, as the study measured them once. Times are those
-// of the machine that the table names: they compare points with each other, and say nothing of the
-// machine that runs. Made anew by `thimble study accuracy --table FILE`.
+// Diagrams used by `--quality auto`, measured once by the study. Times are those of the machine
+// named in the table. They allow a comparison of points only, not a prediction for the running
+// machine. Regenerate with `thimble study accuracy --table FILE`.
 
-/// One way to touch a triangle mesh, cut to one fineness.
+/// Contact settings for a triangle mesh of one resolution.
 struct ContactPoint {
-  render::TrackerChoice tracker;                   ///< How it is followed.
-  std::optional<render::BlendingChoice> blending;  ///< Which normal; empty: as the tracker has it.
-  std::optional<bool> curved_depth;                ///< Which depth; empty: as the tracker has it.
-  double turn;                                     ///< typical_turn of the mesh, rad.
-  double error;  ///< Worst of force, direction and jump, each over what can be felt of it.
-  double ns;     ///< Of a tick, median.
+  render::TrackerChoice tracker;  ///< Tracker.
+  /// Blending of the normal; empty: that of the tracker.
+  std::optional<render::BlendingChoice> blending;
+  std::optional<bool> curved_depth;  ///< Kind of depth; empty: that of the tracker.
+  double turn;                       ///< typical_turn of the mesh, rad.
+  /// Largest error of force, direction and jump, each relative to its limit of perception.
+  double error;
+  double ns;  ///< Median duration of a tick, ns.
 };
 
-/// One size of a dent's patch.
+/// Size of a dent's patch.
 struct RingsPoint {
   int rings;
-  double error;  ///< Of the force, over what can be felt.
-  double ns;     ///< Of a tick with implicit Euler in one step, median.
+  double error;  ///< Error of the force relative to its limit of perception.
+  double ns;     ///< Median duration of a tick with implicit Euler in one step, ns.
 };
 
-/// One way to step a dent.
+/// Integration of a dent.
 struct StepsPoint {
   render::SpringScheme integrator;
   int substeps;
-  double error;  ///< Of the motion, over what can be felt.
-  double cost;   ///< Of a tick, over that of implicit Euler in one step.
+  double error;  ///< Error of the motion relative to its limit of perception.
+  double cost;   ///< Duration of a tick relative to that of implicit Euler in one step.
 };
 
-/// One stored set of diagrams.
+/// Stored set of diagrams.
 struct QualityTable {
-  int version;                ///< Grows whenever it is measured anew.
-  std::string_view measured;  ///< On which machine, and by which build.
+  int version;                ///< Version; incremented with each new measurement.
+  std::string_view measured;  ///< Machine and build of the measurement.
   std::span<const ContactPoint> contacts;
   std::span<const RingsPoint> rings;
   std::span<const StepsPoint> steps;
 };
 
-/// Returns the table that is built in. Real-time: safe.
+/// Returns the built-in table. Real-time: safe.
 THIMBLE_EXPORT const QualityTable& quality_table();
 
-/// Returns the angle (rad) by which the faces of a mesh turn over an edge: that of nine edges in
-/// ten, of those that are no creases; 0 if all are. It is about the edges' length over the radius
-/// of curvature. Real-time: never from the servo thread.
+/// Returns the typical angle (rad) between adjacent triangles of a mesh: the 90th percentile over
+/// all edges except creases; 0 if all are creases. It is about the length of the edges over the
+/// radius of curvature. Real-time: never from the servo thread.
 THIMBLE_EXPORT double typical_turn(const render::ContactMesh& mesh);
 
 }  // namespace thimble::scene

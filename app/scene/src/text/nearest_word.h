@@ -9,10 +9,10 @@
 
 namespace thimble::scene {
 
-/// Returns the word of `known` that a mistyped `word` most likely means: the one that differs by
-/// the fewest letters (insertions, deletions, substitutions, and swapped neighbours), at most two
-/// or a third of the word; nothing if none is as near. Of equally near words the first.
-/// Real-time: never from the servo thread.
+/// Returns the word of `known` that is nearest to a mistyped `word`: the one with the fewest
+/// changed letters (insertions, deletions, substitutions, and swapped neighbours). At most two
+/// letters or a third of the word may differ; otherwise the result is empty. Of equally near words
+/// the first is returned. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::optional<std::string> nearest_word(std::string_view word,
                                                        const std::vector<std::string>& known);
 

@@ -7,32 +7,32 @@
 
 namespace thimble::scene {
 
-/// One key of a file, as its reader asked for it.
+/// Key of a file, as requested by its reader.
 struct KeyNote {
-  std::string place;     ///< The map it stands in: "objects[].contact"; empty: the outermost.
-  std::string key;       ///< Its name.
-  std::string what;      ///< What it takes, in words: "a number from 0 to 1 m".
-  bool required = true;  ///< A file without it is refused.
-  std::string fallback;  ///< What counts where it is left out; empty: nothing, or it depends.
+  std::string place;     ///< Map that contains the key: "objects[].contact"; empty: the root.
+  std::string key;       ///< Name of the key.
+  std::string what;      ///< Allowed values in words: "a number from 0 to 1 m".
+  bool required = true;  ///< True if a file without it is rejected.
+  std::string fallback;  ///< Default value; empty: none, or it depends on other values.
 };
 
-/// What a reader asked for while it read a file: so the reference of keys says what the readers do.
-/// Real-time: never from the servo thread.
+/// Log of the keys that a reader requests, so that the reference of keys reflects the behaviour of
+/// the readers. Real-time: never from the servo thread.
 class KeyLog {
  public:
-  /// Notes that a reader looked whether a key is there: it may be left out. Returns whether the
-  /// reader is to be told that it is, though it is not, so that it asks for what belongs to it.
+  /// Records that a reader checked for a key, which is therefore optional. Returns true to pretend
+  /// that the missing key is present, so that the reader also requests its sub-keys.
   bool looked(std::string_view place, std::string_view key);
-  /// Pretends from now on that a key is there, with the maps it stands in. `name`: one of
-  /// `all_looked`; with `*` as its key: all that are looked for in its map; empty: nothing is
-  /// pretended.
+  /// Pretends from now on that a key is present, with the maps that contain it. `name` is one of
+  /// `all_looked`. With `*` as its key, it applies to all keys checked in that map. If empty, no
+  /// key is pretended.
   void pretend(std::string name) { pretended_ = std::move(name); }
-  /// Returns the keys that were looked for, as "place/key", each once.
+  /// Returns the keys that were checked, as "place/key", each once.
   const std::vector<std::string>& all_looked() const noexcept { return looked_; }
-  /// Notes a key; the first note of a place and key stands.
+  /// Records a key; only the first record of a place and key is kept.
   void note(KeyNote note);
 
-  /// Returns the keys in the order in which they were asked for.
+  /// Returns the keys in the order of the requests.
   const std::vector<KeyNote>& notes() const noexcept { return notes_; }
 
  private:

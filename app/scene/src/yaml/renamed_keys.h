@@ -5,15 +5,15 @@
 
 namespace thimble::scene {
 
-/// A key of scene or arm files that has got another name. Files with the old one are still read,
-/// with a warning that tells the new one.
+/// Renamed key of scene or arm files. Files with the old name are accepted with a warning that
+/// gives the new one.
 struct RenamedKey {
-  std::string_view place;  ///< The map it stands in, as YamlMap::set_place names it.
-  std::string_view was;    ///< The old name.
-  std::string_view is;     ///< The name that the reader asks for.
+  std::string_view place;  ///< Map that contains the key, as named by YamlMap::set_place.
+  std::string_view was;    ///< Old name.
+  std::string_view is;     ///< New name, requested by the reader.
 };
 
-/// All of them. An old name goes away with a major version, not before.
+/// All renamed keys. Old names are removed only with a major version.
 inline constexpr std::array kRenamedKeys{
     RenamedKey{"effects[] texture: sandpaper", "grain", "wavelength"},
     RenamedKey{"objects[].body.motion", "turning", "angular_velocity"},

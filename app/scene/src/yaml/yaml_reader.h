@@ -19,16 +19,16 @@
 
 namespace thimble::scene {
 
-// Strict reading of YAML files. Every mistake becomes one sentence with file, line, what was
-// expected and what was found:
+// Strict reading of YAML files. Every mistake becomes one sentence with file, line, expected and
+// found value:
 //   elephant.yaml:12: stiffness: expected a number from 0 to 1e+05 N/m, found "stiff".
-// A getter that meets a mistake notes it and returns a harmless value, so one reading finds several
-// mistakes; YamlFile::finish tells them. Nothing here throws. Real-time: never from the servo
-// thread.
+// A getter that finds a mistake records it and returns a harmless value, so one reading finds
+// several mistakes; YamlFile::finish returns them. No exceptions are thrown. Real-time: none of
+// these functions may be called from the servo thread.
 
-/// Collects the mistakes of one file and keeps the first few. There are two kinds: values that are
-/// wrong by themselves, and checks that compare values. Checks are reported only if all values are
-/// right: a wrong value is replaced by a harmless one, so a check against it would mislead.
+/// Collects the mistakes of one file and keeps the first five. There are two kinds: invalid values,
+/// and failed checks between values. Checks are reported only if all values are valid, because an
+/// invalid value is replaced by a harmless one, with which a check would mislead.
 class YamlMistakes {
  public:
   static constexpr std::size_t kKept = 5;
@@ -36,41 +36,40 @@ class YamlMistakes {
   explicit YamlMistakes(std::string file_name, KeyLog* keys = nullptr)
       : file_name_(std::move(file_name)), keys_(keys) {}
 
-  /// Stores misplaced characters of the text, in the order of the text. A mistake in the line of
-  /// one is reported as that character; if it is in indentation, nothing else is reported.
+  /// Sets the misplaced characters of the text, in the order of the text. A mistake in the line of
+  /// one is reported as that character; if it is in indentation, no other mistakes are reported.
   void set_misplaced(std::vector<TextFlaw> misplaced) { misplaced_ = std::move(misplaced); }
 
-  /// Returns where the keys that are asked for are noted; nullptr: nowhere.
+  /// Returns the log of requested keys; nullptr if there is none.
   KeyLog* keys() const noexcept { return keys_; }
 
-  /// Adds a wrong value at a line (counted from 1; 0 for the file as a whole). `sentence` has no
-  /// dot.
+  /// Adds an invalid value at a line (from 1; 0 for the whole file). `sentence` has no period.
   void add(int line, const std::string& sentence);
 
   /// Adds a syntax error at a line. If misplaced characters precede it, they are reported instead.
   void add_syntax_error(int line, const std::string& sentence);
 
-  /// Adds a failed check between values that are right by themselves, as above.
+  /// Adds a failed check between valid values. `line` and `sentence` as above.
   void add_check(int line, const std::string& sentence);
 
-  /// Drops all checks, because values of another file that they need could not be read.
+  /// Ignores all checks, because values of another file that they need could not be read.
   void ignore_checks() { checks_ignored_ = true; }
 
-  /// Returns whether further wrong values would only be counted.
+  /// Returns whether further invalid values would only be counted.
   bool full() const { return values_.count >= kKept; }
 
-  /// Notes what is read nevertheless, but should be written in another way.
+  /// Adds a warning about content that is accepted but should be written differently.
   void warn(int line, const std::string& sentence);
 
-  /// Returns what was warned of, a sentence each with file and line.
+  /// Returns the warnings, one sentence each with file and line.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Returns whether nothing is wrong.
+  /// Returns whether there are no mistakes.
   bool empty() const {
     return flaws_.count == 0 && values_.count == 0 && (checks_ignored_ || checks_.count == 0);
   }
 
-  /// Returns the mistakes kept, one per line, and how many more there are.
+  /// Returns the mistakes kept, one per line, and the number of further ones.
   std::string text() const;
 
  private:
@@ -91,108 +90,109 @@ class YamlMistakes {
   bool checks_ignored_ = false;
 };
 
-/// One map of a YAML file. Copies share what was asked of it, so that `finish` knows.
+/// Map of a YAML file. Copies share the record of requested keys for `finish`.
 class YamlMap {
  public:
-  /// The map at `node`; notes a mistake if it is none, or if a key stands twice in it. `name` is
-  /// the key it stands under.
+  /// Constructs the map at `node`. Records a mistake if the node is not a map, or if a key occurs
+  /// twice. `name` is the key of the map.
   YamlMap(const YAML::Node& node, std::string_view name, int line,
           std::shared_ptr<YamlMistakes> mistakes);
 
-  /// Returns whether a key is there (and counts it as known).
+  /// Returns whether a key is present (and marks it as known).
   bool has(std::string_view key);
 
-  /// Reads a finite number from `min` to `max` (in `unit`, told to the reader; may be empty).
-  /// A mistake gives `min`.
+  /// Returns a finite number from `min` to `max`, in `unit`, which is used for messages and may be
+  /// empty. A mistake returns `min`.
   double require_number(std::string_view key, std::string_view unit, double min, double max);
 
-  /// Reads a number like `require_number`, or gives `fallback` if the key is absent.
+  /// Returns a number as `require_number`, or `fallback` if the key is absent.
   double optional_number(std::string_view key, double fallback, std::string_view unit, double min,
                          double max);
 
-  /// Reads a whole number from `min` to `max`, at most 2^53: digits, or a decimal number without a
-  /// fraction. A mistake gives `min`.
+  /// Returns an integer from `min` to `max`, at most 2^53: digits, or a decimal number without a
+  /// fraction. A mistake returns `min`.
   std::int64_t require_whole(std::string_view key, std::string_view unit, std::int64_t min,
                              std::int64_t max);
 
-  /// Reads a whole number like `require_whole`, or gives `fallback` if the key is absent.
+  /// Returns an integer as `require_whole`, or `fallback` if the key is absent.
   std::int64_t optional_whole(std::string_view key, std::int64_t fallback, std::string_view unit,
                               std::int64_t min, std::int64_t max);
 
-  /// Reads a list of three whole numbers, each from `min` to `max`. A mistake gives zeros.
+  /// Returns a list of three integers, each from `min` to `max`. A mistake returns zeros.
   std::array<std::int64_t, 3> require_three_whole(std::string_view key, std::string_view unit,
                                                   std::int64_t min, std::int64_t max);
 
-  /// Reads a list like `require_three_whole`, or gives `fallback` if the key is absent.
+  /// Returns a list as `require_three_whole`, or `fallback` if the key is absent.
   std::array<std::int64_t, 3> optional_three_whole(std::string_view key,
                                                    const std::array<std::int64_t, 3>& fallback,
                                                    std::string_view unit, std::int64_t min,
                                                    std::int64_t max);
 
-  /// Reads a list of three signs, each 1 or -1. A mistake gives 1.
+  /// Returns a list of three signs, each 1 or -1. A mistake returns 1 for each.
   std::array<std::int64_t, 3> require_signs(std::string_view key);
 
-  /// Reads a list of three numbers, each from `min` to `max`. A mistake gives zeros.
+  /// Returns a list of three numbers, each from `min` to `max`. A mistake returns zeros.
   Eigen::Vector3d require_vector3(std::string_view key, std::string_view unit, double min,
                                   double max);
 
-  /// Reads a list like `require_vector3`, or gives `fallback` if the key is absent.
+  /// Returns a list as `require_vector3`, or `fallback` if the key is absent.
   Eigen::Vector3d optional_vector3(std::string_view key, const Eigen::Vector3d& fallback,
                                    std::string_view unit, double min, double max);
 
-  /// Reads a list of turns `[[x, 90], [z, -45]]`, done one after the other about the fixed axes of
-  /// the outer frame, each in degrees. Gives identity if the key is absent or wrong.
+  /// Returns the rotation given by a list `[[x, 90], [z, -45]]`: rotations by degrees, one after
+  /// the other, about the fixed axes of the outer frame. Returns the identity if the key is absent
+  /// or invalid.
   Eigen::Matrix3d optional_rotation(std::string_view key);
 
-  /// Reads a text that is not empty. A mistake gives "".
+  /// Returns a non-empty text. A mistake returns "".
   std::string require_string(std::string_view key);
 
-  /// Reads a text, or gives `fallback` if the key is absent.
+  /// Returns a text, or `fallback` if the key is absent.
   std::string optional_string(std::string_view key, std::string_view fallback);
 
-  /// Reads one of the words of `choices` and gives its number. A mistake gives 0.
+  /// Returns the index of a word in `choices`. A mistake returns 0.
   std::size_t require_choice(std::string_view key, const std::vector<std::string_view>& choices);
 
-  /// Reads one of the words of `choices` like `require_choice`, or gives `fallback` if the key is
-  /// absent.
+  /// Returns an index as `require_choice`, or `fallback` if the key is absent.
   std::size_t optional_choice(std::string_view key, std::size_t fallback,
                               const std::vector<std::string_view>& choices);
 
-  /// Reads one of the words of `choices`, or a list of several, and gives their numbers in the
-  /// order of the file; `fallback` if the key is absent. A mistake gives none.
+  /// Returns the indices in `choices` of one word or a list of words, in the order of the file;
+  /// `fallback` if the key is absent. A mistake returns an empty list.
   std::vector<std::size_t> optional_choices(std::string_view key,
                                             const std::vector<std::size_t>& fallback,
                                             const std::vector<std::string_view>& choices);
 
-  /// Reads `true` or `false`, or gives `fallback` if the key is absent or wrong.
+  /// Returns `true` or `false`, or `fallback` if the key is absent or invalid.
   bool optional_bool(std::string_view key, bool fallback);
 
-  /// Reads a map. A mistake gives an empty one, whose getters keep quiet.
+  /// Returns a map. A mistake returns an empty one, whose getters report no mistakes.
   YamlMap require_map(std::string_view key);
 
-  /// Reads a list of maps with at least one entry. A mistake gives an empty list.
+  /// Returns a list of maps with at least one entry. A mistake returns an empty list.
   std::vector<YamlMap> require_maps(std::string_view key);
 
   /// Adds a failed check of this map's values against each other or against others, at the line of
-  /// `key` (or of this map). It is reported only if all values of the file are right.
+  /// `key` (or of this map). It is reported only if all values of the file are valid.
   void reject(std::string_view key, const std::string& sentence);
 
-  /// Adds a wrong value that only the caller can detect, at the line of `key` (or of this map).
+  /// Adds an invalid value that only the caller can detect, at the line of `key` (or of this map).
   void refuse(std::string_view key, const std::string& sentence);
 
-  /// Drops the failed checks of the whole file; see YamlMistakes::ignore_checks.
+  /// Ignores the failed checks of the whole file; see YamlMistakes::ignore_checks.
   void ignore_checks() { mistakes_->ignore_checks(); }
 
-  /// Notes each key that nobody asked for, with the nearest known key as a suggestion.
+  /// Records each key that was not requested as a mistake, with the nearest known key as a
+  /// suggestion.
   void finish();
 
-  /// Names the place of this map in the reference of keys: "effects[] friction: bristle".
+  /// Sets the place of this map in the reference of keys: "effects[] friction: bristle".
   void set_place(std::string place) { place_ = std::move(place); }
 
-  /// Returns the line (from 1) at which a key stands, or 0 if it is absent.
+  /// Returns the line (from 1) of a key, or 0 if it is absent.
   int key_line(std::string_view key) const;
 
-  /// Returns the line (from 1) at which this map begins.
+  /// Returns the first line (from 1) of this map.
   int line() const { return line_; }
 
  private:
@@ -217,29 +217,29 @@ class YamlMap {
   std::shared_ptr<YamlMistakes> mistakes_;
   int line_ = 0;
   std::string place_;
-  bool quiet_ = false;  // this map could not be read: do not blame its keys as well
+  bool quiet_ = false;  // The map could not be read, so its keys are not reported.
 };
 
-/// One YAML file whose outermost value is a map.
+/// YAML file whose root is a map.
 class THIMBLE_EXPORT YamlFile {
  public:
-  /// Reads a file. Fails on a file that cannot be read, that is empty or beyond 4 MB, that is not
-  /// UTF-8 (with line and column), or that is not YAML (with line).
+  /// Reads a file. Fails if the file cannot be read, is empty or larger than 4 MB, is not UTF-8
+  /// (with line and column), or is not YAML (with line).
   static driver::Result<YamlFile> load(const std::filesystem::path& file);
 
-  /// Reads YAML from a text; `name` stands in for the file's name in messages.
-  /// `keys` notes what is asked of it.
+  /// Parses YAML from a text; `name` is used as the file name in messages. `keys`, if not null,
+  /// logs the requested keys.
   static driver::Result<YamlFile> parse(const std::string& text, const std::string& name,
                                         KeyLog* keys = nullptr);
 
-  /// Returns the outermost map.
+  /// Returns the root map.
   YamlMap& root() { return root_; }
 
-  /// Returns whether everything read so far was right. Call `YamlMap::finish` on each map before.
-  /// Warns the user of keys that have got another name, once in a process.
+  /// Returns the mistakes found so far as an error, or success. Call `YamlMap::finish` on each map
+  /// before. Warns the user of renamed keys, once per process.
   driver::Result<void> finish() const;
 
-  /// Returns what the user is warned of, a sentence each.
+  /// Returns the warnings to the user, one sentence each.
   const std::vector<std::string>& warnings() const noexcept { return mistakes_->warnings(); }
 
  private:

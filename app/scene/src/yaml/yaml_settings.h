@@ -12,8 +12,8 @@
 
 namespace thimble::scene {
 
-/// Answers an effect's questions from a map of a scene file; files are looked for in `folder`.
-/// Real-time: never from the servo thread.
+/// SettingsReader that reads a map of a scene file; files are relative to `folder`. Real-time:
+/// never from the servo thread.
 class YamlSettings final : public render::SettingsReader {
  public:
   YamlSettings(YamlMap map, std::filesystem::path folder)
@@ -30,7 +30,7 @@ class YamlSettings final : public render::SettingsReader {
             const std::function<void(render::SettingsReader&)>& read) override;
   void reject(std::string_view key, const std::string& sentence) override;
 
-  /// Notes each key that nobody asked for.
+  /// Records each key that was not requested as a mistake.
   void finish() { map_.finish(); }
 
  private:

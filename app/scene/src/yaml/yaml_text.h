@@ -7,24 +7,24 @@
 
 namespace thimble::scene {
 
-/// A byte or character of a text that a YAML file cannot have at its place.
+/// Byte or character that is invalid at its position in a YAML file.
 struct TextFlaw {
-  int line = 0;          ///< From 1.
-  int column = 0;        ///< From 1, in characters.
-  std::string what;      ///< A sentence without a dot, with the remedy.
-  bool indents = false;  ///< It is in indentation, so that YAML sees another structure.
+  int line = 0;          ///< Line, from 1.
+  int column = 0;        ///< Column, from 1, in characters.
+  std::string what;      ///< Description with the fix; a sentence without a period.
+  bool indents = false;  ///< True if it is in indentation, so that YAML sees another structure.
 };
 
-/// Returns the first byte of a text that is not UTF-8 [RFC 3629], as in files saved as Latin-1;
-/// nothing if there is none, or if the text is UTF-16 or UTF-32, which the parser reads too.
+/// Returns the first byte of a text that is not UTF-8 [RFC 3629], as in files saved as Latin-1.
+/// Empty if there is none, or if the text is UTF-16 or UTF-32, which the parser supports too.
 /// Real-time: never from the servo thread.
 std::optional<TextFlaw> find_invalid_utf8(std::string_view text);
 
-/// Returns blanks that YAML does not take for blanks, where it expects some: tabs in indentation,
-/// and no-break and other special spaces in indentation, beside `:`, `-`, `,`, brackets and `#`,
-/// and at the ends of lines, outside of quotes and comments. The first hundred are enough. They are
-/// no mistake by themselves: texts in several lines may hold them. `text` is UTF-8. Real-time:
-/// never from the servo thread.
+/// Returns whitespace that YAML does not accept as such where it expects some. These are tabs in
+/// indentation, and no-break and other special spaces in indentation, next to `:`, `-`, `,`,
+/// brackets and `#`, and at the ends of lines, outside of quotes and comments. At most the first
+/// hundred are returned. They are not mistakes by themselves: texts with several lines may contain
+/// them. `text` is UTF-8. Real-time: never from the servo thread.
 std::vector<TextFlaw> find_misplaced_blanks(std::string_view text);
 
 }  // namespace thimble::scene

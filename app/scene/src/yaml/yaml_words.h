@@ -11,19 +11,19 @@
 
 namespace thimble::scene {
 
-// What the reader of maps says of a value: what it expected, what it found, and in which line.
-// Nothing here throws. Real-time: never from the servo thread.
+// Texts for messages about a value: expected, found, and line. No exceptions are thrown. Real-time:
+// none of these functions may be called from the servo thread.
 
-/// Returns the line (from 1) of a node, or `fallback` if the parser knows none.
+/// Returns the line (from 1) of a node, or `fallback` if it is unknown.
 int line_of(const YAML::Node& node, int fallback);
 
-/// Returns a text in quotes, cut to what fits into a line and without control characters.
+/// Returns a text in quotes, shortened to fit into a line and without control characters.
 std::string in_quotes(std::string_view text);
 
-/// Returns what a node is, in words: "a map", or its text in quotes.
+/// Returns a description of a node: "a map", or its text in quotes.
 std::string found(const YAML::Node& node);
 
-/// Returns a number as a person writes it.
+/// Returns a number in its usual notation.
 std::string in_words(double number);
 
 /// Returns "a number from `min` to `max` `unit`".
@@ -38,17 +38,17 @@ std::string whole_in_words(std::string_view unit, std::int64_t min, std::int64_t
 /// Returns the words of a choice: "a, b or c".
 std::string any_of(const std::vector<std::string_view>& choices);
 
-/// Returns whether a node is a scalar that stood without quotes.
+/// Returns whether a node is a scalar without quotes.
 bool is_plain_scalar(const YAML::Node& node);
 
-/// Returns the number that a node holds; nothing if it is none.
+/// Returns the number in a node; empty if it is not a number.
 std::optional<double> to_number(const YAML::Node& node);
 
-/// Returns the whole number that a node holds, written as digits or as a decimal number without a
-/// fraction; nothing if it is none or beyond 2^53.
+/// Returns the integer in a node, written as digits or as a decimal number without a fraction;
+/// empty if it is not an integer or is beyond 2^53.
 std::optional<std::int64_t> to_whole(const YAML::Node& node);
 
-/// Returns which of the words a node holds; nothing if it is none of them.
+/// Returns the index of the word in a node; empty if it is none of `choices`.
 std::optional<std::size_t> choice_of(const YAML::Node& node,
                                      const std::vector<std::string_view>& choices);
 

@@ -22,36 +22,36 @@ namespace thimble::session {
 
 /// Description of the run that an event log belongs to.
 struct LoggedRun {
-  std::string name = {};                  ///< Stands in every line.
-  std::string what = {};                  ///< What is run with which arm, for the first line.
-  std::string limits = {};                ///< That are in force, in a sentence; may be empty.
-  std::vector<std::string> objects = {};  ///< By the numbers of TickRecord::object.
+  std::string name = {};                  ///< Name of the run, in every line.
+  std::string what = {};                  ///< Scene and arm, for the first line.
+  std::string limits = {};                ///< Active limits in one sentence; may be empty.
+  std::vector<std::string> objects = {};  ///< Names of the objects, by TickRecord::object.
   std::int64_t period_ns = 1'000'000;
-  /// Of the loop's clock at the moment of making it; events in real time stand in the log with the
-  /// time at which they happened.
+  /// Time of the loop's clock at construction, ns; used to log events in real time with the time at
+  /// which they occurred.
   std::int64_t now_ns = 0;
-  /// Whether the loop runs in real time; a thread of its own writes then, and between two ticks
-  /// otherwise, where a tick lasts as long as it computes.
+  /// True if the loop runs in real time. A separate thread then writes; otherwise the log is
+  /// written between two ticks, which last as long as they compute.
   bool real_time = false;
 };
 
-/// The log of what happens in a run: the arm opened, forces let through and off, faults, what the
-/// gate did. The servo leaves events in a ring and never writes; where the ring is full, events are
-/// counted and the log says how many it lacks.
+/// Log of the events of a run: arm opened, forces enabled and disabled, faults, actions of the
+/// gate. The servo puts events into a ring and never writes. If the ring is full, further events
+/// are counted and the log reports their number.
 class EventLog final : public TickObserver {
  public:
-  /// Room for events on their way. [chosen: a second in which a tick of 1 kHz leaves four]
+  /// Capacity of the ring, events. [chosen: a second in which a tick of 1 kHz produces four]
   static constexpr std::size_t kRingEvents = 4096;
 
-  /// Begins the log of a run on `device`, which must outlive it.
-  /// Real-time: never from the servo thread.
+  /// Starts the log of a run on `device`, which must outlive it. Real-time: never from the servo
+  /// thread.
   EventLog(LoggedRun run, const driver::Device& device);
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
-  /// Writes what is left and how the run ended. After the last tick.
+  /// Writes the remaining events and the end of the run. Call after the last tick.
   ~EventLog() override;
 
-  /// Takes one tick. Real-time: safe in a run in real time; in virtual time it writes.
+  /// Receives one tick. Real-time: safe in a run in real time; writes in virtual time.
   void take(const driver::TickRecord& record) noexcept override;
 
  private:
@@ -61,12 +61,12 @@ class EventLog final : public TickObserver {
   LoggedRun run_;
   const driver::Device& device_;
   std::shared_ptr<spdlog::logger> log_;
-  std::chrono::system_clock::time_point clock_began_;  // when the loop's clock showed zero
+  std::chrono::system_clock::time_point clock_began_;  // Time at which the loop's clock was zero.
   DeviceCounters counters_;
   SpscRing<TickEvent> ring_{kRingEvents};
   EventWatch watch_;
   std::uint64_t lost_told_ = 0;
-  // Notices that the user got on the console: that a stage acts, and that it changes the force.
+  // Notices printed on the console so far: that a stage acts, and that it changes the force.
   std::array<std::array<bool, kActivities>, 2> given_{};
   std::atomic<bool> stop_{false};
   std::thread writer_;

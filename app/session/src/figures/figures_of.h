@@ -8,8 +8,8 @@
 
 namespace thimble::session {
 
-/// Returns the figures of a run, of one of its arms (from 0): `end` is why it ended, `grant` what
-/// the kernel granted the servo's thread. Looks through the trace for contacts that were lost.
+/// Returns the figures of one arm (from 0) of a run. `end`: end reason of the run; `grant`:
+/// real-time properties granted to the servo's thread. Searches the trace for lost contacts.
 /// Real-time: never from the servo thread.
 RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& records,
                       driver::ServoEnd end, const driver::RealTimeGrant& grant);

@@ -13,30 +13,30 @@
 
 namespace thimble::session {
 
-/// Where the objects of a run that move have been, often enough for a film of it. All memory is
-/// there and touched when it is made.
+/// Poses of the moving objects of a run, at a rate sufficient for an animation. All memory is
+/// allocated and touched by the constructor.
 class THIMBLE_EXPORT BodyTrace final : public session::TickObserver {
  public:
-  /// Between two pictures, at least, ns: a screen's 60 a second.
+  /// Smallest time between two frames, ns: 60 a second.
   static constexpr std::int64_t kStep_ns = 16'000'000;
-  /// Pictures of a run whose end nobody knows: 5 minutes. [chosen]
+  /// Number of frames for a run of unknown duration: 5 minutes. [chosen]
   static constexpr std::size_t kFramesOfEndless = 18'750;
 
-  /// Looks at the objects of `touch` that `moving` lists; both must outlive it. `duration_ns` is
-  /// that of the run; 0: unknown. Real-time: never from the servo thread.
+  /// Traces the objects of `touch` listed in `moving`; both must outlive it. `duration_ns` is that
+  /// of the run; 0: unknown. Real-time: never from the servo thread.
   BodyTrace(const render::SceneTouch& touch, std::span<const std::size_t> moving,
             std::int64_t duration_ns);
 
-  /// Keeps the poses after a tick if it is time for a picture. Once there is no room for more, only
-  /// every other picture stays, and from then on they are taken half as often.
-  /// Real-time: safe; in the tick without room it moves its memory once, some 100 us of a long run.
+  /// Stores the poses after a tick if a frame is due. When memory is full, every other frame is
+  /// dropped, and later frames are taken half as often. Real-time: safe; in the tick without room
+  /// it moves its memory once, some 100 us for a long run.
   void take(const driver::TickRecord& tick) noexcept override;
 
-  /// Returns the objects that it looks at.
+  /// Returns the traced objects.
   std::span<const std::size_t> moving() const noexcept { return moving_; }
-  /// Returns when the pictures were taken, ns on the loop's clock.
+  /// Returns the times of the frames, ns on the loop's clock.
   std::span<const std::int64_t> times_ns() const noexcept { return {times_ns_.data(), frames_}; }
-  /// Returns the poses: of each picture as many as `moving` has.
+  /// Returns the poses, `moving().size()` for each frame.
   std::span<const render::BodyPose> poses() const noexcept {
     return {poses_.data(), frames_ * moving_.size()};
   }

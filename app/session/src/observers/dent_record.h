@@ -10,23 +10,24 @@
 
 namespace thimble::session {
 
-/// What is drawn of a scene's dents: the newest patch for whoever shows the run, and the one of the
-/// deepest touch for its report.
+/// Drawn dents of a scene: the newest patch for viewers, and the patch of the deepest touch for the
+/// report.
 class DentRecord final : public TickObserver {
  public:
-  /// Lets a patch be drawn about 60 times a second of loops with this period (ns): that is as fast
-  /// as pictures change. `touch` must outlive it. Real-time: never from the servo thread.
+  /// Draws a patch about 60 times a second, the rate of pictures, for loops with this period (ns).
+  /// `touch` must outlive it. Real-time: never from the servo thread.
   DentRecord(render::SceneTouch& touch, std::int64_t period_ns);
 
-  /// Returns every how many ticks a loop with this period (ns) has its dents drawn.
+  /// Returns the number of ticks between two drawings for a loop with this period (ns).
   static std::uint64_t ticks_between(std::int64_t period_ns) noexcept;
 
-  /// Draws if it is time. Real-time: safe; some 10 us in one tick of 16.
+  /// Draws if a drawing is due. Real-time: safe; some 10 us in one tick of 16.
   void take(const driver::TickRecord& tick) noexcept override;
 
-  /// Returns what was drawn last.
+  /// Returns the last drawing.
   const DrawnDent& drawn() const noexcept { return drawn_; }
-  /// Returns the patch of the deepest touch; no triangles if nothing was dented. After the run.
+  /// Returns the patch of the deepest touch; no triangles if nothing was dented. Call after the
+  /// run.
   const render::BodyPatch& deepest() const noexcept { return deepest_; }
 
  private:

@@ -6,13 +6,13 @@
 
 namespace thimble::session {
 
-/// The newest tick of a run, for any number of readers on other threads.
+/// Newest tick of a run, for any number of readers on other threads.
 class LatestTick final : public TickObserver {
  public:
-  /// Takes one tick. Real-time: safe.
+  /// Receives one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override { snapshot_.store(record); }
 
-  /// Returns the tick; any thread may load it.
+  /// Returns the newest tick; any thread may load it.
   const driver::Snapshot<driver::TickRecord>& snapshot() const noexcept { return snapshot_; }
 
  private:

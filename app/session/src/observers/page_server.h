@@ -6,14 +6,15 @@
 
 namespace thimble::session {
 
-/// The loader of pages in virtual time, in which a tick lasts as long as it computes: no page is
-/// late, and every run is the same. In real time threads load them.
+/// Loads disk pages in virtual time, in which a tick lasts as long as it computes. No page is late,
+/// and every run is the same. In real time separate threads load pages.
 class PageServer final : public TickObserver {
  public:
-  /// Serves the objects, which must outlive it. Real-time: never from the servo thread.
+  /// Constructs a loader for the objects, which must outlive it. Real-time: never from the servo
+  /// thread.
   explicit PageServer(scene::SceneObjects& objects) noexcept : objects_(objects) {}
 
-  /// Loads what the tick has asked for. Real-time: no; in virtual time alone.
+  /// Loads the pages requested in the tick. Real-time: no; in virtual time only.
   void take(const driver::TickRecord&) noexcept override { objects_.serve_pages(); }
 
  private:

@@ -10,15 +10,15 @@
 
 namespace thimble::session {
 
-/// Where the objects of a scene that move are after the last tick.
+/// Poses of the moving objects of a scene after the last tick.
 class PoseRecord final : public TickObserver {
  public:
-  /// Looks at the objects of `touch` whose numbers `moving` lists, at most ScenePoses::kMost. Both
-  /// must outlive it. Real-time: never from the servo thread.
+  /// Records the objects of `touch` listed in `moving`, at most ScenePoses::kMost. Both must
+  /// outlive it. Real-time: never from the servo thread.
   PoseRecord(const render::SceneTouch& touch, std::span<const std::size_t> moving) noexcept
       : touch_(touch), moving_(moving) {}
 
-  /// Takes one tick. Real-time: safe.
+  /// Receives one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override {
     poses_.tick = record.tick;
     poses_.count = static_cast<std::uint32_t>(moving_.size());
@@ -28,7 +28,7 @@ class PoseRecord final : public TickObserver {
     }
   }
 
-  /// Returns the poses. On the servo's thread, or after the run.
+  /// Returns the poses. Call on the servo's thread, or after the run.
   const ScenePoses& now() const noexcept { return poses_; }
 
  private:

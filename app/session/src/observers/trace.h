@@ -10,27 +10,26 @@
 
 namespace thimble::session {
 
-/// The ticks of a run, for pictures and files. All memory is there and touched when it is made, so
-/// that no page is missing later.
+/// Ticks of a run, for plots and files. All memory is allocated and touched by the constructor, so
+/// that no page fault occurs later.
 class Trace final : public TickObserver {
  public:
   static constexpr std::size_t kDefaultRowsMax = 1'000'000;
 
-  /// Makes room for a run of `expected_ticks` (0: unknown) in at most `rows_max` rows (> 0),
-  /// keeping every n-th tick with the smallest n that fits. Real-time: never from the servo thread.
+  /// Allocates memory for a run of `expected_ticks` (0: unknown) in at most `rows_max` rows (> 0).
+  /// Keeps every n-th tick with the smallest n that fits. Real-time: never from the servo thread.
   explicit Trace(std::uint64_t expected_ticks, std::size_t rows_max = kDefaultRowsMax);
 
-  /// Keeps a record if its turn has come and there is room. Real-time: safe.
+  /// Stores a record if it is an n-th one and there is room. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override;
 
-  /// Returns the records kept, oldest first.
+  /// Returns the stored records, oldest first.
   std::span<const driver::TickRecord> rows() const noexcept { return {rows_.data(), kept_}; }
 
-  /// Returns n where every n-th tick is kept.
+  /// Returns n if every n-th tick is kept.
   std::uint64_t stride() const noexcept { return stride_; }
 
-  /// Returns how many records had their turn but found no room, because the run went on for longer
-  /// than expected.
+  /// Returns the number of records that did not fit because the run was longer than expected.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:

@@ -20,7 +20,7 @@ class H5Handle {
     if (id_ >= 0) close_(id_);
   }
 
-  /// Returns whether the library gave a handle.
+  /// Returns whether the handle is valid.
   bool good() const noexcept { return id_ >= 0; }
   hid_t id() const noexcept { return id_; }
 
@@ -29,17 +29,17 @@ class H5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Returns the lock that whatever uses the library in this process holds, and whatever forks a
-/// child that uses it: of a lock of the library's own that another thread holds at that moment the
-/// child would wait for ever.
+/// Returns the lock for the HDF5 library. All code of this process that uses the library, or forks
+/// a child that uses it, must hold it. Otherwise a child could inherit an internal lock of the
+/// library, held by another thread, and wait forever.
 inline std::mutex& hdf5_mutex() noexcept {
   static std::mutex mutex;
   return mutex;
 }
 
-/// Keeps the library from printing its own stack of errors: Thimble says what happened. Before
-/// anything else of the library: then it does not tidy up at the program's end either, which on a
-/// full disk ends in a crash (HDF5 1.10); every handle here has an owner that closes it.
+/// Prevents the library from printing its error stack; Thimble reports errors itself. Call it
+/// before any other function of the library. It also disables the library's cleanup at exit, which
+/// crashes on a full disk (HDF5 1.10); every handle here has an owner that closes it.
 inline void silence_hdf5() noexcept {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

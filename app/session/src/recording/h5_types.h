@@ -5,7 +5,7 @@
 
 namespace thimble::session {
 
-/// Returns how the numbers of a column lie in memory. Real-time: never from the servo thread.
+/// Returns the type in memory of a column's numbers. Real-time: never from the servo thread.
 inline hid_t type_in_memory(const RecordingColumn& column) {
   switch (column.type) {
     case RecordingColumn::Type::kU8:
@@ -28,7 +28,7 @@ inline hid_t type_in_memory(const RecordingColumn& column) {
   return H5I_INVALID_HID;
 }
 
-/// The version of a recording's layout; readers refuse others.
+/// Version of the layout of recordings; readers reject others.
 inline constexpr int kRecordingFormat = 1;
 
 }  // namespace thimble::session

@@ -14,40 +14,39 @@
 
 namespace thimble::session {
 
-/// Number of ticks of a recording.
+/// Sizes of a recording, ticks.
 struct RecordingSize {
-  std::uint64_t rows_max = 1;  ///< Ticks beyond them are left out.
-  /// Room that the file begins with; it doubles whenever it is full. Not all is laid out at once:
-  /// file systems without holes (FAT, exFAT) would need the space of a whole day. [chosen: two
-  /// minutes at 1 kHz, 40 MB]
+  std::uint64_t rows_max = 1;  ///< Largest number of ticks; further ones are omitted.
+  /// Initial capacity of the file; doubled whenever it is full. The maximum is not allocated at
+  /// once, because file systems without sparse files (FAT, exFAT) would need the space of a whole
+  /// day. [chosen: two minutes at 1 kHz, 40 MB]
   std::uint64_t room = std::uint64_t{1} << 17;
 };
 
-/// Writes a recording: an HDF5 file with one data set per column (recording_columns.cpp), its unit
-/// and meaning as attributes, and what the run was.
+/// Writes a recording: an HDF5 file with one data set per column (recording_columns.cpp), with unit
+/// and meaning as attributes, and the description of the run.
 ///
-/// The file has its name from the first tick on, and can be opened at any moment, however this
-/// process ends: what is lost is what was not yet handed over. It does not outlive a power cut
-/// within the last seconds, as no file does that is not synchronised. Real-time: never from the
-/// servo thread.
+/// The file has its name from the first tick on and can be opened at any time, however this process
+/// ends. Only ticks not yet passed to `append` are lost. As any unsynchronised file, it may lose
+/// the last seconds before a power failure. Real-time: never from the servo thread.
 class RecordingFile {
  public:
-  /// Makes the file. `replace`: a recording of that name is replaced; other files never are. The
-  /// error says what could not be written and where.
+  /// Creates the file. With `replace`, an existing recording of that name is replaced; other files
+  /// never are. The error says what could not be written and where.
   static driver::Result<RecordingFile> create(const std::filesystem::path& path,
                                               const RecordingInfo& info, const RecordingSize& size,
                                               bool replace = false);
 
-  /// Adds ticks. After an error the file holds what it held before.
+  /// Adds ticks. After an error the file has its previous contents.
   driver::Result<void> append(std::span<const driver::TickRecord> ticks);
 
-  /// Makes the file as short as the run was. It is marked as complete if `complete` and no tick was
-  /// left out. The error says what could not be written.
+  /// Truncates the file to the length of the run. It is marked complete if `complete` is true and
+  /// no tick was omitted. The error says what could not be written.
   driver::Result<void> finish(bool complete);
 
   std::uint64_t rows() const noexcept { return rows_; }
   std::uint64_t rows_max() const noexcept { return rows_max_; }
-  /// Returns how many ticks were left out because `rows_max` was reached.
+  /// Returns the number of ticks omitted because `rows_max` was reached.
   std::uint64_t left_out() const noexcept { return left_out_; }
   const std::filesystem::path& path() const noexcept { return path_; }
 
@@ -64,9 +63,9 @@ class RecordingFile {
   std::uint64_t rows_max_;
   std::uint64_t rows_ = 0, left_out_ = 0;
   RecordingLayout layout_;
-  std::future<driver::Result<RecordingLayout>> making_;  // the next one
-  std::optional<RecordingLayout> larger_;                // the same, once it is laid out
-  std::uint64_t copied_ = 0;                             // rows in it
+  std::future<driver::Result<RecordingLayout>> making_;  // Next, larger layout in preparation.
+  std::optional<RecordingLayout> larger_;                // The larger layout once it is complete.
+  std::uint64_t copied_ = 0;                             // Rows copied to it.
 };
 
 }  // namespace thimble::session

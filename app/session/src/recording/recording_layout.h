@@ -13,22 +13,22 @@
 
 namespace thimble::session {
 
-/// Recordings as outputs: they are measurements, and can be read by their owner only.
+/// Output kind of recordings: measurements that only their owner may read.
 THIMBLE_EXPORT extern const output::OutputKind kRecordingOutput;
 
 /// One HDF5 file of a recording, with room for a fixed number of ticks.
 ///
-/// The whole file is laid out and closed by the HDF5 library before it gets its name; ticks are
-/// then written straight to the places of the data sets, last of all the number of rows. So the
-/// file can be opened at any moment, however this process ends. Real-time: never from the servo
-/// thread.
+/// The HDF5 library creates and closes the whole file before the file gets its name. Ticks are then
+/// written directly to the positions of the data sets, the number of rows last. So the file can be
+/// opened at any time, however this process ends. Real-time: never from the servo thread.
 class RecordingLayout {
  public:
-  /// Lays out a recording with room for `room` ticks (> 0), under the name of the part.
+  /// Creates a recording for `room` ticks (> 0), under a temporary name.
   static driver::Result<RecordingLayout> create(output::OutputFile file, const RecordingInfo& info,
                                                 std::uint64_t room);
 
-  /// Writes ticks from row `row` on. They count once `set_rows` names them. Precondition: room.
+  /// Writes ticks from row `row` on. They become valid with `set_rows`. Precondition: there is
+  /// room.
   driver::Result<void> write_ticks(std::span<const driver::TickRecord> ticks, std::uint64_t row);
   /// Copies rows of another layout to the same rows of this one.
   driver::Result<void> copy_rows(const RecordingLayout& from, std::uint64_t begin,
@@ -47,9 +47,9 @@ class RecordingLayout {
 
   output::OutputFile file_;
   std::uint64_t room_;
-  std::vector<std::uint64_t> places_;  // in the file, of each column
+  std::vector<std::uint64_t> places_;  // Position of each column in the file.
   std::uint64_t rows_place_ = 0, complete_place_ = 0;
-  std::vector<unsigned char> column_;  // of the ticks being written
+  std::vector<unsigned char> column_;  // Column of the ticks being written.
 };
 
 }  // namespace thimble::session

@@ -12,14 +12,15 @@
 
 namespace thimble::session {
 
-/// The recordings of a run, which begin and end while the servo runs: it hands each tick to
-/// whatever recorder there is, and waits for nobody.
+/// Recordings of a run, which start and end while the servo runs. The servo passes each tick to the
+/// current recorder, if any, and never waits.
 class RecordingSwitch final : public TickObserver {
  public:
-  /// Takes one tick. Real-time: safe; of a recording begun without a thread no, it writes.
+  /// Receives one tick. Real-time: safe; not for a recording started without a thread, because it
+  /// writes.
   void take(const driver::TickRecord& tick) noexcept override {
     if (!on()) return;
-    // Told before the recorder is looked at, so that nobody takes it away meanwhile.
+    // Set before the recorder is read, so that another thread does not remove it meanwhile.
     busy_.store(true, std::memory_order_seq_cst);
     if (Recorder* recorder = current_.load(std::memory_order_seq_cst)) {
       (*recorder)(change_ != nullptr && change_->any() ? changed(tick) : tick);
@@ -28,13 +29,13 @@ class RecordingSwitch final : public TickObserver {
     busy_.store(false, std::memory_order_release);
   }
 
-  /// Records with each tick what was done to its law; `change` must outlive the run. Real-time:
+  /// Records the changes of the force law with each tick; `change` must outlive the run. Real-time:
   /// never from the servo thread.
   void watch(const LawChange& change) noexcept { change_ = &change; }
 
-  /// Begins a recording of at most `ticks_max` ticks; ends the one before. With `by_thread` a
-  /// thread writes, otherwise the servo's own, for virtual time. `replace` as for Recorder::open.
-  /// Real-time: never from the servo thread.
+  /// Starts a recording of at most `ticks_max` ticks; ends the previous one. With `by_thread` a
+  /// separate thread writes, otherwise the servo's, for virtual time. `replace` as for
+  /// Recorder::open. Real-time: never from the servo thread.
   driver::Result<void> begin(const std::filesystem::path& path, const RecordingInfo& info,
                              std::uint64_t ticks_max, bool by_thread, bool replace = false);
   /// Ends the recording, if there is one. The error is that of Recorder::finish.
@@ -43,9 +44,9 @@ class RecordingSwitch final : public TickObserver {
 
   /// Returns whether ticks are recorded. Real-time: safe.
   bool on() const noexcept { return current_.load(std::memory_order_relaxed) != nullptr; }
-  /// Returns how many ticks the recording lacks. On the thread that begins and ends.
+  /// Returns the number of ticks missing in the recording. Call on the thread that begins and ends.
   std::uint64_t dropped() const noexcept { return recorder_ ? recorder_->dropped() : 0; }
-  /// Returns the recorder; null if there is none. On the thread that begins and ends.
+  /// Returns the recorder; null if there is none. Call on the thread that begins and ends.
   Recorder* recorder() noexcept { return recorder_.get(); }
 
  private:
@@ -60,7 +61,7 @@ class RecordingSwitch final : public TickObserver {
   std::unique_ptr<Recorder> recorder_;
   std::atomic<Recorder*> current_{nullptr};
   std::atomic<bool> busy_{false};
-  bool by_thread_ = false;  // of the current one; written before it is shown
+  bool by_thread_ = false;  // True if a thread writes the current recording; set before `current_`.
 };
 
 }  // namespace thimble::session

@@ -10,23 +10,24 @@
 
 namespace thimble::session {
 
-/// Which topics of a bag are meant.
+/// Topics of a bag to use.
 struct BagTopics {
-  std::string pose;    ///< Empty: the only one, or /pose.
-  std::string wrench;  ///< Empty: the only one, or /wrench, where the bag has one.
-  bag::BagAxes axes = bag::BagAxes::kPlain;  ///< Of both.
+  std::string pose;  ///< Topic of poses; empty: the only one, or /pose.
+  /// Topic of forces; empty: the only one, or /wrench if the bag has one.
+  std::string wrench;
+  bag::BagAxes axes = bag::BagAxes::kPlain;  ///< Axes of both topics.
 };
 
-/// A bag whose positions touched a scene.
+/// Result of the replay of a bag.
 struct BagReplay {
   TrajectoryReplay replay;
-  bool has_forces = false;  ///< The bag had forces to compare with.
-  double error_max = 0;     ///< Of all differences from them, N.
+  bool has_forces = false;  ///< True if the bag has forces to compare with.
+  double error_max = 0;     ///< Largest difference from these forces, N.
 };
 
-/// Lets a probe go along the positions of a ROS bag and touch a scene, without arm or hand, and
-/// compares with the bag's forces, taken linearly between its messages. The error says what to
-/// mend. Real-time: never from the servo thread.
+/// Moves a probe along the positions of a ROS bag through a scene, without arm or hand, and
+/// compares the forces with those of the bag, interpolated linearly between its messages. The error
+/// says how to fix the problem. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<BagReplay> replay_bag(const std::filesystem::path& bag,
                                                     const BagTopics& topics,
                                                     const std::filesystem::path& scene_file);

@@ -11,30 +11,30 @@
 
 namespace thimble::session {
 
-/// Keeps what a replay must be shown with, and what its ticks do not tell: where the objects moved
-/// and how they were dented. Real-time: never from the servo thread.
+/// Stores the data for showing a replay that its ticks do not contain: poses and dents of the
+/// objects. Real-time: never from the servo thread.
 class THIMBLE_EXPORT ReplayFilm : public ReplayWatch {
  public:
   void begin(const scene::Scene& scene,
              std::shared_ptr<const scene::SceneObjects> objects) override;
   void take(const driver::TickRecord& tick) override;
 
-  /// Returns the scene that is touched. Precondition of both: the replay has begun.
+  /// Returns the scene. Precondition, also of `objects`: the replay has started.
   const scene::Scene& scene() const { return scene_; }
-  /// Returns its objects, as the last tick left them.
+  /// Returns the objects of the scene after the last tick.
   const scene::SceneObjects& objects() const { return *objects_; }
-  /// Returns which of the scene's arms a recording is of.
+  /// Returns the number of the scene's arm to which a recording belongs.
   std::size_t arm_of(const RecordingInfo& info) const;
-  /// Returns where the objects were that move; null if none does.
+  /// Returns the poses of moving objects; null if none moves.
   const BodyTrace* bodies() const { return bodies_.get(); }
-  /// Returns how objects were dented; null if none can be.
+  /// Returns the dents of objects; null if none can dent.
   const DentTrace* dents() const { return dents_.get(); }
 
  private:
   scene::Scene scene_;
   std::shared_ptr<const scene::SceneObjects> objects_;
   std::unique_ptr<BodyTrace> bodies_;
-  std::unique_ptr<DentRecord> dent_now_;  // null if nothing dents, as the next
+  std::unique_ptr<DentRecord> dent_now_;  // Null if nothing dents; also dents_.
   std::unique_ptr<DentTrace> dents_;
 };
 

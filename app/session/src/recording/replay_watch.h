@@ -14,18 +14,18 @@
 
 namespace thimble::session {
 
-/// Looks on while recorded hands touch a scene again. Real-time: never from the servo thread.
+/// Observer of a replay. Real-time: never from the servo thread.
 class ReplayWatch {
  public:
   virtual ~ReplayWatch() = default;
-  /// Takes the scene before the first tick; `objects` may be kept after the last one.
+  /// Receives the scene before the first tick; `objects` may be kept after the last one.
   virtual void begin(const scene::Scene& scene,
                      std::shared_ptr<const scene::SceneObjects> objects) = 0;
-  /// Takes one tick of the scene's first arm, once the bodies of the scene have moved.
+  /// Receives one tick of the scene's first arm, after the bodies of the scene have moved.
   virtual void take(const driver::TickRecord& tick) = 0;
 };
 
-/// Does what session::replay_together does while `watch` looks on.
+/// Does the same as session::replay_together and notifies `watch`.
 THIMBLE_EXPORT driver::Result<std::vector<Replay>> replay_together(
     std::span<const Recording> recordings, const std::string& scene, ReplayWatch* watch);
 

@@ -17,22 +17,21 @@
 
 namespace thimble::session {
 
-/// The force law of one arm of a recorded run: the scene's, its settings turned and its force faded
-/// as the recording says, and the weight of the arm carried. Real-time: never from the servo
-/// thread.
+/// Force law of one arm of a recorded run: that of the scene, with settings changed and force faded
+/// as recorded, plus gravity compensation. Real-time: never from the servo thread.
 class ReplayedLaw final : private KnobRequests {
  public:
-  /// Takes what it asks, all of which must outlive it, and the arm's own file.
+  /// Constructs the law. All arguments must outlive it; `arm` is the arm's own file.
   ReplayedLaw(const Recording& recording, const scene::Scene& scene, const scene::ArmFile& arm,
               render::SceneTouch& touch);
 
-  /// Returns the answer of the scene to a state in tick `then` of the recording.
+  /// Returns the command of the scene for a state in tick `then` of the recording.
   driver::ForceCommand operator()(const driver::DeviceState& state, const driver::TickRecord& then);
-  /// Takes the tick that came of it.
+  /// Stores the resulting tick.
   void take(const driver::TickRecord& now) { last_ = now; }
 
-  /// Returns what the arm carries in a state, N in the world: part of every force that is asked
-  /// for.
+  /// Returns the force of gravity compensation in a state, N in the world: part of every requested
+  /// force.
   Eigen::Vector3d carried(const driver::DeviceState& state) const;
 
  private:
@@ -42,12 +41,12 @@ class ReplayedLaw final : private KnobRequests {
   void store_knob(std::size_t, double) noexcept override {}
 
   render::SceneTouch& touch_;
-  std::optional<LiveKnobs> knobs_;  // if any was turned
+  std::optional<LiveKnobs> knobs_;  // Set if any knob was turned.
   std::vector<std::optional<double>> wanted_;
   bool turning_ = false;
   FeltTick last_;
   double weight_ = 0;                        // N
-  std::optional<scene::LinkGravity> links_;  // if they are carried
+  std::optional<scene::LinkGravity> links_;  // Set if links are compensated.
 };
 
 }  // namespace thimble::session

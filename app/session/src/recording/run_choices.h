@@ -7,19 +7,19 @@
 
 namespace thimble::session {
 
-/// What a run was asked for beyond scene, arm and seed, as far as it changes what the scene
-/// answers: RecordingInfo::options.
+/// Options of a run, in addition to scene, arm and seed, that change its result:
+/// RecordingInfo::options.
 struct RunChoices {
-  std::string quality = "normal";     ///< One of scene::kQualityNames.
-  std::optional<double> budget = {};  ///< ns per tick, of "auto".
-  double rate_factor = 1;             ///< Of the loop, over the scene's.
-  bool adjusted = false;              ///< A program changed the scene after it was read.
+  std::string quality = "normal";     ///< Quality, one of scene::kQualityNames.
+  std::optional<double> budget = {};  ///< Time per tick for "auto", ns.
+  double rate_factor = 1;             ///< Factor on the loop rate of the scene.
+  bool adjusted = false;              ///< True if a program changed the scene after it was read.
 };
 
-/// Returns them as lines "key: value"; empty if all are as they begin.
+/// Returns the options as lines "key: value"; empty if all have their defaults.
 std::string text_of(const RunChoices& choices);
 
-/// Reads them back. The error names the line that this program does not know.
+/// Parses the options. The error names an unknown line.
 driver::Result<RunChoices> run_choices(const std::string& text);
 
 }  // namespace thimble::session

@@ -9,34 +9,36 @@
 
 namespace thimble::session {
 
-/// One line of a trajectory: where a probe was, and what it felt.
+/// Point of a trajectory: position of a probe and the force on it.
 struct TrajectoryPoint {
-  double time = 0;             ///< s
-  Eigen::Vector3d p{0, 0, 0};  ///< m, in the trajectory's frame.
-  Eigen::Vector3d f{0, 0, 0};  ///< On the probe, N, in the same frame; zero if the file has none.
+  double time = 0;             ///< Time, s.
+  Eigen::Vector3d p{0, 0, 0};  ///< Position in the trajectory's frame, m.
+  /// Force on the probe in the trajectory's frame, N; zero if the file has none.
+  Eigen::Vector3d f{0, 0, 0};
 };
 
-/// How the lines of a trajectory file are to be read: published ones differ.
+/// Format of the lines of a trajectory file; published files differ.
 struct TrajectoryForm {
-  std::string columns = "t x y z";  ///< t x y z fx fy fz in any order; - for one that is left out.
-  double metres = 1;                ///< Metres per unit of length.
-  double seconds = 1;               ///< Seconds per unit of time.
+  /// Columns: t x y z fx fy fz in any order; - for an ignored one.
+  std::string columns = "t x y z";
+  double metres = 1;   ///< Metres per unit of length.
+  double seconds = 1;  ///< Seconds per unit of time.
 
-  double farthest = 10;  ///< m; what is beyond is taken for a wrong unit.
+  double farthest = 10;  ///< Largest distance, m; a larger one indicates a wrong unit.
 
   /// Returns whether forces are among the columns.
   bool has_forces() const { return columns.find("fx") != std::string::npos; }
 };
 
-/// Reads a trajectory: one point a line, numbers apart by spaces, tabs, commas or semicolons; empty
-/// lines, and those that begin with # or %, are left out, and so is a first line of words. Times
-/// must grow; a line with the time of the one before is left out. The error names the line.
+/// Reads a trajectory: one point per line, numbers separated by spaces, tabs, commas or semicolons.
+/// Empty lines, lines that begin with # or %, and a first line of words are ignored. Times must
+/// increase; a line with the time of the previous one is ignored. The error names the line.
 /// Real-time: never from the servo thread.
 driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesystem::path& file,
                                                              const TrajectoryForm& form);
 
-/// Finds a point between two lines of a trajectory, linearly; before the first and after the last
-/// it is those. Precondition: it has a point. `hint` is where the last question fell.
+/// Returns a point of a trajectory by linear interpolation; before the first and after the last
+/// point, that point. Precondition: it has a point. `hint` is the position of the last query.
 TrajectoryPoint trajectory_at(const std::vector<TrajectoryPoint>& trajectory, double time,
                               std::size_t& hint);
 

@@ -5,22 +5,22 @@
 
 namespace thimble::session {
 
-/// Keeps this process alive where shared memory is cut short under it: reading a page that is gone
-/// raises SIGBUS. For as long as this lives, such a page of `memory` becomes a page of zeros, and
-/// `broken` tells. A SIGBUS from anywhere else ends the process as ever.
+/// Protects this process against SIGBUS when another process truncates its shared memory. During
+/// its lifetime a missing page of `memory` is replaced by zeros, and `broken` returns true. A
+/// SIGBUS from another address ends the process as usual.
 ///
-/// At most kMost of them live at a time; one more guards nothing.
+/// At most kMost guards are active at a time; a further one has no effect.
 class BusGuard {
  public:
   static constexpr std::size_t kMost = 16;
 
-  /// Guards whole pages of memory that was mapped. Real-time: never from the servo thread.
+  /// Guards whole pages of mapped memory. Real-time: never from the servo thread.
   explicit BusGuard(std::span<std::byte> memory);
   BusGuard(const BusGuard&) = delete;
   BusGuard& operator=(const BusGuard&) = delete;
   ~BusGuard();
 
-  /// Returns whether a page was gone. Real-time: safe.
+  /// Returns whether a page was missing. Real-time: safe.
   bool broken() const noexcept;
 
  private:

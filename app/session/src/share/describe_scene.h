@@ -11,15 +11,15 @@
 
 namespace thimble::session {
 
-/// Returns what a viewer needs to draw an arm. Real-time: never from the servo thread.
+/// Returns the description of an arm for drawing. Real-time: never from the servo thread.
 SharedScene::Arm describe_arm(const scene::ArmFile& arm, const std::string& device);
 
-/// Returns what viewers need to draw a loaded scene; the knobs are left out. `device` is
-/// "sim" or the name of the arm on the desk. Real-time: never from the servo thread.
+/// Returns the description of a loaded scene for drawing, without knobs. `device` is "sim" or the
+/// name of the real arm. Real-time: never from the servo thread.
 SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects& objects,
                            const std::string& device);
 
-/// As above, with all arms of the scene; `devices` are theirs, in order. Precondition: one each.
+/// As above, with all arms of the scene; `devices` has one entry per arm, in order.
 THIMBLE_EXPORT SharedScene describe_scene(const scene::Scene& scene,
                                           const scene::SceneObjects& objects,
                                           const std::vector<std::string>& devices);

@@ -18,20 +18,22 @@
 
 namespace thimble::session {
 
-/// The knobs of a run that the program which holds the session turns, without shared memory: a
-/// stage of the force law of the run (RunLaw), and an observer of its ticks. For scenes of one arm.
+/// Knobs of a run that the calling program changes, without shared memory: a stage of the force law
+/// of the run (RunLaw), and an observer of its ticks. For scenes with one arm.
 class HeldKnobs final : public TickObserver, public KnobRequests {
  public:
-  /// Finds the knobs of a scene. Both must outlive it. Real-time: never from the servo thread.
+  /// Collects the knobs of a scene. Both arguments must outlive it. Real-time: never from the servo
+  /// thread.
   HeldKnobs(const scene::Scene& scene, render::SceneTouch& touch);
 
-  /// Returns the knobs as they are now. Any thread. Real-time: never from the servo thread.
+  /// Returns the knobs with their current values. Any thread. Real-time: never from the servo
+  /// thread.
   std::vector<Knob> list() const;
-  /// Turns a knob: it is on its way from the next tick on, as quickly as LiveKnobs lets it. The
-  /// error is that of `find_knob`. Any thread. Real-time: never from the servo thread.
+  /// Changes a knob from the next tick on, as fast as LiveKnobs allows. The error is that of
+  /// `find_knob`. Any thread. Real-time: never from the servo thread.
   driver::Result<void> turn(const std::string& name, double value);
 
-  /// Moves the knobs by one tick, before the scene's force is found. Real-time: safe.
+  /// Advances the knobs by one tick, before the scene's force is computed. Real-time: safe.
   void turn_knobs(const driver::DeviceState& state) noexcept {
     if (asked_.load(std::memory_order_relaxed)) {
       turning_ = asked_.exchange(false, std::memory_order_acquire);
@@ -40,9 +42,9 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
     if (turning_) move_knobs(state.dt);
   }
 
-  /// Takes one tick. Real-time: safe.
+  /// Receives one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override { last_ = record; }
-  /// Returns what was done to the law in the last tick. Real-time: safe.
+  /// Returns the changes of the law in the last tick. Real-time: safe.
   const LawChange& change() const noexcept { return change_; }
   std::optional<double> knob_wanted(std::size_t knob) const noexcept override;
   void store_knob(std::size_t knob, double now) noexcept override {
@@ -59,7 +61,7 @@ class HeldKnobs final : public TickObserver, public KnobRequests {
   LiveKnobs knobs_;
   std::vector<SharedScene::Knob> described_;
   std::vector<State> states_;
-  std::atomic<bool> asked_{false};  // somebody has turned a knob since the last tick
+  std::atomic<bool> asked_{false};  // True if a knob was changed since the last tick.
   bool turning_ = false;
   LawChange change_;
   FeltTick last_;

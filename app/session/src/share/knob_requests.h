@@ -5,15 +5,15 @@
 
 namespace thimble::session {
 
-/// Who wants knobs turned, and is told how far they are; asked by the servo's thread.
+/// Source of requested knob values, which receives the current ones; called on the servo's thread.
 class KnobRequests {
  public:
   virtual ~KnobRequests() = default;
 
-  /// Returns what a knob shall be: within its bounds, or empty if nobody wants anything of it, or
-  /// nonsense. Real-time: must be safe.
+  /// Returns the requested value of a knob, within its bounds; empty if there is none or it is
+  /// invalid. Real-time: must be safe.
   virtual std::optional<double> knob_wanted(std::size_t knob) const noexcept = 0;
-  /// Takes what a knob is now. Real-time: must be safe.
+  /// Receives the current value of a knob. Real-time: must be safe.
   virtual void store_knob(std::size_t knob, double now) noexcept = 0;
 };
 

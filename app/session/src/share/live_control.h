@@ -18,47 +18,47 @@
 
 namespace thimble::session {
 
-/// Requests of viewers, carried out on the servo's thread: knobs, pause, and the hand that the
-/// mouse leads. Two stages of the force law of a shared run (RunLaw).
+/// Executes requests of viewers on the servo's thread: knobs, pause, and the target of the hand
+/// moved by the mouse. Two stages of the force law of a shared run (RunLaw).
 ///
-/// Pause in real time: the loop goes on, the force fades out within kFade, the simulated hand
-/// stands still; afterwards the force fades in again. In virtual time, paced or not, the loop
-/// itself stands still, and goes on by single ticks if that is asked for.
+/// Pause in real time: the loop continues, the force fades out within kFade, and the simulated hand
+/// stops. Afterwards the force fades in again. In virtual time, paced or not, the loop itself
+/// stops, and single ticks can be requested.
 class LiveControl final : public TickObserver {
  public:
-  static constexpr double kFade = 0.3;  ///< s; 0.02 N per tick of 1 kHz for 6 N. [chosen]
+  /// Duration of the fade, s; 0.02 N per tick of 1 kHz for 6 N. [chosen]
+  static constexpr double kFade = 0.3;
 
-  /// Takes what it controls, all of which must outlive it; `simulation` is null for a real arm.
-  /// Real-time: never from the servo thread.
+  /// Constructs a control of a scene. All arguments must outlive it; `simulation` is null for a
+  /// real arm. Real-time: never from the servo thread.
   LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
               scene::ArmSimulation* simulation, bool real_time);
-  /// Takes the simulation of an arm after the first, which stands still with the first one's. The
-  /// scene's knobs are for one arm, and are not turned then. Real-time: never from the servo
+  /// Adds the simulation of an arm after the first, which stops together with the first one. The
+  /// scene's knobs support one arm only and are then not changed. Real-time: never from the servo
   /// thread.
   void add_simulation(scene::ArmSimulation* simulation);
 
-  /// Returns the knobs, to be described. Real-time: never from the servo thread.
+  /// Returns the knobs, for their description. Real-time: never from the servo thread.
   const LiveKnobs& knobs() const { return knobs_; }
-  /// Joins it to what viewers see. Real-time: never from the servo thread.
-  /// `pace`: the clock whose speed viewers choose; null if it has none.
+  /// Connects it to the shared state of viewers. `pace`: the clock whose speed viewers choose; null
+  /// if there is none. Real-time: never from the servo thread.
   void join(SharedRun& shared, bool hand_by_mouse, const std::atomic<bool>& stop,
             SpeedClock* pace = nullptr);
 
-  /// Turns the knobs of the scene and moves the pause by one tick, before the scene's force is
-  /// found. Real-time: safe.
+  /// Advances knobs and pause by one tick, before the scene's force is computed. Real-time: safe.
   void begin_tick(const driver::DeviceState& state) noexcept;
   /// Reduces the force of the scene while the run is paused. Real-time: safe.
   void fade(driver::ForceCommand& command) const noexcept {
     if (gain_ < 1) scale(command, gain_);
   }
-  /// Returns the share of the scene's force that is felt: less than 1 while it is paused.
-  /// Real-time: safe.
+  /// Returns the fraction of the scene's force that is applied: below 1 while paused. Real-time:
+  /// safe.
   double gain() const noexcept { return gain_; }
 
-  /// Returns what was done to the law in the last tick. Real-time: safe.
+  /// Returns the changes of the law in the last tick. Real-time: safe.
   const LawChange& change() const noexcept { return change_; }
 
-  /// Takes one tick. Real-time: safe; in virtual time it waits while the run is paused.
+  /// Receives one tick. Real-time: safe; in virtual time it waits while the run is paused.
   void take(const driver::TickRecord& record) noexcept override;
 
  private:
@@ -66,14 +66,14 @@ class LiveControl final : public TickObserver {
   void wait_while_paused() noexcept;
 
   scene::ArmSimulation* simulation_;
-  std::vector<scene::ArmSimulation*> others_;  // of the arms after the first
+  std::vector<scene::ArmSimulation*> others_;  // Simulations of the arms after the first.
   bool real_time_;
   bool several_ = false;
   LiveKnobs knobs_;
   SharedRun* shared_ = nullptr;
   const std::atomic<bool>* stop_ = nullptr;
   SpeedClock* pace_ = nullptr;
-  std::uint64_t steps_ = 0;  // of those asked for, that were taken or let be
+  std::uint64_t steps_ = 0;  // Number of requested steps that were executed or dropped.
   bool hand_by_mouse_ = false;
   bool paused_ = false;
   double gain_ = 1;

@@ -13,26 +13,26 @@
 
 namespace thimble::session {
 
-/// What viewers see of a run: each tick, and where its objects are then, stored in the memory that
-/// is shared with them.
+/// Stores each tick of a run and the poses of its objects into the memory shared with viewers.
 class RunSharing final : public TickObserver {
  public:
-  /// An object whose vertices move for good.
+  /// Object with permanent deformation.
   struct Shaped {
     const render::BodyShape* shape;
-    std::size_t first = 0;        ///< Where its vertices begin in what is shared.
-    std::size_t first_split = 0;  ///< Where its splits do.
-    std::int32_t vertices = 0;    ///< That it has; those of all splits stored included.
+    std::size_t first = 0;        ///< Index of its first vertex in the shared table.
+    std::size_t first_split = 0;  ///< Index of its first split in the shared table.
+    std::int32_t vertices = 0;    ///< Number of vertices, including those of all stored splits.
   };
-  /// What moves in the scene; all of it must outlive the sharing, and is brought up to a tick by
-  /// observers that come before.
+  /// Moving parts of the scene. All must outlive the sharing; earlier observers update them in each
+  /// tick.
   struct Moving {
     const DrawnDent* dent = nullptr;    ///< Null if no object dents.
     const ScenePoses* poses = nullptr;  ///< Null if no object moves.
     std::vector<Shaped> shaped;
   };
 
-  /// Stores into `shared`, which must outlive it. Real-time: never from the servo thread.
+  /// Constructs an observer that writes to `shared`, which must outlive it. Real-time: never from
+  /// the servo thread.
   RunSharing(SharedRun& shared, Moving moving) noexcept
       : shared_(shared), moving_(std::move(moving)) {}
 
@@ -42,13 +42,14 @@ class RunSharing final : public TickObserver {
  private:
   SharedRun& shared_;
   Moving moving_;
-  std::uint64_t drawings_ = 0;  // that were stored, or came before
+  std::uint64_t drawings_ = 0;  // Number of drawings stored, or made before.
 };
 
-/// What viewers see of an arm after the first.
+/// Stores the ticks of an arm after the first for viewers.
 class OtherArmSharing final : public TickObserver {
  public:
-  /// Stores the ticks of an arm, counted from 1, into `shared`, which must outlive it.
+  /// Constructs an observer that stores the ticks of an arm, numbered from 1, into `shared`, which
+  /// must outlive it.
   OtherArmSharing(SharedRun& shared, std::size_t arm) noexcept : shared_(shared), arm_(arm) {}
 
   /// Stores one tick. Real-time: safe.

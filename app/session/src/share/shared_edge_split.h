@@ -8,10 +8,9 @@
 
 namespace thimble::session {
 
-/// Splits an edge of a mesh in its middle as a run has told of it: the two `triangles` at it keep
-/// the end `kept`, and two new ones behind all others, in the same order, have the end `lost`.
-/// False if the mesh has no such edge; then nothing has changed. Real-time: never from the servo
-/// thread.
+/// Splits an edge of a mesh at its middle as a run has reported. The two `triangles` at the edge
+/// keep the end `kept`. Two new triangles, appended in the same order, have the end `lost`. Returns
+/// false and changes nothing if the mesh has no such edge. Real-time: never from the servo thread.
 THIMBLE_EXPORT bool split_edge(render::TriangleMesh& mesh, std::uint32_t kept, std::uint32_t lost,
                                std::array<std::uint32_t, 2> triangles);
 

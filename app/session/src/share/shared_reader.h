@@ -19,10 +19,10 @@
 
 namespace thimble::session {
 
-/// A viewer's side of the memory that a run shares: what happens, and what to ask for.
+/// Viewer's access to the memory that a run shares: reads its state and sends requests.
 ///
-/// Whatever the memory holds, nothing here crashes, and what it hands out is within bounds and
-/// whole: from one tick, not from two. Used by one thread; Real-time: never from the servo thread.
+/// Invalid contents of the memory never cause a crash. All returned data is within bounds and
+/// consistent: from one tick. Used by one thread; Real-time: never from the servo thread.
 class THIMBLE_EXPORT SharedReader {
  public:
   /// Attaches to a run by name, or to the newest one if `name` is empty. The error says what to
@@ -30,103 +30,109 @@ class THIMBLE_EXPORT SharedReader {
   static driver::Result<std::unique_ptr<SharedReader>> attach(const std::string& name);
   /// Reads memory that this process has mapped, such as `SharedRun::memory().again()`.
   static driver::Result<std::unique_ptr<SharedReader>> over(std::unique_ptr<SharedMemory> memory);
-  /// Reads memory that somebody else keeps, aligned to 64, for tests.
+  /// Reads memory owned by the caller, aligned to 64, for tests.
   static driver::Result<std::unique_ptr<SharedReader>> over(std::span<std::byte> memory);
 
   SharedReader(const SharedReader&) = delete;
   SharedReader& operator=(const SharedReader&) = delete;
-  /// Signs out of the run, which knows by name who looks on.
+  /// Signs out of the run, which keeps a list of its viewers.
   ~SharedReader();
 
-  /// Returns what does not change.
+  /// Returns the constant data of the run.
   const SharedScene& scene() const noexcept { return scene_; }
   /// Returns the name of the run; empty if it has none.
   const std::string& name() const noexcept { return name_; }
 
-  /// Returns what the run is doing; kEnded too if its process has died or the memory is gone.
+  /// Returns the state of the run; kEnded also if its process has died or the memory is gone.
   RunState state() const;
-  /// Returns whether the run ended without saying so: killed, or crashed.
+  /// Returns whether the run was killed or crashed.
   bool died() const;
 
-  /// Copies the newest tick; false if there is none yet, or if the memory holds nonsense.
+  /// Copies the newest tick. Returns false if there is none yet, or if the memory is invalid.
   bool newest(driver::TickRecord& record) const noexcept;
-  /// Copies the newest tick of an arm after the first, counted from 1. As `newest`.
+  /// Copies the newest tick of an arm after the first, numbered from 1. As `newest`.
   bool newest_of(std::size_t arm, driver::TickRecord& record) const noexcept;
-  /// Appends the ticks after number `serial` (0: from the oldest that is kept), oldest first, and
-  /// moves `serial` to the last one. Tells how many were overwritten before they could be read.
+  /// Appends the ticks after number `serial` (0: from the oldest available), oldest first, and sets
+  /// `serial` to the last one. Returns the number of ticks that were overwritten before they could
+  /// be read.
   std::uint64_t ticks_since(std::uint64_t& serial, std::vector<driver::TickRecord>& ticks) const;
-  /// Copies where the objects that move are; false if nothing was stored.
+  /// Copies the poses of the moving objects; returns false if none were stored.
   bool poses(ScenePoses& poses) const noexcept;
-  /// Copies the newest dent; false if nothing was stored. No triangles: nothing is dented.
+  /// Copies the newest dent; returns false if none was stored. Without triangles nothing is dented.
   bool patch(render::BodyPatch& patch) const noexcept;
-  /// Returns how many patches there were so far: a viewer need only draw anew if it has grown.
+  /// Returns the number of patches so far; a viewer redraws only if it has increased.
   std::uint64_t patch_count() const noexcept { return live_->patch.count(); }
-  /// Brings the mesh of a shaped object (W, m; its own vertices from 0 on) to what it is now: as it
-  /// was in `scene`, or as this left it before.
+  /// Updates the mesh of a shaped object (W, m; its own vertices from 0 on) to its current shape,
+  /// from its state in `scene` or after the last call.
   void shape(std::size_t object, render::TriangleMesh& mesh) const;
-  /// Counts vertices moved and edges split for good so far: a viewer need only look if it has
-  /// grown.
+  /// Returns the number of permanent vertex moves and edge splits so far; a viewer updates only if
+  /// it has increased.
   std::uint64_t shape_moves() const noexcept { return live_->shape_moves.load(); }
 
-  /// What a run counts.
+  /// Counters of a run.
   struct Counters {
     std::uint64_t ticks = 0;
-    std::uint64_t missed = 0;  ///< Periods of the loop that were skipped, but for those in a pause.
-    std::uint64_t paused = 0;  ///< Ticks that passed in pauses: none where simulated time stands.
+    std::uint64_t missed = 0;  ///< Periods of the loop that were skipped, except those in a pause.
+    std::uint64_t paused = 0;  ///< Ticks that passed in pauses; 0 if simulated time stops.
     bool recording = false;
-    std::uint64_t record_dropped = 0;  ///< Ticks that the recording lacks.
+    std::uint64_t record_dropped = 0;  ///< Ticks missing in the recording.
   };
   Counters counters() const noexcept;
-  /// Returns what the run wants a person to know: why a scene was not taken, say; empty: nothing.
+  /// Returns the message of the run to the user, such as the reason why a scene was rejected;
+  /// empty: none.
   std::string notice() const;
-  /// Returns where ticks are, or were last, recorded to; empty if nowhere.
+  /// Returns the path of the current or last recording; empty if there is none.
   std::string recording_path() const;
 
-  /// Returns what a knob is now; its first value if the memory holds nonsense. Precondition: the
-  /// scene has it; as for all of these.
+  /// Returns the current value of a knob; its initial value if the memory is invalid. Precondition,
+  /// also for the next functions: the scene has the knob.
   double knob(std::size_t knob) const noexcept;
-  /// Returns what it was turned to.
+  /// Returns the requested value of a knob.
   double knob_wanted(std::size_t knob) const noexcept;
-  /// Turns a knob; what is outside its bounds is brought within, NaN is ignored.
+  /// Requests a value of a knob, limited to its bounds; NaN is ignored.
   void turn_knob(std::size_t knob, double value) noexcept;
 
-  /// Answers whether the run looks at all that has been asked of it so far. The error: it has
-  /// ended, and if another one takes its place, that is to be asked.
+  /// Returns success if the run processes all requests made so far. Fails if it has ended; send
+  /// requests to the run that replaces it, if any.
   driver::Result<void> heard() const;
   void ask_pause(bool pause) noexcept;
   bool pause_asked() const noexcept { return is_pause(live_->requests.pause.load()); }
-  /// Lets a paused run go on by so many ticks, 1 to kStepsMost. The error says why it cannot.
+  /// Lets a paused run advance by `ticks`, 1 to kStepsMost. The error gives the reason if it
+  /// cannot.
   driver::Result<void> ask_steps(std::uint64_t ticks);
-  /// Asks for a pace, kSpeedLeast to kSpeedMost times real time. The error says why the run has
-  /// none.
+  /// Requests a speed, kSpeedLeast to kSpeedMost times real time. The error gives the reason if the
+  /// run does not support it.
   driver::Result<void> ask_speed(double speed);
-  /// Returns what was asked for; 1 if the memory holds nonsense.
+  /// Returns the requested speed; 1 if the memory is invalid.
   double speed_asked() const noexcept;
-  /// Asks the run to begin anew from its first tick, with `scene` (a file, absolute) or with its
-  /// own as it lies on the disk now. The error says why it cannot.
+  /// Requests a restart from the first tick, with `scene` (a file, absolute) or with the current
+  /// version of its own scene file. The error gives the reason if it cannot.
   driver::Result<void> ask_restart(const std::string& scene = {});
-  /// Asks that the run begins anew whenever it ends. The error as above.
+  /// Requests a restart whenever the run ends. The error is that of `ask_restart`.
   driver::Result<void> ask_loop(bool loop);
   bool loop_asked() const noexcept { return live_->requests.loop.load() == 1; }
-  /// Returns why the run cannot be begun anew, be stepped, or go at another pace; empty if it can.
+  /// Returns the reason why the run cannot be restarted; empty if it can.
   std::string why_no_restart() const;
-  std::string why_no_step() const;   ///< As above.
-  std::string why_no_speed() const;  ///< As above.
-  /// Asks the run to end.
+  /// Returns the reason why the run cannot be stepped; empty if it can.
+  std::string why_no_step() const;
+  /// Returns the reason why the run has no other speed; empty if it has.
+  std::string why_no_speed() const;
+  /// Requests the end of the run.
   void ask_stop() noexcept { live_->requests.stop.store(1); }
-  /// Asks for a recording to `path` (HDF5); empty: beside where the run was started, by name and
-  /// time. False if another viewer is just asking for something.
+  /// Requests a recording to `path` (HDF5). If empty, the file is in the folder in which the run
+  /// was started, named by scene and time. Returns false if another viewer is writing a request.
   bool ask_record(const std::string& path = {}) noexcept;
   bool ask_record_stop() noexcept;
-  /// Says where the hand shall be (W, m), and whether the mouse holds it. The run brings it into
-  /// the workspace and bounds its speed. False as above, if it is not finite, and if this is one of
-  /// too many viewers: should it die, the run would not know.
+  /// Sets the target of the hand (W, m), and whether the mouse holds it. The run limits it to the
+  /// workspace and limits its speed. Returns false if another viewer is writing a request, or if
+  /// the target is not finite. Also returns false if there are too many viewers, because the run
+  /// could not detect the death of this one.
   bool lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept;
 
-  /// Reports that the key of the enabling input is held now; call it with each picture while it is.
+  /// Reports that the key of the enabling input is held; call it with each picture while it is.
   void hold_key() noexcept { live_->requests.key_held.fetch_add(1, std::memory_order_relaxed); }
 
-  /// Counts what was read from the memory and made no sense.
+  /// Returns the number of invalid values read from the memory.
   std::uint64_t rejected() const noexcept { return rejected_; }
 
  private:
@@ -139,14 +145,14 @@ class THIMBLE_EXPORT SharedReader {
   void end_turn() noexcept;
   std::string why_real() const;
 
-  std::unique_ptr<SharedMemory> memory_;  // null if somebody else keeps it
+  std::unique_ptr<SharedMemory> memory_;  // Null if the caller owns the memory.
   std::string name_;
   SharedScene scene_;
   SharedLive* live_;
   std::span<const SharedShaped> shaped_;
   std::span<const SharedSplit> splits_;
   std::span<const SharedRingSlot> ring_;
-  std::optional<std::size_t> place_;  // among the viewers; none if all were taken
+  std::optional<std::size_t> place_;  // Place among the viewers; empty if all were taken.
   mutable std::uint64_t rejected_ = 0;
 };
 

@@ -20,25 +20,25 @@ struct EdgeSplit;
 
 namespace thimble::session {
 
-/// The run's side of the memory that it shares with its viewers: the servo stores what happens
-/// and looks at what is asked for, and never waits for anybody.
+/// Run's access to the memory that it shares with its viewers. The servo stores its state and reads
+/// requests, and never waits.
 class SharedRun final : public KnobRequests {
  public:
-  /// Makes the memory under `name`, or without a name for a viewer in this process if it is empty,
-  /// and writes what does not change of the scene; pid, times and tables of `scene` are filled in
-  /// here. The ring keeps `ring_ticks` ticks (> 0). The error is that of SharedMemory.
-  /// Real-time: never from the servo thread.
+  /// Creates the memory under `name`, or without a name for a viewer in this process if it is
+  /// empty, and writes the constant data of the scene. Sets pid, times and tables of `scene`. The
+  /// ring has `ring_ticks` entries (> 0). The error is that of SharedMemory. Real-time: never from
+  /// the servo thread.
   static driver::Result<std::unique_ptr<SharedRun>> create(const std::string& name,
                                                            const SharedScene& scene,
                                                            std::size_t ring_ticks);
-  /// As above, of a run that follows one that is over: it takes the name of that, if it has one, as
-  /// soon as it is complete, so that viewers always find a run of that name.
+  /// As above, for a run that follows one that is over. It takes the name of the previous run, if
+  /// any, once it is complete, so that viewers find a run of that name at all times.
   static driver::Result<std::unique_ptr<SharedRun>> create_next(SharedRun& before,
                                                                 const SharedScene& scene,
                                                                 std::size_t ring_ticks);
   SharedRun(const SharedRun&) = delete;
   SharedRun& operator=(const SharedRun&) = delete;
-  /// Tells the viewers that the run has ended, and removes the name.
+  /// Reports the end of the run to viewers and removes the name.
   ~SharedRun() override;
 
   /// Returns the memory, for a reader in this process.
@@ -46,33 +46,33 @@ class SharedRun final : public KnobRequests {
   /// Returns the name; empty if it has none.
   const std::string& name() const noexcept { return memory_->run(); }
 
-  // What the servo stores. One thread; Real-time: safe.
+  // Functions that store data of the servo. One thread; Real-time: safe.
   void store_tick(const driver::TickRecord& record) noexcept;
-  /// Stores a tick of an arm after the first, counted from 1; one that is not there is ignored.
+  /// Stores a tick of an arm after the first, numbered from 1; ignored if there is no such arm.
   void store_tick_of(std::size_t arm, const driver::TickRecord& record) noexcept {
     if (arm >= 1 && arm < kArmsMost) live_->others[arm - 1].store(record);
   }
   void store_poses(const ScenePoses& poses) noexcept { live_->poses.store(poses); }
   void store_patch(const render::BodyPatch& patch) noexcept { live_->patch.store(patch); }
-  /// Stores where a vertex of a shaped object has gone for good (W, m). `shaped` counts through
-  /// the table; one outside is ignored.
+  /// Stores the permanent position of a vertex of a shaped object (W, m). `shaped`: index into the
+  /// table; ignored if out of range.
   void store_vertex(std::size_t shaped, const Eigen::Vector3d& p_W) noexcept;
-  /// Stores that an edge of a shaped object was split; the place of its new vertex is stored
-  /// before. `number` counts through the table; one outside is ignored.
+  /// Stores a split of an edge of a shaped object; the position of its new vertex is stored before.
+  /// `number`: index into the table; ignored if out of range.
   void store_split(std::size_t number, const render::EdgeSplit& split) noexcept;
   void store_knob(std::size_t knob, double now) noexcept override {
     live_->knobs[knob].now.store(now, std::memory_order_relaxed);
   }
 
-  // What any thread of the run may tell. Real-time: safe.
+  // Functions for any thread of the run. Real-time: safe.
   void set_state(RunState state) noexcept {
     live_->state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
   }
   void set_recording(bool on, std::uint64_t dropped) noexcept;
-  /// Returns where ticks are recorded to; one thread.
+  /// Sets the path of the recording; one thread.
   void set_recording_path(const std::string& path) noexcept;
 
-  // What viewers ask for. Nothing of it can be trusted: it is checked here. Real-time: safe.
+  // Requests of viewers. They are not trusted and are validated here. Real-time: safe.
   bool pause_asked() const noexcept {
     return is_pause(live_->requests.pause.load(std::memory_order_relaxed));
   }
@@ -82,62 +82,59 @@ class SharedRun final : public KnobRequests {
   bool loop_asked() const noexcept {
     return live_->requests.loop.load(std::memory_order_relaxed) == 1;
   }
-  /// Returns a number that has grown since it was asked last if a viewer's key is held. Any number
-  /// may stand there.
+  /// Returns a number that increases while a viewer's key is held. Its value is arbitrary.
   std::uint64_t key_held() const noexcept {
     return live_->requests.key_held.load(std::memory_order_relaxed);
   }
-  /// Returns how fast the run shall go, times real time; empty if a viewer wrote nonsense.
+  /// Returns the requested speed as a multiple of real time; empty if it is invalid.
   std::optional<double> speed_wanted() const noexcept;
-  /// Returns how many ticks a paused run was let go on by so far. Any number may stand there.
+  /// Returns the total number of steps requested for a paused run. Its value is arbitrary.
   std::uint64_t steps_asked() const noexcept {
     return live_->requests.steps.load(std::memory_order_relaxed);
   }
-  /// Returns what a knob shall be: within its bounds, or empty if a viewer wrote nonsense.
+  /// Returns the requested value of a knob, within its bounds; empty if it is invalid.
   std::optional<double> knob_wanted(std::size_t knob) const noexcept override;
   std::size_t knob_count() const noexcept { return knobs_.size(); }
-  /// Looks where a viewer wants the hand (W, m, finite); false if none ever did, or one is writing
-  /// just now.
+  /// Copies the target of the hand set by a viewer (W, m, finite). Returns false if there is none,
+  /// or if a viewer is writing it.
   bool hand(SharedHand& hand) const noexcept;
 
-  /// An order to record or to stop that.
+  /// Request to start or stop a recording.
   struct RecordOrder {
-    std::uint64_t number = 0;  ///< Grows with each order.
+    std::uint64_t number = 0;  ///< Number of the request.
     bool record = false;
-    std::string path;  ///< Empty: the run chooses.
+    std::string path;  ///< Path of the recording; empty: chosen by the run.
   };
-  /// Returns the newest order, if there is one after `number`. Real-time: never from the servo
-  /// thread.
+  /// Returns the newest request after `number`; empty if there is none. Real-time: never from the
+  /// servo thread.
   std::optional<RecordOrder> record_order_after(std::uint64_t number) const;
-  /// An order to begin the run anew.
+  /// Request to restart the run.
   struct RestartOrder {
-    std::uint64_t number = 0;  ///< Grows with each order.
-    std::string scene;         ///< The file to run; empty: the same once more.
+    std::uint64_t number = 0;  ///< Number of the request.
+    std::string scene;         ///< Scene file to run; empty: the same scene.
   };
-  /// Returns the newest order, if there is one after `number`. Real-time: never from the servo
-  /// thread.
+  /// Returns the newest request after `number`; empty if there is none. Real-time: never from the
+  /// servo thread.
   std::optional<RestartOrder> restart_order_after(std::uint64_t number) const;
-  /// Sets what viewers find as asked for, unless one has asked already.
+  /// Sets the initial values of the requested speed and loop, unless a viewer has set them.
   void set_pace(double speed, bool loop) noexcept;
-  /// Lets the run begin paused, as one was asked to be that ended before it could.
+  /// Starts the run paused, if a pause was requested from the previous run just before its end.
   void begin_paused() noexcept { live_->requests.pause.store(kPausedByNobody); }
-  /// Ends the hearing: what a viewer asks from now on it is told that nobody hears. What was asked
-  /// before can be seen when this returns, and must be looked at once more. Any thread but the
-  /// servo's.
+  /// Closes the run to requests: later requests of viewers are rejected. Requests made before are
+  /// visible when this returns, and must be processed once more. Any thread except the servo's.
   void close() noexcept;
-  /// Returns whether the hearing has ended.
+  /// Returns whether the run is closed to requests.
   bool closed() const noexcept { return live_->closed.load() == 1; }
-  /// Tells viewers what a person must know; empty: nothing any more. One thread.
+  /// Sets the message to viewers; empty: none. One thread.
   void set_notice(const std::string& notice) noexcept;
-  /// Returns a knob by its number.
+  /// Returns the description of a knob by its number.
   const SharedScene::Knob& knob(std::size_t knob) const noexcept { return knobs_[knob]; }
-  /// Returns the pids of the viewers that look on. Real-time: never from the servo thread.
+  /// Returns the process ids of the viewers. Real-time: never from the servo thread.
   std::vector<std::uint64_t> viewers() const;
-  /// Does for viewers that died what they would have done: lets the hand go that one held, makes
-  /// whole what one was killed in writing, ends the pause that one asked of a run in virtual time
-  /// (which would wait for ever; a loop in real time stays paused, without force), and forgets
-  /// them. Returns whether it has ended a pause. One thread. Real-time: never from the servo
-  /// thread.
+  /// Cleans up after viewers that died: releases the hand, repairs a partly written request, ends a
+  /// pause in virtual time, and removes them from the list. (Such a pause would last forever; a
+  /// loop in real time stays paused, without force.) Returns whether it has ended a pause. One
+  /// thread. Real-time: never from the servo thread.
   bool watch_viewers() noexcept;
 
  private:
@@ -164,7 +161,7 @@ class SharedRun final : public KnobRequests {
   std::uint64_t stored_ = 0;
   std::int64_t last_due_ns_ = 0;
   std::int64_t period_ns_ = 0;
-  SharedHand last_hand_;  // as a viewer has asked for it last; not finite before
+  SharedHand last_hand_;  // Last request of a viewer; not finite before.
 };
 
 }  // namespace thimble::session

@@ -15,74 +15,80 @@
 
 namespace thimble::session {
 
-/// What does not change of a run, copied out of its shared memory and found sound: all counts
-/// and numbers of vertices are within bounds, all places finite.
+/// Constant data of a run, copied from its shared memory and validated: all counts and vertex
+/// indices are within bounds, all positions finite.
 struct SharedScene {
-  /// One object: a range of `vertices` and `triangles`.
+  /// Object: a range of `vertices` and `triangles`.
   struct Object {
     std::string name;
     SharedKind kind = SharedKind::kMesh;
     std::uint32_t colour = 0;
-    bool moves = false;   ///< SharedReader::poses tells where it is.
-    bool dents = false;   ///< SharedReader::patch tells how it is bent.
-    bool shaped = false;  ///< SharedReader::shape tells what it is now.
+    bool moves = false;   ///< True if SharedReader::poses returns its pose.
+    bool dents = false;   ///< True if SharedReader::patch returns its dent.
+    bool shaped = false;  ///< True if SharedReader::shape returns its current mesh.
     std::size_t first_vertex = 0, vertex_count = 0;
     std::size_t first_triangle = 0, triangle_count = 0;
     std::size_t first_shaped = 0;
-    std::size_t first_split = 0, splits_most = 0;  ///< Of its edges; 0: its triangles stay.
-    double crease_angle = 0;                       ///< Edges sharper than this stay sharp, rad.
-    std::string texture{}, friction{};             ///< Their names; empty: it has none.
+    /// Range of its edge splits; splits_most is 0 if its triangles never change.
+    std::size_t first_split = 0, splits_most = 0;
+    double crease_angle = 0;  ///< Edges sharper than this stay sharp, rad.
+    /// Names of its texture and friction; empty: none.
+    std::string texture{}, friction{};
   };
-  /// The force of all fields on a tip that rests at a place, as the scene begins.
+  /// Total force of the fields on a resting tip at one point, at the start of the scene.
   struct FieldSample {
-    Eigen::Vector3d p_W{0, 0, 0};  ///< m
-    Eigen::Vector3d f_W{0, 0, 0};  ///< N
+    Eigen::Vector3d p_W{0, 0, 0};  ///< Position, m.
+    Eigen::Vector3d f_W{0, 0, 0};  ///< Force, N.
   };
-  /// One setting of the scene that can be changed while it is felt.
+  /// Setting of the scene that can be changed during contact.
   struct Knob {
-    std::string name;  ///< "OBJECT: stiffness"
+    std::string name;  ///< Name, such as "OBJECT: stiffness".
     std::string unit;
     double least = 0, most = 0, initial = 0;
   };
-  /// What is needed to draw the arm: see arm_lines.h.
+  /// Data for drawing an arm: see arm_lines.h.
   struct Arm {
     std::string name;
     std::string device;
-    std::string in_scene{};                              ///< What the scene calls it, of several.
-    std::optional<driver::ArmGeometry> geometry{};       ///< How it is built; none: only its tip.
+    std::string in_scene{};                              ///< Name in a scene with several arms.
+    std::optional<driver::ArmGeometry> geometry{};       ///< Geometry; none: only the tip is drawn.
     Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of its base in the world.
-    Eigen::Vector3d p_WB{0, 0, 0};                       ///< Where its base stands, m.
+    Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of its base in the world, m.
     Eigen::Vector3d min_W{0, 0, 0}, max_W{0, 0, 0};      ///< Box of its workspace, m.
   };
 
   std::string name;
   std::string file;
   std::int64_t pid = 0;
-  std::int64_t began_ns = 0;   ///< When the run was made, on the system's clock.
-  std::int64_t period_ns = 0;  ///< Of the loop; > 0.
-  double force_max = 0;        ///< N
+  std::int64_t began_ns = 0;   ///< Time of creation, on the system's clock.
+  std::int64_t period_ns = 0;  ///< Period of the loop, ns; > 0.
+  double force_max = 0;        ///< Force limit of the gate, N.
   bool wall_clock = false;
   bool hand_by_mouse = false;
-  bool hold_by_key = false;  ///< A key must be held to have forces (HoldToRun).
-  bool paced = false;        ///< Simulated time, at a pace that viewers choose.
-  bool restarts = false;     ///< It is begun anew, or with another scene, when a viewer asks.
-  std::vector<Arm> arms = std::vector<Arm>(1);  ///< From 1 to kArmsMost.
+  /// True if a key must be held to get forces (HoldToRun).
+  bool hold_by_key = false;
+  /// True if time is simulated, at a pace chosen by viewers.
+  bool paced = false;
+  /// True if viewers can restart the run, with the same or another scene.
+  bool restarts = false;
+  std::vector<Arm> arms = std::vector<Arm>(1);  ///< Arms, 1 to kArmsMost.
   std::vector<Object> objects;
   std::vector<Knob> knobs;
-  std::vector<FieldSample> field;         ///< At most kFieldSamplesMost; none: no field.
-  std::vector<Eigen::Vector3d> vertices;  ///< W, m, as they were before the first tick.
-  std::vector<std::array<std::uint32_t, 3>>
-      triangles;                     ///< Of all `vertices`; outside is counter-clockwise.
-  SharedTable shaped, splits, ring;  ///< Where those tables lie; whole within the memory.
+  /// Samples of the field, at most kFieldSamplesMost; empty without a field.
+  std::vector<FieldSample> field;
+  std::vector<Eigen::Vector3d> vertices;  ///< Initial vertices in the world, m.
+  /// Triangles as indices into `vertices`, counter-clockwise from outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  SharedTable shaped, splits, ring;  ///< Places of these tables, completely within the memory.
 };
 
-/// Reads what does not change out of a run's memory, each byte once, and checks all of it before it
-/// is used. `memory` may hold anything; it must begin at a multiple of 64. The error says what to
-/// do. Real-time: never from the servo thread.
+/// Reads the constant data from a run's memory, each byte once, and validates all of it. `memory`
+/// may contain anything; it must be aligned to 64 bytes. The error says what to do. Real-time:
+/// never from the servo thread.
 driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory);
 
-/// Finds the hash of what does not change: of the head, whose `ready` and `hash` do not count, and
-/// of its tables. It finds accidents, not malice. Real-time: never from the servo thread.
+/// Returns the hash of the constant data: of the head without `ready` and `hash`, and of its
+/// tables. It detects accidental damage, not manipulation. Real-time: never from the servo thread.
 std::uint64_t shared_hash(const SharedHead& head, std::span<const SharedObject> objects,
                           std::span<const SharedKnob> knobs, std::span<const SharedVertex> vertices,
                           std::span<const SharedTriangle> triangles) noexcept;

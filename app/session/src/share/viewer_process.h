@@ -11,20 +11,20 @@
 
 namespace thimble::session {
 
-/// Returns whether there is a screen to draw on: X11 or Wayland. Real-time: never from the servo
-/// thread.
+/// Returns whether a display is available: X11 or Wayland. Real-time: never from the servo thread.
 THIMBLE_EXPORT bool has_display();
 
-/// The viewer that a run has opened, a process of its own: nothing of the run depends on it.
-/// Real-time: never from the servo thread.
+/// Viewer process opened by a run; the run does not depend on it. Real-time: never from the servo
+/// thread.
 class ViewerProcess {
  public:
-  /// Starts `thimble view RUN`, with more `arguments`. It stays when the run ends, and tells so.
+  /// Starts `thimble view RUN` with additional `arguments`. It stays open when the run ends, and
+  /// reports the end.
   static driver::Result<std::unique_ptr<ViewerProcess>> start(
       const std::string& run, std::vector<std::string> arguments = {});
 
-  /// Returns whether a person has closed it, or a signal has ended it; one that could not open its
-  /// window was not closed.
+  /// Returns whether the viewer was closed by the user or ended by a signal; false if it could not
+  /// open its window.
   bool closed();
 
  private:

@@ -17,13 +17,13 @@
 
 namespace thimble::session {
 
-/// Does beside the servo what viewers ask of a run: recordings begin and end, a hand that nobody
-/// leads any more is let go, the run ends. Real-time: never from the servo thread.
+/// Handles requests of viewers outside of the servo loop: starts and ends recordings, releases a
+/// hand that is no longer moved, and ends the run. Real-time: never from the servo thread.
 class THIMBLE_EXPORT ViewerRequestHandler {
  public:
-  /// Serves `session`, which must be shared. `viewer` is the one that was opened with the run, if
-  /// any; with `ends_with_viewer` the run ends when that is closed. `next`: what begins it anew, or
-  /// null; must outlive this.
+  /// Constructs a handler for `session`, which must be shared. `viewer` is the one opened with the
+  /// run, if any; with `ends_with_viewer` the run ends when it is closed. `next` restarts the run,
+  /// or is null; it must outlive this.
   ViewerRequestHandler(Session& session, std::unique_ptr<ViewerProcess> viewer,
                        bool ends_with_viewer, NextRun* next = nullptr)
       : session_(session),
@@ -32,15 +32,14 @@ class THIMBLE_EXPORT ViewerRequestHandler {
         ends_with_viewer_(ends_with_viewer),
         next_(next) {}
 
-  /// Looks once; call it about ten times a second.
+  /// Processes requests once; call it about ten times a second.
   void step();
-  /// Looks for the last time, when the run is over: what viewers ask from now on they are told that
-  /// nobody hears.
+  /// Processes requests for the last time, after the run. Later requests of viewers are rejected.
   void close();
 
   /// Returns whether a viewer has ended the run.
   bool ended() const noexcept { return ended_; }
-  /// Gives the viewer away, to who serves the run that comes next.
+  /// Releases the viewer, for the handler of the next run.
   std::unique_ptr<ViewerProcess> take_viewer() noexcept { return std::move(viewer_); }
 
  private:
@@ -57,24 +56,24 @@ class THIMBLE_EXPORT ViewerRequestHandler {
   std::uint64_t last_order_ = 0;
 };
 
-/// Whether a run opens a viewer.
+/// Choice of opening a viewer with a run.
 enum class ViewerChoice {
-  kIfWatched,  ///< Where a person watches the run in real time.
-  kAsked,      ///< Wherever there is a screen.
+  kIfWatched,  ///< If a user watches the run in real time.
+  kAsked,      ///< If a display is available.
   kNever,
 };
 
-/// Returns whether a run opens a viewer. `terminal`: a person looks at standard error.
+/// Returns whether a run opens a viewer. `terminal`: standard error is a terminal.
 constexpr bool opens_viewer(ViewerChoice choice, bool real_time, bool display,
                             bool terminal) noexcept {
   if (choice == ViewerChoice::kNever || !display) return false;
   return choice == ViewerChoice::kAsked || (real_time && terminal);
 }
 
-/// Opens the viewer of a session if one is asked for, or says on standard error how to watch
-/// without, and returns the handler of all viewers; null if the run is not shared.
-/// `ends_with_viewer` and `next`: as for the handler; `arguments`: the viewer's, after its run.
-/// Real-time: never from the servo thread.
+/// Opens the viewer of a session if requested, or prints on standard error how to watch without
+/// one. Returns the handler of all viewers; null if the run is not shared. `ends_with_viewer` and
+/// `next`: as for the handler; `arguments`: additional arguments of the viewer. Real-time: never
+/// from the servo thread.
 THIMBLE_EXPORT std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
     Session& session, ViewerChoice choice, bool ends_with_viewer,
     const std::vector<std::string>& arguments = {}, NextRun* next = nullptr);

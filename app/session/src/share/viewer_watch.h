@@ -12,29 +12,28 @@
 
 namespace thimble::session {
 
-/// A watch over the viewers of a run at the side of the servo that logs who looks on and what they
-/// change. Real-time: never from the servo thread.
+/// Logs the viewers of a run and their changes, outside of the servo loop. Real-time: never from
+/// the servo thread.
 class THIMBLE_EXPORT ViewerWatch {
  public:
-  /// Steps for which a knob must stand still until it counts as set: half a second of `step` as
-  /// often as ViewerRequestHandler does. [chosen: a person who draws at a slider is not done
-  /// before]
+  /// Number of steps for which a knob must be unchanged to count as set: half a second at the rate
+  /// of ViewerRequestHandler. [chosen: a user who moves a slider is not done before]
   static constexpr int kSettled = 5;
 
-  /// Watches what viewers do to `shared`, which must outlive it, and tells `log`.
+  /// Constructs a watch of `shared`, which must outlive it, that writes to `log`.
   ViewerWatch(const SharedRun& shared, std::shared_ptr<spdlog::logger> log);
 
-  /// Takes the end of a pause as known: it is logged already.
+  /// Marks the end of a pause as already logged.
   void forget_pause() noexcept { paused_ = false; }
 
-  /// Looks once; `now` is what a line begins with (at_tick).
+  /// Checks once; `now` is the start of each line (at_tick).
   void step(const std::string& now);
 
  private:
   struct Knob {
-    double told = 0;    // as the log knows it
-    double newest = 0;  // as it was seen last
-    int still = 0;      // steps since it changed
+    double told = 0;    // Last logged value.
+    double newest = 0;  // Last value seen.
+    int still = 0;      // Steps since it changed.
   };
 
   void watch_viewers(const std::string& now);

@@ -12,66 +12,68 @@
 
 namespace thimble::driver {
 
-/// What an arm tells of itself beside where its tip is, and what it is driven by. It does not
-/// change while a link lives.
+/// Capabilities of an arm. Constant for the lifetime of a link.
 struct ArmTraits {
-  bool has_joints = false;       ///< Joint angles and Jacobian are the arm's.
-  bool has_counts = false;       ///< Encoder counts are the arm's.
-  bool has_velocity = false;     ///< The arm measures its velocity.
-  bool has_orientation = false;  ///< The arm tells how the stylus is turned.
-  bool has_gimbal = false;       ///< The angles of the gimbal's axes are known.
-  bool has_gripper = false;      ///< The arm has a gripper.
-  /// Encoders count from zero at the pose in which the arm's board starts (Arm::zero_at_power_on).
+  bool has_joints = false;       ///< True if joint angles and Jacobian are those of the arm.
+  bool has_counts = false;       ///< True if encoder counts are those of the arm.
+  bool has_velocity = false;     ///< True if the arm measures its velocity.
+  bool has_orientation = false;  ///< True if the arm reports the orientation of the stylus.
+  bool has_gimbal = false;       ///< True if the angles of the gimbal axes are known.
+  bool has_gripper = false;      ///< True if the arm has a gripper.
+  /// True if the encoders count from zero at the pose in which the arm's board starts
+  /// (Arm::zero_at_power_on).
   bool zero_at_power_on = false;
-  /// Motors that the link turns forces into currents for. None: the arm takes a force and keeps its
-  /// motors to itself, their limits and their heat included. Motors need joints.
+  /// Motors for which the link converts forces into currents; requires joints. If empty, the arm
+  /// takes a force, and the host does not know currents, limits or heat of its motors.
   std::optional<std::array<MotorDrive, 3>> motors{};
 
   friend bool operator==(const ArmTraits&, const ArmTraits&) = default;
 };
 
-/// What an arm told last. Frames: B base of the arm, T tip. A link fills in what its traits name
-/// and leaves the rest alone.
+/// Last sample of an arm. Frames: B base of the arm, T tip. A link sets the members listed in its
+/// traits and leaves the others unchanged.
 struct ArmSample {
-  /// Tip p_BT (m); with joints also their angles q (rad) and the Jacobian J_BT (m/rad). Without,
-  /// the axes of the base stand for joints: J_BT is the identity.
+  /// Tip p_BT (m). If the arm has joints, also their angles q (rad) and the Jacobian J_BT (m/rad).
+  /// Otherwise the axes of the base are used as joints, and J_BT is the identity.
   ArmPose pose{.q = {0, 0, 0}, .p_BT = {0, 0, 0}, .J_BT = Eigen::Matrix3d::Identity()};
-  std::array<std::int32_t, 3> counts{};                ///< Of the encoders.
-  std::uint16_t buttons = 0;                           ///< One bit each; bit 0 is the first.
+  std::array<std::int32_t, 3> counts{};  ///< Encoder counts.
+  /// Buttons, one bit each; bit 0 is the first button.
+  std::uint16_t buttons = 0;
   Eigen::Vector3d v_BT{0, 0, 0};                       ///< Measured velocity of the tip, m/s.
   Eigen::Matrix3d R_BT = Eigen::Matrix3d::Identity();  ///< Rotation of the stylus in the base.
-  Eigen::Vector3d gimbal{0, 0, 0};                     ///< Angles of the gimbal's axes, rad.
-  double gripper = 0;                                  ///< Opening of the gripper, m; 0: closed.
+  Eigen::Vector3d gimbal{0, 0, 0};                     ///< Angles of the gimbal axes, rad.
+  double gripper = 0;                                  ///< Gripper opening, m; 0: closed.
 };
 
-/// How a read or a write ended.
+/// Status of a read or a write.
 enum class LinkStatus : std::uint8_t {
-  kOk,        ///< A new sample was read, or the force was handed over.
+  kOk,        ///< A new sample was read, or the force was sent.
   kNothing,   ///< Nothing new arrived before the deadline.
-  kRejected,  ///< What arrived cannot be understood.
-  kRepeated,  ///< What arrived has been there before.
-  kLost,      ///< The arm is gone; every later call says so too.
-  kRefused,   ///< The arm is there, and whether it took the force is not known.
+  kRejected,  ///< The received data is invalid.
+  kRepeated,  ///< The received report was a repetition of an earlier one.
+  kLost,      ///< Disconnected. Permanent: every later call returns this too.
+  kRefused,   ///< The arm is connected, but it is unknown whether it accepted the force.
 };
 
-/// What became of a read.
+/// Result of a read.
 struct LinkRead {
-  LinkStatus status = LinkStatus::kNothing;  ///< Unless kOk the sample means nothing.
-  std::uint32_t skipped = 0;                 ///< Older reports that were dropped.
+  LinkStatus status = LinkStatus::kNothing;  ///< Status; the sample is valid only with kOk.
+  std::uint32_t skipped = 0;                 ///< Number of older reports that were dropped.
 };
 
-/// What became of a write.
+/// Result of a write.
 struct LinkWrite {
-  LinkStatus status = LinkStatus::kRefused;  ///< kOk, kRefused or kLost.
-  double scale = 1;  ///< What is left of the force after the limits of the arm, 0 to 1.
+  LinkStatus status = LinkStatus::kRefused;  ///< Status: kOk, kRefused or kLost.
+  /// Fraction of the force that remains after the limits of the arm, 0 to 1.
+  double scale = 1;
 };
 
-/// What stands between Device and an arm: it gives poses and takes gated forces. An arm that is
-/// bytes on a wire and a geometry is behind a WireLink; one behind a vendor's library or a service
-/// is a link of its own.
+/// Connection between a Device and an arm: provides poses and accepts gated forces. WireLink
+/// implements it for arms with a wire format and a geometry. An arm behind a vendor library or
+/// service has its own implementation.
 ///
-/// Used by one thread at a time; neither allocates nor locks nor waits beyond a deadline after it
-/// was made. The destructor closes it; it is not called on the servo thread.
+/// Used by one thread at a time. After construction it does not allocate, lock, or wait beyond a
+/// deadline. The destructor closes the connection and is not called on the servo thread.
 class THIMBLE_EXPORT ArmLink {
  public:
   ArmLink() = default;
@@ -79,32 +81,33 @@ class THIMBLE_EXPORT ArmLink {
   ArmLink& operator=(const ArmLink&) = delete;
   virtual ~ArmLink() = default;
 
-  /// Returns what the arm tells and how it is driven. Real-time: safe.
+  /// Returns the capabilities of the arm. Real-time: safe.
   virtual const ArmTraits& traits() const noexcept = 0;
 
-  /// Reads the newest that the arm tells. `deadline_ns` is on the loop's clock; one in the past
-  /// means "do not wait". Real-time: safe; waits no longer than the deadline.
+  /// Reads the newest sample of the arm. `deadline_ns` is on the loop's clock; a deadline in the
+  /// past means "do not wait". Real-time: safe; waits no longer than the deadline.
   virtual LinkRead read(ArmSample& sample, std::int64_t deadline_ns) noexcept = 0;
 
-  /// Sends a force, which only the safety gate can make; zero force must go out at any pose.
-  /// `sample` is where the arm is, `R_WB` how its base is turned in the world, in which the force
-  /// is given. Real-time: safe; waits no longer than one exchange with the arm.
+  /// Sends a force that the safety gate has passed. Zero force must be sent at any pose. `sample`
+  /// is the last sample of the arm. `R_WB` is the rotation of its base in the world, the frame of
+  /// the force. Real-time: safe; waits no longer than one exchange with the arm.
   virtual LinkWrite write(const GatedForce& force, const ArmSample& sample,
                           const Eigen::Matrix3d& R_WB) noexcept = 0;
 
-  /// Returns what became of the last write, for a link that hands a force over before the arm takes
-  /// it: kOk, kNothing (on its way), kRefused or kLost. Real-time: safe; does not wait.
+  /// Returns the result of the last write, for a link that queues a force before the arm accepts
+  /// it: kOk, kNothing (in transit), kRefused or kLost. Real-time: safe; does not wait.
   virtual LinkStatus settled() noexcept { return LinkStatus::kOk; }
 
-  /// Returns whether old news are known as such, by a number or a time of their own; else a
-  /// position that never changes is suspicious. Real-time: safe.
+  /// Returns whether reports carry a sequence number or timestamp. If not, an unchanging position
+  /// is treated as suspicious. Real-time: safe.
   virtual bool numbers_reports() const noexcept { return false; }
 
-  /// Returns what the last write asked of the motors; of links with motors. Real-time: safe.
+  /// Returns the motor currents requested by the last write; zero for links without motors.
+  /// Real-time: safe.
   virtual MotorCurrents currents() const noexcept { return {}; }
 
-  /// Takes the largest currents that the motors may get from the next write on (`current_max` of
-  /// `limits`, A); asked only of links with motors. Real-time: safe.
+  /// Sets the largest motor currents from the next write on (`current_max` of `limits`, A). Called
+  /// only for links with motors. Real-time: safe.
   virtual void limit_currents(const std::array<MotorDrive, 3>& /*limits*/) noexcept {}
 };
 

@@ -11,35 +11,35 @@
 
 namespace thimble::driver {
 
-/// The geometry of an arm that tells where its tip is, by its vendor's service or library. Joint
-/// vector q = p_BT, m: the axes of the base stand for joints, as in ArmSample. All functions are
-/// Real-time: safe.
+/// Geometry of an arm whose tip position a vendor service or library reports. Joint vector q =
+/// p_BT, m: the axes of the base are used as joints, as in ArmSample. All functions are Real-time:
+/// safe.
 struct ToldArm {
-  /// Returns the tip and the Jacobian, which is the identity.
+  /// Computes the tip (m) and the Jacobian, which is the identity.
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept {
     p_BT = q;
     J_BT.setIdentity();
   }
-  /// Returns the axes of the base: nothing is known of a last link.
+  /// Returns the identity, because the orientation of the last link is unknown.
   Eigen::Matrix3d last_link(const Eigen::Vector3d&, const Eigen::Vector3d&) const noexcept {
     return Eigen::Matrix3d::Identity();
   }
-  /// Returns the tip itself; empty if it is not finite.
+  /// Returns `p_BT`; empty if it is not finite.
   std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept {
     if (!p_BT.allFinite()) return std::nullopt;
     return p_BT;
   }
 };
 
-/// The builds of arms that Thimble knows. A new build is one more type here and one more row of
-/// `kArmShapes` (arm_table.h); the compiler then names every place that has to know it.
+/// Arm geometries that Thimble supports. To add one, add a type here and a row of `kArmShapes`
+/// (arm_table.h). The compiler then reports every place that must handle it.
 using ArmGeometry = std::variant<SerialArm, LinkageArm, DeltaArm, ToldArm>;
 
-/// One model of an arm, whatever its build.
+/// Model of an arm with any geometry.
 using ArmModel = JointModel<ArmGeometry>;
 
-/// Returns the model of an arm of known build as one of any build. Real-time: safe.
+/// Converts the model of a specific geometry to ArmModel. Real-time: safe.
 template <class Geometry>
 ArmModel arm_model(const JointModel<Geometry>& model) noexcept {
   return {.geometry = model.geometry,
@@ -48,7 +48,7 @@ ArmModel arm_model(const JointModel<Geometry>& model) noexcept {
           .gimbal = model.gimbal};
 }
 
-/// Returns the model of an arm as one of its own build. Precondition: it is of that build; else it
+/// Returns the model with its specific geometry. Precondition: the arm has that geometry; otherwise
 /// throws std::bad_variant_access. Real-time: never from the servo thread.
 template <class Geometry>
 JointModel<Geometry> model_as(const ArmModel& model) {
@@ -58,8 +58,8 @@ JointModel<Geometry> model_as(const ArmModel& model) {
           .gimbal = model.gimbal};
 }
 
-/// Returns the joint angles that put the tip at p_BT (m); empty if the arm does not reach it.
-/// Real-time: safe.
+/// Returns the joint angles at which the tip is at p_BT (m); empty if the arm cannot reach the
+/// point. Real-time: safe.
 inline std::optional<Eigen::Vector3d> inverse(const ArmGeometry& geometry,
                                               const Eigen::Vector3d& p_BT) noexcept {
   return std::visit([&](const auto& build) { return build.inverse(p_BT); }, geometry);

@@ -7,33 +7,35 @@
 
 namespace thimble::driver {
 
-/// What an arm is reached by: a kind of controller board, told by how it looks on USB, or its
-/// vendor's service or library. One arm may have one of several boards, and one kind of board may
-/// be anything: see Certainty (discovery.h).
+/// Interface through which an arm is accessed: a kind of controller board, identified by its USB
+/// properties, or a vendor service or library. One arm can have one of several boards. A board of
+/// one kind can have another purpose than an arm: see Certainty (discovery.h).
 enum class BoardKind : std::uint8_t {
-  kMbedHid8,        ///< mbed, raw HID, 8 bytes each way: WoodenHaptics' firmware, among others.
-  kMbedHid14,       ///< mbed, raw HID, 14 bytes each way: Haptikfabriken's firmware, among others.
-  kTeensyRawHid64,  ///< Teensy, raw HID, 64 bytes each way: any program may run on it.
-  kTextLines,       ///< Teensy with a serial port: any program may run on it.
-  kFalconFtdi,      ///< The FTDI converter of a Novint Falcon.
+  /// mbed, raw HID, 8 bytes each way; used by WoodenHaptics' firmware, among others.
+  kMbedHid8,
+  /// mbed, raw HID, 14 bytes each way; used by Haptikfabriken's firmware, among others.
+  kMbedHid14,
+  kTeensyRawHid64,  ///< Teensy, raw HID, 64 bytes each way; may run any program.
+  kTextLines,       ///< Teensy with a serial port; may run any program.
+  kFalconFtdi,      ///< FTDI converter of a Novint Falcon.
   kHaplyService,    ///< Haply's service on this computer.
   kDhdLibrary,      ///< Force Dimension's library.
   kHdLibrary,       ///< OpenHaptics' library.
-  kOther,           ///< A form that no arm is known to have; never opened.
+  kOther,           ///< A board that no known arm uses; never opened.
 };
 
-/// The names of the kinds in arm files and messages, in the order of BoardKind; kOther has none.
+/// Names of the board kinds in arm files and messages, in the order of BoardKind. kOther has none.
 inline constexpr std::array<std::string_view, 8> kBoardNames = {
     "mbed_hid_8",  "mbed_hid_14",   "teensy_raw_hid_64", "text_lines",
     "falcon_ftdi", "haply_service", "dhd_library",       "hd_library"};
 
-/// Returns the name of a kind of board, "other" for kOther. Real-time: safe.
+/// Returns the name of a board kind, "other" for kOther. Real-time: safe.
 constexpr std::string_view name(BoardKind board) noexcept {
   const auto index = static_cast<std::size_t>(board);
   return index < kBoardNames.size() ? kBoardNames[index] : "other";
 }
 
-/// A language that arms speak; the table of arms (arm_table.h) has a row for each.
+/// Protocol of an arm. The table of arms (arm_table.h) has a row for each.
 enum class ArmKind : std::uint8_t {
   kWoody,        ///< WoodenHaptics on its mbed board: 8-byte HID reports.
   kPolhem,       ///< Polhem or another Haptikfabriken arm on HID: 14-byte reports.
@@ -42,16 +44,17 @@ enum class ArmKind : std::uint8_t {
   kHaply,        ///< Haply Inverse3: JSON messages of its service.
   kDhd,          ///< Force Dimension's arms: calls of their library.
   kHd,           ///< Touch and PHANTOM arms: calls of the library of OpenHaptics.
-  kUnsupported,  ///< Nothing that Thimble can drive.
+  kUnsupported,  ///< Not supported by Thimble.
 };
 
-/// What a HID report descriptor says of a device that exchanges one report each way.
+/// Properties of a HID device that exchanges one report each way, from its report descriptor.
 struct HidReports {
-  std::uint16_t usage_page = 0;  ///< Of the first collection.
-  std::uint16_t usage = 0;       ///< Of the first collection.
-  std::size_t in_bytes = 0;      ///< Length of a report to the host; 0: there is none.
-  std::size_t out_bytes = 0;     ///< Length of a report to the device; 0: there is none.
-  bool numbered = false;         ///< Reports have ids, so that there may be several of each.
+  std::uint16_t usage_page = 0;  ///< Usage page of the first collection.
+  std::uint16_t usage = 0;       ///< Usage of the first collection.
+  std::size_t in_bytes = 0;      ///< Length of a report to the host, bytes; 0: none.
+  std::size_t out_bytes = 0;     ///< Length of a report to the device, bytes; 0: none.
+  /// True if reports have ids, so that several of each direction may exist.
+  bool numbered = false;
 
   friend bool operator==(const HidReports&, const HidReports&) = default;
 };

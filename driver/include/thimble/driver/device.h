@@ -25,113 +25,119 @@ class VelocityEstimator;
 class WorkAccount;
 class WorkspaceWalls;
 
-/// Sets the virtual walls around the workspace of an arm: a box along the axes of the world. None
-/// by default.
+/// Settings of the virtual walls around the workspace of an arm: a box aligned with the world axes.
+/// No walls by default.
 struct WallSettings {
-  /// Stiffness, N/m [chosen: a latency of 3 ms gives it the strength of a negative damper of
-  /// 0.6 N s/m (K L, PHYSICS 1.1), less than the 1.5 N s/m that the damping takes on average].
+  /// Default stiffness, N/m [chosen: a latency of 3 ms gives it the strength of a negative damper
+  /// of 0.6 N s/m (K L, PHYSICS 1.1), less than the 1.5 N s/m that the damping takes on average].
   static constexpr double kStiffness = 200;
-  /// Damping on the way out, N s/m [chosen: an eighth of m / T (1 + 2 d) for 75 g at 1 kHz and a
-  /// delay of a tick].
+  /// Default damping while the tip moves outwards, N s/m [chosen: an eighth of m / T (1 + 2 d) for
+  /// 75 g at 1 kHz and a delay of a tick].
   static constexpr double kDamping = 3;
-  /// Distance between the box of the arm file and the wall, m [chosen: what is touched at the edge
-  /// of the box is felt without the wall; the boxes lie 20 mm and more inside of the reach].
+  /// Distance between the box of the arm file and the wall, m [chosen: objects at the edge of the
+  /// box are felt without the wall; the boxes lie 20 mm or more inside the reach].
   static constexpr double kMargin = 0.01;
-  /// Depth behind the wall at which the force goes off, m [chosen: 6 N of the spring, more than
-  /// most arms here push].
+  /// Default depth behind the wall at which the force is switched off, m [chosen: 6 N of the
+  /// spring, more than most arms here exert].
   static constexpr double kBeyond = 0.03;
 
-  Eigen::Vector3d min_W = Eigen::Vector3d::Constant(-HUGE_VAL);  ///< Lowest corner, m.
-  Eigen::Vector3d max_W = Eigen::Vector3d::Constant(HUGE_VAL);   ///< Highest corner, m.
-  double stiffness = kStiffness;                                 ///< N/m
-  double damping = kDamping;                                     ///< On the way out, N s/m.
-  double beyond = kBeyond;  ///< Depth behind a wall at which the force goes off, m.
+  Eigen::Vector3d min_W = Eigen::Vector3d::Constant(-HUGE_VAL);  ///< Minimum corner, m.
+  Eigen::Vector3d max_W = Eigen::Vector3d::Constant(HUGE_VAL);   ///< Maximum corner, m.
+  double stiffness = kStiffness;                                 ///< Stiffness, N/m.
+  /// Damping while the tip moves outwards, N s/m.
+  double damping = kDamping;
+  /// Depth behind a wall at which the force is switched off, m.
+  double beyond = kBeyond;
 };
 
-/// Counts what the walls around a workspace did. The force of a wall is what it adds to the force
-/// that was asked for, so that on each axis its sign is opposite to the side of the box at which
-/// the tip is outside.
+/// Counters of the workspace walls. The force of the walls is their contribution to the requested
+/// force. On each axis its sign is opposite to the side on which the tip is outside the box.
 struct WallCounters {
-  std::uint64_t pushed = 0;                ///< Ticks in which a wall pushed.
-  Eigen::Vector3d f_W{0, 0, 0};            ///< Force of the walls in the last of them, N.
-  Eigen::Vector3d f_strongest_W{0, 0, 0};  ///< Strongest force of the walls, N.
+  std::uint64_t pushed = 0;                ///< Number of ticks in which a wall pushed.
+  Eigen::Vector3d f_W{0, 0, 0};            ///< Force of the walls in the last of these ticks, N.
+  Eigen::Vector3d f_strongest_W{0, 0, 0};  ///< Largest force of the walls, N.
 };
 
-/// Sets an enabling input: what a person must hold so that an arm gets a force. Of several all must
-/// be held. None by default.
+/// Enabling inputs: a person must hold all of them for the arm to get a force. None by default.
 struct HoldToRun {
-  std::uint16_t buttons = 0;  ///< Of the arm, one bit each, of which one must be held; 0: none.
-  bool by_caller = false;     ///< An input that the caller watches (Device::hold_until).
+  /// Buttons of the arm, one bit each, one of which must be held; 0: none.
+  std::uint16_t buttons = 0;
+  bool by_caller = false;  ///< True if the caller monitors an input (Device::hold_until).
 
-  /// Returns whether there is an enabling input. Real-time: safe.
+  /// Returns whether an enabling input is set. Real-time: safe.
   bool named() const noexcept { return buttons != 0 || by_caller; }
 };
 
-/// Sets how a device is placed and what it tolerates.
+/// Settings of a device: its place, limits and monitoring.
 struct THIMBLE_EXPORT DeviceSettings {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
-  Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the arm's base, m.
-  GateLimits limits;                                   ///< Of force, rise and speed.
-  EnergyGuardSettings energy{};                ///< Which energy stage the gate has; none: free.
-  MotionWatchSettings motion{};                ///< What motors and encoders are watched by.
-  HeatSettings heat{};                         ///< Of the motors; none: not known.
-  double velocity_corner_frequency = 0;        ///< Pole of the velocity estimate, Hz; 0: none.
-  std::int64_t silence_limit_ns = 20'000'000;  ///< Silence of the arm that is a fault, ns (20
-                                               ///< reports of a full-speed USB arm; chosen).
-  WallSettings walls{};                        ///< Around the workspace; none: no end.
-  HoldToRun hold{};                            ///< What must be held for a force; none: nothing.
-  /// No motor turns behind the link: a study or a test that simulates the arm. Then `limits` may be
-  /// so wide that nothing is felt of them.
+  /// Position of the arm's base in the world, m.
+  Eigen::Vector3d p_WB{0, 0, 0};
+  GateLimits limits;  ///< Limits of force, rise and speed.
+  /// Energy stage of the gate; kNone: no stage.
+  EnergyGuardSettings energy{};
+  MotionWatchSettings motion{};          ///< Settings of the motion watch.
+  HeatSettings heat{};                   ///< Thermal limits of the motors, if known.
+  double velocity_corner_frequency = 0;  ///< Pole of the velocity estimate, Hz; 0: none.
+  /// Time without a report after which a fault occurs, ns (20 reports of a full-speed USB arm;
+  /// chosen).
+  std::int64_t silence_limit_ns = 20'000'000;
+  WallSettings walls{};  ///< Walls around the workspace; by default none.
+  HoldToRun hold{};      ///< Enabling inputs; by default none.
+  /// True if no real motor is behind the link, in a study or a test with a simulated arm. `limits`
+  /// may then be so wide that they have no effect.
   bool no_motors = false;
 
-  /// Fails if a limit is not a positive finite number or protects nobody (GateLimits), and if the
-  /// base is not placed by a rotation and a position. Real-time: never from the servo thread.
+  /// Fails if a limit is not a positive finite number or gives no protection (GateLimits). Also
+  /// fails if the place of the base is not a rotation and a position. Real-time: never from the
+  /// servo thread.
   Result<void> check() const;
 };
 
-/// Counts what arrived over the link.
+/// Counters of messages on the link.
 struct WireCounters {
-  std::uint64_t reports = 0;    ///< Reports decoded.
-  std::uint64_t rejected = 0;   ///< Reports of a length or content the protocol does not know.
-  std::uint64_t skipped = 0;    ///< Reports dropped because a newer one was there.
-  std::uint64_t missing = 0;    ///< Ticks without a new report.
-  std::uint64_t refused = 0;    ///< Messages that the arm did not take.
-  std::uint64_t repeated = 0;   ///< Reports that came before, of an arm that numbers them.
-  std::uint64_t jumped = 0;     ///< Reports dropped for a jump that no hand makes.
-  std::uint64_t replugged = 0;  ///< Times a lost wire was replaced.
+  std::uint64_t reports = 0;    ///< Number of reports decoded.
+  std::uint64_t rejected = 0;   ///< Number of reports with an unknown length or content.
+  std::uint64_t skipped = 0;    ///< Number of reports dropped because a newer one was available.
+  std::uint64_t missing = 0;    ///< Number of ticks without a new report.
+  std::uint64_t refused = 0;    ///< Number of messages that the arm did not accept.
+  std::uint64_t repeated = 0;   ///< Number of repeated reports, if the arm numbers them.
+  std::uint64_t jumped = 0;     ///< Number of reports dropped because of a jump that no hand makes.
+  std::uint64_t replugged = 0;  ///< Number of times that a lost link was replaced.
 };
 
-/// What the caller knows of the arm's pose when it asks for forces.
+/// Knowledge of the caller about the arm's pose when it requests forces.
 enum class HomeCheck : std::uint8_t {
-  kNone,    ///< Nothing. Enough as long as `Device::home_needed` is false.
-  kPassed,  ///< It has seen the arm in its home pose, or the arm's counts cannot have restarted.
+  kNone,  ///< Nothing. Sufficient while `Device::home_needed` is false.
+  /// The caller has seen the arm in its home pose, or the arm's counts cannot have restarted.
+  kPassed,
 };
 
-/// One open arm behind its link: idle -> active -> (fault ->) idle, until destroyed.
+/// An open arm behind its link. Its stages are idle -> active -> (fault ->) idle, until destroyed.
 ///
-/// Every way out sends zero force: `deactivate`, a fault, the destructor. A fault latches until
-/// `activate` is called again; a clock that steps back is one. Used by one thread at a time, but
-/// for `offer`, `close_lost_link` and `ask_to_activate`.
+/// Every exit sends zero force: `deactivate`, a fault, and the destructor. A fault latches until
+/// `activate` is called again. A clock that steps back is a fault. Used by one thread at a time,
+/// except `offer`, `close_lost_link`, `ask_to_activate` and `hold_until`.
 ///
-/// The fault is the first reason why the force is off. The state of the link (`link_state`) is a
-/// value of its own: an arm can be pulled because of, or after, any other fault.
+/// The fault is the first reason why the force is off. The state of the link (`link_state`) is
+/// independent: an arm can be disconnected because of, or after, any other fault.
 ///
-/// An arm that was pulled and plugged in again: the loop continues with zero force; another thread
-/// finds the arm by its serial number, closes the lost link (`close_lost_link`), opens a new one
-/// and offers it; the next tick takes it and reads positions again. Forces come back only when the
-/// user asks for them (`ask_to_activate`).
+/// After a disconnection the loop continues with zero force. Another thread finds the reconnected
+/// arm by its serial number, closes the lost link (`close_lost_link`), opens a new one and offers
+/// it. The next tick takes the offer and reads positions again. Forces return only when the user
+/// requests them (`ask_to_activate`).
 ///
-/// Encoders that count from where the arm stood when its board started
-/// (ArmTraits::zero_at_power_on) are wrong after every restart of the board, with a wire that was
-/// pulled or without. After a new link, a silence, or a jump of the position while no report came,
-/// forces therefore need the home pose again (`home_needed`).
+/// Some encoders count from the pose in which the arm's board started
+/// (ArmTraits::zero_at_power_on). They are wrong after every restart of the board, with or without
+/// a disconnection. Such an arm must return to its home pose (`home_needed`) before it gets forces
+/// after a new link, a silence, or a jump of the position without a report.
 class THIMBLE_EXPORT Device {
  public:
-  /// Takes the link to an arm; waits up to `timeout_ns` of `clock_now_ns` time for the first report
-  /// by way of the link's deadline, and sends zero force meanwhile, because some arms speak only
-  /// when spoken to. Fails if none arrives or none can be understood, if the settings are wrong
-  /// (`DeviceSettings::check`), or if they name the heat of motors that the link keeps to itself.
-  /// Real-time: never from the servo thread.
+  /// Opens a device on the link to an arm. Waits for the first report up to `timeout_ns` after
+  /// `clock_now_ns`, through the link's deadline. Meanwhile it sends zero force, because some arms
+  /// report only when addressed. Fails if no report arrives or none is valid, or if the settings
+  /// are invalid (`DeviceSettings::check`). Also fails if they contain heat limits but the link
+  /// does not expose its motors. Real-time: never from the servo thread.
   static Result<std::unique_ptr<Device>> open(std::unique_ptr<ArmLink> link,
                                               const DeviceSettings& settings,
                                               std::int64_t clock_now_ns,
@@ -139,113 +145,115 @@ class THIMBLE_EXPORT Device {
 
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  /// Sends zero force, then closes the link. Where a force stands and the arm does not take the
-  /// zero, it insists in real time as `insist_on_zero` does, unless that has been done.
+  /// Sends zero force, then closes the link. If a force may still act because the arm did not
+  /// accept zero force, first calls `insist_on_zero` in real time, unless that has been done.
   ~Device();
 
-  /// Lets forces through from the next tick on, with a soft start; clears a fault. Fails if the
-  /// link is lost, or if the home pose is needed first and `home` does not say that the arm was
-  /// seen there. Real-time: never from the servo thread.
+  /// Enables forces from the next tick on, with a soft start, and clears a fault. Fails if the link
+  /// is lost, or if the home pose is required and `home` is kNone. Real-time: never from the servo
+  /// thread.
   Result<void> activate(HomeCheck home = HomeCheck::kNone);
 
-  /// Sends zero force now, once more if the arm does not take it, and in every later tick.
-  /// `zero_assured` says whether it was taken. Real-time: safe.
+  /// Sends zero force now (once more if the arm does not accept it) and in every later tick.
+  /// `zero_assured` returns whether it was accepted. Real-time: safe.
   void deactivate() noexcept;
 
-  /// Sends zero force again, each millisecond of `clock`, until the arm takes it or the link is
-  /// lost: for as long as the arm's own watchdog waits (`GateLimits::watchdog_ns`), after which the
-  /// arm must have switched itself off. Returns whether it was taken; if not, that is the fault
-  /// kRefused. For the end of a loop. Real-time: safe; waits, and a write may wait as well.
+  /// Sends zero force every millisecond of `clock`, until the arm accepts it or the link is lost.
+  /// Stops after `GateLimits::watchdog_ns`, when the arm's own watchdog must have switched it off.
+  /// Returns whether zero force was accepted; if not, the fault is kRefused. For use at the end of
+  /// a loop. Real-time: safe; waits, and a write may wait as well.
   bool insist_on_zero(Clock& clock) noexcept;
 
-  /// Returns whether the force that stands is known to be zero: the last message said so, no
-  /// message with a force has failed since, and the last message has left this computer
-  /// (ArmLink::settled). False: a force may stand until the arm's own watchdog switches it off.
-  /// From the thread that uses the device. Real-time: safe.
+  /// Returns whether the acting force is known to be zero. That is so if the last message was zero
+  /// force and has left this computer (ArmLink::settled), and no message with a force has failed
+  /// since. If false, a force may act until the arm's own watchdog switches it off. From the thread
+  /// that uses the device. Real-time: safe.
   bool zero_assured() const noexcept;
 
-  /// Begins a tick: reads the newest report and finds where the tip is. A report after which the
-  /// tip would have changed its speed by 1 m/s within 1 ms is dropped, once: no hand does that, but
-  /// a disturbed encoder line does; the second in a row is believed. With no new report the last
-  /// state stands (`fresh` is false); after `silence_limit_ns` of that it is a fault. Real-time:
-  /// safe; waits no longer than `deadline_ns`.
+  /// Starts a tick: reads the newest report and computes the tip's position and velocity. A report
+  /// that implies a change of tip speed by 1 m/s within 1 ms is dropped once. No hand does that,
+  /// but a disturbed encoder line does; a second such report in a row is accepted. Without a new
+  /// report the last state is returned with `fresh` false; after `silence_limit_ns` this is a
+  /// fault. Real-time: safe; waits no longer than `deadline_ns`.
   const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
-  /// Reads the newest report as `read` does and sends zero force: for a caller that looks at the
-  /// arm before a run. It counts no tick, and a silence is no fault, but may make the home pose
-  /// needed. Real-time: safe.
+  /// Reads the newest report as `read` does and sends zero force: for a caller that checks the arm
+  /// before a run. It counts no tick. A silence is not a fault, but can make the home pose
+  /// required. Real-time: safe.
   const DeviceState& idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
-  /// Ends a tick: passes the command through the gate and sends what is left of it, or zero if the
-  /// device is not active. What the arm does not take leaves the force before it standing, and the
-  /// next one rises from that. Real-time: safe.
+  /// Ends a tick: passes the command through the gate and sends the result, or zero force if the
+  /// device is not active. If the arm does not accept the message, the previous force still acts,
+  /// and the next force rises from it. Real-time: safe.
   void write(const ForceCommand& command) noexcept;
 
-  /// Makes a fault that somebody above found (it latches, the force goes off). Real-time: safe.
+  /// Latches a fault that the caller has detected; the force is switched off. Real-time: safe.
   void trip(Fault fault) noexcept { gate_.trip(fault); }
 
-  /// Closes the lost link, and an offer that was not taken. Call it before a new link to the same
-  /// arm is opened: a vendor's library has one arm for all links, so that the end of an old link
-  /// would close the new one. From the thread that offers. Real-time: never from the servo thread.
+  /// Closes the lost link and any offer that was not taken. Call it before opening a new link to
+  /// the same arm. A vendor library can share one arm between all links, so that closing the old
+  /// link later would close the new one. Call from the thread that calls `offer`. Real-time: never
+  /// from the servo thread.
   void close_lost_link() noexcept;
 
-  /// Offers a new link to the same arm as a replacement for a lost one; closes the lost one first,
+  /// Offers a new link to the same arm as a replacement for a lost one. Closes the lost one first,
   /// as `close_lost_link` does. The next `read` takes the offer if the link is lost. Fails, and
-  /// drops the link, if it is to an arm of another kind (`ArmTraits`). From one thread other than
-  /// the loop's. Real-time: never from the servo thread.
+  /// closes the new link, if the arm differs (`ArmTraits`). Call from one thread other than the
+  /// loop's. Real-time: never from the servo thread.
   Result<void> offer(std::unique_ptr<ArmLink> link);
 
-  /// Asks the next `read` to activate the device. The request is dropped unless the link is
-  /// connected, and if the home pose is needed and `home` does not say that the arm was seen there.
-  /// From any thread. Real-time: safe.
+  /// Requests the next `read` to activate the device. The request is dropped if the link is not
+  /// connected, or if the home pose is required and `home` is kNone. From any thread. Real-time:
+  /// safe.
   void ask_to_activate(HomeCheck home = HomeCheck::kNone) noexcept {
     activation_asked_.store(home == HomeCheck::kPassed ? Asked::kAtHome : Asked::kYes,
                             std::memory_order_release);
   }
 
-  /// Lets the enabling input that the caller watches (HoldToRun::by_caller) count as held up to a
-  /// time of the loop's clock, ns: while it is held the caller says so again and again. From any
+  /// Reports that the enabling input of the caller (HoldToRun::by_caller) counts as held until a
+  /// time of the loop's clock, ns. The caller repeats the call while the input is held. From any
   /// thread. Real-time: safe.
   void hold_until(std::int64_t time_ns) noexcept;
 
-  /// Makes the fault that follows a sleep of the computer (Clock::asleep_ns): no force until the
-  /// device is activated again, and the counts are doubted, for a board may have lost its power.
-  /// Real-time: safe.
+  /// Latches the fault for a suspend of the computer (Clock::asleep_ns). No force is sent until the
+  /// device is activated again. The encoder counts become doubtful, because a board may have lost
+  /// power. Real-time: safe.
   void wake_from_sleep() noexcept {
     gate_.trip(Fault::kSuspended);
     doubt_counts();
   }
 
-  /// Ends `home_needed`: the caller has seen the arm in its home pose. Real-time: safe.
+  /// Clears `home_needed`: the caller has seen the arm in its home pose. Real-time: safe.
   void confirm_home() noexcept { home_needed_ = false; }
 
-  DeviceStage stage() const noexcept;  ///< Returns where it is in its life. Real-time: safe.
-  /// Returns whether the link is lost and waits for an offer. Real-time: safe.
+  DeviceStage stage() const noexcept;  ///< Returns the stage of the device. Real-time: safe.
+  /// Returns whether the link is lost and a new one can be offered. Real-time: safe.
   bool lost() const noexcept { return lost_; }
-  /// Returns the state of the link, whatever the fault is. Real-time: safe.
+  /// Returns the state of the link, independent of the fault. Real-time: safe.
   LinkState link_state() const noexcept;
-  /// Returns whether the arm's board may have restarted, so that its counts may be wrong: no force
-  /// before the arm was seen in its home pose. Never for an arm with absolute encoders, one that
-  /// finds its own zero, or one whose pose its vendor reports. Real-time: safe.
+  /// Returns whether the arm must be seen in its home pose before it gets a force, because its
+  /// board may have restarted and its counts may be wrong. Always false for an arm with absolute
+  /// encoders, one that finds its own zero, or one whose pose its vendor reports. Real-time: safe.
   bool home_needed() const noexcept { return home_needed_; }
-  Fault fault() const noexcept { return gate_.fault(); }  ///< Names what switched the force off.
-  /// Shows what was read last. Real-time: safe.
+  /// Returns the reason why the force is off. Real-time: safe.
+  Fault fault() const noexcept { return gate_.fault(); }
+  /// Returns the last state read. Real-time: safe.
   const DeviceState& state() const noexcept { return state_; }
-  /// Returns the force that stands, N in the world: of the last message that the arm took, and zero
+  /// Returns the acting force, N in the world: that of the last message that the arm accepted; zero
   /// once the link is lost. Real-time: safe.
   const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
-  /// Counts what came over the link. Real-time: safe.
+  /// Returns the counters of messages on the link. Real-time: safe.
   const WireCounters& wire_counters() const noexcept { return wire_; }
-  /// Counts what the gate did. Real-time: safe.
+  /// Returns the counters of the gate. Real-time: safe.
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
-  /// Counts what the walls around the workspace did. Real-time: safe.
+  /// Returns the counters of the workspace walls. Real-time: safe.
   const WallCounters& wall_counters() const noexcept { return wall_counters_; }
-  const SafetyGate& gate() const noexcept { return gate_; }  ///< Shows the gate. Real-time: safe.
-  /// Returns the settings that it was opened with. Real-time: safe.
+  const SafetyGate& gate() const noexcept { return gate_; }  ///< Returns the gate. Real-time: safe.
+  /// Returns the settings of the device. Real-time: safe.
   const DeviceSettings& settings() const noexcept { return settings_; }
-  /// Returns the thermal model of its motors. Real-time: safe.
+  /// Returns the thermal model of the motors. Real-time: safe.
   const HeatGuard& heat() const noexcept { return heat_; }
-  /// Returns what the arm tells and how it is driven. Real-time: safe.
+  /// Returns the capabilities of the arm. Real-time: safe.
   const ArmTraits& traits() const noexcept { return traits_; }
 
  private:
@@ -271,7 +279,8 @@ class THIMBLE_EXPORT Device {
   void stop_at_walls(const ForceCommand& command) noexcept;
   void pass_on(const ForceCommand& command, double held) noexcept;
   void forget_velocity() noexcept;
-  /// Returns the velocity that the gate goes by, m/s: whoever reads the arm may smooth his own.
+  /// Returns the velocity used by the gate, m/s; independent of the smoothing of the state for
+  /// callers.
   const Eigen::Vector3d& v_gate_W() const noexcept {
     return own_velocity_ != nullptr ? v_own_W_ : state_.v_WT;
   }
@@ -281,54 +290,57 @@ class THIMBLE_EXPORT Device {
   void book(const LinkWrite& sent, const GatedForce& force) noexcept;
   const ArmSample& sample() const noexcept { return samples_[newest_]; }
 
-  /// A request to activate.
+  /// Requested activation.
   enum class Asked : std::uint8_t { kNo, kYes, kAtHome };
 
-  std::unique_ptr<ArmLink> link_;  // null while it is lost, as soon as the old one was retired
+  std::unique_ptr<ArmLink> link_;  // Null while the link is lost, once the old one was retired.
   ArmTraits traits_;
   DeviceSettings settings_;
   SafetyGate gate_;
   MotionWatch motion_;
   HeatGuard heat_;
-  std::unique_ptr<WorkAccount> work_;  // for the energy stage
-  // Of the tip when the power was booked last, and whether that is known.
+  std::unique_ptr<WorkAccount> work_;  // For the energy stage.
+  // Position of the tip when the power was last integrated, and whether it is known.
   Eigen::Vector3d p_power_WT_{0, 0, 0};
   bool placed_ = false;
-  // Since forces are let through: a program asked for one; that, or storages were named.
+  // Since activation: a program requested a force; that, or storages were named.
   bool programs_ = false;
   bool explained_ = false;
 
   std::unique_ptr<VelocityEstimator> velocity_;
-  std::unique_ptr<VelocityEstimator>
-      own_velocity_;                  // where the other is slower than the gate may be
-  Eigen::Vector3d v_own_W_{0, 0, 0};  // m/s, by it
+  // Used if `velocity_` is slower than the gate allows.
+  std::unique_ptr<VelocityEstimator> own_velocity_;
+  Eigen::Vector3d v_own_W_{0, 0, 0};  // From `own_velocity_`, m/s.
   std::unique_ptr<WorkspaceWalls> walls_;
   WallCounters wall_counters_;
-  std::unique_ptr<EnablingInput> enabling_;  // null: nothing is to be held
+  std::unique_ptr<EnablingInput> enabling_;  // Null: no enabling input.
   WireCounters wire_;
-  // One holds what is believed, the other takes the next report.
+  // One holds the accepted sample, the other receives the next report.
   std::array<ArmSample, 2> samples_;
   std::size_t newest_ = 0;
   DeviceState state_;
   Eigen::Vector3d f_sent_W_{0, 0, 0};
   std::int64_t last_report_ns_ = 0;
-  std::int64_t quiet_since_ns_ = 0;  // last report, or the begin of listening
-  std::int64_t listened_ns_ = 0;     // last read or idle
-  bool guarded_;                     // an energy stage or a heat guard is named
-  bool extras_;                      // the arm tells more, or less, than joints and counts
+  std::int64_t quiet_since_ns_ = 0;  // Last report, or the start of listening.
+  std::int64_t listened_ns_ = 0;     // Last call of `read` or `idle`.
+  bool guarded_;                     // True with an energy stage or a heat guard.
+  // True if the samples have other members than joints and counts.
+  bool extras_;
   bool active_ = false;
-  bool waiting_ = false;  // for the enabling input
-  bool started_ = false;  // a tick has been read
+  bool waiting_ = false;  // True while waiting for the enabling input.
+  bool started_ = false;  // True if a tick has been read.
   bool lost_ = false;
-  bool jumped_ = false;          // the newest report was dropped for a jump
-  bool reported_ = false;        // a report came over this link
-  bool known_to_stand_ = false;  // f_sent_W_ is what the arm took last, over this link
-  bool silent_ = false;          // no report for the silence limit, and none since
-  bool spoken_ = false;          // a message was sent, or refused, since the last report
+  bool jumped_ = false;    // True if the newest report was dropped for a jump.
+  bool reported_ = false;  // True if a report arrived over this link.
+  // True if f_sent_W_ is the last force that the arm accepted over this link.
+  bool known_to_stand_ = false;
+  bool silent_ = false;  // True if no report arrived for the silence limit, nor since.
+  bool spoken_ = false;  // True if a message was sent or refused since the last report.
   bool home_needed_ = false;
-  bool insisted_ = false;  // on a zero that was not taken
+  // True if `insist_on_zero` was called for a zero force that was not accepted.
+  bool insisted_ = false;
   int refused_in_a_row_ = 0;
-  int missed_in_a_row_ = 0;  // reads without a report, while it was listened to
+  int missed_in_a_row_ = 0;  // Number of reads without a report while listening.
   std::int64_t refused_since_ns_ = 0;
   std::atomic<ArmLink*> offered_{nullptr}, retired_{nullptr};
   std::atomic<Asked> activation_asked_{Asked::kNo};

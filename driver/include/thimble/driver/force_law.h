@@ -9,50 +9,52 @@
 
 namespace thimble::driver {
 
-/// What a force law touched in one tick; for readers at the side (viewer, recorder, tests).
+/// Contact information from one tick, for observers (viewer, recorder, tests).
 struct TouchInfo {
-  bool in_contact = false;        ///< True while the tip is held outside an object.
-  std::int16_t object = -1;       ///< Which of the scene's objects, -1 for none.
-  std::int32_t feature = -1;      ///< Active triangle or other feature of the object, -1 for none.
-  double depth = 0;               ///< Penetration depth along the force's normal, m; 0 if none.
-  Eigen::Vector3d p_WP{0, 0, 0};  ///< Proxy: the surface point the tip is held at, in the world, m.
-  Eigen::Vector3d n_W{0, 0, 0};   ///< Outward unit normal that the force acts along; 0 if none.
-  std::uint16_t hops = 0;         ///< Features crossed in this tick.
+  bool in_contact = false;    ///< True if the tip is in contact with an object.
+  std::int16_t object = -1;   ///< Number of the object in the scene, -1 for none.
+  std::int32_t feature = -1;  ///< Active triangle or other feature of the object, -1 for none.
+  double depth = 0;           ///< Penetration depth along the force's normal, m; 0 if none.
+  /// Proxy: the surface point at which the tip is held, in the world, m.
+  Eigen::Vector3d p_WP{0, 0, 0};
+  Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal along which the force acts; 0 if none.
+  std::uint16_t hops = 0;        ///< Features crossed in this tick.
 };
 
-/// What a force law asks for in one tick: nothing reaches the motors except through SafetyGate.
+/// Force requested by a force law in one tick. Every force reaches the motors through SafetyGate.
 struct ForceCommand {
-  Eigen::Vector3d f_T_W{0, 0, 0};  ///< Force that the arm shall exert on the hand, in the world, N.
-  TouchInfo touch;                 ///< What the force was made of.
-  /// Energy that the law's storages hold now and may give to the hand, J: the potential of fields,
-  /// the motion and height of bodies. Only its changes count. The springs of touched surfaces are
-  /// not part of it: the gate finds their energy from force and depth. A law without storages
-  /// leaves it 0.
+  Eigen::Vector3d f_T_W{0, 0, 0};  ///< Requested force on the hand, in the world, N.
+  TouchInfo touch;                 ///< Contact that caused the force.
+  /// Energy in the storages of the law that may be given to the hand, J: the potential of fields,
+  /// and the motion and height of bodies. Only its changes are used. The springs of touched
+  /// surfaces are not included: the gate computes their energy from force and depth. 0 for a law
+  /// without storages.
   double stored = 0;
-  /// Part of `f_T_W` whose storage is not known, because a program outside of the scene asked for
-  /// it, N. The gate's energy stage leaves it alone; growing oscillations of it are stopped.
+  /// Part of `f_T_W` that a program outside of the scene requested, so that its storage is unknown,
+  /// N. The energy stage of the gate ignores it; growing oscillations of it are stopped.
   Eigen::Vector3d f_program_W{0, 0, 0};
 };
 
-/// Lets a command ask for a share (0 to 1) of its force. Its storages hold as much less for the
-/// hand. Real-time: safe.
+/// Scales a command to a fraction (0 to 1) of its force. Its storages are scaled alike. Real-time:
+/// safe.
 inline void scale(ForceCommand& command, double share) noexcept {
   command.f_T_W *= share;
   command.f_program_W *= share;
   command.stored *= share;
 }
 
-/// Refers to a force law: any object callable as `ForceCommand law(const DeviceState&) noexcept`.
+/// Reference to a force law: any object callable as `ForceCommand law(const DeviceState&)
+/// noexcept`.
 ///
-/// A law may also have `void prepare(const DeviceState& expected) const noexcept`, which a loop
-/// calls in the time that is left before a tick (ServoSettings::prepare_ns): it reads what the tick
-/// will read, so that the tick waits for no memory, and changes nothing.
+/// A law may also have `void prepare(const DeviceState& expected) const noexcept`. A loop calls it
+/// in the remaining time before a tick (ServoSettings::prepare_ns). It prefetches the memory that
+/// the tick will read, and changes nothing.
 ///
-/// It does not own the law; whoever makes a ForceLaw keeps the law alive while the loop runs.
+/// Does not own the law; the creator of a ForceLaw keeps the law alive while the loop runs.
 /// Real-time: safe if the law is; one indirect call.
 class ForceLaw {
  public:
-  /// Takes the law to refer to; of a ForceLaw it is a copy. Real-time: safe.
+  /// Refers to a law; copies the reference if it is a ForceLaw. Real-time: safe.
   template <class Law>
   requires(!std::same_as<std::remove_const_t<Law>, ForceLaw>) explicit ForceLaw(Law& law) noexcept
       : law_(const_cast<void*>(static_cast<const void*>(&law))),
@@ -70,11 +72,11 @@ class ForceLaw {
     }
   }
 
-  /// Asks the law for the force of a tick. Real-time: safe if the law is.
+  /// Returns the force of the law for a tick. Real-time: safe if the law is.
   ForceCommand operator()(const DeviceState& state) const noexcept { return call_(law_, state); }
 
-  /// Lets the law read what it will need in a tick that is expected to be like this; the next force
-  /// is the same with it and without. Real-time: safe if the law is.
+  /// Lets the law prefetch the memory for a tick with about this state. Does not change the next
+  /// force. Real-time: safe if the law is.
   void prepare(const DeviceState& expected) const noexcept {
     if (prepare_ != nullptr) prepare_(law_, expected);
   }

@@ -10,40 +10,42 @@
 
 namespace thimble::driver {
 
-/// What the motion watch knows of an arm.
+/// Settings of the motion watch.
 struct MotionWatchSettings {
-  /// Least apparent mass at the tip, kg. 0: not known, and the motors' direction is not watched.
+  /// Smallest apparent mass at the tip, kg. 0: unknown; the direction of the motors is not
+  /// monitored.
   double mass = 0;
-  int delay_ticks = 0;  ///< Ticks from sampling to force beyond the hold.
-  /// Longest time a force is held while no encoder counts, s, for an arm that does not number its
-  /// reports; and, for any arm, while the joint it acts on does not count and the tip moves. Must
-  /// be > 0. [chosen: a hand that rests on a surface leaves every count alone for seconds, since
-  /// dry friction holds the arm; a tip that stops dead is noticed within 32 ms]
+  int delay_ticks = 0;  ///< Delay from sampling to force in addition to the hold, ticks.
+  /// Longest time a force may be held while no encoder counts, s, for an arm that does not number
+  /// its reports. For any arm, also the longest time while the joint on which the force acts does
+  /// not count and the tip moves. Must be > 0. [chosen: a hand that rests on a surface leaves every
+  /// count unchanged for seconds, since dry friction holds the arm; a tip that stops dead is
+  /// noticed within 32 ms]
   double hold_most = 10;
 };
 
-/// A check of motors and encoders by the motion of the tip: motors that pull the wrong way, an
-/// encoder that stands still while it should move, and reports that repeat themselves.
+/// Monitors motors and encoders by the motion of the tip. Detects motors that act in the wrong
+/// direction, an encoder that does not change although it should, and repeated reports.
 ///
 /// Positions and forces are averaged over blocks of 4 ms. Five accelerations of neighbouring blocks
-/// (20 ms) are compared with the forces that were sent, along the direction in which each joint
-/// moves the tip and along the force itself. The tip of an arm with reversed motors gains speed
-/// against the force, and the more the larger the force. A hand can do that too, for a moment; it
-/// does not keep to the proportion 1 / mass (motion_watch.cpp). Each time the tip answers a force
-/// as it should speaks for the motors, and is weighed against what speaks against them.
+/// (20 ms) are compared with the forces sent, along the direction in which each joint moves the tip
+/// and along the force itself. The tip of an arm with reversed motors gains speed against the
+/// force, in proportion to the force. A hand can do that for a moment, but not in the proportion 1
+/// / mass (motion_watch.cpp). Each correct response of the tip counts as evidence for the motors
+/// and is weighed against evidence of reversal.
 ///
-/// What it cannot see: a constant force (a hand may hold it or throw against it), and a surface
-/// softer than the hand's grip, for which the reversed arm is stable and slow.
-/// All functions are Real-time: safe.
+/// Not detected: faults under a constant force (a hand may hold it or throw against it), and a
+/// surface softer than the hand's grip, for which the reversed arm is stable and slow. All
+/// functions are Real-time: safe.
 class THIMBLE_EXPORT MotionWatch {
  public:
   explicit MotionWatch(const MotionWatchSettings& settings) noexcept;
 
-  /// Forgets the past; motors have to prove themselves again.
+  /// Resets the monitor; the motors must prove their direction again.
   void restart() noexcept;
 
-  /// Takes a tick, with the force that was sent in the tick before (N, world). Returns whether a
-  /// block is full, so that `judge` is due. A tick without a report has no position.
+  /// Adds a tick with the force sent in the previous tick (N, world). A tick without a report has
+  /// no position. Returns whether a block is full, so that `judge` must be called.
   bool take(const DeviceState& state, const Eigen::Vector3d& f_sent_W) noexcept {
     if (state.fresh) {
       p_sum_ += state.p_WT;
@@ -55,19 +57,19 @@ class THIMBLE_EXPORT MotionWatch {
     return state.time_ns - begin_ns_ >= kBlock_ns;
   }
 
-  /// Closes the block that `take` has filled, and returns the fault that motion shows, or kNone.
-  /// Columns of `J_BT`: how the tip moves with each joint, in the arm's base, m/rad. `numbered`
-  /// says that the arm numbers its reports, so that old ones are known by that.
+  /// Closes the block that `take` has filled. Returns the fault that the motion shows, or kNone.
+  /// Columns of `J_BT`: motion of the tip per joint, in the arm's base, m/rad. `numbered` is true
+  /// if the arm numbers its reports, so that repeated ones are detected by that.
   Fault judge(const DeviceState& state, const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT,
               bool numbered) noexcept;
 
  private:
   static constexpr std::int64_t kBlock_ns = 3'950'000;    // 4 ms, less the jitter of a loop
-  static constexpr std::int64_t kLongest_ns = 8'500'000;  // of a block
-  static constexpr std::uint32_t kBlocks = 16;            // that are kept
+  static constexpr std::int64_t kLongest_ns = 8'500'000;  // Longest duration of a block.
+  static constexpr std::uint32_t kBlocks = 16;            // Number of blocks kept.
   static constexpr int kAccelerations = 5;
 
-  /// What is known of 4 ms.
+  /// Averages over a block of 4 ms.
   struct Block {
     Eigen::Vector3d p{0, 0, 0};  // mean position, m
     Eigen::Vector3d f{0, 0, 0};  // mean force, N
@@ -84,17 +86,18 @@ class THIMBLE_EXPORT MotionWatch {
     }
     double width() const noexcept { return max - min; }
   };
-  /// What is known of a joint since its encoder counted last.
+  /// State of a joint since its encoder last counted.
   struct Stillness {
     Range along, across;                  // components of the force
-    Eigen::Vector3d leg_begin{0, 0, 0};   // start of the present leg of the tip's path, m
-    Eigen::Vector3d leg_before{0, 0, 0};  // leg that was counted last, m
-    int legs = 0;                         // legs, each with another direction than the one before
-    double way = 0;                       // length of the tip's path, m
-    double held = 0;                      // time under force, s
+    Eigen::Vector3d leg_begin{0, 0, 0};   // Start of the current leg of the tip's path, m.
+    Eigen::Vector3d leg_before{0, 0, 0};  // Leg that was counted last, m.
+    // Number of legs, each with another direction than the one before.
+    int legs = 0;
+    double way = 0;   // Length of the tip's path, m.
+    double held = 0;  // Time under force, s.
     int blocks = 0;
   };
-  /// Accelerations and the forces that belong to them, along one direction.
+  /// Accelerations and the corresponding forces, along one direction.
   struct Pairs {
     std::array<double, kAccelerations> a{}, f{};
   };
@@ -111,21 +114,22 @@ class THIMBLE_EXPORT MotionWatch {
   void begin_block(const DeviceState& state) noexcept;
 
   MotionWatchSettings settings_;
-  // The block that is being filled.
+  // Current block.
   Eigen::Vector3d p_sum_{0, 0, 0}, f_sum_{0, 0, 0};
   std::int64_t begin_ns_ = 0, time_sum_ns_ = 0;
   int reports_ = 0, ticks_ = 0;
-  std::array<std::int32_t, 3> counts_{};  // at the end of the last block
-  std::array<bool, 3> changed_{};         // since then
-  // The full ones.
+  std::array<std::int32_t, 3> counts_{};  // At the end of the last block.
+  std::array<bool, 3> changed_{};         // Changed since then.
+  // Full blocks.
   std::array<Block, kBlocks> blocks_{};
   std::uint32_t newest_ = 0;
-  std::uint32_t full_ = 0;      // blocks since the last gap
-  double late_blocks_ = 0;      // delay of the force, in blocks
-  std::array<int, 4> proof_{};  // how often each direction answered as it should, less the contrary
+  std::uint32_t full_ = 0;  // blocks since the last gap
+  double late_blocks_ = 0;  // delay of the force, in blocks
+  // Number of correct responses in each direction, minus the contrary.
+  std::array<int, 4> proof_{};
   std::array<Stillness, 3> still_{};
-  double held_ = 0;          // s since any encoder counted, under force
-  double speed_before_ = 0;  // of the tip when it counted last, m/s
+  double held_ = 0;          // Time since any encoder counted, under force, s.
+  double speed_before_ = 0;  // Speed of the tip when it last counted, m/s.
 };
 
 }  // namespace thimble::driver

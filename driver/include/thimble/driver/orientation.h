@@ -8,48 +8,48 @@
 
 namespace thimble::driver {
 
-/// A rotation as a unit quaternion w, x, y, z in single precision: 6e-8 rad, below the step of any
-/// gimbal. All zeros: there is none. The state of a device, its record and a recording hold the
-/// same four numbers, so that a replay sees the same orientation to the bit.
+/// Rotation as a unit quaternion w, x, y, z in single precision: 6e-8 rad, below the step of any
+/// gimbal. All zeros: no orientation. The state of a device, its record and a recording hold the
+/// same four numbers, so that the orientation in a replay is bit-identical.
 using TipQuaternion = std::array<float, 4>;
 
 /// Returns the quaternion of a rotation, w >= 0; all zeros if it is not finite. Real-time: safe.
 THIMBLE_EXPORT TipQuaternion quaternion_of(const Eigen::Matrix3d& R) noexcept;
 
-/// Returns the rotation of a quaternion; the identity of one that is all zeros. Real-time: safe.
+/// Returns the rotation of a quaternion; the identity if it is all zeros. Real-time: safe.
 THIMBLE_EXPORT Eigen::Matrix3d rotation_of(const TipQuaternion& q) noexcept;
 
-/// An axis of a frame.
+/// Axis of a frame.
 enum class FrameAxis : std::uint8_t {
   kX,  ///< x
   kY,  ///< y
   kZ,  ///< z
 };
 
-/// Returns the rotation about an axis by an angle (rad), anticlockwise as seen from the axis's end.
-/// Real-time: safe.
+/// Returns the rotation about an axis by an angle (rad), anticlockwise when seen from the tip of
+/// the axis. Real-time: safe.
 THIMBLE_EXPORT Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept;
 
-/// A gimbal between the last link of an arm and the stylus that the hand holds: three axes, one
-/// behind the other, each with an encoder and no motor. Data of one model, no state.
+/// Gimbal between the last link of an arm and the stylus held by the hand: three axes in series,
+/// each with an encoder and no motor. Stateless data of one arm model.
 ///
 ///     R_BT = R_BL R(axis 1, angle 1) R(axis 2, angle 2) R(axis 3, angle 3)
 ///
-/// Frame L: the last link, as each geometry's `last_link` tells it; T: the stylus, which has the
-/// axes of L when all angles are zero. All functions are Real-time: safe.
+/// Frame L: the last link, as returned by `last_link` of each geometry; T: the stylus, which has
+/// the axes of L when all angles are zero. All functions are Real-time: safe.
 struct THIMBLE_EXPORT Gimbal {
-  /// Axes in the order from link to stylus, each in the frame that the ones before have turned.
+  /// Axes in the order from link to stylus, each in the frame rotated by the axes before.
   std::array<FrameAxis, 3> axes{FrameAxis::kX, FrameAxis::kY, FrameAxis::kX};
   std::array<double, 3> sign{1, 1, 1};        ///< +1 if counts grow with the angle, else -1.
-  std::array<double, 3> counts_per_turn{};    ///< Of each encoder.
-  std::array<std::int32_t, 3> home_counts{};  ///< Added to each counter.
+  std::array<double, 3> counts_per_turn{};    ///< Counts per turn of each encoder.
+  std::array<std::int32_t, 3> home_counts{};  ///< Counts at the home pose; added to each counter.
 
   friend bool operator==(const Gimbal&, const Gimbal&) = default;
 
-  /// Returns the angles (rad) at these counters.
+  /// Returns the angles (rad) for these counter values.
   Eigen::Vector3d angles(const std::array<std::int32_t, 3>& counters) const noexcept;
 
-  /// Returns the counters before rounding at these angles (rad): the inverse of `angles`.
+  /// Returns the counter values before rounding at these angles (rad): the inverse of `angles`.
   Eigen::Vector3d exact_counts(const Eigen::Vector3d& angles) const noexcept;
 
   /// Returns the rotation R_LT of the stylus in the frame of the last link.

@@ -7,17 +7,17 @@
 
 namespace thimble::driver {
 
-/// What went wrong on a set-up path, where, and what the user can do about it.
+/// Error of a set-up path: the problem, its place and the fix.
 ///
-/// `message` is one or two full sentences, ready to print ("No access to 1234:0006: install
-/// udev/70-thimble.rules and replug the arm.").
+/// `message` consists of one or two full sentences, ready to print ("No access to 1234:0006:
+/// install udev/70-thimble.rules and replug the arm.").
 struct Error {
-  std::string message;  ///< See above.
+  std::string message;  ///< Problem and fix in one or two sentences.
 };
 
-/// Holds a value or the Error that explains why there is none; for set-up paths only.
+/// A value, or the Error that explains why there is none. Only for set-up paths.
 ///
-/// Precondition of `value()` is `ok()`, of `error()` is `!ok()`; breaking it throws
+/// Precondition of `value()` is `ok()`, of `error()` it is `!ok()`. A violation throws
 /// std::bad_variant_access. Real-time: never from the servo thread.
 template <class T>
 class [[nodiscard]] Result {
@@ -28,10 +28,10 @@ class [[nodiscard]] Result {
   bool ok() const { return content_.index() == 0; }  ///< Returns whether there is a value.
   explicit operator bool() const { return ok(); }    ///< As `ok`.
 
-  T& value() & { return std::get<0>(content_); }                ///< Gives the value.
-  const T& value() const& { return std::get<0>(content_); }     ///< Gives the value.
-  T&& value() && { return std::get<0>(std::move(content_)); }   ///< Gives the value.
-  const Error& error() const { return std::get<1>(content_); }  ///< Gives the error.
+  T& value() & { return std::get<0>(content_); }                ///< Returns the value.
+  const T& value() const& { return std::get<0>(content_); }     ///< Returns the value.
+  T&& value() && { return std::get<0>(std::move(content_)); }   ///< Returns the value.
+  const Error& error() const { return std::get<1>(content_); }  ///< Returns the error.
 
   T* operator->() { return &value(); }              ///< As `value`.
   const T* operator->() const { return &value(); }  ///< As `value`.
@@ -42,16 +42,16 @@ class [[nodiscard]] Result {
   std::variant<T, Error> content_;
 };
 
-/// Says that a set-up step worked, or why it did not.
+/// Success of a set-up step, or the Error that explains the failure.
 template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
   Result(Error error) : error_(std::move(error)) {}  // NOLINT
 
-  bool ok() const { return !error_.has_value(); }        ///< Returns whether it worked.
+  bool ok() const { return !error_.has_value(); }        ///< Returns whether the step succeeded.
   explicit operator bool() const { return ok(); }        ///< As `ok`.
-  const Error& error() const { return error_.value(); }  ///< Gives the error.
+  const Error& error() const { return error_.value(); }  ///< Returns the error.
 
  private:
   std::optional<Error> error_;

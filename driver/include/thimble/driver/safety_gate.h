@@ -12,11 +12,11 @@
 
 namespace thimble::driver {
 
-/// Holds a force that passed the safety gate: the only force that can become motor currents. Anyone
-/// may make the zero force; only SafetyGate makes another.
+/// A force that has passed the safety gate: the only force that can become motor currents. Any code
+/// can create zero force; only SafetyGate creates another.
 class GatedForce {
  public:
-  /// Zero force.
+  /// Constructs zero force.
   GatedForce() = default;
 
   /// Returns the force on the hand in the world frame, N.
@@ -28,137 +28,143 @@ class GatedForce {
   Eigen::Vector3d f_T_W_{0, 0, 0};
 };
 
-/// Sets what an arm may do to a hand. There is no "off": a limit is raised, never left out, and no
-/// further than to where it still protects somebody.
+/// Limits of the force of an arm on a hand. There is no "off": a limit can be raised, but only
+/// within a range that still protects a person.
 struct GateLimits {
   /// Shortest soft start, s [chosen: below 50 ms a hand feels no ramp but a knock: a stretch reflex
-  /// answers after 30 to 50 ms M].
+  /// responds after 30 to 50 ms M].
   static constexpr double kSoftStartLeast = 0.05;
-  /// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, more than any arm here can push].
+  /// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, more than any arm here can exert].
   static constexpr double kRiseMost = 1e5;
-  /// Or shortest time to the whole force, s, for a force so large that only a bench asks for it
-  /// [chosen: a tick of the fastest loop here, 20 kHz].
+  /// Shortest time to the whole force, s, an alternative bound for a force so large that only a
+  /// test bench uses it [chosen: a tick of the fastest loop here, 20 kHz].
   static constexpr double kRiseTimeLeast = 5e-5;
-  /// Longest gap that is no fault, ns [chosen: twice the longest watchdog of a board, 0.5 s of the
-  /// mbed one (woody_report.h)].
+  /// Longest gap between ticks that is not a fault, ns [chosen: twice the longest watchdog of a
+  /// board, 0.5 s of the mbed one (woody_report.h)].
   static constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
-  /// Largest force, N [chosen: twenty times what a desk-top arm pushes; a slipped decimal point is
-  /// caught].
+  /// Largest force limit, N [chosen: twenty times what a desk-top arm exerts; a misplaced decimal
+  /// point is detected].
   static constexpr double kForceMost = 100;
-  /// Largest speed, m/s [chosen: twice what a hand reaches in a throw M].
+  /// Largest speed limit, m/s [chosen: twice what a hand reaches in a throw M].
   static constexpr double kSpeedMost = 20;
 
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
-  double speed_max = 0;  ///< Tip speed above which the force goes off and stays off, m/s.
-  /// Fastest change of the force's vector, N/s. A fall of its length is never slowed, and an old
-  /// force that would push the hand on goes at once (limit_rise in gate/safety_gate.cpp).
+  double speed_max = 0;  ///< Tip speed above which the force is switched off until a restart, m/s.
+  /// Fastest change of the force vector, N/s. A decrease of its magnitude is never slowed, and an
+  /// old force that would push the hand on is removed at once (limit_rise in gate/safety_gate.cpp).
   double rise_max = 0;
   double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
-  /// The same after a gap, for somebody who is touching already, s; a hand feels a surface as gone
-  /// if it is away for longer [PHYSICS 7, case 9: back within 50 ms].
+  /// Time over which the limit opens after a gap, when the hand may already be in contact, s. A
+  /// surface that is absent for longer is felt as gone [PHYSICS 7, case 9: back within 50 ms].
   double reopen = 0.04;
-  std::int64_t stall_ns = 0;     ///< Gap between ticks after which the limit opens anew, ns.
-  std::int64_t watchdog_ns = 0;  ///< Gap after which the arm's own watchdog has fired: a fault, ns.
-  /// Mean power on the hand above which the force is lowered, W; it is gone at `kPowerFade` times
-  /// that. 0: not limited.
+  /// Gap between ticks after which the limit opens again from 0, ns.
+  std::int64_t stall_ns = 0;
+  /// Gap between ticks after which the arm's own watchdog has fired, ns; it is a fault.
+  std::int64_t watchdog_ns = 0;
+  /// Mean power on the hand above which the force is reduced, W; the force is zero at `kPowerFade`
+  /// times that. 0: not limited.
   double power_max = 0;
   double power_time = 2;  ///< Time constant of that mean, s.
-  /// Mean power at which no force is left, over `power_max` [chosen: soft, and near].
+  /// Mean power at which the force is zero, as a multiple of `power_max` [chosen: soft, and near].
   static constexpr double kPowerFade = 1.2;
 };
 
-/// Counts the ticks in which each stage of the gate changed the force.
+/// Counters of the ticks in which each stage of the gate changed the force.
 struct GateCounters {
-  std::uint64_t limited = 0;         ///< Cut to `force_max`.
-  std::uint64_t rise_limited = 0;    ///< Held back by `rise_max`, in length or direction.
-  std::uint64_t soft_started = 0;    ///< Cut by the soft start.
-  std::uint64_t stalls = 0;          ///< Gaps after which the limit opened anew.
-  std::uint64_t damped = 0;          ///< Damped by the passivity controller.
-  std::uint64_t bounded = 0;         ///< Cut by the energy bound.
-  std::uint64_t power_limited = 0;   ///< Lowered because the mean power was at its limit.
-  std::uint64_t calmed = 0;          ///< A program's part lowered after an oscillation.
-  std::uint64_t oscillations = 0;    ///< Growing oscillations of a program's force; not ticks.
-  double oscillation_frequency = 0;  ///< Of the last of them, Hz.
+  std::uint64_t limited = 0;        ///< Ticks limited to `force_max`.
+  std::uint64_t rise_limited = 0;   ///< Ticks limited by `rise_max`, in magnitude or direction.
+  std::uint64_t soft_started = 0;   ///< Ticks limited by the soft start.
+  std::uint64_t stalls = 0;         ///< Gaps after which the limit opened again.
+  std::uint64_t damped = 0;         ///< Ticks damped by the passivity controller.
+  std::uint64_t bounded = 0;        ///< Ticks limited by the energy bound.
+  std::uint64_t power_limited = 0;  ///< Ticks reduced because the mean power was at its limit.
+  /// Ticks in which a program's part was reduced after an oscillation.
+  std::uint64_t calmed = 0;
+  /// Number of growing oscillations of a program's force; not ticks.
+  std::uint64_t oscillations = 0;
+  double oscillation_frequency = 0;  ///< Frequency of the last oscillation, Hz.
   double power_max = 0;              ///< Largest mean power on the hand, W.
-  double energy_least = 0;           ///< Lowest energy that the observer saw, J; never above 0.
+  double energy_least = 0;           ///< Lowest energy of the passivity observer, J; never above 0.
 };
 
 class ProgramWatch;
 
-/// Stands between every force law and the motors: a program's part without growing oscillations ->
-/// finite -> speed limit -> time -> the arm's limit -> power limit -> soft start -> energy stage,
-/// if one is named -> rise limit.
+/// Safety gate between every force law and the motors. Its stages: a program's part without growing
+/// oscillations -> finite -> speed limit -> time -> the arm's limit -> power limit -> soft start ->
+/// energy stage, if one is named -> rise limit.
 ///
-/// The rise limit comes last, so that it holds for whatever the energy stage adds. It is one-sided:
-/// a limit on the fall as well would turn a passive wall into an active one (restitution up to 2.7)
-/// [PHYSICS 1.6]. No stage behind the arm's limit makes a force longer than the limit, as far as
-/// the soft start has opened it.
+/// The rise limit is last, so that it also covers the output of the energy stage. It is one-sided:
+/// a limit on the decrease as well would turn a passive wall into an active one (restitution up to
+/// 2.7) [PHYSICS 1.6]. No stage after the arm's limit makes a force larger than that limit, as far
+/// as the soft start has opened it.
 ///
-/// The time of a tick must be a finite number of zero or more: all limits in time follow from it.
+/// The time of a tick must be finite and not negative, because all limits in time depend on it.
 ///
-/// A fault latches: from then on the gate gives zero force until `restart`.
-/// All functions are Real-time: safe.
+/// A fault latches: the gate then gives zero force until `restart`. All functions are Real-time:
+/// safe.
 class THIMBLE_EXPORT SafetyGate {
  public:
-  /// Real-time: never from the servo thread.
+  /// Constructs a gate with these limits and energy stage. Real-time: never from the servo thread.
   explicit SafetyGate(const GateLimits& limits, const EnergyGuardSettings& energy = {});
-  /// Takes all of another gate, which only an assignment may use after that.
+  /// Moves the contents of another gate. The other gate can only be assigned to or destroyed after
+  /// that.
   SafetyGate(SafetyGate&& other) noexcept;
-  SafetyGate& operator=(SafetyGate&& other) noexcept;  ///< As above.
+  SafetyGate& operator=(SafetyGate&& other) noexcept;  ///< Moves the contents of another gate.
   SafetyGate(const SafetyGate&) = delete;
   SafetyGate& operator=(const SafetyGate&) = delete;
   ~SafetyGate();
 
-  /// Forgets the fault and the past, and begins the soft start.
+  /// Clears the fault and the history, and starts the soft start.
   void restart() noexcept;
 
-  /// Turns a requested force into one that may reach the motors. `f_T_W` in N, `v_WT` in m/s, both
-  /// in the world; `dt` is the time since the previous call, s (0 on the first after `restart`; in
-  /// such a tick nothing rises). A `dt` below zero, or not finite, is the fault kTimeNotMonotonic.
+  /// Converts a requested force into one that may reach the motors. `f_T_W` in N, `v_WT` in m/s,
+  /// both in the world. `dt` is the time since the previous call, s (0 on the first after
+  /// `restart`; in such a tick the force does not rise). A `dt` that is negative or not finite is
+  /// the fault kTimeNotMonotonic.
   GatedForce pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt) noexcept;
 
-  /// Does the same, and then keeps the energy in bounds: what the energy stage is for. `flow` tells
-  /// what came of the call before. The stage may cut the force, or add damping to it, but never
-  /// beyond the arm's limit as far as the soft start has opened it, nor faster than the rise limit
-  /// allows.
+  /// Does the same and applies the energy stage. `flow` is the energy flow since the previous call.
+  /// The stage may reduce the force or add damping to it. The result never exceeds the arm's limit,
+  /// as far as the soft start has opened it, nor the rise limit.
   GatedForce pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt,
                           const EnergyFlow& flow) noexcept;
 
-  /// Begins the soft start again, from no force, and keeps a fault.
+  /// Restarts the soft start from zero force; keeps a fault.
   void close() noexcept;
 
-  /// Lets a tick pass, in which the force that was sent did `work` (J) on the hand in `dt` (s): for
-  /// the mean power. Before `pass` or `pass_guarded`.
+  /// Updates the mean power: in a tick of `dt` (s), the force sent did `work` (J) on the hand. Call
+  /// it before `pass` or `pass_guarded`.
   void book_power(double work, double dt) noexcept {
-    // Written so that NaN is no power.
+    // Written so that NaN is ignored.
     if (!(dt > 0 && std::abs(work) < HUGE_VAL)) return;
     power_ += (work - power_ * std::min(dt, limits_.power_time)) / limits_.power_time;
     if (power_ > counters_.power_max) counters_.power_max = power_;
   }
 
-  /// Follows a program's part of the force through a tick, and returns the share (0 to 1) of it
-  /// that may be asked for: less than 1 after an oscillation that grew.
-  /// `f_program_W`: asked for now, N; `p_WT`: the tip, m; both in the world. Before `pass` or
-  /// `pass_guarded`.
+  /// Monitors a program's part of the force for a tick. Returns the fraction (0 to 1) of it that
+  /// may be requested: below 1 after a growing oscillation. `f_program_W`: requested now, N;
+  /// `p_WT`: the tip, m; both in the world. Call it before `pass` or `pass_guarded`.
   double program_share(const Eigen::Vector3d& f_program_W, const Eigen::Vector3d& p_WT,
                        double dt) noexcept;
-  /// Returns the program's part of the force that passed last, N in the world: a share of what
-  /// EnergyFlow named.
+  /// Returns the program's part of the last passed force, N in the world: a fraction of the part in
+  /// EnergyFlow.
   const Eigen::Vector3d& f_program_W() const noexcept { return f_program_W_; }
   double power() const noexcept { return power_; }  ///< Returns the mean power on the hand, W.
 
-  /// Counts the next rise from `f_W` (N, in the world): the arm did not take what passed last, and
-  /// this is the force that stands. A force that is not finite counts as none.
+  /// Sets the force from which the next rise is measured to `f_W` (N, in the world), because the
+  /// arm did not accept the last force and this one still acts. A force that is not finite is used
+  /// as zero.
   void resume_from(const Eigen::Vector3d& f_W) noexcept;
 
-  /// Latches a fault that somebody else found; the first one stays.
+  /// Latches a fault detected by the caller; the first fault is kept.
   void trip(Fault fault) noexcept;
 
-  Fault fault() const noexcept { return fault_; }  ///< Names what switched the force off.
+  Fault fault() const noexcept { return fault_; }  ///< Returns the reason why the force is off.
   const GateCounters& counters() const noexcept { return counters_; }
-  const GateLimits& limits() const noexcept { return limits_; }        ///< Its limits.
-  EnergyStage energy_stage() const noexcept { return energy_.stage; }  ///< Names its energy stage.
-  /// Returns the energy on the observer's account, J.
+  const GateLimits& limits() const noexcept { return limits_; }  ///< Returns the limits.
+  /// Returns the energy stage.
+  EnergyStage energy_stage() const noexcept { return energy_.stage; }
+  /// Returns the balance of the passivity observer, J.
   double energy() const noexcept { return observer_.energy(); }
 
  private:
@@ -171,16 +177,16 @@ class THIMBLE_EXPORT SafetyGate {
   GateLimits limits_;
   GateCounters counters_;
   Fault fault_ = Fault::kNone;
-  double since_start_ = 0;             // s of active time since the limit began to open
-  double opening_ = 0;                 // s that it takes
-  double rise_ = 0;                    // N that may be added in this tick
+  double since_start_ = 0;             // Active time since the limit began to open, s.
+  double opening_ = 0;                 // Time of the opening, s.
+  double rise_ = 0;                    // Force that may be added in this tick, N.
   Eigen::Vector3d f_last_W_{0, 0, 0};  // N
   EnergyGuardSettings energy_;
   PassivityObserver observer_;
   double power_ = 0;                       // W
-  double power_limit_;                     // W, or infinite
-  Eigen::Vector3d f_program_W_{0, 0, 0};   // N, of f_last_W_
-  std::unique_ptr<ProgramWatch> program_;  // never empty, but in a gate that was moved from
+  double power_limit_;                     // W, or infinite.
+  Eigen::Vector3d f_program_W_{0, 0, 0};   // Part of f_last_W_, N.
+  std::unique_ptr<ProgramWatch> program_;  // Empty only in a gate that was moved from.
 };
 
 }  // namespace thimble::driver

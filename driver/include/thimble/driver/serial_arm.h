@@ -7,8 +7,8 @@
 
 namespace thimble::driver {
 
-/// The geometry of a serial arm of the PHANTOM family: a yaw A and two links B and C that are
-/// both measured from the ground, because a parallel linkage carries the second one [hfab
+/// Geometry of a serial arm of the PHANTOM family: a yaw A and two links B and C. Both link angles
+/// are measured from the ground, because a parallel linkage carries the second link [hfab
 /// kinematics].
 ///
 ///          z_B            r = length_b sin(B) + length_c sin(C)
@@ -27,25 +27,25 @@ struct THIMBLE_EXPORT SerialArm {
   double length_b = 0;  ///< Length of the first link (Lb), m.
   double length_c = 0;  ///< Length of the second link up to the tip (Lc), m.
 
-  /// Finds the tip p_BT, m, from the joint angles.
+  /// Returns the tip p_BT, m, at joint angles `q`.
   Eigen::Vector3d forward(const Eigen::Vector3d& q) const noexcept;
 
-  /// Finds the Jacobian J_BT = d p_BT / d q, m/rad, so that v_BT = J_BT qdot and
-  /// tau = J_BT^T f_T_B.
+  /// Returns the Jacobian J_BT = d p_BT / d q, m/rad, so that v_BT = J_BT qdot and tau = J_BT^T
+  /// f_T_B.
   Eigen::Matrix3d jacobian(const Eigen::Vector3d& q) const noexcept;
 
-  /// Does `forward` and `jacobian` at once, for one price.
+  /// Computes `forward` and `jacobian` together, at the cost of one.
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept;
 
   /// Returns the rotation R_BL of the second link: x along it towards the tip, y level and to the
-  /// user's right where the arm points at the user [S forsslund/haptikfabrikenapi kinematics.cpp,
+  /// user's right if the arm points at the user [S forsslund/haptikfabrikenapi kinematics.cpp,
   /// computeRotation: a turn about y by 90 degrees less C, "need verification"].
   Eigen::Matrix3d last_link(const Eigen::Vector3d& q, const Eigen::Vector3d& p_BT) const noexcept;
 
-  /// Finds the joint angles that put the tip at p_BT (m), on the branch in which such an arm works:
-  /// 0 < B + C < pi (folded at 0, stretched at pi, isotropic in between). Empty if the point is out
-  /// of reach, on the yaw axis, or not finite.
+  /// Returns the joint angles at which the tip is at p_BT (m), on the branch 0 < B + C < pi in
+  /// which such an arm works (folded at 0, stretched at pi, isotropic in between). Empty if the
+  /// point is out of reach, on the yaw axis, or not finite.
   std::optional<Eigen::Vector3d> inverse(const Eigen::Vector3d& p_BT) const noexcept;
 };
 

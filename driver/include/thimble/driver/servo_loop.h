@@ -15,11 +15,11 @@
 
 namespace thimble::driver {
 
-/// Refers to whoever keeps the record of each tick: callable as `void sink(const TickRecord&)
-/// noexcept` on the servo thread. Does not own it. Real-time: safe if the sink is.
+/// Reference to a receiver of tick records: any object callable as `void sink(const TickRecord&)
+/// noexcept` on the servo thread. Does not own the sink. Real-time: safe if the sink is.
 class TickSink {
  public:
-  /// Takes the sink to refer to; of a TickSink it is a copy. Real-time: safe.
+  /// Refers to a sink; copies the reference if it is a TickSink. Real-time: safe.
   template <class Sink>
   requires(!std::same_as<std::remove_const_t<Sink>, TickSink>) explicit TickSink(
       Sink& sink) noexcept
@@ -30,7 +30,7 @@ class TickSink {
           (*static_cast<Sink*>(self))(record);
         }) {}
 
-  /// Hands over the record of a tick. Real-time: safe if the sink is.
+  /// Passes the record of a tick to the sink. Real-time: safe if the sink is.
   void operator()(const TickRecord& record) const noexcept { call_(sink_, record); }
 
  private:
@@ -38,50 +38,51 @@ class TickSink {
   void (*call_)(void*, const TickRecord&) noexcept;
 };
 
-/// Sets the pace of a servo loop.
+/// Settings of a servo loop.
 struct ServoSettings {
-  std::int64_t period_ns = 1'000'000;  ///< Time between ticks.
-  std::uint64_t ticks =
-      0;  ///< Ends after so many periods (missed ticks count); 0: never by itself.
-  bool outlive_faults = false;  ///< Goes on with zero force after a fault, so that positions are
-                                ///< still seen and a pulled arm can come back.
-  /// How long before a tick the law prepares itself for it (ForceLaw::prepare), where the loop is
-  /// not late; 0: never. Makes no difference to any force, only to how long a tick takes.
+  std::int64_t period_ns = 1'000'000;  ///< Time between ticks, ns.
+  /// Number of periods after which the loop ends (missed ticks count); 0: unlimited.
+  std::uint64_t ticks = 0;
+  /// Continues with zero force after a fault, so that positions are still read and a disconnected
+  /// arm can return.
+  bool outlive_faults = false;
+  /// Time before a tick at which the law prepares for it (ForceLaw::prepare) if the loop is not
+  /// late, ns; 0: never. Affects only the duration of a tick, not the forces.
   std::int64_t prepare_ns = 0;
 
-  /// For loops in real time: 1 % of a tick at 1 kHz. Five times the 99th of 100 of what a contact
-  /// takes whose memory has grown cold [measured: 2 us at 10^6 triangles].
+  /// Value for real-time loops, ns: 1 % of a tick at 1 kHz. Five times the 99th percentile of the
+  /// duration of a contact with cold caches [measured: 2 us at 10^6 triangles].
   static constexpr std::int64_t kPrepare_ns = 10'000;
 };
 
-/// Why a servo loop ended.
+/// Reason for the end of a servo loop.
 enum class ServoEnd : std::uint8_t {
   kDone,     ///< All periods have passed.
-  kStopped,  ///< Somebody set the stop flag.
+  kStopped,  ///< The stop flag was set.
   kFault,    ///< The device reported a fault; `Device::fault` names it.
 };
 
-/// Returns how a report names an end ("done"). Real-time: safe.
+/// Returns the name of an end reason in reports ("done"). Real-time: safe.
 THIMBLE_EXPORT std::string_view name(ServoEnd end) noexcept;
 
-/// A servo loop, tick by tick, for whoever has something to do of his own between two ticks of
-/// virtual time. `run_servo` is nothing but all its ticks.
+/// Steppable servo loop, for callers that do work between ticks of virtual time. `run_servo` calls
+/// it for all ticks.
 ///
-/// Each tick: wait (and let the law prepare itself), read, ask the law, write, tell the sink. Ticks
-/// are due at fixed times; after a gap the missed ones are skipped, not run in a burst. Used by one
-/// thread.
+/// Each tick waits (and lets the law prepare), reads, calls the law, writes, and calls the sink.
+/// Ticks are due at fixed times. After a gap the missed ticks are skipped, not run in a burst. Used
+/// by one thread.
 class THIMBLE_EXPORT ServoLoop {
  public:
-  /// Takes an activated device and what it runs with, all of which must outlive the loop. The first
-  /// tick is due now. Real-time: safe.
+  /// Constructs a loop for an activated device. Device, clock, law and sink must outlive the loop.
+  /// The first tick is due now. Real-time: safe.
   ServoLoop(Device& device, Clock& clock, ForceLaw law, TickSink sink,
             const ServoSettings& settings) noexcept;
 
-  /// Runs the next tick; one that the computer slept through is the fault kSuspended. Returns why
-  /// there is none any more, once the periods are used up, `stop` is set, or this tick ended in a
-  /// fault; then the device has been left idle (or in fault) with zero force sent, insistently if
-  /// the arm did not take it (`Device::insist_on_zero`), and later calls do nothing but tell the
-  /// same. Real-time: safe; waits until the tick is due.
+  /// Runs the next tick. A suspend of the computer during it is the fault kSuspended. Returns the
+  /// end reason once the periods are used up, `stop` is set, or this tick ended in a fault. Then
+  /// zero force has been sent, repeatedly if the arm did not accept it (`Device::insist_on_zero`),
+  /// and the device is idle or in fault. Later calls only return the same reason. Real-time: safe;
+  /// waits until the tick is due.
   std::optional<ServoEnd> tick(const std::atomic<bool>& stop) noexcept;
 
  private:
@@ -96,13 +97,13 @@ class THIMBLE_EXPORT ServoLoop {
   ServoSettings settings_;
   std::int64_t due_ns_;
   std::int64_t end_ns_;
-  std::int64_t asleep_ns_;  // of the clock, known so far
+  std::int64_t asleep_ns_;  // Suspended time of the clock known so far.
   std::optional<ServoEnd> end_;
 };
 
-/// Runs one force law on one device until the periods are used up, `stop` is set, or the device is
-/// in fault. Leaves the device idle (or in fault) with zero force sent.
-/// Real-time: safe; it is the servo thread.
+/// Runs a force law on a device until the periods are used up, `stop` is set, or the device is in
+/// fault. Leaves the device idle (or in fault) with zero force sent. Real-time: safe; it is the
+/// servo thread.
 THIMBLE_EXPORT ServoEnd run_servo(Device& device, Clock& clock, ForceLaw law, TickSink sink,
                                   const ServoSettings& settings,
                                   const std::atomic<bool>& stop) noexcept;

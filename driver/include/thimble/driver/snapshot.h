@@ -10,22 +10,21 @@
 
 namespace thimble::driver {
 
-/// Shows the newest value of one writer to any number of readers: the writer never waits, readers
-/// retry while it writes.
+/// Publishes the newest value of one writer to any number of readers. The writer never waits;
+/// readers retry while it writes.
 ///
-/// A sequence lock whose words are lock-free atomics: no data race by the letter of the standard,
-/// and usable in memory shared by processes. Real-time: `store` is safe; `load` is for readers at
-/// the side.
+/// A sequence lock whose words are lock-free atomics: free of data races by the C++ standard, and
+/// usable in memory shared by processes. Real-time: `store` is safe; `load` is for observers.
 template <class T>
 class Snapshot {
   static_assert(std::is_trivially_copyable_v<T>, "A snapshot is copied word by word.");
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
  public:
-  /// Publishes a value. One thread only.
+  /// Publishes a value. Call from one thread only.
   void store(const T& value) noexcept {
-    // Odd while it is written; it is odd already if the writer before, another process, was killed
-    // half-way.
+    // Odd while a value is written. It is odd already if the previous writer, another process, was
+    // killed during a write.
     const std::uint64_t writing = sequence_.load(std::memory_order_relaxed) | 1;
     sequence_.store(writing, std::memory_order_relaxed);
     // Each release store below makes the odd sequence visible before the word it writes.
@@ -33,8 +32,8 @@ class Snapshot {
     sequence_.store(writing + 1, std::memory_order_release);
   }
 
-  /// Copies the newest value. Returns false, and leaves `value` alone, if nothing was stored yet or
-  /// if the writer was faster `attempts` times in a row.
+  /// Copies the newest value. Returns false and leaves `value` unchanged if nothing was stored yet,
+  /// or if the writer was faster `attempts` times in a row.
   bool load(T& value, int attempts = 1000) const noexcept {
     for (int attempt = 0; attempt < attempts; ++attempt) {
       const std::uint64_t before = sequence_.load(std::memory_order_acquire);
@@ -52,16 +51,16 @@ class Snapshot {
     return false;
   }
 
-  /// Returns how many values were stored so far.
+  /// Returns the number of values stored so far.
   std::uint64_t count() const noexcept { return sequence_.load(std::memory_order_acquire) / 2; }
 
  private:
   static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
 
-  // From the value to its place without a copy between. A record of a tick goes without a loop, two
-  // instructions per word; compilers bear no such list of thousands of words.
+  // Copies words directly, without an intermediate copy. The record of a tick is unrolled to two
+  // instructions per word; for thousands of words compilers cannot unroll.
   static constexpr std::size_t kListed = 128;
-  static constexpr std::size_t kLast = sizeof(T) - 8 * (kWords - 1);  // bytes of the last word
+  static constexpr std::size_t kLast = sizeof(T) - 8 * (kWords - 1);  // Bytes of the last word.
 
   void store_words(const T& value) noexcept {
     if constexpr (kWords <= kListed) {

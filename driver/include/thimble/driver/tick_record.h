@@ -13,74 +13,81 @@ namespace thimble::driver {
 struct DeviceState;
 struct ForceCommand;
 
-/// Where a device is in its life.
+/// Stage of a device.
 enum class DeviceStage : std::uint8_t {
-  kIdle,     ///< Reports are read, zero force is sent.
+  kIdle,     ///< Reports are read; zero force is sent.
   kActive,   ///< Forces are sent through the gate.
-  kFault,    ///< Zero force, latched; see the fault.
-  kWaiting,  ///< Zero force until the enabling input is held (HoldToRun).
+  kFault,    ///< Zero force is sent; the fault is latched.
+  kWaiting,  ///< Zero force is sent until the enabling input is held (HoldToRun).
 };
 
-/// The last of the stages; a larger value in a file or in shared memory is damaged.
+/// Last stage. A larger value in a file or in shared memory is damaged.
 inline constexpr DeviceStage kLastStage = DeviceStage::kWaiting;
 
-/// State of the link to an arm. It is independent of the fault: an arm whose force is off for
-/// another reason can be pulled, and a lost arm can come back while its fault is still latched.
+/// State of the link to an arm. It is independent of the fault. An arm whose force is off for
+/// another reason can be disconnected, and a lost arm can return while its fault is latched.
 enum class LinkState : std::uint8_t {
   kConnected,  ///< Reports arrive.
-  kSilent,     ///< The link is open; no report for `DeviceSettings::silence_limit_ns`, or none yet.
-  kLost,       ///< The arm is gone from the wire; the device waits for a new link.
+  /// The link is open, but no report has arrived for `DeviceSettings::silence_limit_ns`, or at all.
+  kSilent,
+  kLost,  ///< The arm is disconnected; the device waits for a new link.
 };
 
-/// The last of the link states; a larger value in a file or in shared memory is damaged.
+/// Last link state. A larger value in a file or in shared memory is damaged.
 inline constexpr LinkState kLastLinkState = LinkState::kLost;
 
-/// Returns the short name of a link state as it stands in reports ("lost"). Real-time: safe.
+/// Returns the short name of a link state in reports ("lost"). Real-time: safe.
 THIMBLE_EXPORT std::string_view name(LinkState state) noexcept;
 
-/// Holds everything one tick did, as plain numbers: what the snapshot shows, the recorder keeps and
-/// reports are made of. Trivially copyable. Frames: W world, T tip, P proxy.
+/// Complete data of one tick, as plain numbers for the snapshot, the recorder and reports.
+/// Trivially copyable. Frames: W world, T tip, P proxy.
 struct TickRecord {
-  static constexpr std::int16_t kNoSetting = -1;  ///< `setting`: none was turned in this tick.
-  /// `setting`: the force is not, or not only, the scene's: a program's law or a topic gave it.
+  /// Value of `setting` if no setting was changed in this tick.
+  static constexpr std::int16_t kNoSetting = -1;
+  /// Value of `setting` if a program's law or a topic provided all or a part of the force.
   static constexpr std::int16_t kOtherLaw = -2;
 
-  std::uint64_t tick = 0;    ///< number of the tick, from 0; gaps are ticks that were missed
-  std::int64_t time_ns = 0;  ///< When the tick began, on the loop's clock.
-  std::int64_t due_ns = 0;   ///< When it should have begun.
-  std::int64_t work_ns = 0;  ///< From wake-up to write, on the loop's clock (0 in virtual time).
-  std::array<std::int32_t, 3> counts{};    ///< of the encoders, as they came over the wire
-  std::array<double, 3> q{};               ///< rad
-  std::array<double, 3> p_WT{};            ///< m
-  std::array<double, 3> v_WT{};            ///< m/s
-  std::array<double, 3> p_WP{};            ///< m
-  std::array<double, 3> n_W{};             ///< unit normal
-  std::array<double, 3> f_wanted_W{};      ///< N, what the force law asked for
-  std::array<double, 3> f_sent_W{};        ///< N, what stands: `Device::f_sent_W`
-  std::array<double, 3> heat{};            ///< of the motors; 1: the winding's limit
-  TipQuaternion q_WT{};                    ///< of the stylus (w, x, y, z); zeros: not known
-  std::array<float, 3> gimbal{};           ///< rad; zeros where there is none
-  float gripper = 0;                       ///< opening, m; 0: closed, or none
-  double depth = 0;                        ///< m
-  double setting_value = 0;                ///< what `setting` was asked to become; in recordings
-  double gain = 1;                         ///< share of the scene's force; in recordings
-  std::int32_t feature = -1;               ///< active triangle
-  std::int16_t object = -1;                ///< which of the scene's objects
-  std::uint16_t hops = 0;                  ///< triangles crossed in this tick
-  std::uint16_t buttons = 0;               ///< one bit each; bit 0 is the arm's first
-  std::int16_t setting = kNoSetting;       ///< of the scene, that was turned; in recordings
-  bool in_contact = false;                 ///< the tip is held outside an object
-  bool fresh = false;                      ///< a new report came for this tick
-  bool has_gripper = false;                ///< the arm has a gripper
-  DeviceStage stage = DeviceStage::kIdle;  ///< of the device, after the tick
-  Fault fault = Fault::kNone;              ///< that keeps the force off
-  LinkState link = LinkState::kConnected;  ///< of the device, after the tick
-  bool home_needed = false;                ///< no force before the home pose: Device::home_needed
+  /// Number of the tick, from 0; missing numbers are missed ticks.
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;  ///< Start of the tick on the loop's clock, ns.
+  std::int64_t due_ns = 0;   ///< Time at which the tick was due, ns.
+  /// Time from wake-up to write on the loop's clock, ns (0 in virtual time).
+  std::int64_t work_ns = 0;
+  std::array<std::int32_t, 3> counts{};  ///< Raw encoder counts.
+  std::array<double, 3> q{};             ///< Joint angles, rad.
+  std::array<double, 3> p_WT{};          ///< Position of the tip, m.
+  std::array<double, 3> v_WT{};          ///< Velocity of the tip, m/s.
+  std::array<double, 3> p_WP{};          ///< Position of the proxy, m.
+  std::array<double, 3> n_W{};           ///< Unit normal of the contact.
+  std::array<double, 3> f_wanted_W{};    ///< Requested force, N: what the force law asked for.
+  std::array<double, 3> f_sent_W{};      ///< Acting force, N: `Device::f_sent_W`.
+  std::array<double, 3> heat{};          ///< Heat of the motors; 1 is the limit of the winding.
+  /// Quaternion of the stylus (w, x, y, z); zeros: unknown.
+  TipQuaternion q_WT{};
+  std::array<float, 3> gimbal{};  ///< Gimbal angles, rad; zeros without a gimbal.
+  float gripper = 0;              ///< Gripper opening, m; 0: closed, or none.
+  double depth = 0;               ///< Penetration depth, m.
+  double setting_value = 0;       ///< Requested value of `setting`; in recordings.
+  double gain = 1;                ///< Fraction of the scene's force; in recordings.
+  std::int32_t feature = -1;      ///< Active triangle.
+  std::int16_t object = -1;       ///< Number of the touched object in the scene.
+  std::uint16_t hops = 0;         ///< Triangles crossed in this tick.
+  std::uint16_t buttons = 0;      ///< Buttons, one bit each; bit 0 is the first button.
+  /// Setting of the scene that was changed; in recordings.
+  std::int16_t setting = kNoSetting;
+  bool in_contact = false;                 ///< True if the tip is in contact with an object.
+  bool fresh = false;                      ///< True if a new report arrived for this tick.
+  bool has_gripper = false;                ///< True if the arm has a gripper.
+  DeviceStage stage = DeviceStage::kIdle;  ///< Stage of the device after the tick.
+  Fault fault = Fault::kNone;              ///< Fault that keeps the force off.
+  LinkState link = LinkState::kConnected;  ///< State of the link after the tick.
+  /// True if the home pose is required before any force (Device::home_needed).
+  bool home_needed = false;
 };
 
-/// Returns what a tick is known by before its force went through the gate: what the device read and
-/// what the law answered. What was sent, stage, fault and heat are left as they begin.
-/// Real-time: safe.
+/// Returns the record of a tick before its force has passed the gate: the state that the device
+/// read and the command of the law. The sent force, stage, fault and heat have their initial
+/// values. Real-time: safe.
 THIMBLE_EXPORT TickRecord record_of(const DeviceState& state, const ForceCommand& command) noexcept;
 
 }  // namespace thimble::driver

@@ -11,35 +11,35 @@
 
 namespace thimble::driver {
 
-// The wires to real arms on HID and serial ports. Each keeps the clock by reference (its deadlines
-// are on it), so the clock must outlive the transport. Opening is for set-up; the transports
-// themselves are Real-time: safe, with what their libraries do beneath said at each.
-// app/guide/pages/driver.md has the table.
+// Transports to real arms on HID and serial ports. Each keeps a reference to the clock of its
+// deadlines, so the clock must outlive it. Opening is for set-up. The transports themselves are
+// Real-time: safe; each comment states what its library does. app/guide/pages/driver.md has the
+// table.
 
-/// Opens an arm on USB HID by its node (/dev/hidraw3), for this program alone (NodeLock). Messages
-/// are filled up with zeros to `message_size` bytes (0: sent as they are), with report id 0 in
-/// front. Fails if the device's report descriptor says that its messages have another length;
-/// later, a message of another length is refused, because boards throw such messages away without a
-/// word. Nothing is sent.
+/// Opens an arm on USB HID by its node (/dev/hidraw3), for exclusive use by this program
+/// (NodeLock). Messages are padded with zeros to `message_size` bytes (0: sent unchanged) and
+/// preceded by report id 0. Fails if the report descriptor of the device specifies another message
+/// length. Later, a message of another length is refused, because boards silently discard such
+/// messages. Opening sends nothing.
 ///
-/// Reading takes the newest report and counts older ones. The kernel keeps 63 and drops what comes
-/// after them; when so many wait, reading waits for the next, at most 2 ms. Nothing allocates while
-/// the arm is there (hidapi makes an error text when it is not). Writing returns when the arm
-/// has taken the message, one USB frame as a rule; the kernel itself waits up to 5 s for an arm
-/// that refuses messages without an answer, during which the loop stands still and the arm's own
-/// watchdog switches it off (Fault::kLoopStalled names it afterwards).
+/// Reading returns the newest report and counts older ones. The kernel queues 63 reports and drops
+/// further ones; if the queue is full, a read waits for the next report, at most 2 ms. Nothing is
+/// allocated while the arm is connected (hidapi creates an error text when it is not). A write
+/// returns when the arm has accepted the message, normally after one USB frame. For an arm that
+/// refuses messages without an answer, the kernel waits up to 5 s. The loop then stops, and the
+/// arm's own watchdog switches it off (afterwards Fault::kLoopStalled).
 THIMBLE_EXPORT Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
                                                                      std::size_t message_size,
                                                                      const Clock& clock);
 
-/// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for this program alone
-/// (NodeLock). Nothing is sent. Neither allocates nor locks. A message that the port has no room
-/// for is refused, not waited for.
+/// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for exclusive use by this
+/// program (NodeLock). Opening sends nothing. The transport neither allocates nor locks. A message
+/// for which the port has no room is refused; the write does not wait.
 THIMBLE_EXPORT Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
                                                                         const Framing& framing,
                                                                         const Clock& clock);
 
-/// Where the kernel put a USB device.
+/// Address of a USB device in the kernel.
 struct UsbAddress {
   int bus = 0;     ///< Number of the bus.
   int device = 0;  ///< Number of the device on it.

@@ -10,19 +10,19 @@
 
 namespace thimble::driver {
 
-/// Rounds a number to the nearest whole one, halves away from zero, as std::lround does, without a
-/// call. Precondition: |x| < 2^31. Real-time: safe.
+/// Rounds a number to the nearest integer, halves away from zero, as std::lround does, but without
+/// a call. Precondition: |x| < 2^31. Real-time: safe.
 inline std::int32_t round_half_away(double x) noexcept {
-  // The number below one half, so that 0.49999999999999994 stays 0.
+  // The largest double below one half, so that 0.49999999999999994 becomes 0.
   constexpr double kHalf = 0.49999999999999994;
   return static_cast<std::int32_t>(x + std::copysign(kHalf, x));
 }
 
-/// Rounds currents to the whole mA of the wire, halves away from zero, within 16 bits.
+/// Rounds currents to whole mA for the wire, halves away from zero, limited to 16 bits.
 /// Precondition: they are finite, which MotorCurrents guarantees. Real-time: safe.
 [[gnu::always_inline]] inline std::array<std::int16_t, 3> whole_mA(
     const MotorCurrents& currents) noexcept {
-  // Nothing branches.
+  // Free of branches.
   const auto whole = [](double amperes) noexcept {
     const double kept = std::min(std::max(amperes * 1e3, -32767.0), 32767.0);
     return static_cast<std::int16_t>(round_half_away(kept));
@@ -31,12 +31,12 @@ inline std::int32_t round_half_away(double x) noexcept {
   return {whole(amperes.x()), whole(amperes.y()), whole(amperes.z())};
 }
 
-/// An arm made of two parts: a wire format and a geometry.
+/// An arm composed of a wire format and a geometry.
 ///
-/// A Wire has two static functions, both noexcept: `bool decode(bytes, ArmReading&)`, total and
-/// leaving the reading alone when it answers false; and `std::size_t encode(mA, bytes)`, which
-/// fills a report with three motor values and tells its length. A wire whose board finds its own
-/// zero, and says when it has lost it, has a constant `kFindsZero = true`. Real-time: safe.
+/// A Wire has two static functions, both noexcept. `bool decode(bytes, ArmReading&)` accepts any
+/// bytes and leaves the reading unchanged if it returns false. `std::size_t encode(mA, bytes)`
+/// writes a report with three motor values and returns its length. A wire whose board finds its own
+/// zero, and reports a loss of it, has a constant `kFindsZero = true`. Real-time: safe.
 template <class Wire, class Geometry>
 class WireArm final : public Arm {
  public:

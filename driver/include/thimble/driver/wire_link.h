@@ -11,11 +11,12 @@
 
 namespace thimble::driver {
 
-/// The link to an arm that is bytes on a wire (Transport) and a wire format with a geometry (Arm).
-/// A gated force becomes motor currents here, by tau = J_BT^T f.
+/// Link to an arm that consists of a wire (Transport) and a wire format with a geometry (Arm).
+/// Converts a gated force into motor currents by tau = J_BT^T f.
 class THIMBLE_EXPORT WireLink final : public ArmLink {
  public:
-  /// Takes an open wire and the arm at its other end. Real-time: never from the servo thread.
+  /// Constructs a link from an open transport and the arm connected to it. Real-time: never from
+  /// the servo thread.
   WireLink(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm);
 
   const ArmTraits& traits() const noexcept override { return traits_; }
@@ -33,9 +34,9 @@ class THIMBLE_EXPORT WireLink final : public ArmLink {
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<const Arm> arm_;
   ArmTraits traits_;
-  std::array<MotorDrive, 3> drives_;  // with the limits that hold now
-  MotorCurrents currents_;            // of the last write
-  bool numbered_ = false;             // two reports had different numbers
+  std::array<MotorDrive, 3> drives_;  // With the current limits that apply now.
+  MotorCurrents currents_;            // Currents of the last write.
+  bool numbered_ = false;             // True once two reports had different numbers.
   std::optional<std::uint16_t> number_;
 };
 

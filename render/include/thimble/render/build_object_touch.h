@@ -16,18 +16,20 @@
 
 namespace thimble::render {
 
-/// How the surface of one object feels: its spring, and the effects a scene puts on it in the
-/// order in which a tick runs them.
+/// Surface properties of one object: its spring, and the effects of the scene in the order of
+/// execution.
 struct SurfaceChoice {
-  SpringDamper spring;                    ///< Of the surface.
-  std::vector<EffectPlan> effects = {};   ///< What is put on it.
-  std::optional<DentSettings> dent = {};  ///< Of a mesh in memory; others are stiff.
-  ShapeChoice shape = {};                 ///< Of a mesh in memory: how its base points move.
+  SpringDamper spring;                   ///< Spring and damper of the surface.
+  std::vector<EffectPlan> effects = {};  ///< Effects on the surface.
+  /// Denting; only for a mesh in memory, other objects are stiff.
+  std::optional<DentSettings> dent = {};
+  /// Deformation of the base points; only for a mesh in memory.
+  ShapeChoice shape = {};
 };
 
-/// Builds the force law of one object (mesh in W, m) from just the stages that `choice` and
-/// `surface` name. The error is that of ContactMesh::build, or says which stages do not go
-/// together. Real-time: never from the servo thread.
+/// Builds the force law of one object (mesh in W, m) from only the stages that `choice` and
+/// `surface` name. The error is that of ContactMesh::build, or names incompatible stages.
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> build_object_touch(
     const TriangleMesh& mesh_W, const ContactChoice& choice, const SurfaceChoice& surface);
 

@@ -12,15 +12,14 @@
 
 namespace thimble::render {
 
-/// A box whose force depends on the face by which the tip came in (EntryFaceContact).
+/// Box whose force depends on the face through which the tip entered (EntryFaceContact).
 struct EntryFaceBox : Box {};
 
-/// Any shape that needs no mesh.
+/// Any shape without a mesh.
 using Primitive = std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox>;
 
-/// Builds the force law of one shape (W, m) from just the stages that `surface` names. Whoever
-/// fills in the shape sees to unit normals and sizes above 0.
-/// Real-time: never from the servo thread.
+/// Builds the force law of one shape (W, m) from only the stages that `surface` names. The caller
+/// provides unit normals and sizes above 0. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
                                                                   const SurfaceChoice& surface);
 

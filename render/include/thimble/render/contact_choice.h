@@ -10,52 +10,56 @@
 
 namespace thimble::render {
 
-// Every way to follow and feel a surface, by name, so that a scene or a study can swap them.
-// render/src/track/README.md and render/src/search/README.md say what each is good for.
+// Names of all trackers, searches and normals, so that a scene or a study can select them.
+// render/src/track/README.md and render/src/search/README.md describe the uses of each.
 
-/// How the tip is followed over the surface while it touches.
+/// Tracker: the algorithm that follows the tip over the surface during contact.
 enum class TrackerChoice {
-  kEdgePlanes,        ///< The paper's edge planes [BP 4b].
-  kNormalProjection,  ///< What the paper had before [BP 4a]; for comparison.
+  kEdgePlanes,        ///< Edge planes of the paper [BP 4b].
+  kNormalProjection,  ///< Earlier method of the paper [BP 4a]; for comparison.
   kOffset,            ///< Smooth cells without gaps, in double precision.
-  kGodObject,         ///< A proxy that no face lets through [ZS].
-  kPacked,            ///< Smooth cells on 64-byte packed triangles.
+  kGodObject,         ///< Proxy that no face lets through [ZS].
+  kPacked,            ///< Smooth cells on compact 64-byte triangles.
 };
-/// Names what TrackerChoice says, in its order.
+/// Names of TrackerChoice, in its order.
 inline constexpr auto kTrackerNames = std::to_array<std::string_view>({
     "edge_planes", "normal_projection", "offset", "god_object", "compact",  //
 });
 
-/// Names what SearchChoice says.
+/// Names of SearchChoice, in its order.
 inline constexpr std::array<std::string_view, 3> kSearchNames{"linear", "grid", "tree"};
 
-/// Which normal is felt.
+/// Blending of the normals that are felt.
 enum class BlendingChoice { kFlat, kFixedBand, kSizedBand, kPhong };
 inline constexpr std::array<std::string_view, 4> kBlendingNames{"flat", "fixed_band", "sized_band",
                                                                 "phong"};
 
-/// Names what BlendProfile says.
+/// Names of BlendProfile, in its order.
 inline constexpr std::array<std::string_view, 2> kProfileNames{"linear", "smooth"};
 
-/// Names what NormalWeights says.
+/// Names of NormalWeights, in its order.
 inline constexpr std::array<std::string_view, 3> kNormalNames{"angle", "round", "fitted"};
 
-/// How one object is touched. What is left empty is chosen to go with the tracker: `compact` and
-/// `offset` are smooth (phong, curved depth), the others are flat.
+/// Contact settings of one object. Empty members get a default that suits the tracker: `compact`
+/// and `offset` are smooth (phong, curved depth), the others are flat.
 struct ContactChoice {
-  TrackerChoice tracker = TrackerChoice::kEdgePlanes;  ///< How it is followed.
-  std::optional<SearchChoice> search = {};      ///< If empty, what suits the mesh (make_search).
-  std::optional<BlendingChoice> blending = {};  ///< Which normal is felt; or as suits.
-  std::optional<NormalWeights> normals = {};    ///< Of the corners; fitted if empty. Not with
-                                                ///< `compact`, which knows means by angle only.
-  /// Depth below the smooth surface instead of the triangles.
+  TrackerChoice tracker = TrackerChoice::kEdgePlanes;  ///< Tracker.
+  /// Search; if empty, chosen for the mesh (make_search).
+  std::optional<SearchChoice> search = {};
+  /// Blending of the normals; if empty, chosen for the tracker.
+  std::optional<BlendingChoice> blending = {};
+  /// Weights of the vertex normals; if empty, kFitted. Cannot be used with `compact`, which
+  /// supports angle weights only.
+  std::optional<NormalWeights> normals = {};
+  /// True: depth is measured below the smooth surface; false: below the triangles.
   std::optional<bool> curved_depth = {};
-  std::optional<double> crease_angle = {};  ///< Edges sharper than this stay sharp, rad.
+  std::optional<double> crease_angle = {};  ///< Angle above which an edge stays sharp, rad.
   double band = 0.001;                      ///< Width of the band of `fixed_band`, m.
-  /// How the normal turns within a band; linear if empty. With `fixed_band` and `sized_band` only.
+  /// Profile of the normal within a band; linear if empty. Used with `fixed_band` and `sized_band`
+  /// only.
   std::optional<BlendProfile> profile = {};
 
-  /// Returns whether two objects are touched in the same way.
+  /// Returns whether two settings are equal.
   bool operator==(const ContactChoice&) const = default;
 };
 

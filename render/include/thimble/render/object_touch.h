@@ -22,8 +22,8 @@ namespace thimble::render {
 class BodyShape;
 class ContactMesh;
 
-/// The force law of one object of a scene, whatever stages it is made of: one indirect call per
-/// tick stands for all of them (see ObjectTouchAdapter).
+/// Force law of one object of a scene, with any stages. One indirect call per tick runs all of them
+/// (see ObjectTouchAdapter).
 class THIMBLE_EXPORT ObjectTouch {
  public:
   ObjectTouch() = default;
@@ -31,64 +31,65 @@ class THIMBLE_EXPORT ObjectTouch {
   ObjectTouch& operator=(const ObjectTouch&) = delete;
   virtual ~ObjectTouch() = default;
 
-  /// Finds the force of this object on the hand. Real-time: safe.
+  /// Returns the force of this object on the hand. Real-time: safe.
   virtual driver::ForceCommand update(const driver::DeviceState& state) noexcept = 0;
 
-  /// Reads what a tick like this will read of the object, so that the tick waits for no memory, and
-  /// changes nothing (ForceLaw::prepare). Real-time: safe; about as long as the tick's contact.
+  /// Prefetches the memory that a tick with about this state will read; changes nothing
+  /// (ForceLaw::prepare). Real-time: safe; takes about as long as the contact of a tick.
   virtual void prepare(const driver::DeviceState& /*expected*/) const noexcept {}
 
-  /// Returns whether a point (W, m) lies inside the object; for checks beside the servo.
-  /// Real-time: safe unless the object is on the disk; one question to its search.
+  /// Returns whether a point (W, m) is inside the object; for checks outside of the servo loop.
+  /// Real-time: safe unless the object is paged from disk; one query of its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
 
-  /// Returns the mesh whose triangles TouchInfo::feature names, if there is one in full.
+  /// Returns the mesh whose triangles TouchInfo::feature identifies; null if no complete mesh is in
+  /// memory.
   virtual const ContactMesh* mesh() const noexcept { return nullptr; }
 
-  /// Draws what of the object has left its place (body_patch.h); false, and `patch` is left alone,
-  /// if the object is stiff. Real-time: safe; for the rate of a picture.
+  /// Writes the deformed part of the object to `patch` for drawing (body_patch.h). Returns false
+  /// and leaves `patch` unchanged if the object is stiff. Real-time: safe; intended for the frame
+  /// rate of a display.
   virtual bool draw(BodyPatch& /*patch*/) noexcept { return false; }
 
-  /// Lists the settings that can be changed between two ticks, on the servo's thread.
-  /// Real-time: never from the servo thread.
+  /// Adds the settings that can be changed between two ticks, on the servo's thread. Real-time:
+  /// never from the servo thread.
   virtual void list_settings(LiveSettings&) {}
 
-  // The following are for readers beside the servo, and for bodies (render/src/body) to answer.
+  // The following functions are for observers; bodies (render/src/body) override them.
 
-  /// Returns whether the surface is where it was before the first tick: neither moved nor bent.
+  /// Returns whether the surface is at its initial place: neither moved nor deformed.
   virtual bool stands_still() const noexcept { return true; }
-  /// Counts contacts that ended with the tip inside; 0 for what stands still, where they can be
-  /// found afterwards. Real-time: safe.
+  /// Returns the number of contacts that ended with the tip inside; 0 for an object at rest, whose
+  /// lost contacts can be found afterwards. Real-time: safe.
   virtual std::uint64_t lost_contacts() const noexcept { return 0; }
-  /// Returns where the object has moved to. Real-time: safe.
+  /// Returns the pose to which the object has moved. Real-time: safe.
   virtual BodyPose pose() const noexcept { return {}; }
-  /// Returns the shape of an object whose base points move by themselves; nullptr for others.
+  /// Returns the shape of an object whose base points deform; nullptr for others.
   virtual const BodyShape* shape() const noexcept { return nullptr; }
-  /// Puts the vertices of the object's mesh, as it was given (W, m), where they are now.
-  /// Real-time: safe; time grows with the mesh.
+  /// Moves the given vertices of the object's mesh (W, m) to their current positions. Real-time:
+  /// safe; time grows with the mesh.
   virtual void place_now(std::span<Eigen::Vector3d>) const noexcept {}
-  /// Makes of the object's mesh, as it was given (W, m), what it is now: vertices where they are,
-  /// and the triangles that it has been split into. Real-time: never from the servo thread.
+  /// Updates the given mesh of the object (W, m) to its current state: positions of vertices, and
+  /// triangles after splitting. Real-time: never from the servo thread.
   virtual void mesh_now(std::vector<Eigen::Vector3d>& vertices,
                         std::vector<std::array<std::int32_t, 3>>& /*triangles*/) const {
     place_now(vertices);
   }
 };
 
-/// The force of one contact, through the surface stages that a scene names, joined at compile time:
-/// a stage that is not named costs nothing. The force law of an object, without the interface of
-/// ObjectTouch.
+/// Force law of one contact with the surface stages of a scene, combined at compile time: an unused
+/// stage costs nothing. It has no virtual interface, unlike ObjectTouch.
 ///
-/// `Contact` finds what the tip touches: `const ContactState& update(const DeviceState&) noexcept`.
-/// The surface stages say how that feels, one after the other (surface_response.h). Real-time: safe
-/// if its stages are.
+/// `Contact` finds the contact of the tip: `const ContactState& update(const DeviceState&)
+/// noexcept`. The surface stages then compute the force, one after the other (surface_response.h).
+/// Real-time: safe if its stages are.
 template <class Contact, SurfaceStage... Stages>
 class ContactForceLaw {
  public:
   ContactForceLaw(Contact contact, Stages... stages)
       : contact_(std::move(contact)), stages_(std::move(stages)...) {}
 
-  /// Finds the force of the object on the hand in this tick. Real-time: safe.
+  /// Returns the force of the object on the hand in this tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
     const ContactState& contact = contact_.update(state);
@@ -112,19 +113,20 @@ class ContactForceLaw {
     return command;
   }
 
-  /// Reads what the contact will need in a tick like this (ForceLaw::prepare). Real-time: safe.
+  /// Prefetches the memory for the contact of a tick with about this state (ForceLaw::prepare).
+  /// Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept {
     if constexpr (requires { contact_.prepare(expected); }) contact_.prepare(expected);
   }
 
-  /// Lists the stages' settings that can be changed between two ticks. Real-time: never from the
+  /// Adds the stages' settings that can be changed between two ticks. Real-time: never from the
   /// servo thread.
   void list_settings(LiveSettings& settings) {
     std::apply([&](auto&... stage) { (list_settings_of(stage, settings), ...); }, stages_);
   }
 
   const Contact& contact() const noexcept { return contact_; }
-  /// Returns the contact stage, for who moves its surface. Real-time: safe.
+  /// Returns the contact stage, for callers that deform the surface. Real-time: safe.
   Contact& contact() noexcept { return contact_; }
 
  private:
@@ -149,8 +151,8 @@ class ContactForceLaw {
   bool touching_ = false;
 };
 
-/// The ObjectTouch of a force law that is known at compile time. `Law` is callable like
-/// ContactForceLaw and has a `contact()` with `search()`.
+/// ObjectTouch that wraps a force law known at compile time. `Law` is callable like ContactForceLaw
+/// and has a `contact()` with `search()`.
 template <class Law>
 class ObjectTouchAdapter final : public ObjectTouch {
  public:
@@ -181,11 +183,11 @@ class ObjectTouchAdapter final : public ObjectTouch {
   Law law_;
 };
 
-/// The former name of ContactForceLaw.
+/// Former name of ContactForceLaw.
 template <class Contact, SurfaceStage... Stages>
 using Touch [[deprecated("renamed to ContactForceLaw")]] = ContactForceLaw<Contact, Stages...>;
 
-/// The former name of ObjectTouchAdapter.
+/// Former name of ObjectTouchAdapter.
 template <class Law>
 using ObjectTouchOf [[deprecated("renamed to ObjectTouchAdapter")]] = ObjectTouchAdapter<Law>;
 

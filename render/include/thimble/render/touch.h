@@ -1,4 +1,4 @@
 #pragma once
 
-// Deprecated: the former place of ContactForceLaw.
+// Deprecated: former header of ContactForceLaw.
 #include "thimble/render/object_touch.h"

@@ -1,14 +1,15 @@
 #ifndef THIMBLE_COMPAT_DHDC_H
 #define THIMBLE_COMPAT_DHDC_H
 
-/* What a C or C++ program needs to be built for an arm behind the names dhd...: the functions that
- * `libdhd.so` and `libdrd.so` of `thimble exec` answer. Thimble's own text: names, types and
- * numbers are those that programs use (app/compat/dhd/PROVENANCE.md); what each function does here
- * stands in app/compat/dhd/README.md.
+/* Declarations for building a C or C++ program that uses the dhd... API: the functions that
+ * `libdhd.so` and `libdrd.so` of `thimble exec` implement. The text is Thimble's; names, types and
+ * numbers are those that programs use (app/compat/dhd/PROVENANCE.md). app/compat/dhd/README.md
+ * describes the behaviour of each function.
  *
  * Units: m, N, N m, rad, kg, s; degrees in names that end with Deg. x to the user, y to the user's
- * right, z up. `id`: number of the arm; -1: the one that was opened or chosen last (in C++ it may
- * be left out). Returns 0 or more, or -1: then dhdErrorGetLast tells the thread that called why. */
+ * right, z up. `id`: number of the arm; -1: the one that was opened or selected last (optional in
+ * C++). Functions return 0 or more, or -1 on an error, which dhdErrorGetLast then returns to the
+ * calling thread. */
 
 #include <stdbool.h>
 
@@ -20,11 +21,11 @@
 #define DHD_MAX_BUTTONS 16
 #define DHD_MAX_STATUS 17
 
-/* What a function that sends a force may return beside 0. */
+/* Return values, in addition to 0, of functions that send a force. */
 #define DHD_TIMEGUARD 1
 #define DHD_MOTOR_SATURATED 2
 
-/* What dhdGetSystemType may return. */
+/* Return values of dhdGetSystemType. */
 #define DHD_DEVICE_NONE 0
 #define DHD_DEVICE_3DOF 31
 #define DHD_DEVICE_OMEGA 32
@@ -48,7 +49,7 @@
 #define DHD_DEVICE_LAMBDA3 203
 #define DHD_DEVICE_SIGMA3 206
 
-/* Places in what dhdGetStatus fills in. */
+/* Indices into the array that dhdGetStatus sets. */
 #define DHD_STATUS_POWER 0
 #define DHD_STATUS_CONNECTED 1
 #define DHD_STATUS_STARTED 2
@@ -65,7 +66,7 @@
 #define DHD_STATUS_REDUNDANCY 13
 #define DHD_STATUS_FORCE_OFF_CAUSE 14
 
-/* What dhdErrorGetLast may return. */
+/* Return values of dhdErrorGetLast. */
 enum {
   DHD_NO_ERROR = 0,
   DHD_ERROR = 1,
@@ -108,7 +109,7 @@ int dhdErrorGetLast(void);
 const char* dhdErrorGetLastStr(void);
 const char* dhdErrorGetStr(int error);
 
-/* Which arms there are. */
+/* Listing and opening of arms. */
 void dhdEnableSimulator(bool on);
 int dhdGetDeviceCount(void);
 int dhdGetAvailableCount(void);
@@ -132,7 +133,7 @@ bool dhdHasActiveWrist(THIMBLE_DHD_ID);
 bool dhdHasGripper(THIMBLE_DHD_ID);
 bool dhdHasActiveGripper(THIMBLE_DHD_ID);
 
-/* Force on and off, and what an arm is told of itself. */
+/* Force on and off, and settings of an arm. */
 int dhdStop(THIMBLE_DHD_ID);
 int dhdEnableForce(unsigned char on, THIMBLE_DHD_ID);
 int dhdReset(THIMBLE_DHD_ID);
@@ -156,7 +157,7 @@ int dhdSetBaseAngleZDeg(double angle, THIMBLE_DHD_ID);
 double dhdGetMaxForce(THIMBLE_DHD_ID);
 int dhdSetMaxForce(double newtons, THIMBLE_DHD_ID);
 
-/* Where the tip is. */
+/* Pose and velocity of the tip. */
 int dhdGetPosition(double* x, double* y, double* z, THIMBLE_DHD_ID);
 int dhdGetLinearVelocity(double* x, double* y, double* z, THIMBLE_DHD_ID);
 int dhdGetOrientationRad(double* a, double* b, double* c, THIMBLE_DHD_ID);
@@ -184,7 +185,7 @@ int dhdGetButton(int index, THIMBLE_DHD_ID);
 unsigned int dhdGetButtonMask(THIMBLE_DHD_ID);
 int dhdEmulateButton(unsigned char on, THIMBLE_DHD_ID);
 
-/* Forces. Each of the first five waits until a tick has taken it. */
+/* Forces. Each of the first five functions waits until a tick has taken the force. */
 int dhdSetForce(double x, double y, double z, THIMBLE_DHD_ID);
 int dhdSetForceAndTorque(double fx, double fy, double fz, double tx, double ty, double tz,
                          THIMBLE_DHD_ID);
@@ -200,14 +201,14 @@ int dhdGetForceAndTorqueAndGripperForce(double* fx, double* fy, double* fz, doub
                                         double* tz, double* gripper, THIMBLE_DHD_ID);
 double dhdGetComFreq(THIMBLE_DHD_ID); /* kHz */
 
-/* For experts. Those that could disturb an arm want dhdEnableExpertMode first. */
+/* For experts. Functions that could disturb an arm require a call of dhdEnableExpertMode first. */
 int dhdEnableExpertMode(void);
 int dhdDisableExpertMode(void);
 int dhdPreset(int counts[DHD_MAX_DOF], unsigned char mask, THIMBLE_DHD_ID);
 int dhdSetMot(unsigned short values[DHD_MAX_DOF], THIMBLE_DHD_MASK, THIMBLE_DHD_ID);
-int dhdSetWatchdog(unsigned char steps, THIMBLE_DHD_ID); /* of 125 us; 0: the arm's own */
+int dhdSetWatchdog(unsigned char steps, THIMBLE_DHD_ID); /* steps of 125 us; 0: the arm's default */
 int dhdGetWatchdog(unsigned char* steps, THIMBLE_DHD_ID);
-int dhdSetVelocityThreshold(unsigned int speed, THIMBLE_DHD_ID); /* m/s; 0: the arm's own */
+int dhdSetVelocityThreshold(unsigned int speed, THIMBLE_DHD_ID); /* m/s; 0: the arm's default */
 int dhdGetVelocityThreshold(unsigned int* speed, THIMBLE_DHD_ID);
 int dhdGetEnc(int counts[DHD_MAX_DOF], THIMBLE_DHD_MASK, THIMBLE_DHD_ID);
 int dhdGetEncVelocities(double counts_per_s[DHD_MAX_DOF], THIMBLE_DHD_ID);

@@ -1,9 +1,9 @@
 #ifndef THIMBLE_COMPAT_DRDC_H
 #define THIMBLE_COMPAT_DRDC_H
 
-/* What a C or C++ program needs to be built for an arm that is led and held by the functions
- * drd...; see dhdc.h. An arm of ours is held and moved by a spring between its tip and a point that
- * moves, of the force that the gate lets through. */
+/* Declarations for building a C or C++ program that moves and holds an arm with the drd... API; see
+ * dhdc.h. Thimble holds and moves an arm by a spring between its tip and a moving target, with the
+ * force that the gate allows. */
 
 #include "dhdc.h"
 
@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* Which arms there are: as dhdOpen and others. */
+/* Listing and opening of arms, as dhdOpen and others. */
 int drdOpen(void);
 int drdOpenID(char index);
 int drdClose(THIMBLE_DHD_ID);
@@ -23,7 +23,7 @@ int drdAutoInit(THIMBLE_DHD_ID);
 int drdCheckInit(THIMBLE_DHD_ID);
 int drdPrecisionInit(THIMBLE_DHD_ID);
 
-/* The thread that regulates. */
+/* The control thread. */
 int drdStart(THIMBLE_DHD_ID);
 int drdStop(bool leave_force_on, THIMBLE_DHD_ID);
 bool drdIsRunning(THIMBLE_DHD_ID);
@@ -38,7 +38,7 @@ int drdEnableFilter(bool on, THIMBLE_DHD_ID);
 int drdSetMotRatioMax(double ratio, THIMBLE_DHD_ID);
 double drdGetMotRatioMax(THIMBLE_DHD_ID);
 
-/* Where the arm goes. */
+/* Motion of the arm. */
 int drdMoveToPos(double x, double y, double z, bool wait, THIMBLE_DHD_ID);
 int drdMoveTo(double goal[DHD_MAX_DOF], bool wait, THIMBLE_DHD_ID);
 int drdTrackPos(double x, double y, double z, THIMBLE_DHD_ID);
@@ -49,7 +49,7 @@ int drdGetPosMoveParam(double* acceleration, double* speed, double* jerk, THIMBL
 int drdSetPosTrackParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
 int drdGetPosTrackParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
 
-/* What the arm does. */
+/* State and force of the arm, and time. */
 int drdGetPositionAndOrientation(double* x, double* y, double* z, double* a, double* b, double* c,
                                  double* gripper, double rows[3][3], THIMBLE_DHD_ID);
 int drdGetVelocity(double* x, double* y, double* z, double* wx, double* wy, double* wz,

@@ -1,18 +1,18 @@
 #pragma once
 
-/* What libhdPhantom.so exports: the functions by which CHAI3D and AMBF reach an arm, loaded at run
- * time. Own work; names and types as public programs under BSD licences use them
+/* Functions that libhdPhantom.so exports. CHAI3D and AMBF load it at run time to access an arm.
+ * Written for Thimble; names and types are those of public programs under BSD licences
  * (app/compat/PROVENANCE.md).
  *
  * x to the user, y right, z up; m, m/s, N, N m; rotations row by row. Arms are numbered from 0.
- * What gets or closes returns 1, what opens or sets 0, and all of them -1 if it fails: such a
- * program takes what a getter returns for the truth of its success. */
+ * Functions that get or close return 1, functions that open or set return 0, and all return -1 on
+ * failure, because these programs use the result of a getter as a flag of success. */
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** Returns how many arms there are. */
+/** Returns the number of arms. */
 int hdPhantomGetNumDevices(void);
 /** Opens an arm and switches its force on. */
 int hdPhantomOpen(int id);
@@ -22,21 +22,21 @@ int hdPhantomClose(int id);
 int hdPhantomGetPosition(int id, double* x, double* y, double* z);
 /** Gets the tip's velocity. */
 int hdPhantomGetLinearVelocity(int id, double* x, double* y, double* z);
-/** Gets how the stylus is turned. */
+/** Gets the rotation of the stylus. */
 int hdPhantomGetRotation(int id, double* r00, double* r01, double* r02, double* r10, double* r11,
                          double* r12, double* r20, double* r21, double* r22);
-/** Returns the buttons, a bit each; 0 if the arm is not open. */
+/** Returns the buttons, one bit each; 0 if the arm is not open. */
 int hdPhantomGetButtons(int id);
-/** Asks for a force, and waits until a tick has taken it: once for each is the pace of a loop. */
+/** Requests a force and waits until a tick has taken it; one call per tick paces a loop. */
 int hdPhantomSetForce(int id, const double* x, const double* y, const double* z);
-/** The same with a torque, which arms of three motors do not give. */
+/** Does the same with a torque, which arms with three motors cannot produce. */
 int hdPhantomSetTorque(int id, const double* x, const double* y, const double* z);
-/** The same with both. */
+/** Does the same with force and torque. */
 int hdPhantomSetForceAndTorque(int id, const double* fx, const double* fy, const double* fz,
                                const double* tx, const double* ty, const double* tz);
 /** Gets the radius of the workspace; the arm need not be open. */
 int hdPhantomGetWorkspaceRadius(int id, double* radius);
-/** Copies the model's name, 255 bytes at most; the arm need not be open. */
+/** Copies the name of the model, at most 255 bytes; the arm need not be open. */
 int hdPhantomGetType(int id, char* name);
 /** Does nothing: the servo runs while an arm is open. */
 void hdPhantomStartServo(void);

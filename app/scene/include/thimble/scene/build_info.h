@@ -7,19 +7,19 @@
 
 namespace thimble::scene {
 
-/// Which build of Thimble this is.
+/// Identification of a build of Thimble.
 struct BuildInfo {
-  std::string_view version;   ///< As in CMakeLists.txt.
-  std::string_view compiler;  ///< Name and version.
-  std::string_view type;      ///< CMake's build type.
-  std::string_view revision;  ///< Of the source when the build was configured; empty if unknown.
+  std::string_view version;   ///< Version, as in CMakeLists.txt.
+  std::string_view compiler;  ///< Compiler name and version.
+  std::string_view type;      ///< CMake build type.
+  std::string_view revision;  ///< Source revision at configuration; empty if unknown.
 };
 
-/// Returns what this build is.
+/// Returns the identification of this build.
 THIMBLE_EXPORT BuildInfo build_info();
 
-/// Returns the same in one line: two programs with the same one feel the same to the bit on one
-/// machine, if neither was built from changed sources.
+/// Returns the identification in one line. Two programs with the same line give bit-identical
+/// results on one machine, unless one was built from modified sources.
 THIMBLE_EXPORT std::string program_name();
 
 }  // namespace thimble::scene

@@ -9,10 +9,9 @@
 
 namespace thimble::scene {
 
-/// Returns what `driver::Device::open` needs to know of the arm of a file in a loop of `rate` (Hz):
-/// its place, the limits and the energy stage of its gate, what its motion is watched by, its heat,
-/// the walls around its workspace.
-/// A scene may name another energy stage. Real-time: never from the servo thread.
+/// Returns the device settings of an arm file for a loop of `rate` (Hz): place, gate limits, energy
+/// stage, motion watch, heat and workspace walls. `stage`, if set, replaces the arm's energy stage.
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::DeviceSettings device_settings(
     const ArmFile& arm, double rate, std::optional<driver::EnergyStage> stage = {});
 

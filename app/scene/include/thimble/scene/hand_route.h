@@ -12,40 +12,42 @@
 
 namespace thimble::scene {
 
-/// One station of the hand's path: a free point, or a point on an object's surface.
+/// Waypoint of the hand's path: a free point, or a point on the surface of an object.
 struct HandWaypoint {
-  double time = 0;                ///< s
-  std::optional<std::string> on;  ///< Object that is touched; empty for a free point.
-  Eigen::Vector3d p_W{0, 0, 0};   ///< The free point, or where near the surface to look for one, m.
-  double press = 0;               ///< How far below the surface the hand wants to be, m.
-  bool stop = false;              ///< True if the hand shall come to rest here.
+  double time = 0;                ///< Time, s.
+  std::optional<std::string> on;  ///< Object to touch; empty for a free point.
+  /// Free point, or the point near which the closest point of the surface is used, in the world, m.
+  Eigen::Vector3d p_W{0, 0, 0};
+  double press = 0;   ///< Depth of the hand's target below the surface, m.
+  bool stop = false;  ///< True if the hand stops here.
 
-  /// Returns whether two stations are the same.
+  /// Returns whether two waypoints are equal.
   bool operator==(const HandWaypoint&) const = default;
 };
 
-/// Where the hand wants to be over time: seconds and points in the world (m).
+/// Target of the hand over time: seconds and points in the world (m).
 using HandRoute = std::vector<std::pair<double, Eigen::Vector3d>>;
 
-/// One object that the hand may follow, kept by the caller.
+/// Mesh that the hand may follow, with its name. The caller owns the mesh.
 struct NamedMesh {
-  std::string name;                              ///< As in the scene.
-  const render::TriangleMesh* mesh_W = nullptr;  ///< In the world, m.
+  std::string name;                              ///< Name in the scene.
+  const render::TriangleMesh* mesh_W = nullptr;  ///< Mesh in the world, m.
 };
 
-/// Returns the hand's path through its stations, one point every 2 ms or so.
+/// Returns the hand's path through its waypoints, with one point about every 2 ms.
 ///
-/// Between two stations on the same object the hand follows the surface: points on the path between
-/// are moved to the closest surface point and pressed in along its smooth normal. Where that jumps,
-/// because the straight path leads through the object's middle, the hand takes the nearly shortest
-/// path over the surface, and where the surface does not hang together, leaves it and comes down
-/// beside the goal; it rests at both ends then. Every other stretch is a straight line. The path
-/// over the surface is averaged over 60 ms, as by a hand. Position, speed and acceleration are
-/// continuous in time before the move to the surface; the hand rests where the kind of stretch
-/// changes, at the ends, and where `stop` is set.
+/// Between two waypoints on the same object the hand follows the surface. Each point of the
+/// straight path is moved to the closest surface point and pressed in along its smooth normal. If
+/// the closest point jumps, because the straight path crosses the middle of the object, the hand
+/// takes a nearly shortest path over the surface. If the surface parts are not connected, the hand
+/// lifts off and comes down next to the goal. In both cases it rests at both ends. Every other
+/// segment is a straight line. The path over the surface is averaged over 60 ms, as a person's
+/// movement is. Before the projection to the surface, position, velocity and acceleration are
+/// continuous in time. The hand rests where the kind of segment changes, at the ends, and at
+/// waypoints with `stop`.
 ///
-/// Fails, naming the times, if times do not grow, if a station is on an object that is not among
-/// `objects`, or if no path outside leads from one part of an object to another.
+/// Fails if times do not increase or a waypoint names an object that is not in `objects`. Also
+/// fails if no path outside of an object connects two of its parts. The error names the times.
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<HandRoute> plan_hand(const std::vector<HandWaypoint>& waypoints,
                                                    const std::vector<NamedMesh>& objects);

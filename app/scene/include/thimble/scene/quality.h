@@ -11,30 +11,30 @@
 
 namespace thimble::scene {
 
-/// How much of what cannot be felt a run shall spend time on: points on the diagrams of
-/// `thimble study accuracy`.
+/// Accuracy/performance presets: points on the diagrams of `thimble study accuracy`.
 enum class Quality {
-  kDraft,      ///< The cheapest that still behaves: for looking whether a scene works at all.
-  kNormal,     ///< As the scene says.
-  kReference,  ///< Beyond what can be felt, whatever it costs.
-  kAuto,       ///< The cheapest below what can be felt, or the truest within a budget.
+  kDraft,      ///< Lowest cost with stable behaviour, to check that a scene works.
+  kNormal,     ///< Settings of the scene.
+  kReference,  ///< Accuracy beyond human perception, regardless of cost.
+  /// Lowest cost with errors below perception, or the highest accuracy within a budget.
+  kAuto,
 };
 
-/// The names of Quality, as a user spells them.
+/// Names of the values of Quality in options.
 inline constexpr std::array<std::string_view, 4> kQualityNames{"draft", "normal", "reference",
                                                                "auto"};
 
-/// Returns the quality of a name; empty if there is none of that name.
+/// Returns the quality with the given name; empty if there is none.
 THIMBLE_EXPORT std::optional<Quality> quality_named(std::string_view name);
 
-/// Returns the rate of the loop that a quality asks for, over the scene's own (SceneReading).
+/// Returns the factor of a quality on the scene's loop rate (SceneReading::rate_factor).
 THIMBLE_EXPORT double rate_factor_of(Quality quality);
 
-/// Puts a scene on the points of a quality. Returns each choice, and why, in a sentence.
-/// `kNormal` changes nothing. What a scene names itself (a blending, a tracker) stays as it is.
-/// `budget`: ns per tick for all objects on the machine of the stored diagrams (quality_table.h),
-/// of kAuto alone; empty: as cheap as cannot be felt. The loop's rate is chosen when a scene is
-/// read. Real-time: never from the servo thread.
+/// Applies a quality to a scene. Returns one sentence per choice, with the reason. `kNormal`
+/// changes nothing. Values that the scene sets itself (a blending, a tracker) are kept. `budget`:
+/// time per tick for all objects on the machine of the stored diagrams (quality_table.h), ns; used
+/// by kAuto only. If empty, kAuto chooses the lowest cost with errors below perception. The loop
+/// rate is chosen when the scene is read. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::vector<std::string> apply_quality(Quality quality, Scene& scene,
                                                       std::optional<double> budget = {});
 

@@ -12,32 +12,33 @@
 
 namespace thimble::scene {
 
-/// The arm file of a real arm, and why it is that one.
+/// Arm file chosen for a real arm, with the reason.
 struct RealArmFile {
-  std::filesystem::path path;     ///< The installed file.
-  ArmFile file;                   ///< What it says, with the arm's own calibration in it.
-  std::string why;                ///< "named by --arm", say.
-  std::vector<std::string> told;  ///< What a file from elsewhere tightened, a sentence each.
+  std::filesystem::path path;  ///< Path of the installed file.
+  ArmFile file;                ///< Contents, including the calibration of this arm.
+  std::string why;             ///< Reason for the choice, such as "named by --arm".
+  /// Warnings about limits tightened by a file that is not installed, one sentence each.
+  std::vector<std::string> told;
 };
 
-/// How the arm file of a real arm is looked for.
+/// Options of the search for the arm file of a real arm.
 struct RealArmSearch {
-  std::filesystem::path arm_file;  ///< What the user named by --arm; empty: nothing.
-  bool for_calibration = false;    ///< Leaves the calibration of before out, even a damaged one.
-  /// Asks a board for its model number, in place of the board itself; for tests.
+  std::filesystem::path arm_file;  ///< Value of --arm; empty: not given.
+  bool for_calibration = false;    ///< Ignores the existing calibration, even a damaged one.
+  /// For tests: returns the model number instead of querying the board.
   std::function<driver::Result<int>(const driver::FoundArm&)> ask_model = {};
 };
 
-/// Returns the arm file of a real arm: the file that the user named, else the one that its
-/// calibration was found with, else the one that its kind or its board's model number means. A
-/// scene has no say.
+/// Returns the arm file of a real arm. It is the file named by the user, or else the file with
+/// which its calibration was made. Without either it is the file for the arm's kind or its board's
+/// model number. A scene cannot change the choice.
 ///
-/// Only an installed file (shipped_files.h) says what a real arm is made of and what it may do. A
-/// file from elsewhere must agree with the installed one in all but its limits, of which the
-/// tighter ones are taken.
+/// Only an installed file (shipped_files.h) defines the construction and limits of a real arm. Any
+/// other file must agree with the installed one in everything except its limits. Of each limit the
+/// stricter value is used.
 ///
-/// The error says what to type: where nothing tells which arm it is, where a file from elsewhere
-/// differs, where a calibration belongs to another arm file, or where a file is wrong.
+/// The error says which command to use. Causes are an arm that cannot be identified, an invalid
+/// file, a file that differs from the installed one, or a calibration of another arm file.
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RealArmFile> find_real_arm_file(const driver::FoundArm& arm,
                                                               const RealArmSearch& search = {});

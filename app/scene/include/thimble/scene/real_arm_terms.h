@@ -16,46 +16,47 @@ namespace thimble::scene {
 
 struct Scene;
 
-/// The largest force that a feel check lets through, and that an arm gets which has passed none, N:
-/// enough to feel, too little to hurt. [chosen]
+/// Largest force during a feel check, and for an arm that has not passed one, N: enough to feel,
+/// too little to hurt. [chosen]
 inline constexpr double kFeelCheckForceMax = 0.5;
 
-/// What is known of an arm's feel check when a run begins.
+/// State of an arm's feel check at the start of a run.
 enum class FeelCheckState : std::uint8_t {
-  kSimulated,  ///< The arm is simulated: there is nothing to check.
-  kPassed,     ///< It passed, and is what it was then.
-  kNone,       ///< It did not: its force is at most kFeelCheckForceMax.
-  kUnchecked,  ///< It did not, and the user wants its whole force all the same.
+  kSimulated,  ///< The arm is simulated; no check is needed.
+  kPassed,     ///< The check was passed, and the arm has not changed since.
+  kNone,       ///< No passed check; the force is limited to kFeelCheckForceMax.
+  kUnchecked,  ///< No passed check, but the user requested the full force.
 };
 
-/// Returns how a report names a state ("passed").
+/// Returns the name of a state in reports ("passed").
 THIMBLE_EXPORT std::string_view name(FeelCheckState state);
 
-/// The terms on which a run may use a real arm: which file is the arm's, and how much force it may
-/// have.
+/// Terms of use of a real arm in a run: its arm file and its force limit.
 struct RealArmTerms {
-  RealArmFile arm;                                              ///< Which file is the arm's.
-  FeelCheckState feel_check = FeelCheckState::kNone;            ///< Whether it passed one.
-  double force_most = std::numeric_limits<double>::infinity();  ///< N, beside the arm's own limit.
-  std::vector<std::string> told;  ///< What the user must know, a sentence each.
+  RealArmFile arm;                                    ///< Arm file of the arm.
+  FeelCheckState feel_check = FeelCheckState::kNone;  ///< State of the feel check.
+  /// Force limit in addition to that of the arm, N.
+  double force_most = std::numeric_limits<double>::infinity();
+  /// Warnings to show the user, one sentence each.
+  std::vector<std::string> told;
 };
 
-/// What a user asked for about a real arm.
+/// User options for a real arm.
 struct RealArmRequest {
-  std::filesystem::path arm_file;  ///< By --arm; empty: nothing.
-  std::filesystem::path firmware;  ///< By --firmware; empty: nothing.
-  bool unchecked = false;          ///< Gives the arm its whole force without a passed feel check.
+  std::filesystem::path arm_file;  ///< Value of --arm; empty: not given.
+  std::filesystem::path firmware;  ///< Value of --firmware; empty: not given.
+  bool unchecked = false;          ///< Allows the full force without a passed feel check.
 };
 
-/// Returns the terms for an arm. The error says what to type.
-/// Real-time: never from the servo thread.
+/// Returns the terms of use of an arm. The error says which command to use. Real-time: never from
+/// the servo thread.
 THIMBLE_EXPORT driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm,
                                                       const RealArmRequest& request);
 
-/// Puts the real arm of the terms in place of the scene's: its file, calibration and limits. Of
-/// what the scene itself says of limits (`gate:`, or an arm file of its own that is not installed)
-/// only what is tighter is kept. Returns a sentence for each value kept or ignored; fails if the
-/// scene's own arm file is wrong. Real-time: never from the servo thread.
+/// Replaces the arm of a scene by the real arm of the terms: arm file, calibration and limits.
+/// Limits that the scene sets itself (`gate:`, or an arm file that is not installed) are kept only
+/// if they are stricter. Returns one sentence per value kept or ignored. Fails if the scene's own
+/// arm file is invalid. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<std::vector<std::string>> put_on_terms(
     Scene& scene, const std::filesystem::path& scene_file, const RealArmTerms& terms);
 

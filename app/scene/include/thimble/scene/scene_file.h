@@ -23,104 +23,117 @@
 
 namespace thimble::scene {
 
-/// A shape that stands in a scene instead of a mesh.
+/// Shape used as an object of a scene instead of a mesh.
 struct SceneShape {
-  render::Primitive shape_W;    ///< What is touched.
-  render::TriangleMesh mesh_W;  ///< Drawn, and followed by the hand; nothing touches it.
+  render::Primitive shape_W;    ///< Shape that is touched.
+  render::TriangleMesh mesh_W;  ///< Mesh to draw and for the hand's path; it cannot be touched.
 };
 
-/// The material of an object: what is left empty the scene does not call for.
+/// Material of an object. Empty members are not used.
 struct SceneBody {
-  std::optional<render::DentSettings> dent;    ///< The surface dents under the cursor.
-  render::ShapeChoice shape;                   ///< Base points keep what they gave way, or snap.
-  std::optional<render::MotionChoice> motion;  ///< All base points move together.
+  std::optional<render::DentSettings> dent;  ///< Denting of the surface under the cursor.
+  /// Deformation of the base shape: permanent, or snapping between shapes.
+  render::ShapeChoice shape;
+  std::optional<render::MotionChoice> motion;  ///< Motion of the object as a rigid body.
 };
 
-/// One object of a scene: a mesh, a shape or a field, where it stands, and how it feels.
+/// Object of a scene: a mesh, a shape or a field, with its place and feel.
 struct SceneObject {
-  std::string name;                  ///< Unlike any other of the scene.
-  std::filesystem::path mesh_file;   ///< Empty for a shape or a field.
-  bool paged = false;                ///< Whether that is a page file, of which little is in memory.
-  std::optional<SceneShape> shape;   ///< A shape instead of a mesh.
-  render::FieldBuilder build_field;  ///< A field instead of a mesh; it has no surface.
-  std::optional<double> size;        ///< Largest side of the mesh's box, m.
-  std::optional<double> scale;       ///< Metres per unit of the file, if no size: as the file
-                                     ///< says, else 1.
-  bool repair = false;               ///< Whether the mesh is repaired first (repair_mesh).
-  std::optional<double> sheet_thickness;  ///< Of the sheets that are made of what is open, m.
+  std::string name;                  ///< Name, unique in the scene.
+  std::filesystem::path mesh_file;   ///< Mesh file; empty for a shape or a field.
+  bool paged = false;                ///< True if that is a page file, which stays mostly on disk.
+  std::optional<SceneShape> shape;   ///< Shape, if used instead of a mesh.
+  render::FieldBuilder build_field;  ///< Field, if used instead of a mesh; it has no surface.
+  std::optional<double> size;        ///< Largest side of the mesh's bounding box, m.
+  /// Metres per unit of the mesh file, used if `size` is empty. If both are empty, the unit that
+  /// the file declares, else 1.
+  std::optional<double> scale;
+  /// True if the mesh is repaired on load (repair_mesh).
+  bool repair = false;
+  std::optional<double> sheet_thickness;               ///< Thickness given to open surfaces, m.
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
-  Eigen::Vector3d p_WO{0, 0, 0};            ///< Where the centre of the turned mesh's box lies, m.
-  double stiffness = 0;                     ///< N/m
-  double damping = 0;                       ///< N s/m
-  render::ContactChoice contact;            ///< How the surface is found, followed and felt.
-  bool tracker_named = false;               ///< Whether the scene says how it is followed.
-  std::vector<render::EffectPlan> effects;  ///< What is put on it, as a tick runs them.
-  SceneBody body;                           ///< Its material.
-  render::BodyCoupling coupling;            ///< How stiff its surface answers, if it moves.
+  /// Centre of the bounding box of the rotated mesh, in the world, m.
+  Eigen::Vector3d p_WO{0, 0, 0};
+  double stiffness = 0;  ///< Stiffness, N/m.
+  double damping = 0;    ///< Damping, N s/m.
+  /// How the surface is found, tracked and rendered.
+  render::ContactChoice contact;
+  bool tracker_named = false;  ///< True if the scene names a tracker.
+  /// Effects on the object, in the order of execution.
+  std::vector<render::EffectPlan> effects;
+  SceneBody body;  ///< Material.
+  /// Coupling stiffness of the surface, if the object moves.
+  render::BodyCoupling coupling;
 };
 
-/// Where a scene puts one of several arms: turned about the vertical, then moved.
+/// Place of one of several arms in a scene: a rotation about the vertical, then a translation.
 struct THIMBLE_EXPORT ArmPlace {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< By a multiple of 90 degrees.
-  Eigen::Vector3d p{0, 0, 0};                       ///< m
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< Rotation by a multiple of 90 degrees.
+  Eigen::Vector3d p{0, 0, 0};                       ///< Translation, m.
 
-  /// Returns an arm, whose file says how it stands alone, where it stands among others.
-  /// Real-time: never from the servo thread.
+  /// Returns the arm of an arm file moved to this place. Real-time: never from the servo thread.
   ArmFile put(ArmFile arm) const;
 };
 
-/// An arm of a scene, with the hand that leads it if it is simulated.
+/// Arm of a scene, with the hand that moves it if it is simulated.
 struct SceneArm {
-  std::string name;  ///< Unlike any other of the scene ("left"); of a single arm empty.
-  std::filesystem::path arm_file;  ///< Where `arm` comes from.
-  std::filesystem::path
-      own_arm_file;                ///< What the scene itself names; used for the simulation alone.
-  ArmPlace place;                  ///< Where the scene puts it.
-  ArmFile arm;                     ///< Put there.
-  std::vector<HandWaypoint> hand;  ///< What the simulated hand does.
+  /// Name, unique in the scene ("left"); empty if there is only one arm.
+  std::string name;
+  std::filesystem::path arm_file;  ///< Path of the file from which `arm` was read.
+  /// Arm file that the scene itself names; used for the simulation only.
+  std::filesystem::path own_arm_file;
+  ArmPlace place;                  ///< Place in the scene.
+  ArmFile arm;                     ///< Contents of the arm file, moved to `place`.
+  std::vector<HandWaypoint> hand;  ///< Path of the simulated hand.
 };
 
-/// What a fault of one of several arms does to the others.
+/// Effect of a fault of one of several arms on the others.
 enum class FaultRule {
-  kTogether,  ///< It takes the force of all, and ends the run.
-  kApart,     ///< The others go on.
+  kTogether,  ///< The force of all arms is switched off, and the run ends.
+  kApart,     ///< The other arms continue.
 };
 
-/// One scene: which arms touch what, how fast the loop runs, and what the simulated hand does.
+/// A scene: arms, objects, loop rate, and path of the simulated hand.
 struct Scene {
-  std::string name;                                       ///< For people.
-  std::string description;                                ///< A few sentences; may be empty.
-  std::filesystem::path file;                             ///< Where the scene comes from.
-  std::vector<SceneArm> arms = std::vector<SceneArm>(1);  ///< That touch it; at least one.
-  double rate = 1000;                                     ///< Ticks per second, Hz.
-  double rate_factor = 1;                     ///< Of that, over what the scene's file says.
-  double duration = 0;                        ///< s
-  std::uint64_t seed = 0;                     ///< Of everything random in the simulation.
-  std::optional<driver::EnergyStage> energy;  ///< In place of the arm's own, if named.
-  int energy_line = 0;                        ///< Where in the scene's file; 0 if not named.
-  std::vector<SceneObject> objects;           ///< What can be touched.
-  FaultRule faults = FaultRule::kTogether;    ///< Of several arms.
+  std::string name;  ///< Name to display.
+  /// Description in a few sentences; may be empty.
+  std::string description;
+  std::filesystem::path file;  ///< Path of the scene file.
+  /// Arms that touch the scene; at least one.
+  std::vector<SceneArm> arms = std::vector<SceneArm>(1);
+  double rate = 1000;  ///< Rate of the servo loop, Hz.
+  /// Ratio of `rate` to the rate in the scene file.
+  double rate_factor = 1;
+  double duration = 0;  ///< Duration, s.
+  /// Seed of all random numbers in the simulation.
+  std::uint64_t seed = 0;
+  /// Energy stage to use instead of the arm's, if set.
+  std::optional<driver::EnergyStage> energy;
+  /// Line of the energy stage in the scene file; 0: not set.
+  int energy_line = 0;
+  std::vector<SceneObject> objects;         ///< Objects that can be touched.
+  FaultRule faults = FaultRule::kTogether;  ///< Effect of a fault with several arms.
 };
 
-/// What a scene is read with.
+/// Options for reading a scene.
 struct SceneReading {
-  std::filesystem::path
-      arm{};  ///< Arm file, by name or path, in place of the scene's; empty: its own.
-  /// Where meshes `cgal:NAME` lie; empty: looked for where `thimble doctor` says.
+  /// Arm file, by name or path, to use instead of that of the scene; empty: that of the scene.
+  std::filesystem::path arm{};
+  /// Folder of the meshes `cgal:NAME`; if empty, the folders that `thimble doctor` lists.
   std::filesystem::path mesh_folder{};
-  /// The loop's rate over what the file says, > 0. Above 1 the simulated board reports as often.
-  /// Below 1 only where the scene bears it: every stiffness at most half of what the law of the
-  /// latency lets this arm and hand hold [PHYSICS 1.1], and no setting refused at that rate.
+  /// Factor on the loop rate in the file, > 0. Above 1 the simulated board reports at the same
+  /// higher rate. Below 1, every setting must be valid at the new rate. Every stiffness must then
+  /// be at most half of the limit that latency sets for this arm and hand [PHYSICS 1.1].
   double rate_factor = 1;
-  /// Whether the reader knows of several arms (Scene::arms); a scene that has them is an error
-  /// for all others.
+  /// True if the caller handles several arms (Scene::arms). If false, a scene with several arms is
+  /// an error.
   bool several_arms = false;
 };
 
-/// Reads the scene that a person means: a name ("elephant") or a path, as `find_scene` finds it;
-/// app/scenes/elephant.yaml shows the form. Paths in it are relative to the file. The arm's file is
-/// read too: what is stable depends on the arm. The error lists the names that are known, or tells
-/// up to five mistakes of the file, one per line. Real-time: never from the servo thread.
+/// Reads a scene, given by name ("elephant") or path (see `find_scene`). app/scenes/elephant.yaml
+/// is an example. Paths in the scene are relative to its file. The arm file is read too, because
+/// stability depends on the arm. The error lists the known names, or up to five mistakes of the
+/// file, one per line. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<Scene> load_scene(const std::filesystem::path& scene,
                                                 const SceneReading& reading = {});
 

@@ -23,69 +23,73 @@ namespace thimble::scene {
 
 class SharedMeshes;
 
-/// Where an object begins in a mesh of several.
+/// Offsets of an object in a combined mesh.
 struct MeshPlace {
-  std::size_t vertex = 0;    ///< Its first vertex.
-  std::size_t triangle = 0;  ///< Its first triangle.
+  std::size_t vertex = 0;    ///< Index of the first vertex.
+  std::size_t triangle = 0;  ///< Index of the first triangle.
 };
 
-/// What stands in a scene, loaded and ready to be touched.
+/// Objects of a scene, loaded and ready to be touched.
 class THIMBLE_EXPORT SceneObjects {
  public:
-  /// Reads the meshes and builds the force law that the scene calls for. The error names the object
-  /// and what to mend. Meshes, and what is built over them and no touch changes, are those of
-  /// `meshes`; without it this scene has its own. Real-time: never from the servo thread.
+  /// Reads the meshes and builds the force law of the scene. `meshes`, if set, provides the meshes
+  /// and the acceleration structures that no touch changes; if null, the scene has its own. The
+  /// error names the object and the fix. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<SceneObjects>> build(
       const Scene& scene, const std::shared_ptr<SharedMeshes>& meshes = nullptr);
 
-  /// Returns the force law of the whole scene, on one of its arms.
+  /// Returns the force law of the whole scene for one arm.
   render::SceneTouch& touch(std::size_t arm = 0) const { return *touches_[arm]; }
-  /// Moves on, by `step` s, the bodies that several arms touch; with one arm its force law does
-  /// that. Once, after the laws of all arms. Real-time: safe.
+  /// Advances the bodies that several arms touch by `step` (s). Does nothing with one arm, whose
+  /// force law moves the bodies. Call once per tick, after the force laws of all arms. Real-time:
+  /// safe.
   void step_bodies(double step) noexcept;
-  /// Returns the bodies that several arms touch, in the order of `moving`; none with one arm.
+  /// Returns the bodies that several arms touch, in the order of `moving`; empty with one arm.
   std::span<const std::shared_ptr<render::SharedBody>> shared_bodies() const { return bodies_; }
-  /// Returns the meshes of all objects in the world as one (m), as they are at first: those that
-  /// are touched, and those that stand for shapes; those on the disk are not in it.
+  /// Returns the initial meshes of all objects as one, in the world, m. Includes touched meshes and
+  /// the meshes that represent shapes; excludes objects paged from disk.
   const render::TriangleMesh& mesh_W() const { return *mesh_W_; }
-  /// Returns the mesh of one object alone; empty for a field and for one on the disk.
+  /// Returns the initial mesh of one object, in the world, m; empty for a field and for an object
+  /// paged from disk.
   const render::TriangleMesh& mesh_W(std::size_t object) const { return *meshes_W_[object]; }
-  /// Returns the same for who keeps it, or compares it with that of another scene.
+  /// Returns the same mesh as a shared pointer, to keep it or to compare it with that of another
+  /// scene.
   const std::shared_ptr<const render::TriangleMesh>& shared_mesh_W(std::size_t object) const {
     return meshes_W_[object];
   }
-  /// Returns where an object begins in `mesh_W`.
+  /// Returns the offsets of an object in `mesh_W`.
   const MeshPlace& place(std::size_t object) const { return places_[object]; }
-  /// Returns the mesh of one object, or of all as one if `object` is negative, where it is now:
-  /// moved and bent (W, m). Not beside a running servo.
+  /// Returns the current mesh of one object, moved and deformed (W, m). If `object` is negative,
+  /// returns all objects as one mesh. Not while the servo runs.
   render::TriangleMesh mesh_now(int object = -1) const;
-  /// Returns the mesh of one object as it is bent now, where the object was at first: whoever draws
-  /// it moves it to the object's `pose` (B, m). Not beside a running servo.
+  /// Returns the deformed mesh of one object at its initial place. Apply the object's `pose` to
+  /// draw it (B, m). Not while the servo runs.
   render::TriangleMesh mesh_bent(std::size_t object) const;
-  /// Returns how many triangles can be touched, in memory and on the disk.
+  /// Returns the number of touchable triangles, in memory and on disk.
   std::size_t triangles() const { return triangles_; }
-  /// Returns what was put right, left out or guessed of the meshes, a sentence each.
+  /// Returns notes on mesh repairs, omissions and assumptions, one sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
-  /// Returns the objects that move.
+  /// Returns the indices of the objects that move.
   std::span<const std::size_t> moving() const { return moving_; }
 
-  /// Lets threads load pages from now on. Real-time: never from the servo thread.
+  /// Starts the threads that load disk pages. Real-time: never from the servo thread.
   void start_loaders();
-  /// Loads every page that is asked for, on the caller's thread: for virtual
-  /// time, between two ticks. Real-time: no.
+  /// Loads all requested disk pages on the caller's thread. For virtual time, between two ticks.
+  /// Real-time: no.
   void serve_pages() noexcept;
-  /// Returns what paging did for all objects on the disk; nothing if there are none.
+  /// Returns the disk paging counters of all objects; empty if no object is paged.
   std::optional<render::PagingCounters> paging() const;
 
  private:
   SceneObjects() = default;
 
-  std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // of the objects on the disk
-  std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // one for each arm
+  std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // Of the objects paged from disk.
+  std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // One per arm.
   std::vector<std::shared_ptr<render::SharedBody>> bodies_;
-  std::vector<std::shared_ptr<const render::TriangleMesh>> meshes_W_;  // of each object
-  std::shared_ptr<const render::TriangleMesh> mesh_W_;                 // of all
-  std::vector<MeshPlace> places_;  // of each object in mesh_W_, and of its end
+  std::vector<std::shared_ptr<const render::TriangleMesh>> meshes_W_;  // Of each object.
+  std::shared_ptr<const render::TriangleMesh> mesh_W_;                 // Of all objects.
+  // Of each object in mesh_W_, plus the end.
+  std::vector<MeshPlace> places_;
   std::vector<std::size_t> moving_;
   std::size_t triangles_ = 0;
   std::vector<std::string> notes_;

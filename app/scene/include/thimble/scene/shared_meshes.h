@@ -20,15 +20,15 @@ namespace thimble::scene {
 struct ObjectMesh;
 struct SceneObject;
 
-/// What runs of like scenes have in common and no run changes: meshes as they stand in the world,
-/// what is built over them to be touched, and the paths of hands over them. Each is made when it is
-/// first asked for, and once for each file, place, size and way to touch it; a file that has
-/// changed since, by its size or its time, is read anew.
+/// Store of data that similar scenes share and no run changes: meshes in the world, their
+/// acceleration structures, and the paths of hands over them. Each entry is made on first request,
+/// once per combination of file, place, size and contact settings. A file whose size or
+/// modification time has changed is read again.
 ///
-/// It belongs to who runs the scenes (SessionOptions::meshes) and holds what it made until it is
-/// destroyed or `drop_unused`; who got something keeps that for itself. What dents, flows, moves or
-/// remembers a touch is never in it. Any thread may ask; one that asks for what another is making
-/// waits. Real-time: never from the servo thread, all of it.
+/// The caller that runs the scenes owns the store (SessionOptions::meshes). The store keeps its
+/// entries until it is destroyed or `drop_unused` is called; returned pointers stay valid beyond
+/// that. Dents, flow, motion and contact state are never shared. Any thread may call it; a call
+/// waits if another thread is making the same entry. Real-time: never from the servo thread.
 class THIMBLE_EXPORT SharedMeshes {
  public:
   SharedMeshes();
@@ -36,28 +36,29 @@ class THIMBLE_EXPORT SharedMeshes {
   SharedMeshes(const SharedMeshes&) = delete;
   SharedMeshes& operator=(const SharedMeshes&) = delete;
 
-  /// Returns how many meshes it holds: of objects, of shapes, and those of whole scenes.
+  /// Returns the number of meshes held: of objects, shapes and whole scenes.
   std::size_t meshes() const;
-  /// Returns how many surfaces that were made ready to be touched it holds.
+  /// Returns the number of surfaces held that are ready to be touched.
   std::size_t surfaces() const;
-  /// Lets go of what nobody else holds.
+  /// Releases entries without other owners.
   void drop_unused();
 
-  // What scenes are built of (scene_objects.h).
+  // Functions for building scenes (scene_objects.h).
 
-  /// Returns the mesh of an object that has a file (load_object_mesh, whose error it has).
+  /// Returns the mesh of an object with a mesh file. The error is that of load_object_mesh.
   driver::Result<std::shared_ptr<const ObjectMesh>> object_mesh(const SceneObject& object);
-  /// Returns a mesh with the content of this one.
+  /// Returns a shared mesh with the same contents.
   std::shared_ptr<const render::TriangleMesh> mesh_like(const render::TriangleMesh& mesh_W);
-  /// Returns several meshes of this store as one, in this order; one alone is itself.
+  /// Returns several meshes of this store as one, in the given order; a single mesh is returned
+  /// itself.
   std::shared_ptr<const render::TriangleMesh> joined(
       const std::vector<std::shared_ptr<const render::TriangleMesh>>& meshes_W);
-  /// Returns a mesh of this store ready to be touched (prepare_still_surface, whose error it has).
+  /// Returns a mesh of this store ready to be touched. The error is that of prepare_still_surface.
   driver::Result<std::shared_ptr<const render::StillSurface>> surface(
       const std::shared_ptr<const render::TriangleMesh>& mesh_W,
       const render::ContactChoice& contact);
-  /// Returns the path of a hand (plan_hand, whose error it has). `objects` are meshes of this store
-  /// by the names that the stations have for them.
+  /// Returns the path of a hand. `objects` are meshes of this store with the names that the
+  /// waypoints use. The error is that of plan_hand.
   driver::Result<std::shared_ptr<const HandRoute>> hand_route(
       const std::vector<HandWaypoint>& stations,
       const std::vector<std::pair<std::string, std::shared_ptr<const render::TriangleMesh>>>&

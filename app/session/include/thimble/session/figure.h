@@ -6,16 +6,17 @@
 
 namespace thimble::session {
 
-/// One number that a run, report, study or bench stands for, and what it should be.
+/// A measured value with its goal, from a run, report, study or benchmark.
 struct THIMBLE_EXPORT Figure {
-  std::string name;  ///< In lower_snake_case.
-  double value = 0;  ///< In `unit`.
-  std::string unit;  ///< Empty for numbers of things.
-  std::string goal;  ///< A comparison in text (">= 20", "<= 5", "== 0", "> 1", "< 2"); empty: none.
-  std::string note{};  ///< Where the value was found, or why nothing is asked of it; may be empty.
+  std::string name;    ///< Name in lower_snake_case.
+  double value = 0;    ///< Value in `unit`.
+  std::string unit;    ///< Unit; empty for counts.
+  std::string goal;    ///< Goal as a comparison (">= 20", "<= 5", "== 0", "> 1", "< 2"); empty if
+                       ///< there is none.
+  std::string note{};  ///< Source of the value, or why it has no goal; may be empty.
 
-  /// Returns whether the value meets the goal; a figure without one is met. NaN meets no goal, and
-  /// nothing meets a goal that is no comparison.
+  /// Returns whether the value meets the goal; true without a goal. NaN meets no goal. A goal that
+  /// is not a comparison is never met.
   bool met() const;
 };
 

@@ -8,17 +8,19 @@
 
 namespace thimble::session {
 
-/// Durations counted in bins that are 1 ns wide below 2048 ns and less than 0.1 % wide above, up to
-/// 10 s; longer ones count as 10 s, negative ones as 0. Its memory is fixed when it is made.
+/// Histogram of durations. Bins are 1 ns wide below 2048 ns and less than 0.1 % wide above, up to
+/// 10 s. Longer durations count as 10 s, negative ones as 0. All memory is allocated by the
+/// constructor.
 class THIMBLE_EXPORT Histogram {
  public:
-  static constexpr std::int64_t kMax_ns = 10'000'000'000;  ///< The longest that is told apart.
+  /// Longest duration with a bin of its own.
+  static constexpr std::int64_t kMax_ns = 10'000'000'000;
 
-  /// One bin that holds something: values from `lower_ns` up to but not including `upper_ns`.
+  /// A non-empty bin: values from `lower_ns` up to but not including `upper_ns`.
   struct Bin {
-    std::int64_t lower_ns = 0;  ///< The least.
-    std::int64_t upper_ns = 0;  ///< Above the largest.
-    std::uint64_t count = 0;    ///< How many were counted.
+    std::int64_t lower_ns = 0;  ///< Lower bound, ns; included.
+    std::int64_t upper_ns = 0;  ///< Upper bound, ns; not included.
+    std::uint64_t count = 0;    ///< Number of durations in the bin.
   };
 
   Histogram();
@@ -26,21 +28,22 @@ class THIMBLE_EXPORT Histogram {
   /// Counts one duration. Real-time: safe.
   void add(std::int64_t duration_ns) noexcept;
 
-  /// Returns how many durations were counted. Real-time: safe.
+  /// Returns the number of durations counted. Real-time: safe.
   std::uint64_t count() const noexcept { return count_; }
 
-  /// Returns the duration (ns) that `fraction` (0 to 1) of all do not exceed, to within its bin; 0
-  /// if nothing was counted. Real-time: never from the servo thread.
+  /// Returns the duration (ns) that the given fraction (0 to 1) of all durations do not exceed,
+  /// with the resolution of its bin. Returns 0 if nothing was counted. Real-time: never from the
+  /// servo thread.
   double percentile(double fraction) const;
 
   /// Returns the shortest duration, ns; 0 if nothing was counted. Real-time: safe.
   std::int64_t min_ns() const noexcept { return count_ > 0 ? min_ns_ : 0; }
-  /// Returns the longest, as above.
+  /// Returns the longest duration, ns; 0 if nothing was counted. Real-time: safe.
   std::int64_t max_ns() const noexcept { return max_ns_; }
-  /// Returns the mean, as above.
+  /// Returns the mean duration, ns; 0 if nothing was counted. Real-time: safe.
   double mean_ns() const noexcept;
 
-  /// Returns the bins that hold something, shortest first. Real-time: never from the servo thread.
+  /// Returns the non-empty bins, shortest durations first. Real-time: never from the servo thread.
   std::vector<Bin> bins() const;
 
  private:

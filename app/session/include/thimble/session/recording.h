@@ -14,116 +14,119 @@
 
 namespace thimble::session {
 
-// Recordings as plain data. How they lie in the file (HDF5, one data set per column): the columns
-// below, and app/guide. Real-time: never from the servo thread, all of it.
+// Recordings as plain data. The columns below and app/guide describe the file (HDF5, one data set
+// per column). Real-time: none of these functions may be called from the servo thread.
 
-/// What a recording is of: enough to run the same again.
+/// Origin of a recording: enough to repeat the run.
 struct RecordingInfo {
-  std::string scene;       ///< Its name.
-  std::string scene_file;  ///< Where it was read from.
-  std::string scene_text;  ///< The file's text.
-  std::string arm;         ///< Its name.
-  std::string arm_file;    ///< Where its description was read from.
-  std::string arm_text;    ///< The file's text.
-  std::string device;      ///< "sim", or the name of the arm on the desk.
-  std::string clock;       ///< "virtual" or "wall".
-  std::string program;     ///< Version, revision, build type and compiler.
-  double rate = 0;         ///< Hz
-  std::uint64_t seed = 0;  ///< Of everything random in the simulation.
-  /// What the scene calls the arm, where it has several; each has a recording of its own.
+  std::string scene;       ///< Name of the scene.
+  std::string scene_file;  ///< Path of the scene file.
+  std::string scene_text;  ///< Text of the scene file.
+  std::string arm;         ///< Name of the arm.
+  std::string arm_file;    ///< Path of the arm file.
+  std::string arm_text;    ///< Text of the arm file.
+  std::string device;      ///< "sim", or the name of the real arm.
+  std::string clock;       ///< Clock: "virtual" or "wall".
+  std::string program;     ///< Program: version, revision, build type and compiler.
+  double rate = 0;         ///< Rate of the servo loop, Hz.
+  std::uint64_t seed = 0;  ///< Seed of all random numbers in the simulation.
+  /// Name of the arm in a scene with several arms, which has one recording per arm; otherwise
+  /// empty.
   std::string arm_in_scene{};
-  /// Names of the objects that the tip of a simulated arm starts in, a comma between two.
+  /// Names of the objects in which the tip of a simulated arm starts, separated by commas.
   std::string inside_at_start{};
-  /// What else was asked for that changes the result, a line each ("quality: draft"); empty if
-  /// nothing was.
+  /// Other options that change the result, one per line ("quality: draft"); empty if there are
+  /// none.
   std::string options{};
 };
 
-/// Returns where the recording of one of several arms lies that is asked for as `path`: beside it,
-/// with the arm's name (touch_left.h5); of a single arm, which has no name, `path` itself.
+/// Returns the file for the recording of one of several arms if `path` is requested: a file in the
+/// same folder with the arm's name appended (touch_left.h5). Returns `path` if `arm_in_scene` is
+/// empty.
 THIMBLE_EXPORT std::filesystem::path file_of_arm(const std::filesystem::path& path,
                                                  const std::string& arm_in_scene);
 
-/// A recording in memory.
+/// Recording in memory.
 struct Recording {
-  RecordingInfo info;                     ///< What it is of.
-  std::vector<driver::TickRecord> ticks;  ///< Every tick, oldest first.
-  /// False if it was cut off, or lacks ticks: after a crash, a full disk, or its longest time.
+  RecordingInfo info;                     ///< Origin of the recording.
+  std::vector<driver::TickRecord> ticks;  ///< All ticks, oldest first.
+  /// False if ticks are missing or the file was cut off: after a crash, a full disk, or the maximum
+  /// duration.
   bool complete = false;
 };
 
-/// One column of a recording: one number or some of each tick.
+/// Column of a recording: one or several numbers of each tick.
 struct THIMBLE_EXPORT RecordingColumn {
-  /// What a number is in the file: unsigned, signed or floating, and its bits.
+  /// Type of a number in the file: unsigned, signed or floating point, with its number of bits.
   enum class Type : std::uint8_t { kU8, kU16, kI16, kI32, kI64, kU64, kF32, kF64 };
 
-  const char* name;    ///< Of the data set in the file.
-  const char* unit;    ///< SI; "1" for numbers and flags.
-  const char* about;   ///< What it is, with its frame.
-  Type type;           ///< Of each number.
-  std::size_t width;   ///< Numbers per tick: 1, 3, or 4 of a quaternion.
-  std::size_t offset;  ///< Of the first in driver::TickRecord, bytes.
-  bool later = false;  ///< Older recordings do not have it; there its numbers are 0.
+  const char* name;    ///< Name of the data set in the file.
+  const char* unit;    ///< SI unit; "1" for counts and flags.
+  const char* about;   ///< Description, with the frame.
+  Type type;           ///< Type of each number.
+  std::size_t width;   ///< Numbers per tick: 1, 3, or 4 for a quaternion.
+  std::size_t offset;  ///< Offset of the first number in driver::TickRecord, bytes.
+  bool later = false;  ///< True if older recordings lack the column; its numbers are then 0.
 
-  /// Returns whether its three numbers belong to joints, motors or the gimbal's axes, in the arm's
-  /// order; otherwise three numbers are x, y and z of a vector.
+  /// Returns whether the three numbers belong to joints, motors or gimbal axes, in the arm's order.
+  /// Otherwise three numbers are the x, y and z of a vector.
   bool by_axis() const noexcept;
 
-  /// Returns the bytes of one number.
+  /// Returns the size of one number, bytes.
   std::size_t element() const noexcept;
-  /// Returns the bytes per tick.
+  /// Returns the size of the column per tick, bytes.
   std::size_t bytes() const noexcept { return element() * width; }
 };
 
-/// Returns all columns: every field of driver::TickRecord is in one.
+/// Returns all columns. They cover every field of driver::TickRecord.
 THIMBLE_EXPORT std::span<const RecordingColumn> recording_columns() noexcept;
 
-/// Reads a recording, complete or cut off. The error says what the file is not, or which part of it
-/// makes no sense.
+/// Reads a recording, complete or cut off. The error says why the file is not a recording, or which
+/// part of it is invalid.
 THIMBLE_EXPORT driver::Result<Recording> read_recording(const std::filesystem::path& path);
 
-/// Writes a whole recording at once, as complete. `overwrite`: an existing recording of that name
-/// is replaced; a file of another kind never is. The error says what cannot be written.
+/// Writes a whole recording at once and marks it complete. With `overwrite`, replaces an existing
+/// recording of that name; a file of another kind is never replaced. The error says what cannot be
+/// written.
 THIMBLE_EXPORT driver::Result<void> write_recording(const std::filesystem::path& path,
                                                     const RecordingInfo& info,
                                                     std::span<const driver::TickRecord> ticks,
                                                     bool overwrite = false);
 
-/// Writes a recording as a table: a line that names the columns with their units
-/// ("p_WT.x [m]"), then one per tick, numbers so that they read back to the bit.
+/// Writes a recording as CSV: a header line with names and units ("p_WT.x [m]"), then one line per
+/// tick. Numbers have enough digits to be read back bit-identically.
 THIMBLE_EXPORT driver::Result<void> write_csv(const Recording& recording,
                                               const std::filesystem::path& path);
 
-/// How the forces of a replayed run compare with the recorded ones: what the scene asked of the
-/// arm, tick by tick.
+/// Comparison of replayed with recorded forces: those that the force law requested, tick by tick.
 struct ReplayComparison {
-  std::uint64_t ticks = 0;             ///< That were compared.
-  std::uint64_t differing = 0;         ///< Ticks whose force is not the same to the bit.
-  std::optional<std::uint64_t> first;  ///< Number of the first of them.
-  double largest = 0;                  ///< Of all differences of force, N.
+  std::uint64_t ticks = 0;             ///< Number of ticks compared.
+  std::uint64_t differing = 0;         ///< Number of ticks whose forces are not bit-identical.
+  std::optional<std::uint64_t> first;  ///< Number of the first differing tick.
+  double largest = 0;                  ///< Largest difference of force, N.
 };
 
-/// A recorded hand that touched a scene again.
+/// Result of a replay.
 struct Replay {
-  Recording felt;             ///< The recorded ticks with the scene's new answers.
-  ReplayComparison compared;  ///< With the recorded answers.
+  Recording felt;  ///< Recorded ticks with the forces and contacts that the replay computed.
+  ReplayComparison compared;  ///< Comparison with the recorded forces.
 };
 
-/// Lets a recorded hand touch a scene again, in virtual time: each tick's state of the arm, to the
-/// bit, is given to the scene's force law. `scene`: file or name; empty: that of the recording. The
-/// arm file is the recording's. The error names the file and what to mend.
+/// Replays a recording in virtual time: passes the arm state of each tick, bit-identical to the
+/// recorded one, to the scene's force law. `scene` is a file or a name; if empty, the scene of the
+/// recording is used. The arm file is that of the recording. The error names the file and the fix.
 THIMBLE_EXPORT driver::Result<Replay> replay(const Recording& recording,
                                              const std::string& scene = {});
 
-/// Lets the recorded hands of a scene with several arms touch it again together, a recording each,
-/// in any order. The replays come in the order of the recordings. The error also says which arm is
-/// missing, or that the recordings are not of one run. Real arms' files are not put in place of the
-/// scene's.
+/// Replays the recordings of a scene with several arms together, one recording per arm, in any
+/// order. Returns the replays in the order of the recordings. The error also names a missing arm,
+/// or says that the recordings belong to different runs. The scene's arm files are not replaced by
+/// those of real arms.
 THIMBLE_EXPORT driver::Result<std::vector<Replay>> replay_together(
     std::span<const Recording> recordings, const std::string& scene = {});
 
-/// Fails with what keeps a replay from being the same to the bit: another scene, arm file or build,
-/// or ticks that the recording lacks. `scene` as for `replay`.
+/// Fails with the reason why a replay would not be bit-identical: another scene, arm file or build,
+/// or missing ticks. `scene` as for `replay`.
 THIMBLE_EXPORT driver::Result<void> check_repeatable(const Recording& recording,
                                                      const std::string& scene = {});
 

@@ -20,52 +20,59 @@
 
 namespace thimble::session {
 
-/// The figures of a run: what ran, how it went and how it ended. Plain data, of which reports,
-/// tables and files are made.
+/// Figures of a run: configuration, statistics and end. Plain data for reports, tables and files.
 struct RunFigures {
-  std::string scene;          ///< Its name.
-  std::string object;         ///< What was touched: the names of all objects.
-  std::string arm;            ///< Its name.
-  bool simulated_arm = true;  ///< Whether no motor of an arm pulled.
-  scene::FeelCheckState feel_check =
-      scene::FeelCheckState::kSimulated;     ///< What the arm had passed before the run.
-  bool virtual_time = true;                  ///< As fast as it computed.
-  std::uint64_t seed = 0;                    ///< Of everything random in the simulation.
-  double rate_asked = 0;                     ///< Hz
-  double force_limit = 0;                    ///< The gate's, N.
-  std::vector<std::string> inside_at_start;  ///< Names of the objects that the tip started in.
-  std::size_t triangles = 0;                 ///< That can be touched, in memory and on the disk.
-  RunStatistics statistics;                  ///< What the ticks sum up to.
-  std::uint64_t lost_contacts = 0;  ///< Stretches inside an object without a force (checked after).
-  double current_at_exit = 0;       ///< Largest motor current after the end, A (simulated arm).
-  std::optional<render::PagingCounters> paging;  ///< Of objects on the disk, if there are any.
-  driver::WireCounters wire;                     ///< What came from the arm.
-  driver::GateCounters gate;                     ///< What the safety gate did.
-  driver::WallCounters walls;                    ///< Pushes of the walls of the workspace.
-  driver::EnergyStage energy_stage = driver::EnergyStage::kNone;  ///< Of the gate.
-  double reopen = 0;                                              ///< The gate's, s.
-  double carried_weight = 0;  ///< What of the requested force carried the arm, N; 0: nothing.
-  /// How often gravity compensation was switched off because the tip moved along its force.
+  std::string scene;          ///< Name of the scene.
+  std::string object;         ///< Names of all objects of the scene.
+  std::string arm;            ///< Name of the arm.
+  bool simulated_arm = true;  ///< True if the arm is simulated and no real motor ran.
+  /// State of the arm's feel check at the start of the run.
+  scene::FeelCheckState feel_check = scene::FeelCheckState::kSimulated;
+  bool virtual_time = true;                  ///< True if the run used virtual time.
+  std::uint64_t seed = 0;                    ///< Seed of all random numbers in the simulation.
+  double rate_asked = 0;                     ///< Requested rate of the servo loop, Hz.
+  double force_limit = 0;                    ///< Force limit of the safety gate, N.
+  std::vector<std::string> inside_at_start;  ///< Names of the objects in which the tip started.
+  std::size_t triangles = 0;  ///< Number of touchable triangles, in memory and on disk.
+  RunStatistics statistics;   ///< Statistics of the ticks.
+  /// Intervals inside an object without a force; found after the run.
+  std::uint64_t lost_contacts = 0;
+  double current_at_exit = 0;  ///< Largest motor current after the end, A; simulated arm only.
+  /// Disk paging counters; empty if no object is paged from disk.
+  std::optional<render::PagingCounters> paging;
+  driver::WireCounters wire;   ///< Counters of received messages.
+  driver::GateCounters gate;   ///< Counters of the safety gate.
+  driver::WallCounters walls;  ///< Counters of the workspace walls.
+  /// Energy stage of the safety gate.
+  driver::EnergyStage energy_stage = driver::EnergyStage::kNone;
+  double reopen = 0;  ///< Time in which the gate reopens after a gap, s.
+  /// Part of the requested force that compensates the weight of the arm, N; 0: none.
+  double carried_weight = 0;
+  /// Number of times gravity compensation was switched off because the tip moved along its force.
   std::uint64_t carry_withdrawn = 0;
-  bool carried_by_pose = false;     ///< That hangs on the pose, and is the most over the workspace.
-  bool heat_known = false;          ///< The arm file says what the motors carry for long.
-  std::array<double, 3> heat{};     ///< Of the motors at the end; 1: the winding's limit.
-  double heat_most = 0;             ///< The most that any motor reached.
-  std::uint64_t heat_lowered = 0;   ///< Ticks in which a force was lowered because of heat.
-  driver::RealTimeGrant real_time;  ///< What the kernel granted the servo's thread.
-  driver::ServoEnd end = driver::ServoEnd::kDone;          ///< Why the loop ended.
-  driver::Fault fault = driver::Fault::kNone;              ///< In which the device was left.
-  driver::LinkState link = driver::LinkState::kConnected;  ///< In which the arm was left.
-  bool home_needed = false;         ///< No force before the home pose (Device::home_needed).
-  bool zero_assured = true;         ///< Whether the arm took the last zero force.
-  std::uint64_t trace_stride = 1;   ///< Every n-th tick is in the trace.
-  std::uint64_t trace_dropped = 0;  ///< Ticks that found no room there.
+  bool carried_by_pose = false;  ///< True if that part depends on the pose; `carried_weight` is
+                                 ///< then its maximum over the workspace.
+  bool heat_known = false;  ///< True if the arm file gives the continuous currents of the motors.
+  std::array<double, 3> heat{};  ///< Heat of the motors at the end; 1 is the limit of the winding.
+  double heat_most = 0;          ///< Largest heat of any motor during the run.
+  /// Number of ticks in which a force was reduced because of heat.
+  std::uint64_t heat_lowered = 0;
+  /// Real-time properties that the kernel granted to the servo thread.
+  driver::RealTimeGrant real_time;
+  driver::ServoEnd end = driver::ServoEnd::kDone;          ///< Reason for the end of the loop.
+  driver::Fault fault = driver::Fault::kNone;              ///< Fault of the device after the run.
+  driver::LinkState link = driver::LinkState::kConnected;  ///< State of the link after the run.
+  /// True if the home pose is required before any force (Device::home_needed).
+  bool home_needed = false;
+  bool zero_assured = true;         ///< True if the arm accepted the last zero force.
+  std::uint64_t trace_stride = 1;   ///< The trace contains every n-th tick.
+  std::uint64_t trace_dropped = 0;  ///< Number of ticks dropped because the trace was full.
 };
 
-/// Returns the figures that a run stands for, with their goals: what figures.json holds.
+/// Returns the figures of a run with their goals, as in figures.json.
 THIMBLE_EXPORT std::vector<Figure> figures_of(const RunFigures& run);
 
-/// Returns a run in plain words, about ten lines, for somebody who sees it for the first time.
+/// Returns a summary of a run in plain text, about ten lines, for a first-time reader.
 THIMBLE_EXPORT std::string summary(const RunFigures& run);
 
 }  // namespace thimble::session

@@ -11,72 +11,73 @@
 
 namespace thimble::session {
 
-/// The sums of a run, tick by tick. Its memory is fixed when it is made.
+/// Statistics of a run, accumulated tick by tick. All memory is allocated by the constructor.
 class THIMBLE_EXPORT RunStatistics final : public TickObserver {
  public:
-  /// A gap in a contact shorter than this is a break in one touch, not two: a hand that lifts off
-  /// and comes back takes longer. [chosen: half the fastest finger tap, about 10 Hz]
+  /// A gap in contact shorter than this counts as an interruption of one touch. A hand that lifts
+  /// off and returns takes longer. [chosen: half the fastest finger tap, about 10 Hz]
   static constexpr std::int64_t kInterruption_ns = 20'000'000;
 
-  /// Takes one tick. Real-time: safe.
+  /// Adds one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override;
 
-  /// Returns how many ticks were taken.
+  /// Returns the number of ticks added.
   std::uint64_t ticks() const noexcept { return ticks_; }
 
-  /// Returns the times between tick starts.
+  /// Returns the histogram of the times between tick starts.
   const Histogram& period() const noexcept { return period_; }
-  /// Returns how long ticks took on the wall clock.
+  /// Returns the histogram of the wall-clock durations of ticks.
   const Histogram& work() const noexcept { return work_; }
-  /// Returns how late ticks began.
+  /// Returns the histogram of the delays of tick starts.
   const Histogram& lateness() const noexcept { return lateness_; }
 
   /// Returns the time from the first to the last tick, s.
   double duration() const noexcept;
 
-  /// Returns the ticks per second reached, Hz; 0 for fewer than two ticks.
+  /// Returns the achieved tick rate, Hz; 0 for fewer than two ticks.
   double rate() const noexcept;
 
-  /// Returns how often the tip touched down.
+  /// Returns the number of contacts.
   std::uint64_t contacts() const noexcept { return contacts_; }
 
-  /// Returns how many contacts began within `kInterruption_ns` of the last one's end.
+  /// Returns the number of contacts that began within `kInterruption_ns` of the end of the last
+  /// one.
   std::uint64_t interruptions() const noexcept { return interruptions_; }
 
-  /// Returns the time in contact, s: a tick in contact counts until the next one.
+  /// Returns the time in contact, s. A tick in contact counts until the next tick.
   double contact_time() const noexcept { return 1e-9 * static_cast<double>(contact_ns_); }
 
   /// Returns the largest force sent, N.
   double force_max() const noexcept { return std::sqrt(force_squared_max_); }
-  /// Returns its root mean square over the ticks in contact, N.
+  /// Returns the root mean square of the force sent during contact, N.
   double force_rms() const noexcept;
   /// Returns the root mean square of the force sent over all ticks, N.
   double force_rms_of_run() const noexcept;
 
-  /// Returns the greatest depth, m.
+  /// Returns the largest penetration depth, m.
   double depth_max() const noexcept { return depth_max_; }
-  /// Returns the most features crossed in one tick.
+  /// Returns the largest number of features crossed in one tick.
   std::uint16_t hops_max() const noexcept { return hops_max_; }
 
-  /// Returns the energy that the arm gave to the hand, J: the sum of f_k . (p_k+1 - p_k), with f_k
-  /// the force sent in tick k, which acts until the next. Positive: the arm was active. A surface
-  /// with damping takes energy, so the sum over a whole touch is negative.
+  /// Returns the energy that the arm gave to the hand, J: the sum of f_k . (p_k+1 - p_k). f_k is
+  /// the force sent in tick k, which acts until the next tick. A positive value means that the arm
+  /// was active. A surface with damping absorbs energy, so the sum over a whole touch is negative.
   double energy_to_hand() const noexcept { return energy_; }
 
-  /// Returns the most energy that the arm had given at any time since the start, J, never below 0.
+  /// Returns the maximum over time of `energy_to_hand`, J; never below 0.
   double energy_to_hand_max() const noexcept { return energy_max_; }
 
-  /// Returns how many ticks had no new report.
+  /// Returns the number of ticks without a new report.
   std::uint64_t missing_reports() const noexcept { return missing_; }
 
-  /// Returns in how many ticks the device was in fault.
+  /// Returns the number of ticks in which the device was in fault.
   std::uint64_t fault_ticks() const noexcept { return fault_ticks_; }
   /// Returns the first fault.
   driver::Fault first_fault() const noexcept { return first_fault_; }
 
  private:
   Histogram period_, work_, lateness_;
-  // Of the last tick, what the next one needs.
+  // State of the last tick that the next one needs.
   std::array<double, 3> f_last_W_{}, p_last_WT_{};
   std::int64_t last_ns_ = 0;
   bool was_in_contact_ = false;

@@ -13,26 +13,27 @@ namespace thimble::session {
 
 class Session;
 
-/// The thread on which a run's servo loop runs. It asks for real-time priority when it is made, so
-/// that what the kernel grants is known before an arm is opened, and waits for the run.
-/// Real-time: never from the servo thread, all of it.
+/// Thread of the servo loop of a run. It requests real-time priority when it is constructed, so
+/// that the result is known before an arm is opened. Then it waits for the run. Real-time: none of
+/// its functions may be called from the servo thread.
 class THIMBLE_EXPORT ServoThread {
  public:
-  /// Starts the thread and waits until it has asked. Without `real_time` it asks for nothing.
+  /// Starts the thread and waits until it has requested real-time priority. If `real_time` is
+  /// false, nothing is requested.
   explicit ServoThread(bool real_time);
-  /// Ends the thread; a run that was begun is waited for.
+  /// Waits for the end of a started run, then ends the thread.
   ~ServoThread();
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
 
-  /// Returns what the kernel granted.
+  /// Returns the real-time properties that the kernel granted.
   const driver::RealTimeGrant& grant() const noexcept { return grant_; }
-  /// Begins to run the session until its end or until `stop` is set; both must outlive the thread.
-  /// Once.
+  /// Starts running the session until its end or until `stop` is set. Both must outlive the thread.
+  /// May be called once.
   void begin(Session& session, const std::atomic<bool>& stop);
-  /// Returns whether the run that was begun is over.
+  /// Returns whether the started run has ended.
   bool ended() const noexcept { return ended_.load(); }
-  /// Waits for the end of the run that was begun and returns why it ended.
+  /// Waits for the end of the started run and returns its reason.
   driver::ServoEnd join();
 
  private:
@@ -49,9 +50,9 @@ class THIMBLE_EXPORT ServoThread {
   std::thread thread_;
 };
 
-/// Returns the error that a run with a real arm must end with before the arm is opened: without
-/// real-time priority any other program can hold the loop up while a motor pulls. `allowed`: the
-/// user said --no-real-time.
+/// Fails if a real arm must not be opened because real-time priority was refused. Without it, any
+/// other program could delay the loop while a motor pulls. `allowed` is true if the user passed
+/// --no-real-time.
 THIMBLE_EXPORT driver::Result<void> check_real_time(const driver::RealTimeGrant& grant,
                                                     bool allowed);
 

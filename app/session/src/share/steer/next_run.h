@@ -17,34 +17,37 @@
 
 namespace thimble::session {
 
-/// What comes after a run of simulated arms: the same scene from its first tick, or another one, as
-/// viewers ask, as its files change, or as the run comes to its end. What is next is prepared
-/// beside the run, which goes on where that fails. Real-time: never from the servo thread.
+/// Prepares the run that follows a run of simulated arms: the same scene from its first tick, or
+/// another one. Viewers, changed files or the end of the run trigger it. It is prepared while the
+/// current run continues; if preparation fails, the current run is not affected. Real-time: never
+/// from the servo thread.
 class THIMBLE_EXPORT NextRun {
  public:
-  /// Prepares a session of a scene's file that nobody sees yet, and records nothing.
+  /// Function that prepares a session of a scene file without viewers and recording.
   using Prepare =
       std::function<driver::Result<std::unique_ptr<Session>>(const std::filesystem::path& scene)>;
 
-  /// Prepares by `prepare`. `reload`: the run begins anew when its scene's or arm's file changes;
-  /// `loop`: when it has ended, and `speed`: times real time, until a viewer wants it otherwise.
+  /// Constructs it with a function that prepares sessions. `reload`: restart when the scene or arm
+  /// file changes. `loop`: restart at the end of the run. `speed`: multiple of real time. Viewers
+  /// can change `loop` and `speed`.
   NextRun(Prepare prepare, bool reload, bool loop, double speed)
       : prepare_(std::move(prepare)), reload_(reload), loop_(loop), speed_(speed) {}
 
-  /// Serves `session` from now on, which is shared. A run with a real arm is none to begin anew:
-  /// then nothing here does anything.
+  /// Serves `session`, which is shared, from now on. A run with a real arm is never restarted: then
+  /// no function has an effect.
   void begin(Session& session);
-  /// Looks once, about ten times a second: what is asked for is prepared, or the viewers are told
-  /// why not. As soon as it is, the run is closed to what viewers ask (SharedRun::close): they ask
-  /// the next one. `stop`: the run shall end and nothing shall come after it.
+  /// Processes requests; call it about ten times a second. Prepares the requested run, or reports
+  /// the error to viewers. Once a run is prepared, the current one is closed to requests of viewers
+  /// (SharedRun::close), which then address the next one. `stop`: the run must end without a next
+  /// one.
   void step(bool stop);
   /// Returns whether the run restarts when it has ended, as asked last.
   bool loops() const noexcept { return loop_; }
-  /// Returns the flag that ends the run that is served.
+  /// Returns the flag that ends the current run.
   const std::atomic<bool>& ended() const noexcept { return end_; }
-  /// Returns what to run next, after the run has ended by `end`: what was prepared, what a viewer
-  /// has asked for last, or the same scene once more where it loops. Null: nothing. What cannot be
-  /// prepared is told in the log, and to the viewers. The run is closed to what viewers ask.
+  /// Returns the next run after the current one has ended with `end`: the prepared one, the last
+  /// one that a viewer requested, or the same scene if `loops`. Null: none. An error of preparation
+  /// is logged and reported to viewers. The current run is closed to requests of viewers.
   std::unique_ptr<Session> take(driver::ServoEnd end, bool stop);
 
  private:
@@ -57,13 +60,13 @@ class THIMBLE_EXPORT NextRun {
   bool reload_;
   bool loop_;
   double speed_;
-  Session* session_ = nullptr;  // null: there is nothing to begin anew
+  Session* session_ = nullptr;  // Null: the run cannot be restarted.
   std::filesystem::path scene_;
   FileWatch files_;
   std::uint64_t last_order_ = 0;
   std::unique_ptr<Session> next_;
-  bool pause_ = false;  // asked of a run that ended by itself, and of what is next
-  std::string notice_;  // why what was asked for last is not what is next; empty: it is
+  bool pause_ = false;  // Pause requested of a run that has ended, to be applied to the next one.
+  std::string notice_;  // Reason why the last request is not the next run; empty if it is.
   std::atomic<bool> end_{false};
 };
 

@@ -10,27 +10,29 @@
 
 namespace thimble::session {
 
-/// Where a scene with its knobs as they are is written.
+/// File to which a scene with its current knobs is written.
 struct KnobsFile {
-  std::filesystem::path file;  ///< A new file; empty: the run chooses a name beside the scene's.
-  bool over = false;           ///< Over the scene's own file, which is the user's.
+  std::filesystem::path file;  ///< New file; empty: a name chosen next to the scene's file.
+  /// True to overwrite the scene's own file, which must belong to the user.
+  bool over = false;
 };
 
-/// A scene that was written.
+/// Result of saving a scene.
 struct THIMBLE_EXPORT SavedKnobs {
   std::filesystem::path file;
-  std::vector<std::string> written;  ///< "ball: stiffness = 300 N/m"
-  std::vector<std::string> absent;   ///< Knobs that were turned and have no key in the file.
+  std::vector<std::string> written;  ///< Changed values, such as "ball: stiffness = 300 N/m".
+  std::vector<std::string> absent;   ///< Changed knobs without a key in the file.
 
-  /// Returns what a person is told, in a line or two.
+  /// Returns a message for the user, in one or two lines.
   std::string text() const;
 };
 
-/// Writes the file of a run's scene with the knobs that viewers have turned as they are now:
-/// comments and all else stay. Beside the scene's file, under a new name; the copy of a scene that
-/// came with Thimble goes to the user's own scenes. What is written is read once before it takes
-/// its name. The error says what to do: no knob was turned, a file is there already, the scene came
-/// with Thimble, or the values make no scene. Real-time: never from the servo thread.
+/// Writes a copy of a run's scene file with the current values of the knobs that viewers have
+/// changed. Comments and all other text are kept. The copy is in the same folder under a new name;
+/// that of a scene shipped with Thimble is in the user's scene folder. The file is read once for
+/// validation before it gets its name. The error says what to do: no knob was changed, the file
+/// exists, the scene is shipped with Thimble, or the values are invalid. Real-time: never from the
+/// servo thread.
 THIMBLE_EXPORT driver::Result<SavedKnobs> save_knobs(const SharedReader& reader,
                                                      const KnobsFile& where = {});
 

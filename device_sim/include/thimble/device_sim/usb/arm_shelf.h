@@ -17,36 +17,36 @@
 
 namespace thimble::device_sim::usb {
 
-/// What the simulated hand does with the arm.
+/// Motion of the simulated hand.
 enum class HandMotion : std::uint8_t {
   kRest,    ///< Holds the tip at the home pose.
-  kTap,     ///< Goes up and down by 15 mm (Falcon: 20 mm) along the base's z, once a second.
-  kStroke,  ///< Goes round a circle of so much in the base's y and z, once in two seconds.
-  kNone,    ///< Holds the tip no longer than homing takes.
+  kTap,     ///< Moves up and down by 15 mm (Falcon: 20 mm) along the base's z, once a second.
+  kStroke,  ///< Moves on a circle of that size in the base's y and z, once in two seconds.
+  kNone,    ///< Holds the tip only while homing.
 };
 
-/// Another arm on a board of the shelf: what its mechanics, motors and encoders are, whatever a
-/// driver believes of it.
+/// Custom arm on a shelf board: its actual mechanics, motors and encoders, whatever a driver
+/// assumes.
 struct ShelfArm {
-  driver::ArmModel model;  ///< Geometry, motors and encoders.
-  /// Of them tip, hand, weight, drive train, motors, watchdog, wiring and missed edges are taken:
-  /// what a board speaks, and when, is its own.
+  driver::ArmModel model;  ///< Geometry, motors and encoders of the arm.
+  /// Settings of the arm. Only tip, hand, weight, drive train, motors, watchdog, wiring and missed
+  /// edges are used; protocol and timing are those of the board.
   SimulatedArmSettings settings;
 };
 
-/// How an arm from the shelf is to be.
+/// Options of an arm from the shelf.
 struct ShelfOptions {
-  HandMotion motion = HandMotion::kTap;  ///< What the hand does.
-  std::string serial;                    ///< Serial number that it tells; empty: its board's own.
-  std::uint64_t seed = 0;                ///< Of everything random.
-  std::vector<std::byte> firmware;       ///< The only image that a Falcon runs; empty: any.
-  std::optional<ShelfArm> arm;           ///< In place of the shelf's own constants.
+  HandMotion motion = HandMotion::kTap;  ///< Motion of the hand.
+  std::string serial;                    ///< Serial number to report; empty: that of the board.
+  std::uint64_t seed = 0;                ///< Seed of all random numbers.
+  std::vector<std::byte> firmware;       ///< Only firmware image that a Falcon accepts; empty: any.
+  std::optional<ShelfArm> arm;           ///< Custom arm to use instead of the shelf's constants.
 };
 
-/// Lists the arms that can be plugged in: name for the command line, and what it is.
+/// Entry of the list of arms that can be connected.
 struct ShelfEntry {
-  std::string_view name;  ///< For the command line.
-  std::string_view what;  ///< What it is, for people.
+  std::string_view name;  ///< Name on the command line.
+  std::string_view what;  ///< Description to display.
 };
 inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"woodenhaptics", "WoodenHaptics on its mbed board, HID 1234:0006, 8-byte reports"},
@@ -55,10 +55,10 @@ inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"falcon", "Novint Falcon, FTDI 0403:cb48, boots, takes firmware, homes"},
 }};
 
-/// Makes an arm by its name. Fails with the list of names, or if an arm of `options` is of another
-/// build than the board drives. The hand moves for ten minutes, then
-/// rests. That of a Falcon homes it whenever the arm is asked to home and is not (homing_hand.h).
-/// Real-time: never from the servo thread.
+/// Creates an arm by name. Fails with the list of names if the name is unknown, or if an arm in
+/// `options` has another geometry than the board drives. The hand moves for ten minutes, then
+/// rests. The hand of a Falcon homes it whenever the arm requests homing and is not homed
+/// (homing_hand.h). Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                                                                     const ShelfOptions& options);
 

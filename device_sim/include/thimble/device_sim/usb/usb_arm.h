@@ -10,38 +10,38 @@
 
 namespace thimble::device_sim::usb {
 
-/// What is true of a simulated arm at its last packets; a driver cannot see it. Frame B: base of
+/// Ground truth of a simulated arm at its last packets; not visible to a driver. Frame B: base of
 /// the arm.
 struct ArmTruth {
-  std::uint64_t reports = 0;                   ///< Reports that the host took.
-  std::int64_t report_ns = 0;                  ///< When the last of them was sampled, ns.
-  std::array<std::int32_t, 3> counts{};        ///< What it said, counts.
-  Eigen::Vector3d exact_counts{0, 0, 0};       ///< The same before rounding to whole counts.
-  std::uint64_t messages = 0;                  ///< Messages that came and were understood.
-  std::int64_t message_ns = 0;                 ///< When the last of them came, ns.
-  std::array<std::int32_t, 3> motor_values{};  ///< What it asked for, in the wire's unit.
-  Eigen::Vector3d currents{0, 0, 0};           ///< What flows in the motors now, A or motor units.
-  Eigen::Vector3d p_BT{0, 0, 0};               ///< Where the tip is now, m.
-  bool motors_on = false;                      ///< False before the first message and after the
-                                               ///< watchdog fired.
+  std::uint64_t reports = 0;              ///< Number of reports that the host read.
+  std::int64_t report_ns = 0;             ///< Time at which the last report was sampled, ns.
+  std::array<std::int32_t, 3> counts{};   ///< Counts in the last report.
+  Eigen::Vector3d exact_counts{0, 0, 0};  ///< Counts before rounding to integers.
+  std::uint64_t messages = 0;             ///< Number of valid messages received.
+  std::int64_t message_ns = 0;            ///< Time at which the last message arrived, ns.
+  /// Motor values in the last message, in the unit of the protocol.
+  std::array<std::int32_t, 3> motor_values{};
+  Eigen::Vector3d currents{0, 0, 0};  ///< Current in the motors now, A or motor units.
+  Eigen::Vector3d p_BT{0, 0, 0};      ///< Position of the tip now, m.
+  /// True if the motors are on; false before the first message and after the watchdog has fired.
+  bool motors_on = false;
 };
 
-/// A simulated arm on a USB plug.
+/// Simulated arm with a USB connection.
 class THIMBLE_EXPORT UsbArm : public UsbDevice {
  public:
-  /// Shows what is true. Real-time: safe.
+  /// Returns the ground truth. Real-time: safe.
   virtual ArmTruth truth() const noexcept = 0;
-  /// Leads the hand to a place (m, base) from now on, in place of its path. Real-time: safe.
+  /// Moves the target of the hand to a position (m, base); replaces its path. Real-time: safe.
   virtual void lead_hand(const Eigen::Vector3d& p_BH) noexcept = 0;
-  /// Lets the hand take the tip, which it does from the beginning, or let go of it. Real-time:
-  /// safe.
+  /// Makes the hand hold the tip (the initial state) or release it. Real-time: safe.
   virtual void hold_tip(bool held) noexcept = 0;
-  /// Restarts the board on a live wire: the plug stays enumerated, the motors go off, and the
-  /// encoders count from zero where the arm is now. A Falcon loses its firmware and answers nothing
-  /// until it is booted again. Real-time: safe.
+  /// Restarts the board without a disconnection: the USB device stays enumerated, the motors are
+  /// switched off, and the encoders count from zero at the current pose. A Falcon loses its
+  /// firmware and does not answer until it is booted again. Real-time: safe.
   virtual void restart_board() noexcept = 0;
-  /// Fixes a mass (kg, 0: none) to the tip, in place of one that was fixed to it before; gravity_B
-  /// (m/s^2) pulls on it. Fails if it is negative or not finite. Real-time: never from the servo
+  /// Attaches a mass (kg, 0: none) to the tip; replaces a mass attached before. gravity_B (m/s^2)
+  /// acts on it. Fails if the mass is negative or not finite. Real-time: never from the servo
   /// thread.
   virtual driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) = 0;
 };

@@ -11,31 +11,30 @@ namespace thimble::device_sim::usb {
 struct SetupPacket;
 struct UsbDescription;
 
-/// How a device met one packet or one control request.
+/// Response of a device to one packet or one control request.
 enum class Answer : std::uint8_t {
-  kDone,   ///< Moved so many bytes.
-  kNak,    ///< Not now; the host asks again in a later frame.
-  kStall,  ///< Refused; an endpoint stays so until the host clears its halt.
-  kGone,   ///< The device left the bus.
+  kDone,   ///< Success; `PacketResult::size` bytes were moved.
+  kNak,    ///< Not ready; the host retries in a later frame.
+  kStall,  ///< Refused; an endpoint stays halted until the host clears its halt.
+  kGone,   ///< The device has left the bus.
 };
 
-/// What became of one packet.
+/// Result of one packet.
 struct PacketResult {
-  Answer answer = Answer::kNak;  ///< What became of the packet.
-  std::size_t size = 0;          ///< Bytes moved; more than the host asked for is babble.
+  Answer answer = Answer::kNak;  ///< Response to the packet.
+  std::size_t size = 0;          ///< Number of bytes moved; more than the host requested is babble.
 };
 
-/// A USB device as its own side of the cable sees it: what it says of itself, and what it does
-/// when the host polls an endpoint. It knows no kernel, no socket and no clock of its own. Standard
-/// requests are not its business (ControlPipe answers them from the description).
+/// A USB device as seen from its own end of the cable: its description, and its response when the
+/// host polls an endpoint. Independent of kernel, sockets and clocks. ControlPipe answers standard
+/// requests from the description.
 ///
-/// Nothing here allocates after construction. All functions but the constructors are Real-time:
-/// safe.
+/// Nothing allocates after construction. All functions except the constructors are Real-time: safe.
 class THIMBLE_EXPORT UsbDevice {
  public:
-  /// The largest packet of a full-speed bus, bytes.
+  /// Largest packet of a full-speed bus, bytes.
   static constexpr std::size_t kPacketMax = 64;
-  /// The length of a frame, ns [USB 2.0, 5.3.3].
+  /// Length of a frame, ns [USB 2.0, 5.3.3].
   static constexpr std::int64_t kFrame_ns = 1'000'000;
 
   UsbDevice() = default;
@@ -43,21 +42,21 @@ class THIMBLE_EXPORT UsbDevice {
   UsbDevice& operator=(const UsbDevice&) = delete;
   virtual ~UsbDevice() = default;
 
-  /// Returns what the device is.
+  /// Returns the description of the device.
   virtual const UsbDescription& description() const noexcept = 0;
 
-  /// Lets time pass up to the start of a frame, ns since the device was plugged in.
+  /// Advances time to the start of a frame, ns since the device was connected.
   virtual void advance_to(std::int64_t time_ns) noexcept = 0;
 
-  /// Answers a class or vendor request. `data` holds what the host sends, or has room for what it
-  /// asks for.
+  /// Answers a class or vendor request. `data` contains the host's data, or has room for the
+  /// requested data.
   virtual PacketResult control(const SetupPacket& setup, std::span<std::byte> data) noexcept = 0;
 
-  /// Fills one packet for the host from this endpoint (address with bit 7). The buffer holds at
+  /// Writes one packet for the host from this endpoint (address with bit 7). The buffer holds at
   /// least kPacketMax bytes.
   virtual PacketResult in(std::uint8_t address, std::span<std::byte> packet) noexcept = 0;
 
-  /// Takes one packet from the host.
+  /// Receives one packet from the host.
   virtual PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept = 0;
 };
 

@@ -13,62 +13,64 @@
 
 namespace thimble::device_sim::usb {
 
-/// Names what can go wrong on the cable or in the board.
+/// Kind of fault on the cable or in the board.
 enum class FaultKind : std::uint8_t {
-  kStall,      ///< The endpoint refuses; it stays halted until the host clears it.
-  kShort,      ///< Half of the packet.
-  kLong,       ///< Eight bytes too many.
-  kTorn,       ///< The first half is new, the second half is of the packet before.
-  kStale,      ///< The last good packet comes again and again.
-  kDuplicate,  ///< Every packet comes twice.
-  kSilence,    ///< Nothing: the endpoint asks the host to wait.
-  kBitErrors,  ///< Bits flip, each with the fault's rate.
+  kStall,      ///< The endpoint stalls and stays halted until the host clears the halt.
+  kShort,      ///< Only half of the packet is sent.
+  kLong,       ///< The packet is eight bytes too long.
+  kTorn,       ///< The second half is from the previous packet.
+  kStale,      ///< The last good packet is repeated.
+  kDuplicate,  ///< Every packet is sent twice.
+  kSilence,    ///< The endpoint sends nothing and makes the host wait.
+  kBitErrors,  ///< Bits flip, with the probability `FaultOrder::rate`.
   kUnplug,     ///< The device leaves the bus.
-  kLost,       ///< The packet is taken, and nothing comes of it.
+  kLost,       ///< The packet is accepted but ignored.
 };
 inline constexpr std::size_t kFaultKinds = 10;
 
 /// Returns the name of a fault in scripts ("bit_errors"). Real-time: safe.
 THIMBLE_EXPORT std::string_view name(FaultKind kind) noexcept;
 
-/// Orders one fault for some frames.
+/// A scheduled fault.
 struct FaultOrder {
-  static constexpr std::int64_t kForever = INT64_MAX / 2;  ///< A duration, ns, without an end.
+  /// Duration of a fault without an end, frames.
+  static constexpr std::int64_t kForever = INT64_MAX / 2;
 
-  FaultKind kind = FaultKind::kSilence;  ///< What goes wrong.
-  bool to_host = true;                   ///< Which direction it hits; an unplug hits both.
-  std::int64_t after = 0;                ///< Begins so many frames from now.
-  std::int64_t frames = kForever;        ///< Lasts so long.
-  double rate = 0.001;                   ///< For kBitErrors: chance of each bit to flip.
+  FaultKind kind = FaultKind::kSilence;  ///< Kind of fault.
+  /// True for packets to the host; an unplug affects both directions.
+  bool to_host = true;
+  std::int64_t after = 0;          ///< Delay until the fault begins, frames.
+  std::int64_t frames = kForever;  ///< Duration of the fault, frames.
+  double rate = 0.001;             ///< Probability of each bit to flip; for kBitErrors.
 };
 
-/// Reads one line of a fault script:
+/// Parses one line of a fault script:
 ///
 ///     KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE]
 ///
-/// with the defaults of FaultOrder. Fails with a sentence that says what is wrong.
-/// Real-time: never from the servo thread.
+/// with the defaults of FaultOrder. The error says in a sentence what is wrong. Real-time: never
+/// from the servo thread.
 THIMBLE_EXPORT driver::Result<FaultOrder> parse_fault(std::string_view line);
 
-/// A device whose packets go wrong on demand. Control requests pass untouched. Faults of one
-/// direction exclude each other: the one ordered last counts.
+/// Wraps a device and injects faults into its packets. Control requests are not changed. Only one
+/// fault is active per direction: the one scheduled last.
 class THIMBLE_EXPORT FaultyDevice final : public UsbDevice {
  public:
-  /// How many orders may be open; more push out the oldest.
+  /// Largest number of scheduled faults; further ones replace the oldest.
   static constexpr std::size_t kOrders = 16;
 
-  /// Keeps a reference to the device, which must live longer. `seed` chooses the bits that flip.
+  /// Keeps a reference to the device, which must outlive it. `seed` determines the bits that flip.
   explicit FaultyDevice(UsbDevice& device, std::uint64_t seed = 0) noexcept
       : device_(device), random_(seed) {}
 
-  /// Orders a fault. Real-time: safe.
+  /// Schedules a fault. Real-time: safe.
   void order(const FaultOrder& order) noexcept;
-  /// Forgets all orders; an unplugged device is plugged in again. Real-time: safe.
+  /// Removes all faults and reconnects an unplugged device. Real-time: safe.
   void heal() noexcept;
 
   /// Returns whether the device is on the bus. Real-time: safe.
   bool plugged() const noexcept { return active(true, FaultKind::kUnplug) == nullptr; }
-  /// Returns how many packets a kind of fault has hit. Real-time: safe.
+  /// Returns the number of packets affected by a kind of fault. Real-time: safe.
   std::uint64_t hits(FaultKind kind) const noexcept { return hits_[index(kind)]; }
 
   const UsbDescription& description() const noexcept override { return device_.description(); }
@@ -78,7 +80,7 @@ class THIMBLE_EXPORT FaultyDevice final : public UsbDevice {
   PacketResult out(std::uint8_t address, std::span<const std::byte> packet) noexcept override;
 
  private:
-  /// A packet that went by.
+  /// A previous packet.
   struct Kept {
     std::array<std::byte, kPacketMax> bytes{};
     std::size_t size = 0;

@@ -10,51 +10,56 @@
 
 namespace thimble::render {
 
-/// How an object moves as a whole.
+/// Kind of motion of a whole object.
 enum class MotionKind : std::uint8_t {
-  kTranslate,  ///< Three ways: all base points relative to one mass point [BP 4.3].
-  kRigid,      ///< Six ways, with the inertia of the mesh evenly filled.
+  kTranslate,  ///< Three degrees of freedom: all base points follow one point mass [BP 4.3].
+  kRigid,      ///< Six degrees of freedom, with the inertia of the homogeneous solid mesh.
 };
 
-/// A plane that bodies lie on: they are held out of n . x < height.
+/// Floor plane that keeps bodies out of n . x < height.
 struct Floor {
-  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit, away from the floor.
-  double height = 0;             ///< m
-  double friction = 0.5;         ///< Coulomb, >= 0
+  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit normal, away from the floor.
+  double height = 0;             ///< Height of the plane along the normal, m.
+  double friction = 0.5;         ///< Coulomb friction coefficient, >= 0.
 };
 
-/// How a hand holds an object.
+/// Grip of a hand on an object.
 struct Grip {
-  double stiffness = 500;  ///< N/m, > 0
-  double damping = 2;      ///< N s/m, >= 0
-  double force_max = 4;    ///< N, > 0: what pulls harder slips out of the hand, for good
+  double stiffness = 500;  ///< Stiffness, N/m, > 0.
+  double damping = 2;      ///< Damping, N s/m, >= 0.
+  /// Largest force, N, > 0; under a larger one the object slips out of the hand permanently.
+  double force_max = 4;
 };
 
-/// The motion of one object. The object is at rest where its mesh stands unless said.
+/// Motion of one object. By default the object starts at rest at the place of its mesh.
 struct THIMBLE_EXPORT MotionChoice {
-  MotionKind kind = MotionKind::kTranslate;                ///< How it moves.
-  double mass = 0.1;                                       ///< kg, > 0
-  Eigen::Vector3d gravity_W{0, 0, 0};                      ///< m/s^2
-  double damping = 0;                                      ///< N s/m, >= 0
-  double angular_damping = 0;                              ///< N m s, >= 0; rigid alone
-  double time_scale = 1;                                   ///< > 0; see RigidBodySettings
-  std::optional<Floor> floor{};                            ///< Where it cannot go below.
-  double reach = std::numeric_limits<double>::infinity();  ///< m, >= 0: how far its centre may go
-  Eigen::Vector3d v_W{0, 0, 0};                            ///< m/s, at first
-  Eigen::Vector3d omega_W{0, 0, 0};                        ///< rad/s, at first; rigid alone
-  std::optional<Grip> grip{};  ///< The hand holds it from the first tick.
+  MotionKind kind = MotionKind::kTranslate;  ///< Kind of motion.
+  double mass = 0.1;                         ///< Mass, kg, > 0.
+  Eigen::Vector3d gravity_W{0, 0, 0};        ///< Gravity in the world, m/s^2.
+  double damping = 0;                        ///< Damping of translation, N s/m, >= 0.
+  /// Damping of rotation, N m s, >= 0; kRigid only.
+  double angular_damping = 0;
+  /// Scale of time, > 0; see RigidBodySettings.
+  double time_scale = 1;
+  std::optional<Floor> floor{};  ///< Floor, if there is one.
+  /// Largest displacement of the centre, m, >= 0.
+  double reach = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d v_W{0, 0, 0};  ///< Initial velocity, m/s.
+  /// Initial angular velocity, rad/s; kRigid only.
+  Eigen::Vector3d omega_W{0, 0, 0};
+  /// Grip, if the hand holds the object from the first tick.
+  std::optional<Grip> grip{};
 
-  /// Reads the settings of a scene. Real-time: never from the servo thread.
+  /// Reads the settings from a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);
 };
 
-/// How stiff a surface answers a moved body at most, whatever its stages are: what the coupling
-/// needs to know of them.
+/// Upper bounds of the surface response to a moved body, over all stages; needed by the coupling.
 struct BodyCoupling {
-  /// N/m, >= 0: the largest of the surface's spring and of what holds along it.
+  /// Stiffness, N/m, >= 0: the larger of the surface's spring and the stiffness along the surface.
   double stiffness = 0;
-  double damping = 0;  ///< N s/m, >= 0: the surface's
-  double step = 1e-3;  ///< s, > 0: the loop's period, by which the body moves on in each tick
+  double damping = 0;  ///< Damping of the surface, N s/m, >= 0.
+  double step = 1e-3;  ///< Period of the loop and of the body's motion, s, > 0.
 };
 
 }  // namespace thimble::render

@@ -13,37 +13,37 @@
 
 namespace thimble::render {
 
-/// Says when in a tick of contact an effect runs, whatever order a scene names its effects in.
+/// Phase of a tick of contact in which an effect runs, independent of the order in a scene.
 enum class EffectOrder : std::uint8_t {
   kDepth,       ///< Changes depth or normal, before the surface's spring: textures.
   kTangential,  ///< Adds force along the surface, after the spring: friction.
 };
 
-/// Builds a stage from settings that have been read and found right; may be called again and again.
-/// Real-time: never from the servo thread.
+/// Builds a stage from validated settings; may be called repeatedly. Real-time: never from the
+/// servo thread.
 using StageBuilder = std::function<std::unique_ptr<AnyStage>()>;
 
-/// One effect that a scene can put on an object: `- GROUP: NAME` and its settings.
+/// Effect that a scene can apply to an object: `- GROUP: NAME` and its settings.
 struct EffectKind {
-  std::string_view group;  ///< What stands left of the colon: "friction", "texture".
-  std::string_view name;   ///< What stands right of it: "bristle".
-  EffectOrder order;       ///< Where in a tick.
-  /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
+  std::string_view group;  ///< Group, left of the colon: "friction", "texture".
+  std::string_view name;   ///< Name, right of the colon: "bristle".
+  EffectOrder order;       ///< Phase of the tick.
+  /// Reads the settings. Mistakes are reported to the reader; the result must then not be used.
   /// Real-time: never from the servo thread.
   StageBuilder (*read)(SettingsReader& settings, const EffectContext& context);
-  /// False if a tip that the hand holds still does not come to rest on it.
+  /// False if a tip that is held still by the hand does not come to rest on it.
   bool rests = true;
 };
 
-/// One effect with the settings that a scene gives it.
+/// Effect with its settings from a scene.
 struct EffectPlan {
-  const EffectKind* kind = nullptr;  ///< What it is.
-  StageBuilder build;                ///< Makes it.
+  const EffectKind* kind = nullptr;  ///< Kind of effect.
+  StageBuilder build;                ///< Builds the stage.
 };
 
-/// Makes the table's line of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct
-/// `Settings` with `read(SettingsReader&, const EffectContext&)`, and a constructor from
-/// `(const Settings&, const EffectContext&)`. A constant `kRests` is optional.
+/// Returns the table entry of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct
+/// `Settings` with `read(SettingsReader&, const EffectContext&)`, and a constructor from `(const
+/// Settings&, const EffectContext&)`. A constant `kRests` is optional.
 template <SurfaceStage Stage>
 constexpr EffectKind effect_kind() {
   bool rests = true;
@@ -59,7 +59,8 @@ constexpr EffectKind effect_kind() {
           rests};
 }
 
-/// Returns every effect that a scene can name. To add one: write its file, add its line here.
+/// Returns all effects that a scene can name. To add one, write its file and add an entry to the
+/// table.
 THIMBLE_EXPORT std::span<const EffectKind> effect_table();
 
 }  // namespace thimble::render

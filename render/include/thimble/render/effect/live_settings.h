@@ -8,48 +8,47 @@
 
 namespace thimble::render {
 
-/// Bounds by how much a force changes with a setting: the sum of these times what they are named
-/// after, N per unit of the setting.
+/// Bounds on the change of a force with a setting, N per unit of the setting: the sum of the
+/// members times the quantity in their name.
 struct ForceSensitivity {
-  double per_depth = 0;      ///< Times the depth, m.
-  double per_speed = 0;      ///< Times the speed of the tip, m/s.
-  double per_force = 0;      ///< Times the object's force, N.
-  double per_stiffness = 0;  ///< Times the stiffness of the object's surface, N/m.
-  double always = 0;         ///< N
+  double per_depth = 0;      ///< Factor of the depth, m.
+  double per_speed = 0;      ///< Factor of the speed of the tip, m/s.
+  double per_force = 0;      ///< Factor of the object's force, N.
+  double per_stiffness = 0;  ///< Factor of the stiffness of the object's surface, N/m.
+  double always = 0;         ///< Constant term, N.
 };
 
-/// One setting of a force law that can be changed between two ticks. The stage that it belongs
-/// to must outlive it.
+/// Setting of a force law that can be changed between two ticks. Its stage must outlive it.
 struct LiveSetting {
-  std::string name;            ///< As a scene names it, with its group: "friction coefficient".
-  std::string unit;            ///< SI.
-  double least = 0, most = 0;  ///< Its bounds.
-  double value = 0;            ///< As the scene has it.
-  ForceSensitivity
-      sensitivity{};      ///< How fast it may be turned while it is felt follows from that.
-  void* stage = nullptr;  ///< Whose it is.
+  std::string name;            ///< Name in a scene with its group: "friction coefficient".
+  std::string unit;            ///< SI unit.
+  double least = 0, most = 0;  ///< Smallest and largest value.
+  double value = 0;            ///< Value in the scene.
+  /// Sensitivity of the force, which limits the speed of a change.
+  ForceSensitivity sensitivity{};
+  void* stage = nullptr;  ///< Stage that owns the setting.
   /// Sets the value, which must be within its bounds. Real-time: safe.
   void (*set)(void* stage, double value) noexcept = nullptr;
 };
 
-/// Collects the settings of an object's stages that can be changed while they are felt: those that
-/// need nothing computed anew. A stage tells of its own by `list_settings(LiveSettings&)`; one that
-/// has none need not say so. Real-time: never from the servo thread.
+/// Collects the settings of an object's stages that can be changed during contact because nothing
+/// else must be recomputed. A stage lists its settings in `list_settings(LiveSettings&)`, which is
+/// optional. Real-time: never from the servo thread.
 class LiveSettings {
  public:
-  /// Takes how stiff and how damped a surface may be made (N/m, N s/m); what a scene has is
-  /// allowed as well.
+  /// Constructs an empty list with the largest stiffness (N/m) and damping (N s/m) of a surface. A
+  /// larger value that a scene already has is allowed too.
   LiveSettings(double stiffness_max, double damping_max)
       : stiffness_max_(stiffness_max), damping_max_(damping_max) {}
 
-  /// Adds a setting of `stage`, which `Set(stage, value)` changes; bounds that do not hold its
-  /// value are widened, and one that cannot be changed at all is left out.
+  /// Adds a setting of `stage`, which `Set(stage, value)` changes. Bounds that exclude the value
+  /// are widened; a setting with a single possible value is omitted.
   template <auto Set, class Stage>
   void add(Stage& stage, LiveSetting setting) {
     static_assert(std::is_nothrow_invocable_v<decltype(Set), Stage&, double>);
     setting.least = std::min(setting.least, setting.value);
     setting.most = std::max(setting.most, setting.value);
-    // Written so that NaN is left out.
+    // Written so that NaN is omitted.
     if (!(setting.least < setting.most)) return;
     if (!group_.empty()) setting.name = group_ + ' ' + setting.name;
     setting.stage = &stage;
@@ -57,16 +56,18 @@ class LiveSettings {
     settings_.push_back(std::move(setting));
   }
 
-  /// Names the group of the settings that follow; empty: none.
+  /// Sets the group of the settings that follow; empty: none.
   void set_group(std::string_view group) { group_ = group; }
-  /// Adds what another list has.
+  /// Adds the settings of another list.
   void take(const LiveSettings& other) {
     settings_.insert(settings_.end(), other.settings_.begin(), other.settings_.end());
   }
 
-  double stiffness_max() const { return stiffness_max_; }             ///< N/m.
-  double damping_max() const { return damping_max_; }                 ///< N s/m.
-  const std::vector<LiveSetting>& list() const { return settings_; }  ///< Lists them.
+  /// Returns the largest stiffness, N/m.
+  double stiffness_max() const { return stiffness_max_; }
+  /// Returns the largest damping, N s/m.
+  double damping_max() const { return damping_max_; }
+  const std::vector<LiveSetting>& list() const { return settings_; }  ///< Returns the settings.
 
  private:
   double stiffness_max_, damping_max_;
@@ -74,7 +75,7 @@ class LiveSettings {
   std::vector<LiveSetting> settings_;
 };
 
-/// Lets a stage tell of its settings, if it has any to tell of.
+/// Adds the settings of a stage, if it has any.
 template <class Stage>
 void list_settings_of(Stage& stage, LiveSettings& settings) {
   if constexpr (requires { stage.list_settings(settings); }) stage.list_settings(settings);

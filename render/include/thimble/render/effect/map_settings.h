@@ -10,13 +10,13 @@
 
 namespace thimble::render {
 
-/// Answers an effect's questions from values in code, for programs and tests that need no scene,
-/// and keeps its complaints. Vectors, files and lists cannot be given. Real-time: never from the
-/// servo thread.
+/// SettingsReader that takes its values from code, for programs and tests without a scene, and
+/// collects mistakes. Vectors, files and lists are not supported. Real-time: never from the servo
+/// thread.
 class THIMBLE_EXPORT MapSettings final : public SettingsReader {
  public:
   MapSettings() = default;
-  /// Takes numbers (SI) and words by their keys.
+  /// Constructs a reader from numbers (SI) and words by key.
   explicit MapSettings(std::map<std::string, double> numbers,
                        std::map<std::string, std::string> words = {})
       : numbers_(std::move(numbers)), words_(std::move(words)) {}
@@ -30,7 +30,7 @@ class THIMBLE_EXPORT MapSettings final : public SettingsReader {
       if (limits.required) reject(key, "is missing");
       return;
     }
-    // Written so that NaN is refused.
+    // Written so that NaN is rejected.
     if (!(given->second >= limits.least && given->second <= limits.most)) {
       reject(key, "is out of its limits");
       return;
@@ -62,7 +62,7 @@ class THIMBLE_EXPORT MapSettings final : public SettingsReader {
     mistakes_.push_back(std::string(key) + ": " + sentence);
   }
 
-  /// Returns "key: sentence" of each mistake so far.
+  /// Returns the mistakes so far as "key: sentence".
   const std::vector<std::string>& mistakes() const { return mistakes_; }
 
  private:

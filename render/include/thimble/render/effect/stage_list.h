@@ -11,7 +11,7 @@
 
 namespace thimble::render {
 
-/// A surface stage whose kind is known only when a scene has been read.
+/// Type-erased surface stage, for stages selected by a scene.
 class THIMBLE_EXPORT AnyStage {
  public:
   AnyStage() = default;
@@ -22,9 +22,9 @@ class THIMBLE_EXPORT AnyStage {
   /// See SurfaceStage. Real-time: safe.
   virtual void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept = 0;
   virtual void leave() noexcept = 0;
-  /// Returns true for a FootStage: it is to be run by `touch_at`.
+  /// Returns whether the stage is a FootStage, which must be run by `touch_at`.
   virtual bool needs_foot() const noexcept { return false; }
-  /// See FootStage; other stages run as ever. Real-time: safe.
+  /// See FootStage; other stages run `touch`. Real-time: safe.
   virtual void touch_at(const SurfaceFoot&, const driver::DeviceState& state,
                         SurfaceResponse& response) noexcept {
     touch(state, response);
@@ -33,7 +33,7 @@ class THIMBLE_EXPORT AnyStage {
   virtual void list_settings(LiveSettings& settings) = 0;
 };
 
-/// Makes any surface stage an AnyStage.
+/// AnyStage that wraps a surface stage.
 template <SurfaceStage Stage>
 class AnyStageOf final : public AnyStage {
  public:
@@ -64,8 +64,7 @@ class AnyStageOf final : public AnyStage {
   Stage stage_;
 };
 
-/// A surface stage made of others, run in order: just those that a scene names, one indirect
-/// call each.
+/// Surface stage that runs the stages of a scene in order, with one indirect call each.
 class StageList {
  public:
   explicit StageList(std::vector<std::unique_ptr<AnyStage>> stages) : stages_(std::move(stages)) {}
@@ -80,22 +79,22 @@ class StageList {
     for (const auto& stage : stages_) stage->list_settings(settings);
   }
 
-  /// Returns true if one of them is a FootStage: make a FootStageList of it then.
+  /// Returns whether any stage is a FootStage; if so, use a FootStageList.
   bool needs_foot() const noexcept {
     return std::any_of(stages_.begin(), stages_.end(),
                        [](const auto& stage) { return stage->needs_foot(); });
   }
 
  protected:
-  std::vector<std::unique_ptr<AnyStage>> stages_;  ///< In the order in which they run.
+  std::vector<std::unique_ptr<AnyStage>> stages_;  ///< Stages in the order of execution.
 };
 
-/// A StageList with textures in it: a FootStage whose place never jumps.
+/// StageList with textures: a FootStage whose closest point never jumps.
 class FootStageList : public StageList {
  public:
   explicit FootStageList(StageList stages) : StageList(std::move(stages)) {}
 
-  /// Runs them at the foot that was found, or behind it where it jumped. Real-time: safe.
+  /// Runs the stages at the given closest point, or behind it if it jumped. Real-time: safe.
   void touch_at(const SurfaceFoot& found, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept {
     const SurfaceFoot foot = place_.follow(state.p_WT, response.contact.depth, found);

@@ -12,19 +12,18 @@
 
 namespace thimble::render {
 
-/// Builds a field from settings that have been read and found right.
-/// Real-time: never from the servo thread.
+/// Builds a field from validated settings. Real-time: never from the servo thread.
 using FieldBuilder = std::function<std::unique_ptr<ObjectTouch>()>;
 
-/// One field that a scene can name: `field: NAME` and its settings.
+/// Field that a scene can name: `field: NAME` and its settings.
 struct FieldKind {
-  std::string_view name;  ///< As scenes name it.
-  /// Reads the settings. Mistakes are told to the reader; what comes back is then not to be used.
+  std::string_view name;  ///< Name in scenes.
+  /// Reads the settings. Mistakes are reported to the reader; the result must then not be used.
   /// Real-time: never from the servo thread.
   FieldBuilder (*read)(SettingsReader& settings, const EffectContext& context);
 };
 
-/// Makes the table's line of a field: a Field with `kName`, a struct `Settings` with
+/// Returns the table entry of a field: a Field with `kName`, a struct `Settings` with
 /// `read(SettingsReader&, const EffectContext&)`, and a constructor from both.
 template <Field F>
 constexpr FieldKind field_kind() {
@@ -37,7 +36,8 @@ constexpr FieldKind field_kind() {
           }};
 }
 
-/// Returns every field that a scene can name. To add one: write its file, add its line here.
+/// Returns all fields that a scene can name. To add one, write its file and add an entry to the
+/// table.
 THIMBLE_EXPORT std::span<const FieldKind> field_table();
 
 }  // namespace thimble::render

@@ -12,27 +12,27 @@
 
 namespace thimble::render {
 
-/// A force that fills the space and needs no surface [BP 2, "continuous vector fields"]: a pure
-/// function of the state. `force` gives the force on the hand (N in W) and is Real-time: safe.
+/// Force field without a surface [BP 2, "continuous vector fields"]: a pure function of the state.
+/// `force` returns the force on the hand (N in W) and is Real-time: safe.
 template <class F>
 concept Field = requires(const F& field, const driver::DeviceState& state) {
   { field.force(state) }
   noexcept->std::convertible_to<Eigen::Vector3d>;
 };
 
-/// A field that is the gradient of a potential: `potential` gives its energy at the tip (J), with
-/// `force` = -grad of it. So the safety gate knows where its work comes from (EnergyFlow).
+/// Field with a potential. `potential` returns its energy at the tip (J), with `force` = -grad of
+/// it, so that the safety gate knows the source of its work (EnergyFlow).
 template <class F>
 concept ConservativeField = Field<F> && requires(const F& field, const driver::DeviceState& state) {
   { field.potential(state) }
   noexcept->std::same_as<double>;
 };
 
-/// A field whose energy nobody knows, such as a function of a program.
+/// Field of unknown energy, such as a function of a program.
 template <class F>
 concept UnknownField = Field<F> && F::kUnknownStorage;
 
-/// A field as an object of a scene. It has no inside and is never in contact.
+/// Field as an object of a scene. It has no inside and is never in contact.
 template <Field F>
 class FieldTouch final : public ObjectTouch {
  public:
@@ -49,18 +49,18 @@ class FieldTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { list_settings_of(field_, settings); }
 
-  const F& field() const noexcept { return field_; }  ///< Shows the field.
+  const F& field() const noexcept { return field_; }  ///< Returns the field.
 
  private:
   F field_;
 };
 
-/// Any function of the state as a field.
+/// Field given by any function of the state.
 template <class Function>
 requires std::is_nothrow_invocable_r_v<Eigen::Vector3d, const Function&, const driver::DeviceState&>
 class FunctionField {
  public:
-  static constexpr bool kUnknownStorage = true;  ///< Nobody knows what a function stores.
+  static constexpr bool kUnknownStorage = true;  ///< The energy stored by a function is unknown.
 
   explicit FunctionField(Function function) : function_(std::move(function)) {}
 
@@ -72,11 +72,12 @@ class FunctionField {
   Function function_;
 };
 
-/// Makes a function of the state an object of a scene: how a program adds a force law of its own.
+/// Returns an object of a scene whose force is a function of the state. Programs use it to add a
+/// force law.
 ///
-/// The function is called on the servo thread and must keep its rules. What it returns goes on
-/// unchanged: NaN or infinity reaches the safety gate, which lets nothing through and latches a
-/// fault, because a broken law must not go unnoticed. Real-time: never from the servo thread.
+/// The function is called on the servo thread and must be real-time safe. Its result is not
+/// changed: NaN or infinity reaches the safety gate, which gives zero force and latches a fault, so
+/// that the error is noticed. Real-time: never from the servo thread.
 template <class Function>
 std::unique_ptr<ObjectTouch> field_of(Function function) {
   using Own = FunctionField<Function>;

@@ -6,17 +6,18 @@
 
 namespace thimble::render {
 
-/// A half-space: all that lies below a plane. A PrimitiveShape with one face [BP 2, the wall].
+/// Half-space below a plane. A PrimitiveShape with one face [BP 2, the wall].
 struct HalfSpace {
-  Eigen::Vector3d n_W{0, 0, 1};   ///< Outward unit normal; whoever fills it in makes it unit.
+  Eigen::Vector3d n_W{0, 0, 1};   ///< Outward normal; the caller provides a unit vector.
   Eigen::Vector3d p_WO{0, 0, 0};  ///< Any point of the plane, m.
 
-  /// Returns how deep a point (W, m) lies below the plane. NaN lies outside. Real-time: safe.
+  /// Returns the depth of a point (W, m) below the plane, with the normal. NaN is outside.
+  /// Real-time: safe.
   PrimitivePlace place(const Eigen::Vector3d& p_W, const Eigen::Vector3d&) const noexcept {
     return {.depth = n_W.dot(p_WO - p_W), .n_W = n_W};
   }
 
-  /// Returns whether a point (W, m) lies below the plane. Real-time: safe.
+  /// Returns whether a point (W, m) is below the plane. Real-time: safe.
   bool inside(const Eigen::Vector3d& p_W) const noexcept { return n_W.dot(p_WO - p_W) > 0; }
 };
 

@@ -5,9 +5,10 @@
 
 namespace thimble::render {
 
-/// Where a tip lies against a solid shape.
+/// Position of a tip relative to a solid shape.
 struct PrimitivePlace {
-  double depth = 0;              ///< Below the surface along `n_W`, m; not above 0: outside.
+  /// Depth below the surface along `n_W`, m; outside if not above 0.
+  double depth = 0;
   Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal.
   std::int32_t face = 0;         ///< Number of the face that is felt.
 };

@@ -12,51 +12,51 @@
 
 namespace thimble::render {
 
-/// The endings of the mesh files that load_mesh reads, as a person is told.
+/// File formats that load_mesh reads, as listed in messages.
 inline constexpr const char* kMeshEndings = "OFF, OBJ, STL, PLY, glTF, GLB, 3MF, DAE, AMF or 3DS";
 
-/// What a mesh file says of itself besides its triangles.
+/// Properties of a mesh file in addition to its triangles.
 struct MeshFileInfo {
-  std::string kind;  ///< Its format by its contents: "STL", "GLTF".
-  /// Metres per unit of the coordinates, where file or format names one: glTF and DAE come in m,
-  /// 3MF and AMF in the unit they name (mm if none).
+  std::string kind;  ///< Format detected from the contents: "STL", "GLTF".
+  /// Metres per unit of the coordinates, if the file or format defines it. glTF and DAE are read in
+  /// m; 3MF and AMF in the unit that they name (mm if none).
   std::optional<double> unit;
-  char up =
-      0;  ///< Axis that points up, x, y or z, where file or format names one (glTF, DAE, 3DS).
-  std::vector<std::string> notes;  ///< What was left out or put right, a sentence each.
+  /// Up axis, x, y or z, if the file or format defines it (glTF, DAE, 3DS).
+  char up = 0;
+  std::vector<std::string> notes;  ///< Omissions and repairs, one sentence each.
 };
 
-/// Reads a mesh file whose name has a known ending (`kMeshEndings`) as the format that its contents
-/// show, else as that of the ending; splits polygons into triangles and welds vertices that lie at
-/// exactly the same place (STL has no other way to share them). Parts are where the file's nodes,
-/// components and instances put them; morph targets have the weights of the file; bones,
-/// animations, lines and points are left out and reported. Coordinates stay in the file's unit and
-/// axes, those of DAE in m. OFF, OBJ, 3MF, texts of STL and PLY and PLY with doubles are read in
-/// double precision; in the others the numbers are in single precision, or Assimp reads them so:
-/// where its steps at the coordinates are above 1e-6 of the mesh's size that is reported, above
-/// 1e-3 it is refused.
+/// Reads a mesh file with a known extension (`kMeshEndings`). The contents determine the format; if
+/// they are inconclusive, the extension does. Polygons are split into triangles, and vertices at
+/// exactly the same position are merged (STL cannot share vertices). Parts are placed as the file's
+/// nodes, components and instances specify, and morph targets have the weights in the file. Bones,
+/// animations, lines and points are omitted and reported. Coordinates stay in the file's unit and
+/// axes; those of DAE are in m. OFF, OBJ, 3MF, text STL, text PLY and PLY with doubles are read in
+/// double precision. Other files contain single precision, or Assimp reads them so. If its step at
+/// the coordinates is above 1e-6 of the mesh's size, it is reported; above 1e-3, the file is
+/// rejected.
 ///
-/// The error names the file and, for OFF, OBJ and text of STL, the line: no such file, unknown
-/// format, truncated, no triangles, a coordinate that is not a finite number or beyond 1e15 ("1mm",
-/// "1,250.5"), an index out of range, a part of the format that is not read (named), such as a
-/// required glTF extension. Memory grows with the file's size, not with the counts it promises.
-/// glTF, 3MF and what the Assimp library reads (DAE, AMF, 3DS) are read in a separate process
-/// with limits of time and memory, so that no file can crash or hang this one. Real-time: never
-/// from the servo thread.
+/// The error names the file and, for OFF, OBJ and text STL, the line. It reports a missing or
+/// truncated file, an unknown format, a mesh without triangles, and an index out of range. It also
+/// reports a coordinate that is not a finite number or is beyond 1e15 ("1mm", "1,250.5"), and an
+/// unsupported part of the format, such as a required glTF extension. Memory grows with the file's
+/// size, not with the counts in its header. glTF, 3MF and the formats of the Assimp library (DAE,
+/// AMF, 3DS) are read in a separate process with limits of time and memory. So no file can crash or
+/// block this process. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,
                                                       MeshFileInfo* info = nullptr);
 
-/// Places a mesh from its own frame O in the world W: p_WV = R_WO * (scale * p_OV) + p_WO for each
-/// vertex V. `scale` turns the file's unit into m and must be finite and not 0; `R_WO` is a
-/// rotation; `p_WO` is in m. A negative scale mirrors the mesh, so triangles are turned round to
-/// keep their outer side outside. Real-time: never from the servo thread.
+/// Transforms a mesh from its own frame O into the world W: p_WV = R_WO * (scale * p_OV) + p_WO for
+/// each vertex V. `scale` converts the file's unit to m and must be finite and not 0; `R_WO` is a
+/// rotation; `p_WO` is in m. A negative scale mirrors the mesh; triangles are then reversed so that
+/// their outer side stays outside. Real-time: never from the servo thread.
 THIMBLE_EXPORT TriangleMesh placed(const TriangleMesh& mesh, double scale,
                                    const Eigen::Matrix3d& R_WO, const Eigen::Vector3d& p_WO);
 
-/// Writes a mesh as an OFF file with 17 digits per coordinate, so that load_mesh gives the same
-/// numbers back to the bit. An existing file is replaced only once the new one is complete. The
-/// error names the file: another ending than .off, or a folder that cannot be written to.
-/// Real-time: never from the servo thread.
+/// Writes a mesh as an OFF file with 17 digits per coordinate, so that load_mesh returns
+/// bit-identical numbers. An existing file is replaced only once the new one is complete. The error
+/// names the file if its extension is not .off or its folder is not writable. Real-time: never from
+/// the servo thread.
 THIMBLE_EXPORT driver::Result<void> save_mesh(const TriangleMesh& mesh,
                                               const std::filesystem::path& file);
 

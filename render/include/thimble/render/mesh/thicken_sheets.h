@@ -8,33 +8,36 @@
 
 namespace thimble::render {
 
-/// What thicken_sheets made of a mesh.
+/// Report of thicken_sheets.
 struct SheetReport {
-  std::size_t sheets = 0;     ///< Parts with open, crowded or one-sided edges, now thin bodies.
-  std::size_t triangles = 0;  ///< Of these parts, before.
-  double thinnest = 0;        ///< The thickness of the thinnest place, the mesh's unit.
+  /// Number of parts with open, non-manifold or one-sided edges that were made thin bodies.
+  std::size_t sheets = 0;
+  std::size_t triangles = 0;  ///< Number of triangles of these parts before.
+  double thinnest = 0;        ///< Smallest thickness, in the mesh's unit.
 };
 
-/// A mesh whose open parts are bodies as thin as sheets, and what was done.
+/// Mesh whose open parts were made thin bodies.
 struct ThickenedMesh {
-  TriangleMesh mesh;   ///< Closed.
-  SheetReport report;  ///< What was done.
+  TriangleMesh mesh;   ///< Closed mesh.
+  SheetReport report;  ///< Report of the changes.
 };
 
-/// Makes thin bodies of all parts of a mesh that are not closed: every triangle gets a front and a
-/// back, `thickness` apart, joined over the edges as they lie around them, with a rim along open
-/// edges. Works for sheets, for fins and inner walls at edges of any number of triangles, and for
-/// surfaces with one side; each comes out closed and wound alike. Closed parts stay as they are.
-/// Where a sheet bends too sharply for its thickness it is made thinner (SheetReport::thinnest).
+/// Converts all parts of a mesh that are not closed into thin bodies. Every triangle gets a front
+/// and a back, `thickness` apart, joined at the edges in their order around each edge, with a rim
+/// along open edges. Works for sheets, for fins and inner walls at edges of any number of
+/// triangles, and for one-sided surfaces. Each result is closed and consistently oriented. Closed
+/// parts are not changed. A sheet that bends too sharply for its thickness is made thinner there
+/// (SheetReport::thinnest).
 ///
-/// A tip must be held by a god-object (GodObjectContact), which cannot pass through, however thin
-/// the body: it is felt from both sides, as deep as the sheet is wide from its rim, or bent (radius
-/// of curvature). Preconditions: triangles name three different finite vertices and have an area
-/// (repair_mesh drops others); `thickness` > 0. Lengths in the mesh's unit. O(n log n). Real-time:
-/// never from the servo thread.
+/// Use the god-object tracker (GodObjectContact), which cannot pass through a body of any
+/// thickness. The sheet is felt from both sides, up to a depth of its distance from the rim, or of
+/// its radius of curvature. Preconditions: triangles have three different finite vertices and an
+/// area (repair_mesh drops others); `thickness` > 0. Lengths are in the mesh's unit. O(n log n).
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT ThickenedMesh thicken_sheets(const TriangleMesh& mesh, double thickness);
 
-/// Returns the report as one sentence; empty if there was no sheet. `unit`: of the mesh's lengths.
+/// Returns the report in one sentence; empty if there was no sheet. `unit`: unit of the mesh's
+/// lengths.
 THIMBLE_EXPORT std::string describe(const SheetReport& report, const std::string& unit = "m");
 
 }  // namespace thimble::render

@@ -8,11 +8,11 @@
 
 namespace thimble::render {
 
-/// A set of triangles over shared vertices: what files hold, before anything is known of it.
+/// Triangles with shared vertices, as stored in files; not checked.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;  ///< Positions, in the file's unit or in m.
-  std::vector<std::array<std::int32_t, 3>>
-      triangles;  ///< Vertex numbers, counter-clockwise from outside.
+  /// Vertex indices, counter-clockwise from outside.
+  std::vector<std::array<std::int32_t, 3>> triangles;
 };
 
 }  // namespace thimble::render

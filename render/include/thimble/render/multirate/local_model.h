@@ -8,47 +8,50 @@
 
 namespace thimble::render {
 
-/// What the tip of an arm feels near one place, as a simulation that is too slow for the servo
-/// tells it: a force there and how it changes with the tip's way.
+/// Local model of the force near one place, from a simulation that is too slow for the servo: the
+/// force there and its change with the tip's displacement.
 ///
 ///     f(p) = f_T_W - stiffness (p - p_WR), as long as it pushes along n_W; else nothing
 ///
-/// The surface is thus the plane where the force along n_W ends, so the tip can leave it between
-/// two models, and no model pulls. While the tip is free, tell of the surface nearest to it: a
-/// point of it, no force, and the stiffness that it would have. Where nothing is near, all are
-/// zero.
+/// The surface is thus the plane on which the force along n_W becomes zero. The tip can leave it
+/// between two models, and no model pulls. While the tip is free, publish a model of the nearest
+/// surface: a point on it, zero force, and the stiffness that it would have. If no surface is near,
+/// publish zeros.
 struct LocalModel {
   Eigen::Vector3d p_WR{0, 0, 0};   ///< Reference point, in the world, m.
   Eigen::Vector3d f_T_W{0, 0, 0};  ///< Force on the hand with the tip there, in the world, N.
-  /// How the force falls with the tip's way, -df/dp, N/m: symmetric, no negative eigenvalue. What
-  /// has one (a bulge, over which the normal turns away) goes through `without_negative` first.
+  /// Decrease of the force with the tip's displacement, -df/dp, N/m: symmetric, without negative
+  /// eigenvalues. Apply `without_negative` first to a matrix that has one (at a bulge, where the
+  /// normal turns away).
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-  double damping = 0;            ///< Along n_W, while it is touched, N s/m, >= 0.
-  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit vector, to the free side.
-  std::int64_t time_ns = 0;      ///< DeviceState::time_ns of the state it was computed for.
+  double damping = 0;            ///< Damping along n_W during contact, N s/m, >= 0.
+  Eigen::Vector3d n_W{0, 0, 1};  ///< Unit normal towards the free side.
+  /// DeviceState::time_ns of the state for which the model was computed.
+  std::int64_t time_ns = 0;
 };
 
-/// What is wrong with a model.
+/// Flaw of a model.
 enum class ModelFlaw : std::uint8_t {
   kNone,
-  kNotFinite,          ///< A number is NaN or infinite.
-  kNormal,             ///< The normal is no unit vector.
-  kNotSymmetric,       ///< The stiffness is no symmetric matrix.
-  kNegativeStiffness,  ///< The stiffness has a negative eigenvalue: it would push away.
-  kNegativeDamping,    ///< The damping is below 0.
-  kNoSurface,          ///< There is a force, but no stiffness along the normal: it would never end.
+  kNotFinite,     ///< A number is NaN or infinite.
+  kNormal,        ///< The normal is not a unit vector.
+  kNotSymmetric,  ///< The stiffness is not a symmetric matrix.
+  /// The stiffness has a negative eigenvalue: the surface would push the tip away.
+  kNegativeStiffness,
+  kNegativeDamping,  ///< The damping is below 0.
+  /// There is a force but no stiffness along the normal, so the force would never end.
+  kNoSurface,
 };
 
-/// Finds what is wrong with a model; the tolerances are a millionth of its largest number.
-/// Real-time: safe.
+/// Returns the first flaw of a model, or kNone; the tolerances are a millionth of its largest
+/// number. Real-time: safe.
 THIMBLE_EXPORT ModelFlaw flaw_of(const LocalModel& model) noexcept;
 
-/// Returns what a flaw means and what to do, in a sentence. Real-time: safe.
+/// Returns the meaning of a flaw and the fix, in one sentence. Real-time: safe.
 THIMBLE_EXPORT std::string_view describe(ModelFlaw flaw) noexcept;
 
-/// Returns the symmetric matrix nearest to `stiffness` (N/m) that has no negative eigenvalue: its
-/// symmetric part without what pushes away. A matrix that is not finite stays as it is. Real-time:
-/// never from the servo thread.
+/// Returns the symmetric matrix nearest to `stiffness` (N/m) without negative eigenvalues. A matrix
+/// that is not finite is returned unchanged. Real-time: never from the servo thread.
 THIMBLE_EXPORT Eigen::Matrix3d without_negative(const Eigen::Matrix3d& stiffness);
 
 }  // namespace thimble::render

@@ -9,24 +9,25 @@
 
 namespace thimble::render {
 
-/// Where a slow simulation leaves its newest model for the servo: one writer, any number of
-/// readers, no lock. It holds no pointer, so it may lie in memory that two processes share.
+/// Slot through which a slow simulation passes its newest model to the servo: one writer, any
+/// number of readers, no lock. It contains no pointers, so it can be in memory shared by two
+/// processes.
 class THIMBLE_EXPORT ModelSlot {
  public:
-  /// Publishes a model. Fails, and the one before stays, if it has a flaw. From one thread.
-  /// Real-time: never from the servo thread, for the sake of the sentence that it makes.
+  /// Publishes a model. Fails and keeps the previous one if the model has a flaw. Call from one
+  /// thread. Real-time: never from the servo thread, because it creates an error text.
   driver::Result<void> publish(const LocalModel& model);
 
-  /// Copies the newest model. False, and `model` stays, if there is none yet or if it is just being
-  /// written; it is there in the next tick. What another process wrote is not checked.
-  /// Real-time: safe; a few hundred instructions.
+  /// Copies the newest model. Returns false and leaves `model` unchanged if there is none yet or a
+  /// write is in progress; the model is then available in the next tick. A model written by another
+  /// process is not checked. Real-time: safe; a few hundred instructions.
   bool newest(LocalModel& model) const noexcept;
 
-  /// Returns how many models were published. Real-time: safe.
+  /// Returns the number of models published. Real-time: safe.
   std::uint64_t count() const noexcept { return snapshot_.count(); }
 
  private:
-  /// A model as plain numbers: what a Snapshot copies.
+  /// Model as plain numbers for the Snapshot.
   struct Words {
     double p[3], f[3], stiffness[9], damping, n[3];
     std::int64_t time_ns;

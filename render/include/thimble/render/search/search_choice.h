@@ -2,11 +2,11 @@
 
 namespace thimble::render {
 
-/// How contact is looked for while the tip is free. All give the same answers.
+/// Contact search while the tip is free. All give the same results.
 enum class SearchChoice {
-  kLinear,  ///< Every triangle [BP 3.1]: no structure, time grows with the mesh.
-  kGrid,    ///< Space cut into volumes [BP 4.1]: fastest where few triangles are of like size.
-  kTree,    ///< A tree of boxes: fast however the triangles lie.
+  kLinear,  ///< Tests every triangle [BP 3.1]: no data structure; time grows with the mesh.
+  kGrid,    ///< Regular grid [BP 4.1]: fastest for few triangles of similar size.
+  kTree,    ///< Tree of bounding boxes: fast for any distribution of triangles.
 };
 
 }  // namespace thimble::render

@@ -9,14 +9,14 @@
 
 namespace thimble::render {
 
-/// Pushes back like a spring and a damper along the surface's normal: F = k x + b v, with x the
-/// depth and v its growth [BP 2]. Never pulls, so that leaving does not stick. A SurfaceStage.
+/// Spring and damper along the surface's normal: F = k x + b v, with the depth x and its rate v [BP
+/// 2]. Never pulls, so that the surface does not stick. A SurfaceStage.
 struct SpringDamper {
-  double stiffness = 0;  ///< k, N/m, >= 0. The scene's loader checks both.
-  double damping = 0;    ///< b, N s/m, >= 0.
+  double stiffness = 0;  ///< Stiffness k, N/m, >= 0. The scene's loader checks both.
+  double damping = 0;    ///< Damping b, N s/m, >= 0.
 
-  /// Finds the force on the hand, N in W. Precondition: the contact is touching. Zero if the depth
-  /// is not above 0, as in the groove of a texture, and if depth, normal or velocity is NaN.
+  /// Returns the force on the hand, N in W. Precondition: the contact is touching. Zero if the
+  /// depth is not above 0, as in the groove of a texture, or if depth, normal or velocity is NaN.
   /// Real-time: safe.
   Eigen::Vector3d force(const ContactState& contact,
                         const driver::DeviceState& state) const noexcept {
@@ -32,7 +32,7 @@ struct SpringDamper {
   }
   void leave() const noexcept {}
 
-  /// Lists both numbers. Real-time: never from the servo thread.
+  /// Adds stiffness and damping. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     settings.add<[](SpringDamper& spring, double k) noexcept { spring.stiffness = k; }>(
         *this, {.name = "stiffness",

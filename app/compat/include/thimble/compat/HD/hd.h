@@ -1,11 +1,11 @@
 #pragma once
 
-/* HDAPI as libHD.so of Thimble has it, so that programs written for it can be built. Own work:
- * names, types and numbers are those that public programs use (app/compat/PROVENANCE.md); the words
- * are ours.
+/* HDAPI as implemented by Thimble's libHD.so, to build programs written for HDAPI. Written for
+ * Thimble: names, types and numbers are those that public programs use
+ * (app/compat/PROVENANCE.md); the text is Thimble's.
  *
- * mm, mm/s, rad, rad/s, N, N mm; x right, y up, z to the user; a transform is 16 numbers, column by
- * column. In C and C++. */
+ * Units: mm, mm/s, rad, rad/s, N, N mm. Axes: x right, y up, z to the user. A transform is 16
+ * numbers, column by column. For C and C++. */
 
 #include <limits.h>
 #include <stddef.h>
@@ -37,32 +37,32 @@ typedef unsigned long HDSchedulerHandle;
 typedef unsigned int HDCallbackCode;
 typedef HDCallbackCode (*HDSchedulerCallback)(void*);
 
-/** What went wrong: returned by value. */
+/** Error information, returned by value. */
 typedef struct {
   HDerror errorCode;
   int internalErrorCode;
   HHD hHD;
 } HDErrorInfo;
 
-/** How hdWaitForCompletion waits. */
+/** Wait mode of hdWaitForCompletion. */
 typedef enum { HD_WAIT_CHECK_STATUS = 0, HD_WAIT_INFINITE = 1 } HDWaitCode;
 
 /* Arms. */
 
-/** Opens an arm: by NULL, "Default Device", "PHANToM 1" and so on, or its name. */
+/** Opens an arm, given by NULL, "Default Device", "PHANToM 1" and so on, or its name. */
 HHD hdInitDevice(HDstring name);
-/** Closes it, with zero force. */
+/** Closes an arm with zero force. */
 void hdDisableDevice(HHD device);
-/** Makes it the one that all calls of this thread are about. */
+/** Makes an arm the current arm of the calling thread, to which all its calls apply. */
 void hdMakeCurrentDevice(HHD device);
-/** Returns that one. */
+/** Returns the current arm of the calling thread. */
 HHD hdGetCurrentDevice(void);
-/** Begins a frame: what is read in it is of one tick. */
+/** Begins a frame; all values read in a frame are from one tick. */
 void hdBeginFrame(HHD device);
-/** Ends it: the force that was set goes out. */
+/** Ends a frame and sends the force that was set. */
 void hdEndFrame(HHD device);
 
-/* Capabilities and numbers of the current arm. */
+/* Capabilities and parameters of the current arm. */
 
 void hdEnable(HDenum capability);
 void hdDisable(HDenum capability);
@@ -81,9 +81,9 @@ void hdSetLongv(HDenum parameter, const HDlong* values);
 
 /* Errors. */
 
-/** Takes the newest error from the stack; HD_SUCCESS once there is none. */
+/** Removes the newest error from the stack and returns it; HD_SUCCESS if there is none. */
 HDErrorInfo hdGetError(void);
-/** Returns what an error means. */
+/** Returns the meaning of an error. */
 HDstring hdGetErrorString(HDerror error);
 
 /* Calibration. */

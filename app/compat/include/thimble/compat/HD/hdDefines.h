@@ -1,6 +1,6 @@
 #pragma once
 
-/* The constants of HDAPI: where each number comes from stands in app/compat/PROVENANCE.md. */
+/* Constants of HDAPI. app/compat/PROVENANCE.md gives the source of each number. */
 
 #define HD_TRUE 1
 #define HD_FALSE 0

@@ -1,22 +1,22 @@
 #pragma once
 
-/* Errors in words, as programs written for HDAPI print them. */
+/* Error messages for programs written for HDAPI. */
 
 #include <HD/hd.h>
 #include <stdio.h>
 
-/** Returns what an error means. */
+/** Returns the meaning of an error. */
 static inline const char* hduGetErrorString(HDerror error) {
   return hdGetErrorString(error);
 }
 
-/** Prints a message and what an error means. */
+/** Prints a message and the meaning of an error. */
 static inline void hduPrintError(FILE* file, const HDErrorInfo* error, const char* message) {
   fprintf(file, "%s: %s (0x%04x, device %u)\n", message, hdGetErrorString(error->errorCode),
           error->errorCode, error->hHD);
 }
 
-/** Returns whether an error is one after which callbacks run no more. */
+/** Returns whether callbacks stop after an error. */
 static inline HDboolean hduIsSchedulerError(const HDErrorInfo* error) {
   switch (error->errorCode) {
     case HD_COMM_ERROR:
@@ -30,7 +30,7 @@ static inline HDboolean hduIsSchedulerError(const HDErrorInfo* error) {
   }
 }
 
-/** Returns whether an error is one of the arm's forces. */
+/** Returns whether an error concerns the forces of the arm. */
 static inline HDboolean hduIsForceError(const HDErrorInfo* error) {
   switch (error->errorCode) {
     case HD_WARM_MOTORS:

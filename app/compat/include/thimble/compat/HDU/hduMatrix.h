@@ -1,17 +1,17 @@
 #pragma once
 
-/* A transform of 4 x 4 numbers, as programs written for HDAPI use it. */
+/* 4 x 4 transform for programs written for HDAPI. */
 
 #include <HDU/hduVector.h>
 
-/** A transform as HD_CURRENT_TRANSFORM gives it: the translation is its last row. */
+/** Transform in the layout of HD_CURRENT_TRANSFORM: the translation is the last row. */
 class hduMatrix {
  public:
-  /** The identity. */
+  /** Constructs the identity. */
   hduMatrix() {
     for (int i = 0; i < 16; ++i) values_[i / 4][i % 4] = i % 5 == 0 ? 1.0 : 0.0;
   }
-  /** Takes 16 numbers in the order of HD_CURRENT_TRANSFORM. */
+  /** Constructs a transform from 16 numbers in the order of HD_CURRENT_TRANSFORM. */
   explicit hduMatrix(const double* values) {
     for (int i = 0; i < 16; ++i) values_[i / 4][i % 4] = values[i];
   }
@@ -21,7 +21,7 @@ class hduMatrix {
   double* operator[](int row) { return values_[row]; }
   const double* operator[](int row) const { return values_[row]; }
 
-  /** Returns where a point comes to lie. */
+  /** Returns the transformed point. */
   hduVector3Dd multVecMatrix(const hduVector3Dd& p) const {
     hduVector3Dd q;
     for (int i = 0; i < 3; ++i) {
@@ -29,7 +29,7 @@ class hduMatrix {
     }
     return q;
   }
-  /** Returns what a direction becomes. */
+  /** Returns the transformed direction. */
   hduVector3Dd multDirMatrix(const hduVector3Dd& d) const {
     hduVector3Dd q;
     for (int i = 0; i < 3; ++i) {

@@ -1,11 +1,10 @@
 #pragma once
 
-/* A vector of three numbers, as programs written for HDAPI use it: the part of HDU that they need
- * most. */
+/* Vector of three numbers for programs written for HDAPI: the most used part of HDU. */
 
 #include <cmath>
 
-/** Three numbers that behave like an array and like a vector. */
+/** Three numbers with the interface of an array and of a vector. */
 template <class T>
 class hduVector3 {
  public:
@@ -42,7 +41,7 @@ class hduVector3 {
     return {values_[1] * v[2] - values_[2] * v[1], values_[2] * v[0] - values_[0] * v[2],
             values_[0] * v[1] - values_[1] * v[0]};
   }
-  /** Makes its length 1; zero stays zero. */
+  /** Normalises the vector to length 1; a zero vector is unchanged. */
   void normalize() {
     const T length = magnitude();
     if (length > 0) *this /= length;
