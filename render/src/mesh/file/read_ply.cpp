@@ -23,8 +23,7 @@ using driver::Error;
 
 enum class Form { kText, kLittle, kBig };
 
-// The types of PLY, by their first names and by those that contain their size [Turk, the PLY
-// format].
+// The types of PLY, by their first names and by those with their size [Turk, the PLY format].
 struct NumberType {
   std::string_view name, other_name;
   std::size_t size;
