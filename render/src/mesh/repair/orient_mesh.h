@@ -25,9 +25,9 @@ struct MeshComponents {
 /// A component inside an even number of others bounds matter from outside, one inside an odd number
 /// is a cavity. The parity of crossings decides whether a point is inside a component
 /// [BP 3.1, the OUT array]. Up to eight vertices of a component are tested and all must be inside,
-/// so that components which only overlap do not count as nested. O(n log n), plus the crossings of the rays
-/// from those vertices. `uses` are the mesh's own (sorted_edge_uses). Real-time: never from the
-/// servo thread.
+/// so that components which only overlap do not count as nested. O(n log n), plus the crossings of
+/// the rays from those vertices. `uses` are the mesh's own (sorted_edge_uses). Real-time: never
+/// from the servo thread.
 MeshComponents find_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses);
 
 /// Report of winding the triangles of a mesh consistently.
