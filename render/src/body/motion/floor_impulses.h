@@ -28,7 +28,7 @@ namespace thimble::render {
 /// rise, and the points that still approach too fast are stopped without friction.
 class FloorImpulses {
  public:
-  static constexpr std::size_t kPointsMax = 64;  ///< Most support points.
+  static constexpr std::size_t kPointsMax = 64;  ///< Maximum number of support points.
   /// Accuracy of the velocities of the support points at which the iteration ends, as a share of
   /// the fastest one's before.
   static constexpr double kTolerance = 1e-7;
@@ -52,10 +52,10 @@ class FloorImpulses {
   /// Returns how many iterations of Newton's method the last `solve` took. Real-time: safe.
   int iterations() const noexcept { return iterations_; }
 
-  /// Most iterations of Newton's method on few points; on many, `kPointStepsMax` divided by their
-  /// number. After an end by this bound up to as many again, without friction.
+  /// Maximum number of iterations of Newton's method on few points; on many, `kPointStepsMax`
+  /// divided by their number. After reaching this bound, up to as many again, without friction.
   static constexpr int kIterationsMax = 200;
-  static constexpr int kPointStepsMax = 2400;  ///< Most iterations times points.
+  static constexpr int kPointStepsMax = 2400;  ///< Maximum of iterations times points.
 
  private:
   // Velocities of the body in units of the root of its mass and inertias: the squared length is
@@ -68,10 +68,10 @@ class FloorImpulses {
     Eigen::Matrix<double, 3, 6> J;  // velocity of the point by the body's velocity
     double allowed = 0;             // m/s
     double slip = 0;                // m/s along the floor, as estimated
-    double wrong = 0;               // m/s, that the last estimate was too small by
-    double slip_before = 0;         // both of the estimate before
+    double wrong = 0;               // m/s by which the last estimate was too small
+    double slip_before = 0;         // slip and error of the estimate before
     double wrong_before = 0;
-    Eigen::Vector3d held{0, 0, 0};  // impulse that the multiplier stands for, N s
+    Eigen::Vector3d held{0, 0, 0};  // impulse of the multiplier, N s
     Eigen::Vector3d v{0, 0, 0};     // of the point, m/s
     // Starts a new solution.
     void forget() noexcept {
