@@ -52,7 +52,7 @@ OffsetResponse feel_nearest(const Vector3d& p, const PackedTriangle& r,
   const Vector3d out = q - p;
   const double distance = std::sqrt(out.squaredNorm());
   const double over = std::min(std::min(place.l0, place.l1), place.l2);
-  // Next to the triangle the closest point itself holds the tip: the corner normals may lean away
+  // Next to the triangle the closest point itself holds the tip. The corner normals may lean away
   // from it, and would leave a tip that is inside without force.
   if (!(over > kInTriangle) && distance > kPlaced) return {out / distance, distance};
   felt.depth = std::max(out.dot(felt.n_W), 0.0);

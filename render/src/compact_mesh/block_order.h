@@ -13,7 +13,7 @@ struct alignas(16) PlacedIndex {
 };
 
 /// Sorts places such that each eight, each 64, each 512 of them and so on, counted from the begin,
-/// are close together in space: halves a part across its longest side until eight are left. These
+/// are close together in space. Halves a part across its longest side until eight are left. These
 /// are the nodes of TreeNodes, and neighbours in space are near in memory. Equal places are ordered
 /// by their numbers. O(n log n), some 50 ns each at 10^6. Real-time: never from the servo thread.
 void order_in_blocks(std::span<PlacedIndex> items);

@@ -31,7 +31,8 @@ std::size_t corner_of(const std::array<std::int32_t, 3>& corners, std::int32_t v
 }
 
 // Calls `visit` for a triangle and for all that are reached from it around one of its vertices
-// without crossing a crease, first in one direction, then in the other; each once.
+// without crossing a crease. Goes first in one direction, then in the other, and calls `visit` once
+// for each.
 template <class Visit>
 void visit_group(const std::vector<std::array<std::int32_t, 3>>& triangles,
                  std::span<const PackedTriangle> packed, std::int32_t vertex, std::int32_t first,

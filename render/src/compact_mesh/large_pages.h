@@ -7,7 +7,7 @@
 
 namespace thimble::render {
 
-/// Allocates arrays with random access in memory pages of 2 MiB if the system has them, so that a
+/// Allocates arrays with random access in memory pages of 2 MiB if the system has them. Then a
 /// distant packed triangle costs one cache miss and no walk through page tables. Real-time: never
 /// from the servo thread.
 template <class T>

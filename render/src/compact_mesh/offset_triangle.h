@@ -31,7 +31,7 @@ namespace thimble::render {
 /// safe. Points are in steps of the lattice.
 ///
 /// The place of the tip is in double precision. Factors of the depth and of weights are in single
-/// precision: this costs up to 3e-7 of the depth, and 1e-6 of a triangle's height at an edge
+/// precision. This costs up to 3e-7 of the depth, and 1e-6 of a triangle's height at an edge
 /// (offset_triangle_test.cpp).
 class alignas(64) OffsetTriangle {
  public:
@@ -100,7 +100,7 @@ class alignas(64) OffsetTriangle {
 inline constexpr double kPlaced = 64;
 
 // Solves p = sum l_i (x_i - d n_i). In the triangle's own axes this is a pair of linear equations
-// for the weights once d is known, and d = h / sum l_i w_i, where the w_i are nearly 1.
+// for the weights once d is known. d = h / sum l_i w_i, where the w_i are nearly 1.
 inline OffsetPlace OffsetTriangle::locate(const Eigen::Vector3d& p) const noexcept {
   const __m128d ab =
       _mm_add_pd(_mm_add_pd(_mm_mul_pd(pair(ab_[0]), _mm_set1_pd(p.x())),

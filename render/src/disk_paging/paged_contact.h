@@ -66,7 +66,7 @@ struct PagedPlace {
   Eigen::Vector3d p_WM{0, 0, 0};                       ///< m
 };
 
-/// Finds the contact on a surface of which only the pages around the tip are in memory [BP 4.1]. A
+/// Finds the contact on a surface that has only the pages around the tip in memory [BP 4.1]. A
 /// `Contact` stage of ContactForceLaw for meshes that do not fit into memory. It measures the same
 /// as MemoryContact.
 ///

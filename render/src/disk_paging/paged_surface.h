@@ -33,8 +33,8 @@ struct PagingSettings {
                               ///< a disk's worst seek.
 };
 
-/// A surface of which only the pages around the tip are in memory [BP 4.1]. A loader reads pages
-/// ahead of the tip and drops those it left behind; the servo never waits for it.
+/// A surface that has only the pages around the tip in memory [BP 4.1]. A loader reads pages ahead
+/// of the tip and drops those it left behind; the servo never waits for it.
 ///
 /// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick. A
 /// frame is reused only when all ticks that could have used its page are over.

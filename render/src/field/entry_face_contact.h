@@ -13,10 +13,11 @@ namespace thimble::render {
 /// Finds the contact on a box whose force depends on the path: the face through which the tip
 /// entered pushes it back, at any depth [BP Fig. 2a]. A `Contact` stage of ContactForceLaw.
 ///
-/// The face is found on the straight path since the last tick, at any speed. It holds the tip as
-/// long as that is below the face's plane and within its outline, also beyond the back of a thin
-/// plate, so the tip cannot pop through. Contact ends above the plane, or where the tip leaves
-/// sideways. So a tip that comes out of another face is released at once, without a pull.
+/// The face is found on the straight path since the last tick, at any speed. It holds the tip while
+/// the tip is below the face's plane and within its outline. This includes the space beyond the
+/// back of a thin plate, so the tip cannot pop through. Contact ends above the plane, or where the
+/// tip leaves sideways. So a tip that comes out of another face is released at once, without a
+/// pull.
 class THIMBLE_EXPORT EntryFaceContact {
  public:
   explicit EntryFaceContact(const Box& box) : box_(box) {}

@@ -14,7 +14,7 @@ namespace thimble::render {
 /// Attracts the tip to points and lines once it is near. A Field; conservative.
 ///
 /// At distance r from a target, within its capture radius R, the energy is -U (1 - (r/R)^2)^2. The
-/// pull begins at R without a step, is largest at R / sqrt 3 and zero on the target, where it holds
+/// pull begins at R without a step, is largest at R / sqrt 3 and zero on the target. There it holds
 /// the tip like a spring of 2.6 force / R. Targets that overlap add up. On a line, all its points
 /// are equal: the tip slides along it freely.
 class MagneticSnap {

@@ -14,7 +14,7 @@ namespace thimble::render {
 /// The field of electric charges on a charged tip [BP 2]. A Field; conservative.
 ///
 /// The force of a point charge is unbounded. Here each charge is softened as if spread over a ball
-/// (Plummer's law): with s the vector from charge to tip, F = q s / (|s|^2 + a^2)^(3/2), the
+/// (Plummer's law). With s the vector from charge to tip, F = q s / (|s|^2 + a^2)^(3/2), minus the
 /// gradient of q / sqrt(|s|^2 + a^2). So the force is largest at |s| = a / sqrt 2, where it is 2 q
 /// / (3 sqrt 3 a^2). A scene gives this maximum force and a. At the centre of an attracting charge
 /// the tip is held like by a spring of 2.6 force / a.

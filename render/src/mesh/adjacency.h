@@ -16,8 +16,8 @@ namespace thimble::render {
 using Adjacency = std::vector<std::array<std::int32_t, 3>>;
 
 /// Finds the neighbours of all triangles. The error names an edge that has no second triangle, has
-/// a third one, or is between triangles of opposite winding, or a triangle that does not name three
-/// existing vertices. O(n log n). Real-time: never from the servo thread.
+/// a third one, or is between triangles of opposite winding. Or it names a triangle that does not
+/// name three existing vertices. O(n log n). Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh);
 
 /// Finds the neighbour of one triangle over the edge from corner `edge` to the next, in the cycle:

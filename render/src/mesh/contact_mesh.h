@@ -130,10 +130,10 @@ class THIMBLE_EXPORT ContactMesh {
   bool moved() const noexcept { return moved_; }
 
   /// Splits edge `k` of a triangle in its middle, with the triangle behind it. This adds one vertex
-  /// and two triangles; no vertex lies inside an edge of another triangle. The surface moves only
-  /// by rounding. Both triangles keep the half at the edge's begin if `keep_begin`, else at its
-  /// end. Splits nothing if the mesh may not grow (ContactMeshOptions::triangles_max), a vertex
-  /// would have more than kValenceMax triangles, or the two triangles share more than this edge.
+  /// and two triangles; no vertex is inside an edge of another triangle. The surface moves only by
+  /// rounding. Both triangles keep the half at the edge's begin if `keep_begin`, else at its end.
+  /// Splits nothing if the mesh may not grow (ContactMeshOptions::triangles_max), a vertex would
+  /// have more than kValenceMax triangles, or the two triangles share more than this edge.
   /// Real-time: safe; about a microsecond.
   EdgeSplit split_edge(std::int32_t triangle, std::size_t k, bool keep_begin) noexcept;
 

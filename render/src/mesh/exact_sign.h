@@ -4,8 +4,9 @@
 
 namespace thimble::render {
 
-// Signs of small polynomials in coordinates, found without rounding error: first in plain doubles
-// with a bound on the error, and only in doubtful cases in exact sums of doubles [Shewchuk].
+// Signs of small polynomials in coordinates, without rounding error. They are computed first in
+// plain doubles with a bound on the error. In doubtful cases exact sums of doubles are used
+// [Shewchuk].
 //
 // Exact for coordinates of magnitude 0 or 1e-90 to 1e90; beyond that products leave the range of
 // doubles. No heap, no state; at most a few microseconds. Real-time: safe.

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kPointsMin = 6;
 
 // Below this share of the largest pivot the points are too close to a conic through the vertex for
-// a meaningful paraboloid: its square root is the magnification of the points' noise.
+// a meaningful paraboloid. Its square root is the magnification of the points' noise.
 constexpr double kPivotMin = 1e-4;
 
 // tan of the angle between guess and fit above which the surface is not a graph over the guess:

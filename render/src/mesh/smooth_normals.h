@@ -13,7 +13,7 @@
 
 namespace thimble::render {
 
-/// The default angle between two faces' normals (rad) above which their edge is a crease: the right
+/// The default angle between two faces' normals (rad) above which their edge is a crease. The right
 /// angles of made objects stay sharp, the steps of a scan do not. Scenes may set another.
 inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-// Weights of a triangle's corners describe the place of a tip on it: they sum to 1, weight k is 0
+// Weights of a triangle's corners describe the place of a tip on it. They sum to 1. Weight k is 0
 // on the side opposite corner k, and all are at least 0 in the triangle.
 
 /// Distances of a tip from the edge planes of a triangle, as areas; edge_plane_weights are their

@@ -29,8 +29,8 @@ double available(const Vector3d& force, const Matrix3d& stiffness) noexcept {
   return 0.5 * (1 + kLeastShare) * force.dot(raised.inverse() * force);
 }
 
-/// Removes the shear from a force: the rest is the part that begins and ends with the push along
-/// the normal, and is by itself the gradient of an energy.
+/// Removes the shear from a force. The rest is the part that begins and ends with the push along
+/// the normal, and is the gradient of an energy.
 Vector3d without_shear(const Vector3d& force, const Matrix3d& stiffness,
                        const Vector3d& n_W) noexcept {
   const Vector3d along = stiffness * n_W;

@@ -54,7 +54,7 @@ NearestInUnits nearest_in_units(const NearestSoFar& best, double rounding,
 
 /// Returns bit i for each lane whose triangle may be as near to `from` (relative to the middle, in
 /// units) as the closest point known. Triangles are dropped only with certainty: all their corners
-/// lie beyond the plane across the way to that point. Lanes without a triangle may be set.
+/// are beyond the plane across the way to that point. Lanes without a triangle may be set.
 /// Real-time: safe.
 unsigned nearer_of_eight(const NearestInUnits& nearest, const Eigen::Vector3d& from,
                          const EightTriangles& eight) noexcept;

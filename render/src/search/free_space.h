@@ -32,7 +32,7 @@ class FreeSpace {
   }
 
  private:
-  // If the ball lasts less than four ticks, computing it does not pay: it is skipped for some
+  // If the ball lasts less than four ticks, computing it does not pay. It is skipped for some
   // ticks, at most 64, in which a hand at 0.3 mm per tick moves 20 mm.
   void look_around(const ContactSearch& search, const Eigen::Vector3d& p,
                    double step_squared) noexcept {

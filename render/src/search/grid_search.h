@@ -12,11 +12,11 @@
 
 namespace thimble::render {
 
-/// Searches for contact in space divided into volumes, of which only those near the query are
-/// examined [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them.
-/// It is the fastest search up to some 10^4 triangles of similar size. Beyond that, loading
-/// uncached lists and packed triangles takes the time that the volumes save. If a few volumes hold
-/// most of the triangles, it is no better than a linear search: see `even`.
+/// Searches for contact in space divided into volumes. Only the volumes near the query are examined
+/// [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them. It is the
+/// fastest search up to some 10^4 triangles of similar size. Beyond that, loading uncached lists
+/// and packed triangles takes the time that the volumes save. If a few volumes hold most of the
+/// triangles, it is no better than a linear search: see `even`.
 ///
 /// All queries are Real-time: safe. Paths of a tick and closest points nearby take a time that does
 /// not grow with the mesh, except by cache misses. Longer paths skip empty space in long steps.

@@ -106,9 +106,9 @@ class SegmentSieve {
 double kept_in_box(double parameter, const Eigen::Vector3d& way, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b, const Eigen::Vector3d& c) noexcept;
 
-/// Margin around boxes, in steps, for the rounding of a segment within the lattice: of its begin,
-/// of the way to a node, of that divided by its own way, and of the sum with a side (at most 2^-24
-/// of 2^31 steps each), several times.
+/// Margin around boxes, in steps, for the rounding of a segment within the lattice. Covers several
+/// times the rounding of its begin, of the way to a node, of that divided by its own way, and of
+/// the sum with a side (at most 2^-24 of 2^31 steps each).
 inline constexpr float kBoxRoom = 2048;
 
 /// A segment cut to the part that can reach a surface, in steps of the lattice and single

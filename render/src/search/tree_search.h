@@ -16,7 +16,7 @@
 namespace thimble::render {
 
 /// Searches for contact in a tree of boxes with eight children per node (TreeNodes) over the
-/// triangles in spatial order (order_in_blocks); each triangle has its own box in it.
+/// triangles in spatial order (order_in_blocks). Each triangle has its own box in it.
 ///
 /// Boxes are compared in single precision with a margin for its rounding, eight at a time if the
 /// processor can (wide_lanes). The tree is queried level by level, so that a query waits for main

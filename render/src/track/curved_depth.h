@@ -38,7 +38,7 @@ struct MeshDepth {
 /// where h > 0 a plain d + h would begin with a jump of the force. This one rises twice as steeply
 /// for the first h and is exact from there on. If a mesh is so coarse that h is felt, halve the
 /// stiffness that is just stable, or use a finer mesh. Where h < 0 (concave), the force also begins
-/// softly where the tip enters the mesh: the depth is d^2 / 4|h| up to d = 2|h|, where it and its
+/// softly where the tip enters the mesh. The depth is d^2 / 4|h| up to d = 2|h|, where it and its
 /// slope are those of d + h (`depth_below_hollow`).
 struct CurvedDepth {
   double depth(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,

@@ -24,7 +24,7 @@ constexpr double kOutside = 0.25;
 constexpr double kNotchMin = 0x1p-8;
 
 // Distance from an edge, in units of the least distance above, below which a point counts as being
-// on it: twice the longest step, so that no step reaches a face that was not examined.
+// on it. This is twice the longest step, so that no step reaches a face that was not examined.
 constexpr double kOnEdge = 4 / kNotchMin;
 
 // Maximum number of faces examined around one place: a vertex of valence 64 with those behind its

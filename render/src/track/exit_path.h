@@ -17,7 +17,7 @@ struct ExitPath {
 };
 
 /// Finds the step from a rest to just outside. It is the smallest (within a factor of 2) that leads
-/// away from every face at the point by at least a quarter of the mesh's rounding, so the rounded
+/// away from every face at the point by at least a quarter of the mesh's rounding. So the rounded
 /// proxy is still outside. In a notch it is longer than on a face by one over the sine of half the
 /// notch's angle. Not sure below 0.5 degrees, and at vertices where no direction leads away from
 /// all faces. Real-time: safe; one triangle inside a face, else those at the point.

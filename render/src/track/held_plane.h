@@ -17,7 +17,7 @@ class HeldPlane {
 
   /// Puts the contact at `p_WT` (W, m) on the plane. The first call of a hold takes the plane from
   /// `state` of the last tick. The depth is at least 0, because the end of the contact is not
-  /// known. Once the tip has been above the plane, the depth stays 0: the plane is infinite, so a
+  /// known. Once the tip has been above the plane, the depth stays 0. The plane is infinite, so a
   /// tip that goes around the object must not hit it in free air. The depth never exceeds twice the
   /// depth at the begin of the hold. Beyond that the plane gives way, because a surface that bends
   /// away would be felt as a wall.

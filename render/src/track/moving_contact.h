@@ -28,7 +28,7 @@ namespace thimble::render {
 ///
 /// A touching tip stays in contact while the surface is pressed in below it, and is released when
 /// the surface falls away faster than the tip follows. A surface that sweeps over a free tip takes
-/// it along: the next `update` touches the triangle that has passed, at any speed and for any
+/// it along. The next `update` touches the triangle that has passed, at any speed and for any
 /// thickness of the part.
 template <class Contact>
 class MovingContact {

@@ -50,10 +50,10 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
 ///
 /// Where an offset triangle has turned over, the edge planes replace it. A walk that reaches
 /// `kHopsMax`, as around a vertex of hundreds of faces, continues from the nearest triangle that
-/// the search returns, unless that triangle faces the other way, like the back of a thin part. If
-/// the depth turns negative while the tip is inside, SurfaceTracker finds the contact again.
-/// Deterministic. All but the constructors is Real-time: safe; usually one or two places per tick,
-/// at worst twice `kHopsMax`, one search query, and the cost of SurfaceTracker.
+/// the search returns. It does not if that triangle faces the other way, like the back of a thin
+/// part. If the depth turns negative while the tip is inside, SurfaceTracker finds the contact
+/// again. Deterministic. All but the constructors is Real-time: safe; usually one or two places per
+/// tick, at worst twice `kHopsMax`, one search query, and the cost of SurfaceTracker.
 class THIMBLE_EXPORT OffsetTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.

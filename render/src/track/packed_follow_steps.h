@@ -16,8 +16,8 @@
 
 namespace thimble::render {
 
-/// How far outside a triangle, as a share of its height, the tip may be without a hop, so that
-/// rounding on both sides of an edge does not send it back and forth (offset_triangle.h). The
+/// How far outside a triangle, as a share of its height, the tip may be without a hop. Otherwise
+/// rounding on both sides of an edge could send it back and forth (offset_triangle.h). The
 /// resulting jump is the same share of the triangle's bulge.
 inline constexpr double kOutside = -1e-6;
 

@@ -15,12 +15,12 @@ namespace thimble::render {
 /// of a contact stage, but never faster than the tip's path allows.
 ///
 /// A contact stage pushes the tip p towards the place g = p + depth n. Where cells of a surface
-/// meet deep inside, and where contact is found again, g jumps while p hardly moves, and a force K
-/// (g - p) would jump with it. This anchor a follows g by at most `kPathRatio` times the tip's
-/// path, and the felt force is K (a - p). So from one tick to the next, at any depth, |df| <= K (1
-/// + kPathRatio) |dp|. A jump of g is recovered over the path that follows, and not at all while
-/// the hand rests. While g does not jump, the anchor is g, and the felt contact is bit-identical to
-/// the tracked one.
+/// meet deep inside, and where contact is found again, g jumps while p hardly moves. A force K (g -
+/// p) would jump with it. This anchor a follows g by at most `kPathRatio` times the tip's path, and
+/// the felt force is K (a - p). So from one tick to the next, at any depth, |df| <= K (1 +
+/// kPathRatio) |dp|. A jump of g is recovered over the path that follows, and not at all while the
+/// hand rests. While g does not jump, the anchor is g, and the felt contact is bit-identical to the
+/// tracked one.
 ///
 /// While the anchor lags behind g, it gives the hand no energy that the hand has not put in:
 /// - It may move nearer to the tip freely. Farther away, which tightens the spring, it moves only

@@ -50,13 +50,13 @@ struct TrackerStep {
 /// too long, the least violated visited triangle stays active. Cells of distant faces overlap too.
 /// If a walk has made the tip deeper by more than twice its move, it has entered such a cell. Then
 /// the nearest triangle over the surface that has the tip below it becomes active instead, if it is
-/// less deep. If the depth turns negative while the tip is still inside, the nearest triangle that
-/// can be reached over the surface and has the tip below it becomes active, so contact is never
-/// lost inside. Next to a face, over a concave edge, that face would push the tip across the edge,
-/// and the next face would push it back. There two faces hold it, or three or more in a corner, at
-/// the closest point of edge or corner (concave_constraint.h). Deterministic. All but the
-/// constructor is Real-time: safe; usually one cell per tick, at worst `kHopsMax` cells, twice
-/// `kPatchMax` triangles and two search queries.
+/// less deep. If the depth turns negative while the tip is still inside, another triangle becomes
+/// active: the nearest one that can be reached over the surface and has the tip below it. So
+/// contact is never lost inside. Next to a face, over a concave edge, that face would push the tip
+/// across the edge, and the next face would push it back. There two faces hold it, or three or more
+/// in a corner, at the closest point of edge or corner (concave_constraint.h). Deterministic. All
+/// but the constructor is Real-time: safe; usually one cell per tick, at worst `kHopsMax` cells,
+/// twice `kPatchMax` triangles and two search queries.
 class THIMBLE_EXPORT SurfaceTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.

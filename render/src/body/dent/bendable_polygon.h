@@ -19,9 +19,9 @@ namespace thimble::render {
 /// A surface that dents under the cursor: the paper's Bendable Polygon [BP 4.2].
 ///
 /// The base points are the mesh, which is touched; springs join the vertices to them. While the
-/// cursor is below a triangle, springs and dampers join it to the six points around it: the three
-/// corners and the points that split the edges (edge_point.h). A corner with the cursor's weight w
-/// is pulled with K w / (1 - w), where K is its own stiffness with resting neighbours. So
+/// cursor is below a triangle, springs and dampers join it to the six points around it. These are
+/// the three corners and the points that split the edges (edge_point.h). A corner with the cursor's
+/// weight w is pulled with K w / (1 - w), where K is its own stiffness with resting neighbours. So
 ///
 ///   - Towards a corner, the corner follows the cursor wholly, for any mass: the dent is as deep
 ///   there
@@ -69,8 +69,8 @@ class THIMBLE_EXPORT BendablePolygon {
   ///   c = -d m, m = (q - p) / |q - p|, dc/dp = m n^T + d / |q - p| (1 - m m^T) (1 - J)
   ///
   /// with q = sum w_k x_k, J = sum x_k grad w_k, n the face's normal. So slow closed paths do no
-  /// work. As c is as long as the tip is deep, f is K d n wherever the cursor is, if no springs
-  /// join the vertices: on both sides of an edge, on faces of any size.
+  /// work. c is as long as the tip is deep. So without springs between vertices, f is K d n
+  /// wherever the cursor is: on both sides of an edge, on faces of any size.
   Eigen::Vector3d pull_at_tip(const Eigen::Matrix3d& change) const noexcept;
   /// Returns the cursor's displacement from its base point, which is the place above it. It is as
   /// long as the tip is below the face, towards the tip, m; 0 if it does not touch. It is the same

@@ -12,13 +12,13 @@ namespace thimble::render {
 /// that keeps its cells returns exactly the energy that it received. Where a tracker finds another
 /// part of the surface, that energy jumps without work. An account prevents a gain: work of the
 /// hand against the pull is added, work of the pull on the hand is subtracted. Where less than a
-/// quarter of a spring's energy is left, the pull fades softly. A pull cut off when the account is
-/// empty, and restored when the hand moves in again, would be a switch with a limit cycle of its
-/// full force.
+/// quarter of a spring's energy is left, the pull fades softly. A pull that is cut off when the
+/// account is empty would return when the hand moves in again. This would be a switch with a limit
+/// cycle of its full force.
 ///
 /// On strokes the account never acts (dent_pull_test.cpp); under a random tremor of 0.03 mm per
 /// tick it acts in one tick of a hundred. A force held for a tick lets a spring k do k x^2 / 2 more
-/// work per move of x than it has energy [PHYSICS 1.1]; this amount is added to the account.
+/// work per move of x than it has energy [PHYSICS 1.1]. This amount is added to the account.
 ///
 /// It never pulls into the surface, so that leaving does not stick.
 class BodyPull {
@@ -28,8 +28,8 @@ class BodyPull {
 
   // All of the following are Real-time: safe.
 
-  /// Returns the felt force (N in W) of the pull `f_T_W`, with the tip at `p_WT` (m), moving at
-  /// `v_WT` (m/s), `depth` (m) below a surface whose unit normal is `n_W`. NaN: none.
+  /// Returns the felt force (N in W) of the pull `f_T_W`. The tip is at `p_WT` (m), moves at `v_WT`
+  /// (m/s), and is `depth` (m) below a surface with the unit normal `n_W`. NaN: none.
   Eigen::Vector3d force(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& p_WT,
                         const Eigen::Vector3d& v_WT, const Eigen::Vector3d& n_W,
                         double depth) noexcept {

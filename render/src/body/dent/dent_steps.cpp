@@ -161,7 +161,7 @@ void DentMotion::implicit(double share) noexcept {
 // compute the change of velocity, and end when the residual is a share of the change due to springs
 // and dampers. Relative to the momentum itself, a slow dent, whose springs change little of it in a
 // step, would get no force. At steps far beyond a spring's period the springs require more than the
-// momentum, and the residual is a share of that: the trapezoid rule damps nothing there, so errors
+// momentum, and the residual is a share of that. The trapezoid rule damps nothing there, so errors
 // of a larger scale would grow.
 void DentMotion::solve(const Weights& system) noexcept {
   const std::size_t n = vertices_.size();

@@ -18,10 +18,9 @@ namespace thimble::render {
 ///     ---x--- chord: (1 - t) u_a + t u_b
 ///
 /// On its own edge s = 1: it is at the cursor, for any mass. On the other two edges s = 0: it is on
-/// the edge, so the surface is the same with and without it, and nothing jumps when the cursor
-/// crosses over and the point is removed. With the factor 2 the dent varies least next to the
-/// cursor (within 3 %; 4 % with 4, 6 % with 1). Edge points do not load vertices: they are
-/// massless.
+/// the edge, so the surface is the same with and without it. Nothing jumps when the cursor crosses
+/// over and the point is removed. With the factor 2 the dent varies least next to the cursor
+/// (within 3 %; 4 % with 4, 6 % with 1). Edge points do not load vertices: they are massless.
 class EdgePoint {
  public:
   /// Input of one step of the edge point.

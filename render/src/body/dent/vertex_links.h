@@ -14,8 +14,8 @@ namespace thimble::render {
 /// edge relative to an edge between two vertices of valence 6.
 ///
 /// The weight of an edge is 12 / (valence of one end + valence of the other). So the springs around
-/// a vertex are about as strong as six of them at every valence, and a dent is as deep at a corner
-/// of four triangles as at one of eight.
+/// a vertex are about as strong as six of them at every valence. A dent is as deep at a corner of
+/// four triangles as at one of eight.
 class THIMBLE_EXPORT VertexLinks {
  public:
   /// Finds the edges of a mesh. Real-time: never from the servo thread.

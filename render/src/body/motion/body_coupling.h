@@ -6,8 +6,8 @@
 
 namespace thimble::render {
 
-/// Returns the share (0 to 1) of a surface force that is given to the hand and, with the opposite
-/// sign, to the body, so that the body moves by the whole implicit step.
+/// Returns the share (0 to 1) of a surface force for the hand and, with the opposite sign, for the
+/// body. With it the body moves by the whole implicit step.
 ///
 /// MovingTouch and HeldTouch evaluate the surface at the place x + h v to which the body's present
 /// velocity would lead within the step h. The force is then scaled by s = 1 / (1 + (k h^2 + b h)
@@ -15,10 +15,10 @@ namespace thimble::render {
 /// along `u` (unit) that makes the point gain `gain` (1/kg, W u in the notes below), w = |W u|^2 /
 /// (u . W u): 1 / mass if the push goes through the centre, and never less than u . W u.
 ///
-/// Stability. Let x be the depth of a tip at rest in the surface of a body of mass m, v = dx/dt,
-/// and U(x) the energy of the surface, convex, with dU/dx = 0 outside. The force is f = -s (U'(x +
-/// h v) + b v), and the body moves by v+ = v + h f / m, x+ = x + h (v + v+) / 2. For U = k x^2 / 2,
-/// with K = k h^2 / m and B = b h / m, so s = 1 / (1 + K + B), the step is linear,
+/// Stability. Let x be the depth of a tip at rest in the surface of a body of mass m, and v =
+/// dx/dt. U(x) is the energy of the surface, convex, with dU/dx = 0 outside. The force is f = -s
+/// (U'(x + h v) + b v), and the body moves by v+ = v + h f / m, x+ = x + h (v + v+) / 2. For U = k
+/// x^2 / 2, with K = k h^2 / m and B = b h / m, so s = 1 / (1 + K + B), the step is linear,
 ///
 ///     x+ = (1 - s K / 2) x + h (1 - s (K + B) / 2) v,
 ///     v+ = -(s K / h) x + (1 - s (K + B)) v,

@@ -7,8 +7,8 @@
 
 namespace thimble::render {
 
-/// Impulses by which a floor holds a rigid body at one moment: no rebound, Coulomb friction at each
-/// support point.
+/// Impulses of a floor on a rigid body at one moment: no rebound, Coulomb friction at each support
+/// point.
 ///
 /// Let v_i be the velocity of support point i after the impulses r_i, split into the part along the
 /// floor's normal and the part along the floor. The impulses satisfy, at all points at once,
@@ -16,16 +16,16 @@ namespace thimble::render {
 ///     v_n >= -allowed,   r_n >= 0,   r_n (v_n + allowed) = 0,
 ///     |r_t| <= mu r_n,   and where v_t is not 0, r_t = -mu r_n v_t / |v_t|.
 ///
-/// For a given slip s_i = |v_t| these conditions are those of a convex problem in the body's six
-/// velocities: the closest velocity, measured by the kinetic energy, for which v_n + allowed >=
-/// mu (|v_t| - s_i) [DeSaxce, Cadoux]. The problem is solved by an augmented Lagrangian, whose
-/// smooth convex function is minimised by Newton's method with a line search. The slips are updated
-/// with the multipliers, by the secant of the last two. Accumulated impulses are projected onto
-/// their cones as a whole, so an impulse that was too large is taken back; the result does not
-/// depend on the order of the points, and where several distributions of the load give the same
+/// For a given slip s_i = |v_t| these are the conditions of a convex problem in the body's six
+/// velocities. Its solution is the closest velocity, measured by the kinetic energy, with v_n +
+/// allowed >= mu (|v_t| - s_i) [DeSaxce, Cadoux]. The problem is solved by an augmented Lagrangian,
+/// whose smooth convex function is minimised by Newton's method with a line search. The slips are
+/// updated with the multipliers, by the secant of the last two. Accumulated impulses are projected
+/// onto their cones as a whole, so an impulse that was too large is reduced again. The result does
+/// not depend on the order of the points. If several distributions of the load give the same
 /// motion, the most even one is chosen. The kinetic energy never rises, and no point goes through
-/// the floor: if the iteration ends early, the impulses are scaled down until the energy does not
-/// rise, and the points that still approach too fast are stopped without friction.
+/// the floor. If the iteration ends early, the impulses are scaled down until the energy does not
+/// rise. Points that still approach too fast are stopped without friction.
 class FloorImpulses {
  public:
   static constexpr std::size_t kPointsMax = 64;  ///< Maximum number of support points.

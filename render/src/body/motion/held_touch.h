@@ -16,9 +16,10 @@
 
 namespace thimble::render {
 
-/// The force law of an object that the hand holds from the first tick on: a spring and a damper
-/// from the tip to the point of the body that was there then. The hand feels the body's weight,
-/// swing and contacts through them. The surface is not touched until the body has slipped out.
+/// The force law of an object that the hand holds from the first tick on. A spring and a damper
+/// join the tip to the point of the body that was there in the first tick. The hand feels the
+/// body's weight, swing and contacts through them. The surface is not touched until the body has
+/// slipped out.
 ///
 /// A hand that goes where the body cannot follow, beyond its reach or under its floor, feels at
 /// most `force_max` and then nothing. Real-time: safe.

@@ -137,8 +137,8 @@ Eigen::Quaterniond RigidBody::middle_of_turn(double time) const noexcept {
   return (turn * q_WB_).normalized();
 }
 
-// Removes the speed into the floor from points that are below it or would be after the next step,
-// without rebound, and applies friction (floor_impulses.h), with the body's orientation `q_WB`.
+// Removes the speed into the floor from points that are below it or would be after the next step.
+// There is no rebound. Applies friction (floor_impulses.h). `q_WB` is the body's orientation.
 // Looking ahead lets a side come to rest flat: all its corners count at once.
 void RigidBody::stand_on_floor(double time, const Eigen::Quaterniond& q_WB) noexcept {
   const Floor& floor = *settings_.floor;

@@ -51,16 +51,16 @@ class SharedBodyOf final : public SharedBody {
   /// Returns the stored energy of a hand (J). A fall of it is energy that the body gave to this
   /// hand.
   ///
-  /// Let E be the energy of motion and height, E_0 its first value, W_i the work of hand i on the
-  /// body, and L = E_0 + sum W_i - E the loss of the body. The stored energy of hand i is
+  /// Let E be the energy of motion and height, and E_0 its first value. W_i is the work of hand i
+  /// on the body, and L = E_0 + sum W_i - E the loss of the body. The stored energy of hand i is
   ///
   ///     S_i = E - sum of W_j of the other hands + max L = E_0 + W_i + (max L - L).
   ///
   /// Without a loss this is E less the work of the other hands. A loss of the body belongs to no
-  /// hand. Without the last term it would be a fall of all S_i, so that one hand's drag over a
-  /// table would pay for a wrong force on another hand. Energy that a body gains without work lets
-  /// L fall below its maximum and raises S_i, as with one hand. So the energy that all hands
-  /// receive by falls of S_i is the energy that they supplied. Real-time: safe.
+  /// hand. Without the last term it would be a fall of all S_i. Then one hand's drag over a table
+  /// would pay for a wrong force on another hand. Energy that a body gains without work lets L fall
+  /// below its maximum and raises S_i, as with one hand. So the energy that all hands receive by
+  /// falls of S_i is the energy that they supplied. Real-time: safe.
   double energy_for(std::size_t hand) const noexcept {
     double energy = motion_.energy() + lost_;
     for (std::size_t i = 0; i < hands_.size(); ++i) {
@@ -114,7 +114,7 @@ class SharedBodyOf final : public SharedBody {
 /// `gain_at` assumes that every hand gives the same impulse at the same point. Then the share in
 /// MovingTouch and HeldTouch (shared_force) is stable for any number of hands. The body's step by
 /// all forces together gains at most the number of hands times the gain by one (Cauchy and
-/// Schwarz), so the springs' energy falls as with one hand. All of it is Real-time: safe.
+/// Schwarz). So the springs' energy falls as with one hand. All of it is Real-time: safe.
 template <class Motion>
 class SharedMotion {
  public:

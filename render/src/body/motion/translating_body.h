@@ -39,9 +39,9 @@ class TranslatingBody {
   /// friction of the coefficient `friction` (>= 0) and without rebound.
   ///
   /// The floor's impulse is given in two parts, one before the body moves and one after. The first
-  /// counters the motion that the forces of the step would cause: a body at rest stays in place, to
-  /// rounding, and sliding slows down by friction times gravity. In each part friction is bounded
-  /// by the normal impulse of that part.
+  /// counters the motion that the forces of the step would cause. So a body at rest stays in place,
+  /// to rounding, and sliding slows down by friction times gravity. In each part friction is
+  /// bounded by the normal impulse of that part.
   void step_on_floor(const Eigen::Vector3d& n_W, double height, double friction) noexcept {
     const double time = flow_.xv;  // s; displacement in a step per velocity
     // Written so that NaN, and a body that does not move, have no floor.

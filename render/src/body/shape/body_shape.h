@@ -49,8 +49,8 @@ class BodyShape {
                                      const driver::TouchInfo& touch) noexcept;
 
   /// Returns the next edge of the mesh to split (PrintRefinement), after the moves of the last
-  /// `follow`; none if the mesh is fine enough, or after enough splits for a tick. The caller
-  /// reports each by `take`, split or not. Real-time: safe.
+  /// `follow`; none if the mesh is fine enough, or after the splits of a tick. The caller reports
+  /// each by `take`, split or not. Real-time: safe.
   std::optional<EdgeOfTriangle> next_split(const ContactMesh& mesh) noexcept {
     if (!refinement_ || !pressed_) return std::nullopt;
     return refinement_->next(mesh, first_places_);

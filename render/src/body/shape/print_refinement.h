@@ -27,7 +27,7 @@ struct EdgeOfTriangle {
 class PrintRefinement {
  public:
   /// Splits triangles with an edge longer than `edge` m, within `radius` m of a press, of a mesh
-  /// that grows to `triangles_max`; makes no edge shorter than an eighth of `edge`. All lengths are
+  /// that grows to `triangles_max`. Makes no edge shorter than an eighth of `edge`. All lengths are
   /// those on the first shape. Real-time: never from the servo thread.
   PrintRefinement(double edge, double radius, std::size_t triangles_max);
 

@@ -14,8 +14,8 @@
 
 namespace thimble::render {
 
-/// Moves the base points of a mesh like the wall of a tin can: around the press a panel gives way
-/// elastically, and past the threshold it jumps to a second shape and stays there.
+/// Moves the base points of a mesh like the wall of a tin can. Around the press a panel gives way
+/// elastically. Past the threshold it jumps to a second shape and stays there.
 ///
 /// All base points of a panel move in together, by a smooth profile times the displacement of one
 /// SnapBase: 1 up to a quarter of the radius, then falling to 0 at the radius. Until it snaps, the

@@ -32,7 +32,7 @@ class SnapTruss {
   double limit_load() const noexcept;
 
   /// Returns the resting place of the joint under F(u) + spring u = load on the side of the first
-  /// shape (`snapped` false) or the second; empty if that shape cannot bear the load. `load` (N) is
+  /// shape (`snapped` false) or the second. Empty if that shape cannot bear the load. `load` (N) is
   /// the dead load plus spring times the position of the spring's other end. To 1e-15 of the size;
   /// at most 80 rounds.
   std::optional<double> settle(double load, double spring, bool snapped) const noexcept;

@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Collects the vertices of a mesh within a distance of a place, going over the surface from a
+/// Collects the vertices of a mesh within a distance of a place. Goes over the surface from a
 /// triangle there, so it does not reach through a thin wall. Distances are those of the first
 /// shape, so that they stay the same in a deep pit.
 class SurfacePatch {

@@ -9,10 +9,10 @@
 
 namespace thimble::render {
 
-/// Keeps the triangles of a mesh from turning over while their corners move, however far. Seen
-/// along its first normal, each triangle keeps a share of its first area [BP 4.3: "problems when
-/// the model was deformed too much"]. It uses the present places of the neighbours, so that a pit
-/// may be deeper than a triangle is wide.
+/// Keeps the triangles of a mesh from turning over while their corners move by any distance. Seen
+/// along its first normal, each triangle keeps a share of its first area
+/// [BP 4.3: "problems when the model was deformed too much"]. It uses the present places of the
+/// neighbours, so that a pit may be deeper than a triangle is wide.
 class TurnGuard {
  public:
   /// Takes the mesh in its first shape. 32 bytes per triangle. Real-time: never from the servo

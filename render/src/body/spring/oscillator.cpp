@@ -8,8 +8,8 @@
 namespace thimble::render {
 namespace {
 
-// Twice the bits of a double throughout: at k = 1e5 N/m, m = 1 mg and 30 ms the phase is 9,500 rad,
-// and in double its rounding by itself would be 1e-12. A long double differs between processors.
+// Twice the bits of a double throughout: at k = 1e5 N/m, m = 1 mg and 30 ms the phase is 9,500 rad.
+// Its rounding in double would be 1e-12. A long double differs between processors.
 using Real = math::DoubleDouble;
 
 // Per unit mass: x'' + 2 a x' + w2 x = g.

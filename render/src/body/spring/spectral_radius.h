@@ -13,9 +13,9 @@ struct SpectralRadius {
   bool converged = true;
 };
 
-/// Computes the largest eigenvalue of M^-1 A for A of the network's pattern by Lanczos' iteration:
-/// the power iteration, with the best vector of all its rounds instead of the last. Real-time:
-/// never from the servo thread.
+/// Computes the largest eigenvalue of M^-1 A for A of the network's pattern by Lanczos' iteration.
+/// This is the power iteration, with the best vector of all its rounds instead of the last.
+/// Real-time: never from the servo thread.
 template <int kDof>
 SpectralRadius spectral_radius(const SpringNetwork<kDof>& network, const NetworkWeights& weights);
 

@@ -8,8 +8,8 @@
 namespace thimble::render {
 
 /// The files that Assimp may access. These are the file being read, from memory under the name
-/// `name`, and, if `folder` is not empty, plain files in it and below, by relative names that do
-/// not leave it. Nothing can be written. The bytes must outlive it.
+/// `name`. If `folder` is not empty, they include plain files in it and below, by relative names
+/// that do not leave it. Nothing can be written. The bytes must outlive it.
 class FolderFiles final : public Assimp::IOSystem {
  public:
   FolderFiles(const std::string& bytes, std::string name, std::filesystem::path folder);

@@ -17,8 +17,8 @@ bool is_stl_text(std::string_view bytes);
 /// length. Real-time: never from the servo thread.
 bool is_stl_binary(std::string_view bytes);
 
-/// Reads the bytes of an STL file, text or binary: coordinates of a text in double precision,
-/// facets of any number of corners, several solids, words in either case. Normals are ignored.
+/// Reads the bytes of an STL file, text or binary. A text may have coordinates in double precision,
+/// facets of any number of corners, several solids, and words in either case. Normals are ignored.
 /// Bytes after the last triangle of a binary file are ignored and reported in `notes`, and so is a
 /// text without its end. Not welded. The error begins with the file's `name` and the line of a text
 /// ("a.stl:12: ..."), or is a sentence. Memory grows with the bytes. Real-time: never from the

@@ -20,9 +20,9 @@ struct FilledHole {
 };
 
 /// Closes the holes of parts (triangles connected over edges), each part wholly or not at all. A
-/// part is closed if all of its rims are rings of at most `kHoleEdgesMax` edges, no edge has more
-/// than two triangles, and the filling has no more than `share` of the part's area. So a box
-/// without lid is closed. A sheet, whose rim would be closed by a second sheet, is not. New
+/// part is closed if all of its rims are rings of at most `kHoleEdgesMax` edges and no edge has
+/// more than two triangles. Also, the filling must have no more than `share` of the part's area. So
+/// a box without lid is closed. A sheet, whose rim would be closed by a second sheet, is not. New
 /// triangles are appended, wound like their neighbours, and `origin` (a number per triangle) grows
 /// with them. Returns the holes closed. Preconditions: triangles name three different finite
 /// vertices; no vertex joins parts that share nothing else. Real-time: never from the servo thread.

@@ -15,7 +15,7 @@ namespace thimble::render {
 /// that is moved or scaled is rounded again.
 inline constexpr double kFillFlatness = 100 * kFlatness;
 
-/// A hole in a surface as a ring of places. Corner k is joined to corner k + 1 by an edge; the
+/// A hole in a surface as a ring of places. Corner k is joined to corner k + 1 by an edge. The
 /// triangle on its other side has the unit normal `beside[k]`, seen from the side from which the
 /// ring is counter-clockwise.
 struct HoleRing {

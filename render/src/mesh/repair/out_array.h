@@ -31,7 +31,7 @@ class THIMBLE_EXPORT OutFinder {
 
   /// Returns the sign of a triangle. The result is meaningful only if the parts of the mesh are
   /// closed; their winding does not matter. 0 if no start could be proven: a triangle that has no
-  /// area, lies on another one, or is thinner than the resolution of coordinates. Preconditions:
+  /// area, is on another one, or is thinner than the resolution of coordinates. Preconditions:
   /// `triangle` exists, triangles name existing vertices, coordinates are at most 1e15. Real-time:
   /// safe; one pass over the mesh, a dozen at worst.
   std::int8_t find(std::int32_t triangle) const noexcept;

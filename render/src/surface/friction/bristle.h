@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// The recommended friction: a bristle between tip and surface that bends with the path, and is
+/// The recommended friction: a bristle between tip and surface that bends with the path. It is
 /// dragged along when it would pull harder than friction can (the form of Hayward and Armstrong)
 /// [PHYSICS 2.2, H].
 ///

@@ -16,12 +16,12 @@ namespace thimble::render {
 
 /// A friction law: the response of one kind of friction to slip along the surface.
 ///
-/// `pull` returns the force (N in W) along the surface with which the surface holds back, in the
-/// direction in which the tip moved; the hand feels its opposite. `turn` carries the state along
-/// when the normal turns. `forget` ends the contact. `coulomb` returns the coefficients, which may
-/// be changed between two ticks. All Real-time: safe. `kName` is its name in scenes. `Settings` are
-/// its settings in scenes, read by `Settings::read`; a law is constructed from them. If a tip that
-/// is held still does not come to rest on a law, its constant `kRests` is false.
+/// `pull` returns the friction force (N in W) along the surface, in the direction in which the tip
+/// moved. The hand feels its opposite. `turn` carries the state along when the normal turns.
+/// `forget` ends the contact. `coulomb` returns the coefficients, which may be changed between two
+/// ticks. All Real-time: safe. `kName` is its name in scenes. `Settings` are its settings in
+/// scenes, read by `Settings::read`; a law is constructed from them. If a tip that is held still
+/// does not come to rest on a law, its constant `kRests` is false.
 template <class Law>
 concept FrictionLaw = std::constructible_from<Law, const typename Law::Settings&> &&
     std::default_initializable<typename Law::Settings> &&

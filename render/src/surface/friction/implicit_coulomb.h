@@ -9,7 +9,7 @@
 namespace thimble::render {
 
 /// Coulomb's set-valued friction on a massless point that is joined to the tip by a spring and a
-/// damper, solved by the implicit Euler step (the form of Kikuuwe and others) [PHYSICS 2.2, J].
+/// damper. Solved by the implicit Euler step (the form of Kikuuwe and others) [PHYSICS 2.2, J].
 /// Like the bristle with its own damping; static and sliding friction are the same.
 class ImplicitCoulombLaw {
  public:

@@ -17,7 +17,7 @@ namespace thimble::render {
 /// FootStage.
 ///
 /// The picture is projected in the object's frame, along one axis or along all three at once, each
-/// weighted by the square of the normal's component along it; it repeats. Projected along all axes,
+/// weighted by the square of the normal's component along it. It repeats. Projected along all axes,
 /// it has the same orientation on every face, seen from outside; along one axis, as seen from that
 /// axis' tip. On flat faces that is conservative. Where a curved face turns from one axis to the
 /// next, the change of the weights is neglected: about (height / radius of curvature) of the force.

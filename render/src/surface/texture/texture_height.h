@@ -38,13 +38,13 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 /// So for any normal n the texture itself does no work around a closed path on which q moves
 /// continuously, in depth or along the surface. This holds with any spring that is linear in the
 /// depth; a damper only dissipates. Where n is g, the last term is 0 and the whole force does no
-/// work: on flat faces, shapes, the god-object, and at an edge or corner that holds a tip. Where n
-/// is shaded, that term is the work left by the contact itself. `kConservative` applies exactly
-/// this, as a tilted normal and a stretched depth. In the last term d is limited to 2 (d + h), so
-/// that the force ends with d + h. At depths below twice a valley, this slightly reduces the work
-/// that a shaded contact leaves. J is the plane's projection on flat ground, longer by R / (R - d)
-/// on a ball, shorter where the surface is concave. `kDepthOnly` keeps the normal: going up a slope
-/// costs less than going down returns.
+/// work. This is so on flat faces, on shapes, with the god-object, and at an edge or corner that
+/// holds a tip. Where n is shaded, that term is the work left by the contact itself.
+/// `kConservative` applies exactly this, as a tilted normal and a stretched depth. In the last term
+/// d is limited to 2 (d + h), so that the force ends with d + h. At depths below twice a valley,
+/// this slightly reduces the work that a shaded contact leaves. J is the plane's projection on flat
+/// ground, longer by R / (R - d) on a ball, shorter where the surface is concave. `kDepthOnly`
+/// keeps the normal: going up a slope costs less than going down returns.
 ///
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.

@@ -38,13 +38,13 @@ struct TextureExtent {
 double texture_headroom(const TextureExtent& extent, const EffectContext& context);
 
 /// Bounds the change of the force with the factor g by which a texture is made higher. With the
-/// depth d + g h it is k (d + g h) (n - g grad h), so its change is at most k |h| |n - g grad h|
+/// depth d + g h it is k (d + g h) (n - g grad h). So its change is at most k |h| |n - g grad h|
 /// and k (d + g h) |grad h| together. Real-time: never from the servo thread.
 ForceSensitivity texture_lever(const TextureExtent& extent);
 
 /// Refuses, with a message at `key`, a texture that is deeper than the arm's full force can press
-/// into the surface, steeper than kTextureSlopeMax, or so fine that a hand at `hand_speed` crosses
-/// more than half a wave per tick. Real-time: never from the servo thread.
+/// into the surface, or steeper than kTextureSlopeMax. Also refuses one so fine that a hand at
+/// `hand_speed` crosses more than half a wave per tick. Real-time: never from the servo thread.
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,
                    const TextureSettings& settings, const EffectContext& context);
 
