@@ -21,8 +21,7 @@ struct OffsetWay {
 /// The felt contact at a place of an offset triangle.
 struct OffsetResponse {
   Eigen::Vector3d n_W{0, 0, 0};  ///< Outward unit normal.
-  double depth = 0;              ///< Depth below the smooth surface along n_W, in steps of the
-                                 ///< lattice.
+  double depth = 0;              ///< Below the smooth surface along n_W, in steps of the lattice.
 };
 
 }  // namespace thimble::render

@@ -26,8 +26,7 @@ inline constexpr double kLatticeHalf = 0x1p30;
 struct alignas(64) PackedTriangle {
   std::array<std::int32_t, 3> x, y, z;     ///< Corners on the lattice, one array per axis.
   std::array<std::uint32_t, 3> normals;    ///< Corner normals, octahedral, 16 bits per half.
-  std::array<std::int32_t, 3> neighbours;  ///< Packed triangle over the edge from corner k to k +
-                                           ///< 1.
+  std::array<std::int32_t, 3> neighbours;  ///< Triangle over the edge from corner k to k + 1.
   std::uint32_t flags;  ///< Bit k: edge k is a crease. From bit 3: the input's number.
 
   /// Shift of the input's number in `flags`: 2^28 triangles fit, the maximum of a surface.
@@ -84,7 +83,7 @@ class THIMBLE_EXPORT PackedSurface {
   static driver::Result<PackedSurface> build(const TriangleMesh& mesh,
                                              const PackedSurfaceOptions& options = {});
 
-  // All of the following are Real-time: safe. Precondition: numbers exist.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   std::int32_t triangle_count() const noexcept {
     return static_cast<std::int32_t>(triangles_.size());
@@ -111,10 +110,7 @@ class THIMBLE_EXPORT PackedSurface {
     return (p_W - origin_) * per_step_;
   }
 
-  const Eigen::Vector3d& origin() const noexcept {
-    return origin_;
-  }  ///< Returns the origin of the
-     ///< lattice, m.
+  const Eigen::Vector3d& origin() const noexcept { return origin_; }  ///< Returns its origin, m.
   /// Returns the length of one step of the lattice, m.
   double step() const noexcept { return step_; }
   /// Returns the number of steps in 1 m.

@@ -76,10 +76,8 @@ struct VertexMove {
 /// Result of splitting an edge in its middle, with the two triangles at it. Each triangle keeps its
 /// number and the half at the first of the edge's ends; the other halves get new numbers.
 struct EdgeSplit {
-  std::int32_t vertex = -1;                 ///< The new vertex in the middle; -1: nothing was
-                                            ///< split.
-  std::array<std::int32_t, 2> ends{};       ///< The vertex kept by `triangles`, and the one they
-                                            ///< lose.
+  std::int32_t vertex = -1;                 ///< The new middle vertex; -1: no split.
+  std::array<std::int32_t, 2> ends{};       ///< The vertex kept by `triangles`, the one lost.
   std::array<std::int32_t, 2> triangles{};  ///< Triangles that keep their numbers.
   std::array<std::int32_t, 2> others{};     ///< The new triangles next to each.
 };
@@ -98,7 +96,7 @@ class THIMBLE_EXPORT ContactMesh {
   static driver::Result<ContactMesh> build(const TriangleMesh& mesh,
                                            const ContactMeshOptions& options = {});
 
-  // All of the following are Real-time: safe. Precondition: numbers exist.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(cells_.size()); }
 
@@ -143,8 +141,7 @@ class THIMBLE_EXPORT ContactMesh {
     return vertices_.size() + (triangles_max() - triangles_.size()) / 2;
   }
 
-  static constexpr std::size_t kValenceMax = 64;  ///< Maximum valence of a vertex that a split may
-                                                  ///< increase.
+  static constexpr std::size_t kValenceMax = 64;  ///< Maximum valence after a split.
 
   /// Returns the position of corner `k` of a triangle, m in W.
   const Eigen::Vector3d& position(std::int32_t triangle, std::size_t k) const noexcept {
@@ -249,8 +246,7 @@ class THIMBLE_EXPORT ContactMesh {
   std::vector<std::array<double, 3>> edge_sizes_;
   std::vector<Fan> fan_of_;
   std::vector<std::int32_t> fans_;
-  std::size_t fans_built_ = 0;  // size of fans_ at building; fans that have grown are stored behind
-                                // it
+  std::size_t fans_built_ = 0;  // size of fans_ at building; grown fans are behind it
   std::size_t triangles_max_ = 0;
   Eigen::Vector3d origin_{0, 0, 0};
   Eigen::Vector3d box_min_{0, 0, 0};

@@ -44,7 +44,7 @@ class THIMBLE_EXPORT SmoothNormals {
   /// Enables `refit`: 5 more bytes per triangle. Real-time: never from the servo thread.
   void prepare_refit(const ContactMesh& mesh);
 
-  // All of the following are Real-time: safe. Precondition: numbers exist.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   /// Updates the data that depends on triangles whose corners have moved (all around these) or that
   /// are new. Normals and creases are bit-identical to those of the newly built mesh. Precondition:

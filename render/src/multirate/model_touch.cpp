@@ -230,7 +230,7 @@ void ModelTouch::approach(const Vector3d& p_WT) noexcept {
   const double c = now - std::max(paid, now);
   if (a + b + c > 0 && a > 0) {
     const double root = std::sqrt(std::max(0.0, b * b - 4 * a * c));
-    // Of the two forms, the one without a difference of nearly equal numbers.
+    // Uses the form without a difference of nearly equal numbers.
     const double most = b > 0 ? -2 * c / (b + root) : (root - b) / (2 * a);
     if (most < share) {
       share = std::max(0.0, most);

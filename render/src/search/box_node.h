@@ -47,8 +47,7 @@ struct alignas(64) BoxNode {
   /// Returns the box around all children, as rounded. Real-time: safe.
   LatticeAabb box() const noexcept;
 
-  bool operator==(const BoxNode&) const noexcept = default;  ///< Compares all members. Real-time:
-                                                             ///< safe.
+  bool operator==(const BoxNode&) const noexcept = default;  ///< Compares all. Real-time: safe.
 
  private:
   static constexpr std::uint32_t kChildren = 0xffu;

@@ -14,8 +14,8 @@ namespace thimble::render {
 /// them is read.
 struct alignas(16) EightTriangles {
   static constexpr std::size_t kMost = 8;         ///< Maximum number of triangles.
-  static constexpr double kFarthestUnit = 32700;  ///< Maximum distance of a corner from the middle,
-                                                  ///< in units.
+  static constexpr double kFarthestUnit = 32700;  ///< Maximum of a corner from the middle, in
+                                                  ///< units.
   using Lanes = std::array<std::int16_t, kMost>;
   std::array<Lanes, 3> x{}, y{}, z{};  ///< Coordinates of corner k, one triangle per lane.
 

@@ -14,7 +14,7 @@ namespace thimble::render {
 /// The face that holds a tip behind a thin part, -1 for none.
 struct FaceAbove {
   std::int32_t triangle = -1;
-  double depth = 0;            ///< Of the tip below the face's plane.
+  double depth = 0;            ///< Depth of the tip below the face's plane.
   Eigen::Vector3d n{0, 0, 0};  ///< Unit normal of the face.
 };
 

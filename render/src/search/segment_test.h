@@ -74,8 +74,8 @@ class SegmentTest {
 
 /// Numbers of a segment that quickly prove that it does not cross a packed triangle, in steps.
 struct SegmentBounds {
-  std::array<std::int32_t, 4> low, high;  ///< Box around it, with a margin for rounding; three
-                                          ///< lanes are used.
+  std::array<std::int32_t, 4> low, high;  ///< Its box, with a margin for rounding; three lanes are
+                                          ///< used.
   std::array<std::int32_t, 4> from;       ///< Its begin, rounded.
   std::array<float, 3> way;
   float way_size;    ///< Largest absolute component of `way`.
@@ -116,7 +116,7 @@ inline constexpr float kBoxRoom = 2048;
 struct ReachedPart {
   bool any = false;
   Eigen::Vector3f from, way;
-  double begin = 0, length = 0;  ///< Of the part, as parameters of the whole segment.
+  double begin = 0, length = 0;  ///< Of the part, as parameters of the segment.
   float room = kBoxRoom;         ///< Margin around boxes, for this rounding and that of far ends.
 };
 

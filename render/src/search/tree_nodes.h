@@ -22,8 +22,7 @@ class TreeNodes {
   using Name = std::uint32_t;
   static constexpr int kNumberBits = 26;                         ///< Bits of the number in a name.
   static constexpr Name kNumber = (Name{1} << kNumberBits) - 1;  ///< Mask of the number in a name.
-  static constexpr std::size_t kLevelsMax = 10;                  ///< Maximum number of levels: 8^10
-                                                                 ///< things.
+  static constexpr std::size_t kLevelsMax = 10;                  ///< Maximum: 8^10 things.
   static constexpr std::size_t kThingsMax = std::size_t{1}
                                             << (kNumberBits + 2);  ///< Maximum number of things.
 

@@ -25,7 +25,7 @@ inline std::uint32_t count_ones(std::uint64_t v) noexcept {
 struct VolumeList {
   std::span<const std::int32_t> triangles;  ///< In ascending order.
   const EightTriangles* eights = nullptr;   ///< The same triangles in groups of eight.
-  Eigen::Vector3d middle;                   ///< Of the volume.
+  Eigen::Vector3d middle;                   ///< Middle of the volume.
 };
 
 /// Space divided into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes are
@@ -66,10 +66,8 @@ class VolumeGrid {
                                                   ///< distance to the next one.
     std::vector<Block> all_blocks;                ///< Blocks that are not empty.
     std::vector<ListBegin> begins;                ///< Per occupied volume; one more at the end.
-    std::vector<std::int32_t> triangles;          ///< Lists of the volumes, each in ascending
-                                                  ///< order.
-    std::vector<EightTriangles> eights;           ///< Their corners; each list begins a new
-                                                  ///< element.
+    std::vector<std::int32_t> triangles;          ///< Lists of the volumes, each ascending.
+    std::vector<EightTriangles> eights;           ///< Their corners; each list begins a new one.
   };
 
   /// Returns the low corner of volume `i` of a block, x + 4 y + 16 z as in Block::occupied, from

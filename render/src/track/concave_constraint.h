@@ -16,8 +16,7 @@ struct HollowHold {
   bool holds = false;             ///< False if the tip is not below the surface there.
   SurfacePlace place;             ///< Face, edge or corner that holds the tip.
   double depth = 0;               ///< Distance of the tip from the point.
-  Eigen::Vector3d n_W{0, 0, 0};   ///< Unit direction from the tip to the point; on a face, the
-                                  ///< face's normal.
+  Eigen::Vector3d n_W{0, 0, 0};   ///< Unit direction from tip to point; on a face, its normal.
   Eigen::Vector3d p_WH{0, 0, 0};  ///< The point.
   std::uint16_t hops = 0;         ///< Number of triangles crossed.
 };

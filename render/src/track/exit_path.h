@@ -11,8 +11,7 @@ namespace thimble::render {
 struct ExitPath {
   Eigen::Vector3d n_O{0, 0, 0};  ///< Unit direction away from all faces at the point.
   double length = 0;             ///< Distance along it to be outside, m.
-  bool from_face = false;        ///< True if the direction is the normal of the only face at the
-                                 ///< point.
+  bool from_face = false;        ///< True if it is the normal of the only face there.
   bool sure = false;             ///< False if no direction leads away from all faces.
 };
 

@@ -30,13 +30,12 @@ struct MovingMeshOptions {
 struct SurfaceMoved {
   std::int32_t swept_over =
       -1;                    ///< Triangle that has swept over the tip from outside, -1 for none.
-  std::int32_t refused = 0;  ///< Number of moves refused because the place is NaN or outside the
-                             ///< box.
+  std::int32_t refused = 0;  ///< Moves refused: place is NaN or outside the box.
 };
 
 /// Owns a mesh whose vertices move, with all data built over it: planes, boxes of the search,
-/// smooth normals. Only `move_vertices` and `split_edge` change its shape. Afterwards all data is
-/// as if newly built over the same mesh.
+/// smooth normals. Only `move_vertices` and `split_edge` change it. Afterwards all data is as if
+/// newly built over the same mesh.
 ///
 /// Trackers take mesh, search and normals from here; these stay valid while they move.
 /// MovingContact notifies the contact stages. Costs 13 bytes per triangle. Vertices may go anywhere

@@ -18,10 +18,8 @@ namespace thimble::render {
 /// Place of a tip on a triangle whose corners sink along their normals.
 struct OffsetFoot {
   Eigen::Vector3d weights{0, 0, 0};  ///< Weights of the corners; negative beyond a side.
-  double depth = 0;                  ///< Distance by which the corners have sunk, m; negative
-                                     ///< outside.
-  bool found = false;  ///< False if the offset triangle has turned over: too deep for its
-                       ///< curvature.
+  double depth = 0;                  ///< Sinking of the corners, m; negative outside.
+  bool found = false;                ///< False if the offset triangle has turned over: too deep.
 };
 
 /// Finds weights w and depth d with p = sum of w_k (x_k - d n_k), where x are the corners and n
@@ -114,8 +112,7 @@ class THIMBLE_EXPORT OffsetTracker {
   /// Result of a walk.
   struct Walk {
     std::uint16_t hops = 0;
-    bool ended = false;      // within kHopsMax: a cell holds the tip, or none of the nearby cells
-                             // does
+    bool ended = false;      // within kHopsMax: a cell holds the tip, or none nearby does
     std::int32_t last = -1;  // triangle that was reached
   };
   Walk walk(const Eigen::Vector3d& p_WT) noexcept;

@@ -170,8 +170,7 @@ class THIMBLE_EXPORT PackedContact {
   ContactState begun_;  // for such a store: the contact at its begin
   TrackerCounters counters_;
   HeldPlane held_;
-  SurfacePlace::On hollow_ = SurfacePlace::On::kFace;  // part of a concave crease that held the tip
-                                                       // last
+  SurfacePlace::On hollow_ = SurfacePlace::On::kFace;  // place type that held the tip last
   Eigen::Vector3d along_{0, 0, 0};                     // unit direction of its edge
   Eigen::Vector3d p_WT_hollow_{0, 0, 0};               // position of the tip then
   std::uint64_t ticks_held_ = 0;

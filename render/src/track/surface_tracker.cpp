@@ -177,7 +177,7 @@ bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexce
         if (depth >= 0 && depth < nearest) {
           const double distance = std::sqrt(foot_on(*mesh_, t, p_WT).distance_squared);
           farther = distance - step.depth;
-          // Of several equally near, the first, so that rounding does not decide.
+          // The first of several equally near faces, so that rounding does not decide.
           if (distance < nearest * (1 - kTie)) {
             best = t;
             nearest = distance;

@@ -28,7 +28,7 @@ struct TrackerCounters {
   std::uint64_t cycles = 0;       ///< Walks that came back to a triangle: no cell holds the tip.
   std::uint64_t long_walks = 0;   ///< Walks that reached `kHopsMax`.
   std::uint64_t found_near = 0;   ///< Contact found again over the surface nearby.
-  std::uint64_t called_back = 0;  ///< Of those, walks undone because they ended too deep.
+  std::uint64_t called_back = 0;  ///< Part of `found_near`: walks that ended too deep.
   std::uint64_t found_far = 0;    ///< Contact found again only by a search query.
   std::uint64_t nearer = 0;       ///< Faces nearby that were nearer than the cell's own.
 };
@@ -141,10 +141,8 @@ class THIMBLE_EXPORT SurfaceTracker {
   double depth_before_ = 0;
   std::int32_t looked_ = -1;  // triangle whose surroundings were examined last, and the tip then
   Eigen::Vector3d p_WT_looked_{0, 0, 0};
-  double quiet_squared_ = 0;     // squared path from there within which no other face can be
-                                 // nearer, m^2
-  std::int32_t planes_of_ = -1;  // triangle whose planes were computed last, where the mesh stores
-                                 // none
+  double quiet_squared_ = 0;     // squared path within which no other face is nearer, m^2
+  std::int32_t planes_of_ = -1;  // of the planes computed last, where the mesh stores none
   std::array<Plane, 3> planes_;
   TrackerCounters counters_;
 };

@@ -43,7 +43,7 @@ class THIMBLE_EXPORT BendablePolygon {
   static driver::Result<BendablePolygon> build(std::shared_ptr<const ContactMesh> mesh,
                                                const DentSettings& settings);
 
-  // All of the following are Real-time: safe. Precondition: numbers exist.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   /// Advances by one step with the cursor at `p_WT` (W, m) below the place of `triangle` with these
   /// `weights` (surface_weights.h, at least 0, sum 1). Above the triangle it makes no dent. NaN: as

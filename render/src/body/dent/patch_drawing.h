@@ -28,14 +28,14 @@ class PatchDrawing {
  public:
   /// Split of an edge of the touched triangle: base point and displacement.
   struct Split {
-    double place = 0.5;  ///< Of the base point, from 0 at corner k to 1 at k + 1, exclusive.
+    double place = 0.5;  ///< Place of the base point, from 0 at corner k to 1 at k + 1, exclusive.
     Eigen::Vector3d u{0, 0, 0};  ///< Displacement, m.
   };
 
   /// Reserves memory and computes the normals of the mesh. Real-time: never from the servo thread.
   explicit PatchDrawing(std::shared_ptr<const ContactMesh> mesh);
 
-  // All of the following are Real-time: safe. Precondition: numbers exist.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   /// Begins a new drawing.
   void begin() noexcept;

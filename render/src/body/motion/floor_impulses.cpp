@@ -29,7 +29,7 @@ constexpr int kSearchMax = 12;
 // A step of Newton's method is accepted if the slope has fallen to this share.
 constexpr double kSlopeLeft = 0.5;
 
-// Of the body's velocity: rounding of the velocity of a point.
+// Rounding of the velocity of a point, as a share of the body's velocity.
 constexpr double kPointRounding = 1e-15;
 
 }  // namespace

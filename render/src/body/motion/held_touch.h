@@ -64,10 +64,7 @@ class HeldTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
 
-  bool slipped() const noexcept {
-    return slipped_;
-  }  ///< Returns whether the body has slipped out
-     ///< of the hand.
+  bool slipped() const noexcept { return slipped_; }  ///< Returns whether the hand lost the body.
 
  private:
   static constexpr double kFarSquared = 1e6;  // m^2; no arm reaches there

@@ -65,8 +65,7 @@ class THIMBLE_EXPORT RigidBody {
   const RigidBodySettings& settings() const noexcept { return settings_; }
   /// Returns the velocity of C, m/s, in the body's own time.
   Eigen::Vector3d v_WC() const noexcept { return momentum_W_ / settings_.mass.mass; }
-  Eigen::Vector3d omega_W() const noexcept;  ///< Returns the angular velocity, rad/s, in the body's
-                                             ///< own time.
+  Eigen::Vector3d omega_W() const noexcept;  ///< Returns the angular velocity, rad/s.
   /// Returns the velocity (m/s, in our time) of the body's point at `p_W`.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept;
   /// Returns the velocity (m/s, in our time) that the body's point at `p_W` gains by an impulse (N

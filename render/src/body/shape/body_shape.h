@@ -80,8 +80,7 @@ class BodyShape {
   const SnapShape* snap() const noexcept { return snap_ ? &*snap_ : nullptr; }
   const TurnGuard& guard() const noexcept { return guard_; }  ///< Returns its guard.
 
-  static constexpr std::size_t kMovesMax = 8;  ///< Maximum number of vertices moved per tick: about
-                                               ///< 3 us.
+  static constexpr std::size_t kMovesMax = 8;  ///< Most vertices moved per tick: about 3 us.
 
  private:
   BodyShape(const ContactMesh& mesh, const ShapeChoice& choice, double stiffness);

@@ -21,9 +21,8 @@ void SnapBase::follow(double load, double spring, double step) noexcept {
     if (target < limit) snapped = false;
     running_ = running_ && snapped == snapped_;
   } else {
-    // Of two resting places, the one to which the forces lead from here. If the load is more than
-    // the bars can hold, it moves inwards, and stops at the first shape only if that is still
-    // ahead.
+    // Chooses the resting place to which the forces lead from here. If the load is more than the
+    // bars can hold, it moves inwards, and stops at the first shape only if that is still ahead.
     const bool inwards = truss_.force(u_) + spring * u_ < load;
     snapped = !first || (second && (inwards ? *first < u_ : *second <= u_));
     if (snapped && second) target = *second;

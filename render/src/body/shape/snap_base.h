@@ -45,15 +45,9 @@ class SnapBase {
   /// Returns the number of snaps. Each releases energy (J): the work of the load on the way less
   /// the energy kept in the bars. It goes into sound and heat, never back to the hand.
   std::int64_t snaps() const noexcept { return snaps_; }
-  double released() const noexcept {
-    return released_;
-  }  ///< Returns the total energy
-     ///< released, J.
-  double energy() const noexcept {
-    return truss_.energy(u_);
-  }                                                           ///< Returns the energy in the bars,
-                                                              ///< J.
-  const SnapTruss& truss() const noexcept { return truss_; }  ///< Returns the bars.
+  double released() const noexcept { return released_; }        ///< Returns the total released, J.
+  double energy() const noexcept { return truss_.energy(u_); }  ///< Returns the bars' energy, J.
+  const SnapTruss& truss() const noexcept { return truss_; }    ///< Returns the bars.
 
  private:
   void follow(double load, double spring, double step) noexcept;

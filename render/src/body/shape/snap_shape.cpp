@@ -12,11 +12,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPlateau = 0.25;      // of the radius moves in as deep as the middle [chosen]
-constexpr double kPanelsApart = 1.2;   // radii between the middles of two panels, so that walls
-                                       // remain
+constexpr double kPanelsApart = 1.2;   // radii between the middles of two panels, so walls remain
 constexpr double kFollow = 0.05;       // radii that the tip moves before its panel follows [chosen]
-constexpr double kHoldLeast = 0.05;    // of the profile: a smaller value does not press a panel
-                                       // [chosen]
+constexpr double kHoldLeast = 0.05;    // of the profile: less does not press a panel [chosen]
 constexpr double kSmallestWay = 1e-9;  // of the depth: a smaller displacement counts as none
 
 }  // namespace

@@ -28,7 +28,7 @@ struct SpringMotionOptions {
   int substeps = 1;                      ///< Minimum number of substeps per call.
   int substeps_max = 64;                 ///< Maximum number of substeps per call; a network that
                                          ///< needs more is refused.
-  int rounds_max = 25;                   ///< Maximum rounds of conjugate gradients per substep
+  int rounds_max = 25;                   ///< Most rounds of conjugate gradients per substep
                                          ///< (implicit schemes).
   /// Residual at which the rounds end early, as a share of the change of a step.
   double remainder = 1e-6;

@@ -33,8 +33,8 @@ struct BodySpring {
 
 /// A matrix with the network's pattern: one weight per node and one per half of a spring.
 struct NetworkWeights {
-  std::vector<double> node;  ///< Of each node.
-  std::vector<double> half;  ///< Half of each spring's.
+  std::vector<double> node;  ///< Weight of each node.
+  std::vector<double> half;  ///< Half of each spring's weight.
   bool joined = true;        ///< False if all of `half` is 0, so that it need not be read.
 };
 
@@ -55,8 +55,8 @@ class THIMBLE_EXPORT SpringNetwork {
   static driver::Result<SpringNetwork> build(std::span<const BodyNode> nodes,
                                              std::span<const BodySpring<kDof>> springs);
 
-  // All of the following are Real-time: safe. Precondition: numbers exist, spans have one entry per
-  // node.
+  // All of the following are Real-time: safe. Precondition: numbers are valid, spans have one entry
+  // per node.
 
   /// Returns the number of nodes. Real-time: safe.
   std::int32_t node_count() const noexcept { return static_cast<std::int32_t>(mass_.size()); }

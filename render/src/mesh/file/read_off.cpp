@@ -18,7 +18,6 @@ struct Header {
   std::int64_t vertices = 0;
   std::int64_t faces = 0;
   bool vertex_per_line = false;  // positions are followed by normals, colours or texture
-                                 // coordinates
 };
 
 driver::Result<Header> read_header(TextWords& words) {

@@ -15,8 +15,7 @@ namespace thimble::render {
 struct MeshComponents {
   std::vector<std::int32_t> component_of;  ///< Component of each triangle, numbered from 0.
   std::size_t count = 0;                   ///< Number of components.
-  std::vector<bool> closed;                ///< True if each edge has two consistently wound
-                                           ///< triangles.
+  std::vector<bool> closed;                ///< True if each edge has two triangles of like winding.
   std::vector<bool> inside_out;  ///< True for closed components whose normals point into material.
 };
 

@@ -229,8 +229,7 @@ class Repair {
 
   const RepairOptions options_;
   const TriangleMesh& before_;
-  std::vector<std::int32_t> origin_;  // original number of each triangle, or of the triangle it was
-                                      // cut from
+  std::vector<std::int32_t> origin_;  // original number of each triangle or of its whole
   double tolerance_ = 0;              // in the mesh's unit
   RepairedMesh done_;
 };

@@ -233,8 +233,7 @@ class Thickening {
   std::vector<Vector3d> from_, ways_;
   std::vector<double> lengths_;
   std::vector<std::size_t> firsts_;
-  std::vector<std::array<std::int32_t, 3>> triangles_;  // the sides first, front and back
-                                                        // alternating
+  std::vector<std::array<std::int32_t, 3>> triangles_;  // sides first, front and back alternating
   std::size_t sides_ = 0;
   std::map<std::int32_t, std::int32_t> ends_;  // sides of the polygons at the ends of rims
 };

@@ -19,10 +19,8 @@ inline constexpr double kFlushTolerance = 1e-6;
 /// cavity; at their seam a tip may catch or lose contact.
 struct TouchingParts {
   std::size_t pairs = 0;                          ///< Number of pairs of parts that touch.
-  std::array<std::int32_t, 2> triangles{-1, -1};  ///< Triangles of the first pair, one of each
-                                                  ///< part.
-  Eigen::Vector3d place{0, 0, 0};                 ///< Place of contact: a corner of the first
-                                                  ///< triangle.
+  std::array<std::int32_t, 2> triangles{-1, -1};  ///< Triangles of the first pair, one per part.
+  Eigen::Vector3d place{0, 0, 0};                 ///< A corner of the first triangle.
   bool complete = true;                           ///< False if the search reached its bound.
 };
 

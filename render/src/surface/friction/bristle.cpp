@@ -3,8 +3,7 @@
 namespace thimble::render {
 namespace {
 
-constexpr double kHoldAgain = 0.5;  // of the sliding force: many counts, so that noise does not
-                                    // trigger it
+constexpr double kHoldAgain = 0.5;  // of the sliding force: many counts, above noise
 
 }  // namespace
 

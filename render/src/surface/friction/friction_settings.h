@@ -81,10 +81,7 @@ class VectorLowPass {
   }
   void turn(const Turn& turn) noexcept { value_ = turn.carry(value_); }
   void forget() noexcept { value_.setZero(); }
-  const Eigen::Vector3d& value() const noexcept {
-    return value_;
-  }  ///< Returns the last filtered
-     ///< value.
+  const Eigen::Vector3d& value() const noexcept { return value_; }  ///< Returns the last value.
 
  private:
   double corner_frequency_;

@@ -30,8 +30,7 @@ class PaperFrictionLaw {
     ViscousSettings viscous;
     Smooth smooth = Smooth::kVelocity;  ///< Smoothed quantity.
     double corner_frequency = 30;       ///< Hz [PHYSICS 2.2]; 10 for kTwice.
-    double speed = 0.01;                ///< Speed from which dry friction is full, m/s
-                                        ///< [PHYSICS 2.2].
+    double speed = 0.01;                ///< Speed of full dry friction, m/s [PHYSICS 2.2].
 
     void read(SettingsReader& reader, const EffectContext& context);
   };

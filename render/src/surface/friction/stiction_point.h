@@ -14,12 +14,11 @@ namespace thimble::render {
 class StictionPointLaw {
  public:
   static constexpr std::string_view kName = "stiction_point";
-  static constexpr double kRatio = 1.25;  ///< Ratio of static to sliding friction, if only one is
-                                          ///< given [chosen].
+  static constexpr double kRatio = 1.25;  ///< Static to sliding, if only one is given [chosen].
 
   struct Settings {
     CoulombSettings coulomb;
-    double stiffness = 1000;  ///< Of the spring, N/m.
+    double stiffness = 1000;  ///< Stiffness of the spring, N/m.
 
     void read(SettingsReader& reader, const EffectContext& context);
   };

@@ -27,8 +27,7 @@ inline Eigen::Vector3d direction_of(const Eigen::Vector3d& v) noexcept {
 /// Input of a friction law in one tick of contact.
 struct SlideTick {
   Eigen::Vector3d n_W{0, 0, 1};   ///< Outward unit normal.
-  Eigen::Vector3d slip{0, 0, 0};  ///< Path of the tip along the surface since the last tick, m in
-                                  ///< W.
+  Eigen::Vector3d slip{0, 0, 0};  ///< Path along the surface since the last tick, m in W.
   double load = 0;                ///< Force of the surface along n_W, N, >= 0.
   double depth = 0;               ///< Depth as felt, m.
   double dt = 0.001;              ///< Time of that path, s, > 0.

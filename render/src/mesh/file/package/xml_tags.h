@@ -14,8 +14,7 @@ struct XmlTag {
   std::string_view name;    ///< Name without the prefix.
   bool opens = false;       ///< Whether it begins an element.
   bool closes = false;      ///< Whether it ends an element; `<a/>` does both.
-  std::vector<std::pair<std::string_view, std::string_view>> attributes;  ///< Names and values as
-                                                                          ///< in the text.
+  std::vector<std::pair<std::string_view, std::string_view>> attributes;  ///< From the text.
 
   /// Returns the value of an attribute, given its name with prefix.
   std::optional<std::string_view> find(std::string_view attribute) const {
