@@ -25,9 +25,9 @@ using Built = driver::Result<std::unique_ptr<ObjectTouch>>;
 
 using Normals = std::shared_ptr<const SmoothNormals>;
 
-// Which normal is felt, chosen when the object is built rather than compiled: what it calls stands
-// in a source of its own anyway, and each tracker with each shading would be a fifth of the time to
-// build this library.
+// The shading, chosen when the object is built, not when compiled. Its functions are in another
+// source file anyway, and instantiating each tracker with each shading would be a fifth of the
+// build time of this library.
 struct ChosenShading {
   BlendingChoice blending = BlendingChoice::kFlat;
   double width = 0;  // m, of a fixed band
@@ -50,7 +50,7 @@ struct ChosenShading {
   }
 };
 
-/// Wraps a tracked contact into the shading that is asked for, or leaves it bare if none is.
+/// Wraps a tracked contact in the chosen shading, or leaves it bare if there is none.
 template <class Contact>
 Built tracked_touch(Contact contact, const ChosenShading& shading, bool curved,
                     const Normals& normals, const SurfaceChoice& surface) {
@@ -68,7 +68,7 @@ Built tracked_touch(Contact contact, const ChosenShading& shading, bool curved,
 template <class Contact>
 Built mesh_touch(const StillSurface& still, const ContactChoice& choice,
                  const SurfaceChoice& surface) {
-  // This tracker walks on the normals themselves, and shares them with what is felt.
+  // This tracker walks on the normals themselves, and shares them with the shading.
   constexpr bool kSmooth = std::is_same_v<Contact, OffsetContact>;
   const ChosenShading shading{.blending = choice.blending.value_or(kSmooth ? BlendingChoice::kPhong
                                                                            : BlendingChoice::kFlat),
@@ -97,15 +97,15 @@ Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
   });
 }
 
-/// Puts a dent around an object, if its surface has one.
+/// Adds a dent to an object, if its surface has one.
 Built dented(Built touch, const TriangleMesh& mesh_W, const SurfaceChoice& surface) {
   if (!touch || !surface.dent) return touch;
   std::shared_ptr<const ContactMesh> mesh;
   if (const ContactMesh* touched = (*touch)->mesh()) {
-    // Belongs to the contact, which lives as long as the dent around it.
+    // Owned by the contact, which lives as long as the dent around it.
     mesh = std::shared_ptr<const ContactMesh>(std::shared_ptr<const ContactMesh>(), touched);
   } else {
-    // Contact on packed triangles keeps none; base points are read from here.
+    // Contact on packed triangles keeps no ContactMesh; base points are read from this one.
     auto own = ContactMesh::build(mesh_W);
     if (!own) return own.error();
     mesh = std::make_shared<const ContactMesh>(std::move(own).value());

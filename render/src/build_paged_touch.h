@@ -9,9 +9,9 @@
 
 namespace thimble::render {
 
-/// Builds the force law of one object whose mesh is on the disk. Whoever keeps `pages` starts its
-/// loader, or serves it between ticks. Its question `inside` reads the disk.
-/// Real-time: never from the servo thread.
+/// Builds the force law of one object whose mesh is on disk. The owner of `pages` starts its
+/// loader, or calls `serve` between ticks. Its query `inside` reads the disk. Real-time: never from
+/// the servo thread.
 THIMBLE_EXPORT std::unique_ptr<ObjectTouch> build_paged_touch(std::shared_ptr<PagedSurface> pages,
                                                               const PagedPlace& place,
                                                               const SurfaceChoice& surface);

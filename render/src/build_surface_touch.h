@@ -11,8 +11,8 @@
 
 namespace thimble::render {
 
-/// Builds the stages of a surface: its spring comes after what changes the depth.
-/// Real-time: never from the servo thread.
+/// Builds the stages of a surface: its spring comes after stages that change the depth. Real-time:
+/// never from the servo thread.
 inline StageList stage_list(const SurfaceChoice& surface) {
   std::vector<std::unique_ptr<AnyStage>> stages;
   bool sprung = false;
@@ -27,7 +27,7 @@ inline StageList stage_list(const SurfaceChoice& surface) {
   return StageList(std::move(stages));
 }
 
-/// Puts a law that is known at compile time behind the interface of ObjectTouch.
+/// Wraps a law known at compile time in the interface of ObjectTouch.
 template <class Law>
 std::unique_ptr<ObjectTouch> adapt_law(Law law) {
   return std::make_unique<ObjectTouchAdapter<Law>>(std::move(law));
@@ -38,7 +38,7 @@ std::unique_ptr<ObjectTouch> adapt_law(Law law) {
 template <class Contact>
 std::unique_ptr<ObjectTouch> build_surface_touch(Contact contact, const SurfaceChoice& surface) {
   PathBounded bounded(std::move(contact));
-  // A bare surface, by far the most frequent, is joined wholly at compile time.
+  // A bare surface, by far the most frequent case, is composed entirely at compile time.
   if (surface.effects.empty())
     return adapt_law(ContactForceLaw(std::move(bounded), surface.spring));
   StageList stages = stage_list(surface);

@@ -21,7 +21,7 @@ namespace {
 
 using Built = driver::Result<std::unique_ptr<ObjectTouch>>;
 
-// Vertices near the box's sides may be pushed out of it a little, by panels that go in askew.
+// Margin for vertices near the box's sides, which oblique panels may push out of it slightly.
 constexpr double kRoom = 0.25;  // of the longest side [chosen]
 
 template <class Contact>
@@ -39,12 +39,12 @@ Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceCho
   return built(ContactForceLaw(std::move(moving), FootStageList(std::move(stages))));
 }
 
-// Tells up to how many triangles a mesh grows; 0 if it does not.
+// Returns the maximum number of triangles of a mesh that grows; 0 if it does not grow.
 std::size_t triangles_max_of(const ShapeChoice& shape) {
   return shape.clay && shape.clay->edge > 0 ? static_cast<std::size_t>(shape.clay->triangles) : 0;
 }
 
-// Says why triangles under a print cannot be split.
+// Returns an error if triangles under a print cannot be split.
 driver::Result<void> check_refinement(const TriangleMesh& mesh_W, const SurfaceChoice& surface,
                                       std::size_t triangles_max) {
   if (surface.dent || surface.shape.snap) {
@@ -79,8 +79,8 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   }
   const std::size_t triangles_max = triangles_max_of(surface.shape);
   if (triangles_max > 0) {
-    // The other trackers ask the cells of faces, which say nothing where they are smaller than the
-    // tip is deep.
+    // The other trackers use the cells of faces, which are not usable where they are smaller than
+    // the tip is deep.
     if (!god_object) {
       return driver::Error{
           "Clay that splits its triangles (edge) is touched by the tracker \"god_object\": name it "
@@ -94,7 +94,7 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   auto body = BodyShape::build(*prepared, surface.shape, surface.spring.stiffness);
   if (!body) return body.error();
   MovingMeshOptions options{.search = choice.search};
-  // Means of faces unless said: to fit them anew at each move costs seven times as much.
+  // Means of faces by default: fitting them at each move costs seven times as much.
   if (blending == BlendingChoice::kPhong) {
     options.normals = choice.normals.value_or(NormalWeights::kAngle);
   }

@@ -10,10 +10,10 @@
 
 namespace thimble::render {
 
-/// Builds the force law of an object whose base points move by themselves (mesh in W, m), as
-/// `surface.shape` says. The error is that of ContactMesh::build or BodyShape::build, or says that
-/// the contact that is asked for cannot follow a surface that changes shape. Real-time: never from
-/// the servo thread.
+/// Builds the force law of an object whose base points move by themselves (mesh in W, m), according
+/// to `surface.shape`. The error is that of ContactMesh::build or BodyShape::build, or states that
+/// the chosen contact cannot follow a surface that changes shape. Real-time: never from the servo
+/// thread.
 driver::Result<std::unique_ptr<ObjectTouch>> shaped_touch(const TriangleMesh& mesh_W,
                                                           const ContactChoice& contact,
                                                           const SurfaceChoice& surface);

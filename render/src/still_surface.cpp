@@ -16,7 +16,7 @@ driver::Error apart(const ContactChoice& choice, const std::string& why) {
                        "\" " + why};
 }
 
-/// Says which stages of a choice do not go together.
+/// Returns an error if stages of a choice are incompatible.
 driver::Result<void> check_choice(const ContactChoice& choice) {
   if (auto fits = check_profile(choice); !fits) return fits;
   if (choice.tracker == TrackerChoice::kGodObject) {
@@ -43,7 +43,7 @@ driver::Result<void> check_choice(const ContactChoice& choice) {
 
 driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W,
                                             const ContactChoice& choice) {
-  // Looks at the whole mesh as well, so that faults are told as for every other way.
+  // Also checks the whole mesh, so that faults are reported as for all other trackers.
   auto looked = look_at_mesh_beside(mesh_W, true);
   PackedSurfaceOptions options;
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
@@ -58,18 +58,18 @@ driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W,
   return still;
 }
 
-/// Returns whether the corners' normals are asked for, to be walked on or to be felt.
+/// Returns whether corner normals are needed, for tracking or for shading.
 bool needs_normals(const ContactChoice& choice) {
   if (choice.tracker == TrackerChoice::kGodObject) return false;
   return choice.tracker == TrackerChoice::kOffset || choice.curved_depth.value_or(false) ||
          choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat;
 }
 
-// From here on memory counts, 20 MB and more: planes are made when a triangle is entered, which
-// costs 70 to 150 ns each time. [chosen]
+// From here on memory matters, 20 MB and more: planes are computed when a triangle is entered,
+// which costs 70 to 150 ns each time. [chosen]
 constexpr std::size_t kPlanesKeptMax = 100000;
 
-/// Returns whether edge planes are kept: where there are few, and for those who ask for them in
+/// Returns whether edge planes are stored: for small meshes, and for trackers that need them in
 /// each tick.
 bool keeps_planes(const TriangleMesh& mesh_W, const ContactChoice& choice) {
   return mesh_W.triangles.size() <= kPlanesKeptMax || needs_normals(choice);
@@ -91,7 +91,7 @@ driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
                                                    const ContactChoice& choice) {
   if (auto fits = check_choice(choice); !fits) return fits.error();
   if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice);
-  // The god-object asks no edge planes.
+  // The god-object does not use edge planes.
   auto prepared =
       ContactMesh::build(mesh_W, {.edge_planes = choice.tracker != TrackerChoice::kGodObject,
                                   .keep_planes = keeps_planes(mesh_W, choice)});

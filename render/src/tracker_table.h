@@ -12,8 +12,8 @@
 namespace thimble::render {
 
 /// Calls `use` with the contact stage of a tracker as a type (std::type_identity) and returns its
-/// answer. The only place that knows which class a name stands for. A stage over a ContactMesh is
-/// built from mesh and search; OffsetContact takes normals as well, MemoryContact packed triangles.
+/// result. The only place that maps tracker names to classes. A stage over a ContactMesh is built
+/// from mesh and search; OffsetContact also takes normals, MemoryContact packed triangles.
 template <class Use>
 auto with_contact_of(TrackerChoice tracker, Use&& use) {
   switch (tracker) {

@@ -11,10 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Below this the faces lie back to back and the plane between them is rounding (contact_mesh.cpp).
+// Below this the faces are back to back and the plane between them is rounding (contact_mesh.cpp).
 constexpr double kBackToBack = 1e-7;
 
-// The least weight of a point that counts as within a triangle, not on its border: rounding of
+// Minimum weight of a point that counts as within a triangle, not on its border: rounding of
 // weights.
 constexpr double kInTriangle = 1e-9;
 
@@ -52,8 +52,8 @@ OffsetResponse feel_nearest(const Vector3d& p, const PackedTriangle& r,
   const Vector3d out = q - p;
   const double distance = std::sqrt(out.squaredNorm());
   const double over = std::min(std::min(place.l0, place.l1), place.l2);
-  // Beside the triangle the nearest point itself holds the tip: the corners' normals may lean away
-  // from it, and would leave who is inside without force.
+  // Next to the triangle the closest point itself holds the tip. The corner normals may lean away
+  // from it, and would leave a tip that is inside without force.
   if (!(over > kInTriangle) && distance > kPlaced) return {out / distance, distance};
   felt.depth = std::max(out.dot(felt.n_W), 0.0);
   return felt;

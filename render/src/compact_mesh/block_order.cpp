@@ -17,8 +17,8 @@ constexpr std::size_t kBlock = 8;
 // Below this size sampling a pivot takes longer than what it saves.
 constexpr std::size_t kFewItems = 48;
 constexpr std::size_t kSamples = 9;
-// How often both parts of a cut are done beside each other: one may be twice the other, and four
-// parts share two processors better than two.
+// Depth of cuts whose parts are processed in parallel. One part may be twice the other, and four
+// parts balance two processors better than two.
 constexpr int kForks = 2;
 // Below, a thread costs more than it saves [measured: 10 us against 100 ns per item].
 constexpr std::size_t kWorthAThread = 5000;
@@ -31,7 +31,7 @@ std::size_t longest_side(Items items) noexcept {
     low = _mm_min_ps(at, low);
     high = _mm_max_ps(at, high);
   }
-  // The fourth is the number, as a float seldom a fast one: not reckoned with.
+  // The fourth lane is the number; as a float it may be denormal and slow, so it is masked.
   const __m128 three = _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0));
   alignas(16) std::array<float, 4> side;
   _mm_store_ps(side.data(), _mm_sub_ps(_mm_and_ps(high, three), _mm_and_ps(low, three)));
@@ -42,13 +42,13 @@ template <std::size_t axis>
 struct Before {
   bool operator()(const PlacedIndex& a, const PlacedIndex& b) const noexcept {
     const float u = a.at[axis], v = b.at[axis];
-    // Bitwise: which is less is beyond prediction.
+    // Bitwise: the comparison is not predictable.
     return static_cast<bool>(static_cast<int>(u < v) |
                              (static_cast<int>(u == v) & static_cast<int>(a.index < b.index)));
   }
 };
 
-// Puts the items before a pivot to the front without a branch, and gives their number.
+// Moves the items before a pivot to the front without a branch, and returns their number.
 template <std::size_t kAxis>
 std::size_t part(Items items, const PlacedIndex& pivot) noexcept {
   PlacedIndex* const begin = items.data();
@@ -68,8 +68,8 @@ std::size_t part(Items items, const PlacedIndex& pivot) noexcept {
   return static_cast<std::size_t>(front - begin);
 }
 
-// Puts the `rank` least items to the front: parts by pivots whose rank among a few samples is a
-// little above or below what is asked for, so that what is left is short.
+// Moves the `rank` least items to the front. Parts by pivots whose rank among a few samples is a
+// little above or below the requested rank, so that the rest is short.
 template <std::size_t kAxis>
 void select(Items items, std::size_t rank) noexcept {
   constexpr Before<kAxis> before;
@@ -93,7 +93,7 @@ void select(Items items, std::size_t rank) noexcept {
                    before);
 }
 
-// Orders; the first `forks` cuts, one inside the other, have their parts done beside each other.
+// Sorts; the parts of the first `forks` nested cuts are processed in parallel.
 void order(Items items, int forks) {
   while (items.size() > kBlock) {
     std::size_t unit = kBlock;

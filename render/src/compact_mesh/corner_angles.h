@@ -9,16 +9,16 @@
 
 namespace thimble::render {
 
-/// Returns the angles of a triangle at its corners, rounded to single precision: as `math::atan2`
-/// has them, whose time is seldom needed. Sides `ab` and `ac` in any unit, `twice_area` > 0 in its
-/// square. Real-time: safe.
+/// Returns the angles of a triangle at its corners, the same as by `math::atan2` rounded to single
+/// precision, but usually without its cost. Sides `ab` and `ac` in any unit, `twice_area` > 0 in
+/// its square. Real-time: safe.
 inline std::array<float, 3> corner_angles(const Eigen::Vector3d& ab, const Eigen::Vector3d& ac,
                                           double twice_area) noexcept {
   const double along_a = ab.dot(ac), along_b = -ab.dot(ac - ab);
   const math::RoughAngle a = math::rough_atan2(twice_area, along_a);
   const math::RoughAngle b = math::rough_atan2(twice_area, along_b);
-  // Rounding is monotone: where the least and the most that angles may be round to the same, so
-  // does what is in between.
+  // Rounding is monotone: if the bounds of the angles round to the same values, so does everything
+  // between.
   const auto rounded = [](const math::RoughAngle& at_a, const math::RoughAngle& at_b, double side) {
     const double first = at_a.angle + side * at_a.wrong, second = at_b.angle + side * at_b.wrong;
     return std::array<float, 3>{static_cast<float>(first), static_cast<float>(second),

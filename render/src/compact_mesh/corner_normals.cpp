@@ -31,7 +31,8 @@ std::size_t corner_of(const std::array<std::int32_t, 3>& corners, std::int32_t v
 }
 
 // Calls `visit` for a triangle and for all that are reached from it around one of its vertices
-// without crossing a crease, first one way round, then the other; each once.
+// without crossing a crease. Goes first in one direction, then in the other, and calls `visit` once
+// for each.
 template <class Visit>
 void visit_group(const std::vector<std::array<std::int32_t, 3>>& triangles,
                  std::span<const PackedTriangle> packed, std::int32_t vertex, std::int32_t first,
@@ -43,14 +44,14 @@ void visit_group(const std::vector<std::array<std::int32_t, 3>>& triangles,
       const std::size_t edge = (corner_of(triangles[index(t)], vertex) + side) % 3;
       if (packed[index(t)].crease(edge)) break;
       t = packed[index(t)].neighbours[edge];
-      // Round the whole vertex over a single crease or none: everything is in already.
+      // Around the whole vertex over a single crease or none: all have been visited.
       if (t == first) return;
       visit(t);
     }
   }
 }
 
-// Sums the faces of a group, each by its angle at the vertex.
+// Sums the normals of a group's faces, each weighted by its angle at the vertex.
 Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
                     std::span<const PackedTriangle> packed, const Faces& faces, std::int32_t vertex,
                     std::int32_t first) {
@@ -62,8 +63,8 @@ Vector3d fan_normal(const std::vector<std::array<std::int32_t, 3>>& triangles,
   return sum;
 }
 
-// A vertex with more triangles than this has the normals of its smooth groups found once per group:
-// once per triangle would cost the square of them.
+// At a vertex with more triangles than this, normals are computed once per smooth group: once per
+// triangle would cost the square of their number.
 constexpr std::size_t kHub = 64;
 
 // Gives the corners of a smooth group, the triangles reached from `first` without crossing a
@@ -79,7 +80,7 @@ void assign_group(const std::vector<std::array<std::int32_t, 3>>& triangles, con
   });
 }
 
-// False if the triangle has no area.
+// Returns false if the triangle has no area.
 bool measure_face(const std::vector<Vector3d>& vertices,
                   const std::vector<std::array<std::int32_t, 3>>& triangles, std::size_t t,
                   Faces& faces) noexcept {
@@ -106,7 +107,7 @@ void find_creases(const std::vector<Vector3d>& vertices,
         const std::size_t behind = index(packed[t].neighbours[k]);
         const Vector3d& other = faces.normals[behind];
         const double cosine = faces.normals[t].dot(other);
-        // The corner behind the edge stands above this face.
+        // The corner behind the edge is above this face.
         const auto is_hollow = [&] {
           const Vector3d& begin = vertices[index(triangles[t][k])];
           for (const std::int32_t v : triangles[behind]) {
@@ -123,7 +124,8 @@ void find_creases(const std::vector<Vector3d>& vertices,
   });
 }
 
-// Gives all corners at a vertex their normals. `done` is empty or false everywhere, and stays so.
+// Assigns the normals of all corners at a vertex. `done` is empty or false everywhere, and stays
+// so.
 void assign_vertex(const std::vector<std::array<std::int32_t, 3>>& triangles,
                    const HalfEdges& half_edges, const Faces& faces, std::int32_t vertex,
                    std::vector<bool>& done, std::span<PackedTriangle> packed) {
@@ -168,7 +170,7 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
   in_halves(triangles.size(), [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {
       if (measure_face(vertices, triangles, t, faces)) continue;
-      // The first of all counts.
+      // The first flat triangle is reported.
       std::size_t first = flat;
       while (t < first && !flat.compare_exchange_weak(first, t)) continue;
       return;

@@ -12,9 +12,9 @@
 
 namespace thimble::render {
 
-/// Fills in the packed corner normals and the crease bits of packed triangles whose neighbours are
-/// known. `triangles` stand in the order of `packed`. Returns -1, or the number of a triangle that
-/// has no area. Real-time: never from the servo thread.
+/// Computes the packed corner normals and the crease bits of packed triangles whose neighbours are
+/// known. `triangles` have the order of `packed`. Returns -1, or the number of a triangle that has
+/// no area. Real-time: never from the servo thread.
 std::ptrdiff_t assign_corner_normals(const std::vector<Eigen::Vector3d>& vertices,
                                      const std::vector<std::array<std::int32_t, 3>>& triangles,
                                      const HalfEdges& half_edges, double crease_angle,

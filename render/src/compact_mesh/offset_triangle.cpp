@@ -12,7 +12,7 @@ namespace thimble::render {
 
 using namespace unpacked;
 
-// Everything is made for two or three vectors at once; (a, b) stands for a pair of them.
+// All is computed for two or three vectors at once; (a, b) is a pair of them.
 inline void OffsetTriangle::unpack_here(const PackedTriangle& r) noexcept {
   creases_ = r.flags & 7u;
   source_ = r.source();
@@ -92,7 +92,7 @@ void OffsetTriangle::unpack_wide(const PackedTriangle& r) noexcept {
   unpack_here(r);
 }
 
-// Goes on where one round does not suffice: the most bent triangles that are no creases take four.
+// Continues where one round is not enough: the most bent triangles without creases take four.
 OffsetPlace OffsetTriangle::locate_far(__m128d ab, double h, double d) const noexcept {
   constexpr int kRoundsMax = 5;
   OffsetPlace place;
@@ -107,7 +107,7 @@ OffsetPlace OffsetTriangle::locate_far(__m128d ab, double h, double d) const noe
 
 OffsetWay OffsetTriangle::way_to_surface(const OffsetPlace& place) const noexcept {
   using Eigen::Vector3d;
-  // Each of these counts along one side or the normal; the sides are what they are dual to.
+  // Each is a coordinate along one side or the normal; the sides are their dual basis.
   Eigen::Matrix3d along;
   for (std::size_t i = 0; i < 3; ++i) {
     along.col(static_cast<Eigen::Index>(i)) = Vector3d(ab_[i][0], ab_[i][1], h_[i]);

@@ -15,52 +15,52 @@
 
 namespace thimble::render {
 
-/// One packed triangle unpacked: a triangle that sinks along its corner normals. Offset by d
-/// along them, a triangle x_i becomes the triangle x_i - d n_i. The one that holds the tip p, for
-/// its own d, is where the tip belongs:
+/// One packed triangle unpacked: a triangle that sinks along its corner normals. Offset by d along
+/// them, a triangle x_i becomes the triangle x_i - d n_i. The place of a tip p is in the offset
+/// triangle, with its own d, that contains p:
 ///
 ///        n_0        n_1          p = sum l_i (x_i - d n_i),  l_i >= 0, sum l_i = 1
 ///     x_0 \__________/ x_1       n_W = sum l_i n_i, normalised
 ///          \   q    /            depth = (q - p) . n_W + bend, q = sum l_i x_i
 ///           \__p___/             bend = sum l_i (x_i - q) . n_i / (1 + |sum l_i n_i|)
 ///
-/// In a hollow `bend` is negative, and the depth begins softly (depth_below_hollow).
-/// Neighbours share offset edges. `bend` is how far a smooth surface with these normals rises
-/// above the triangle, right to second order [PHYSICS 3]; as sums over corners go, it is also
-/// sum over i < j of l_i l_j (x_i - x_j) . (n_i - n_j). All Real-time: safe. Points are in steps of
-/// the lattice.
+/// Where the surface is concave, `bend` is negative and the depth begins softly
+/// (depth_below_hollow). Neighbours share offset edges. `bend` is the height of a smooth surface
+/// with these normals above the triangle, right to second order [PHYSICS 3]. As a sum over pairs of
+/// corners its numerator is sum over i < j of l_i l_j (x_i - x_j) . (n_i - n_j). All Real-time:
+/// safe. Points are in steps of the lattice.
 ///
-/// What says where the tip is stands in double precision. What is multiplied by the depth or by a
-/// weight is made in single precision: of the depth it costs up to 3e-7, of a triangle's height
-/// 1e-6 where an edge is (offset_triangle_test.cpp).
+/// The place of the tip is in double precision. Factors of the depth and of weights are in single
+/// precision. This costs up to 3e-7 of the depth, and 1e-6 of a triangle's height at an edge
+/// (offset_triangle_test.cpp).
 class alignas(64) OffsetTriangle {
  public:
-  /// Unpacks a packed triangle; the same bits give the same answers ever after.
+  /// Unpacks a packed triangle; equal packed triangles give bit-identical results.
   void unpack(const PackedTriangle& packed) noexcept;
-  /// Does the same in eight lanes. Precondition: `wide_lanes` says yes.
+  /// Does the same in eight lanes. Precondition: `wide_lanes` returns true.
   THIMBLE_FOR_AVX2 void unpack_wide(const PackedTriangle& packed) noexcept;
-  /// Does the same on any processor, for who knows what `wide_lanes` says.
+  /// Does the same on any processor, for callers that know the result of `wide_lanes`.
   void unpack_plain(const PackedTriangle& packed) noexcept;
 
-  /// Finds where `p` belongs; the answer depends on `p` and the packed triangle alone.
+  /// Returns the place of `p`; it depends only on `p` and the packed triangle.
   OffsetPlace locate(const Eigen::Vector3d& p) const noexcept;
 
-  /// Returns the direction and the depth at a place; one outside the triangle counts as on its
-  /// border, for neither is known beyond.
+  /// Returns direction and depth at a place. A place outside the triangle counts as on its border,
+  /// because neither is known beyond.
   OffsetResponse feel(const OffsetPlace& place) const noexcept;
 
   /// Returns the same faster. Precondition: no weight is negative.
   OffsetResponse feel_within(const OffsetPlace& place) const noexcept;
 
-  /// Returns the way from the tip to the point q of the triangle, how q moves with the tip
-  /// (mesh/triangle_foot.h), and how fast the felt depth falls; a place outside the triangle counts
-  /// as on its border. Real-time: safe; some 100 ns, for what needs the place itself, as textures
-  /// do.
+  /// Returns the way from the tip to the point q of the triangle, the derivative of q by the tip
+  /// (mesh/triangle_foot.h), and minus the gradient of the felt depth. A place outside the triangle
+  /// counts as on its border. Real-time: safe; some 100 ns, for stages that need the place itself,
+  /// such as textures.
   OffsetWay way_to_surface(const OffsetPlace& place) const noexcept;
 
   /// Returns whether an edge is a crease, in bit k for edge k.
   std::uint32_t creases() const noexcept { return creases_; }
-  /// Returns which triangle of the input this is.
+  /// Returns the number of the triangle in the input.
   std::int32_t source() const noexcept { return source_; }
   /// Returns the triangle's own unit normal.
   Eigen::Vector3d face() const noexcept { return {-h_[0], -h_[1], -h_[2]}; }
@@ -80,7 +80,8 @@ class alignas(64) OffsetTriangle {
 
   // With the sides e_1, e_2 and the unit normal f a point is p - x_0 = a e_1 + b e_2 - h f, and the
   // corner normals are n_i = u_i e_1 + v_i e_2 + w_i f. Differences (D) are those to corner 0. A
-  // pair is read as it was written: the processor hands it on before it is in the cache.
+  // pair is read in the form in which it was written, so that the processor can forward it before
+  // it is in the cache.
   alignas(16) std::array<Pair, 4> ab_{};  // (a, b) per x, y, z and 1
   Pair uv_{};                             // (u, v) at corner 0
   Pair along_{};                          // (Du_1, Dv_2)
@@ -90,30 +91,30 @@ class alignas(64) OffsetTriangle {
   std::array<double, 4> h_{};             // h per x, y, z and 1
   std::array<double, 3> bulge_{};         // (x_i - x_j) . (n_i - n_j) of the edges 01, 12, 20
   double w_ = 0;                          // at corner 0
-  double tilt_squared_ = 0;               // of the normals against the face, at most
+  double tilt_squared_ = 0;               // maximum of the normals against the face
   std::uint32_t creases_ = 0;
   std::int32_t source_ = -1;
 };
 
-/// How well `locate` places a tip, in steps: 3e-8 of the mesh's longest side.
+/// Accuracy of `locate`, in steps: 3e-8 of the mesh's longest side.
 inline constexpr double kPlaced = 64;
 
-// Solves p = sum l_i (x_i - d n_i). In the triangle's own axes that is a pair of linear equations
-// for the weights once d is known, and d = h / sum l_i w_i, where the w_i are nearly 1.
+// Solves p = sum l_i (x_i - d n_i). In the triangle's own axes this is a pair of linear equations
+// for the weights once d is known. d = h / sum l_i w_i, where the w_i are nearly 1.
 inline OffsetPlace OffsetTriangle::locate(const Eigen::Vector3d& p) const noexcept {
   const __m128d ab =
       _mm_add_pd(_mm_add_pd(_mm_mul_pd(pair(ab_[0]), _mm_set1_pd(p.x())),
                             _mm_mul_pd(pair(ab_[1]), _mm_set1_pd(p.y()))),
                  _mm_add_pd(_mm_mul_pd(pair(ab_[2]), _mm_set1_pd(p.z())), pair(ab_[3])));
   const double h = (h_[0] * p.x() + h_[1] * p.y()) + (h_[2] * p.z() + h_[3]);
-  // h / w without a division, good to (1 - w)^2: on most meshes one round is enough then.
+  // h / w without a division, good to (1 - w)^2: then one round is enough on most meshes.
   const __m128d rise = _mm_mul_pd(ab, pair(dw_));
   const double d = h * (2 - (w_ + low(rise) + high(rise)));
   OffsetPlace place = solve(ab, h, d);
   const double change = place.depth - d;
-  // Written so that NaN asks for no more rounds.
+  // Written so that NaN ends the rounds.
   if (change * change * tilt_squared_ > kPlaced * kPlaced) [[unlikely]] {
-    // Number by number, so that a place stays in registers where this is not done.
+    // Member by member, so that a place stays in registers on the common path.
     const OffsetPlace far = locate_far(ab, h, place.depth);
     place.l0 = far.l0;
     place.l1 = far.l1;
@@ -143,8 +144,8 @@ inline OffsetPlace OffsetTriangle::solve(__m128d ab, double h, double d) const n
   place.l2 = high(l12);
   place.l0 = 1 - place.l1 - place.l2;
   place.depth = h * area * area * both;
-  // Folded over along one axis the area is negative, along both the sum is. Written so that NaN is
-  // folded over: any of these makes the depth NaN.
+  // Turned over along one axis, the area is negative; along both, the sum is. Written so that NaN
+  // counts as turned over: any of these makes the depth NaN.
   const double least = std::min(std::min(area, upright), low(m11_m22) + low(m22_m11));
   place.valid = least > 0 && place.depth <= std::numeric_limits<double>::max();
   return place;
@@ -175,18 +176,18 @@ inline OffsetResponse OffsetTriangle::feel_within(const OffsetPlace& place) cons
   const __m128d sum =
       _mm_add_sd(_mm_add_sd(squares, _mm_unpackhi_pd(squares, squares)), _mm_mul_sd(z, z));
   const double squared = low(sum);
-  // The bare instruction: nothing here is negative, and nobody reads errno.
+  // The bare instruction: no argument is negative, and errno is not used.
   const double size = low(_mm_sqrt_sd(sum, sum));
   const double rise =
       place.l1 * (place.l0 * bulge_[0] + place.l2 * bulge_[1]) + place.l2 * place.l0 * bulge_[2];
-  // Divided by 1 + size in place of 2 the bend is exact on a sphere, however coarse. One division
+  // Divided by 1 + size instead of 2, the bend is exact on a sphere, however coarse. One division
   // for both quotients.
   const double both = 1 / (size + squared);
   const double per_size = (1 + size) * both;
   const __m128d n = _mm_mul_pd(xy, _mm_set1_pd(per_size));
   const double below = place.depth * size, bend = rise * (size * both);
   OffsetResponse felt{{low(n), high(n), low(z) * per_size}, below + bend};
-  // Near the triangles of a hollow. Written so that NaN takes the other way.
+  // Near the triangles of a concave place. Written so that NaN skips this.
   if (felt.depth < -bend && bend < 0 && below >= 0) [[unlikely]] {
     felt.depth = depth_below_hollow(below, -bend);
   }

@@ -29,8 +29,8 @@ std::size_t index(std::int32_t i) noexcept {
   return static_cast<std::size_t>(i);
 }
 
-// Tells which is the first triangle without a neighbour of its own over each edge. Precondition:
-// there is one.
+// Returns the error that names the first triangle without its own neighbour over each edge.
+// Precondition: there is one.
 driver::Error first_unpaired(std::span<const PackedTriangle> packed,
                              std::span<const std::array<std::int32_t, 3>> triangles,
                              const HalfEdges& half_edges) {
@@ -62,7 +62,7 @@ LatticePoint on_lattice(const Vector3d& p) noexcept {
   return {whole(p.x()), whole(p.y()), whole(p.z())};
 }
 
-// Gives the triangles in the order in which their packed triangles shall stand.
+// Returns the order of the packed triangles.
 std::vector<PlacedIndex> order_of(const TriangleMesh& mesh, std::span<const LatticePoint> points) {
   std::vector<PlacedIndex> order(mesh.triangles.size());
   in_halves(order.size(), [&](std::size_t begin, std::size_t end) noexcept {
@@ -123,7 +123,7 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
                                                    const PackedSurfaceOptions& options) {
   const std::size_t count = mesh.triangles.size();
   if (count == 0) return driver::Error{"The mesh has no triangles."};
-  // The search's leaves keep 28 bits of a packed triangle's number.
+  // The search's leaves store 28 bits of a packed triangle's number.
   if (count >= (std::size_t{1} << 28) || mesh.vertices.size() >= (std::size_t{1} << 30)) {
     return driver::Error{"The mesh has more than 2^28 triangles or 2^30 vertices: page it."};
   }
@@ -175,7 +175,8 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
   }
 
   const HalfEdges half_edges(triangles, mesh.vertices.size());
-  // Who runs an edge besides another is found by the one behind that edge, who sees two.
+  // A triangle that shares an edge with another of the same winding is found by the triangle behind
+  // that edge, which finds two.
   std::atomic<bool> all_paired = true;
   in_halves(count, [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {

@@ -19,73 +19,71 @@ namespace thimble::render {
 /// is one step, and the difference of two positions fits into 32 bits.
 inline constexpr double kLatticeHalf = 0x1p30;
 
-/// Holds everything that a tick needs of one triangle, in one line of the cache.
+/// All data of one triangle for a tick, in one cache line.
 ///
 ///     byte 0    36          48         60     64
 ///     | x y z  | normals   | neighbours | flags |
 struct alignas(64) PackedTriangle {
   std::array<std::int32_t, 3> x, y, z;     ///< Corners on the lattice, one array per axis.
-  std::array<std::uint32_t, 3> normals;    ///< Of the corners, octahedral, 16 bits per half.
-  std::array<std::int32_t, 3> neighbours;  ///< Record over the edge from corner k to k + 1.
+  std::array<std::uint32_t, 3> normals;    ///< Corner normals, octahedral, 16 bits per half.
+  std::array<std::int32_t, 3> neighbours;  ///< Triangle over the edge from corner k to k + 1.
   std::uint32_t flags;  ///< Bit k: edge k is a crease. From bit 3: the input's number.
 
-  /// Where the input's number begins in `flags`: 2^28 triangles fit, the most that a surface
-  /// takes.
+  /// Shift of the input's number in `flags`: 2^28 triangles fit, the maximum of a surface.
   static constexpr int kSourceShift = 3;
 
   /// Returns whether an edge is a crease. Real-time: safe.
   bool crease(std::size_t edge) const noexcept { return ((flags >> edge) & 1u) != 0; }
 
-  /// Returns which triangle of the input this is.
+  /// Returns the number of the triangle in the input.
   std::int32_t source() const noexcept { return static_cast<std::int32_t>(flags >> kSourceShift); }
 
-  /// Returns where corner `k` is, in steps of the lattice from its middle; exact.
+  /// Returns the position of corner `k`, in steps of the lattice from its middle; exact.
   Eigen::Vector3d corner(std::size_t k) const noexcept {
     return {static_cast<double>(x[k]), static_cast<double>(y[k]), static_cast<double>(z[k])};
   }
 };
 static_assert(sizeof(PackedTriangle) == 64 && alignof(PackedTriangle) == 64);
 
-/// The number that a coordinate of 1 is packed as. It has so many divisors that the normals of
-/// symmetric shapes fall on whole numbers: on a half, the rounding of a scaled mesh would decide.
+/// The packed value of a coordinate of 1. It has so many divisors that the normals of symmetric
+/// shapes are integers. At a half, the rounding of a scaled mesh would decide.
 inline constexpr float kOctahedron = 32760;
 
 /// Packs a unit vector into two signed numbers of 16 bits: the octahedron |x| + |y| + |z| = 1
 /// unfolded onto a square [Meyer]. Wrong by at most 7e-5 rad. Real-time: safe.
 THIMBLE_EXPORT std::uint32_t pack_normal(const Eigen::Vector3d& n) noexcept;
 
-/// Gives back the packed unit vector. Real-time: safe.
+/// Returns the unpacked unit vector. Real-time: safe.
 Eigen::Vector3d unpack_normal(std::uint32_t packed) noexcept;
 
-/// Sets how a packed surface is built.
+/// Options of building a packed surface.
 struct PackedSurfaceOptions {
   /// The angle between two faces above which their edge stays sharp, rad. 43 degrees: an
   /// icosahedron (41.8) is still a ball, a bevel (45) is an edge.
   double crease_angle = 0.75;
 };
 
-/// A closed surface as packed triangles of 64 bytes, sorted such that each eight, each 64 and so
-/// on that follow each other lie close together: what is near in space is near in memory. Frame W,
-/// m.
+/// A closed surface as packed triangles of 64 bytes, sorted such that each eight, each 64 and so on
+/// are close together: neighbours in space are near in memory. Frame W, m.
 ///
 /// Corner normals are averages of the faces around, weighted by their angles [Thuermer]; a fan of
-/// faces is split at its creases. Two triangles that share a smooth edge hold the same bits for its
-/// two ends. Packed triangles are numbered by their place; `source` tells the triangle of the
-/// input.
+/// faces is split at its creases. Two triangles that share a smooth edge have bit-identical data
+/// for its two ends. Packed triangles are numbered by their place; `source` returns the triangle of
+/// the input.
 class THIMBLE_EXPORT PackedSurface {
  public:
-  /// Takes a prepared mesh, of which everything has been checked. Positions move by up to 2^-32 of
-  /// the longest side. Real-time: never from the servo thread.
+  /// Takes a prepared mesh, which has been checked completely. Positions move by up to 2^-32 of the
+  /// longest side. Real-time: never from the servo thread.
   static driver::Result<PackedSurface> build(const ContactMesh& mesh,
                                              const PackedSurfaceOptions& options = {});
 
-  /// Takes a mesh (W, m) as it is, in linear time. The error tells which triangle is not finite,
-  /// has no area, or lacks its one neighbour wound like itself. Not checked, and left to
-  /// ContactMesh::build: whether a component is inside out. Real-time: never from the servo thread.
+  /// Takes an unchecked mesh (W, m), in linear time. The error names a triangle that is not finite,
+  /// has no area, or lacks its one consistently wound neighbour. Does not check whether a component
+  /// is inside out; ContactMesh::build does. Real-time: never from the servo thread.
   static driver::Result<PackedSurface> build(const TriangleMesh& mesh,
                                              const PackedSurfaceOptions& options = {});
 
-  // All of the following are Real-time: safe. Precondition: numbers name what exists.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   std::int32_t triangle_count() const noexcept {
     return static_cast<std::int32_t>(triangles_.size());
@@ -96,33 +94,33 @@ class THIMBLE_EXPORT PackedSurface {
   }
   std::span<const PackedTriangle> triangles() const noexcept {
     return triangles_;
-  }  ///< Lists them.
+  }  ///< Returns all packed triangles.
 
-  /// Returns which triangle of the input a packed triangle is.
+  /// Returns the number of a packed triangle in the input.
   std::int32_t source(std::int32_t t) const noexcept { return triangle(t).source(); }
 
-  /// Returns where corner `k` of a packed triangle is, m in W. Equal for all packed triangles that
-  /// share it.
+  /// Returns the position of corner `k` of a packed triangle, m in W. Equal for all packed
+  /// triangles that share it.
   Eigen::Vector3d position(std::int32_t t, std::size_t k) const noexcept {
     return origin_ + step_ * triangle(t).corner(k);
   }
 
-  /// Turns a point (W, m) into steps of the lattice from its middle.
+  /// Converts a point (W, m) to steps of the lattice from its middle.
   Eigen::Vector3d to_lattice(const Eigen::Vector3d& p_W) const noexcept {
     return (p_W - origin_) * per_step_;
   }
 
-  const Eigen::Vector3d& origin() const noexcept { return origin_; }  ///< Returns the lattice's, m.
+  const Eigen::Vector3d& origin() const noexcept { return origin_; }  ///< Returns its origin, m.
   /// Returns the length of one step of the lattice, m.
   double step() const noexcept { return step_; }
-  /// Returns how many steps there are in 1 m.
+  /// Returns the number of steps in 1 m.
   double per_step() const noexcept { return per_step_; }
 
-  /// Returns how far the smooth surface that the normals stand for rises above the triangles at
-  /// most, m; 0 where that is less than 1e-5 of the size and nobody would feel it.
+  /// Returns the maximum height of the smooth surface defined by the normals above the triangles,
+  /// m; 0 if it is less than 1e-5 of the size and cannot be felt.
   double rise() const noexcept { return rise_; }
 
-  /// Counts the bytes of memory held.
+  /// Returns the bytes of memory held.
   std::size_t bytes() const noexcept { return triangles_.capacity() * sizeof(PackedTriangle); }
 
  private:

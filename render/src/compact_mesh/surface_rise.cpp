@@ -10,8 +10,8 @@ using namespace unpacked;
 
 double rise_above(std::span<const PackedTriangle> triangles) noexcept {
   constexpr double kFelt = 1e-5 * 2 * kLatticeHalf;
-  // A third of the largest bulge is the most that the sum over pairs reaches, and where corners are
-  // not creases 1 + |sum l_i n_i| is above 5/3.
+  // The sum over pairs is at most a third of the largest bulge. Where corners are not creases, 1 +
+  // |sum l_i n_i| is above 5/3.
   __m128 most = _mm_setzero_ps();
   for (const PackedTriangle& r : triangles) {
     const Sides x(r.x.data()), y(r.y.data()), z(r.z.data());

@@ -6,9 +6,8 @@
 
 namespace thimble::render {
 
-/// Finds how far the surface rises above some packed triangles at most, in steps; 0 where that is
-/// less than 1e-5 of the size of the lattice and nobody would feel it. Real-time: safe; some ns
-/// each.
+/// Returns the maximum height of the smooth surface above some packed triangles, in steps; 0 if it
+/// is less than 1e-5 of the size of the lattice and cannot be felt. Real-time: safe; some ns each.
 double rise_above(std::span<const PackedTriangle> triangles) noexcept;
 
 }  // namespace thimble::render

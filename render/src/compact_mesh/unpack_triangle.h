@@ -5,12 +5,12 @@
 #include "compact_mesh/packed_surface.h"
 #include "compact_mesh/sse2.h"
 
-// One packed triangle unpacked into lanes, three vectors or two sides at once: what OffsetTriangle
-// and rise_above are made from. Real-time: safe.
+// One packed triangle unpacked into lanes, three vectors or two sides at once; used by
+// OffsetTriangle and rise_above. Real-time: safe.
 
 namespace thimble::render::unpacked {
 
-// Three vectors side by side, one per lane; the fourth lane is any finite number.
+// Three vectors, one per lane; the fourth lane is any finite number.
 struct Vectors {
   __m128 x, y, z;
 };
@@ -41,7 +41,7 @@ struct Sides {
     corner = _mm_cvtepi32_pd(_mm_shuffle_epi32(corners, 0));
     both = _mm_sub_pd(_mm_cvtepi32_pd(_mm_shuffle_epi32(corners, _MM_SHUFFLE(2, 2, 2, 1))), corner);
   }
-  // From each corner to the next; the fourth lane is 0.
+  // Differences from each corner to the next; the fourth lane is 0.
   __m128 edges() const noexcept {
     const __m128 sides = _mm_cvtpd_ps(both);  // side 1, side 2, 0, 0
     return _mm_sub_ps(sides, _mm_shuffle_ps(sides, sides, _MM_SHUFFLE(3, 1, 0, 3)));
@@ -49,7 +49,7 @@ struct Sides {
   __m128d corner, both;
 };
 
-// From each corner's to the next one's.
+// Differences from each corner's value to the next one's.
 inline __m128 turn(__m128 v) noexcept {
   return _mm_sub_ps(_mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 0, 2, 1)), v);
 }

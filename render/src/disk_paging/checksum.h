@@ -9,12 +9,13 @@
 
 namespace thimble::render {
 
-/// Sums up bytes so that damage shows: any one changed word, and all but one in 2^64 of other
-/// changes, give another sum. Not against malice. Real-time: safe; about 5 us for 64 KiB.
+/// Returns a checksum that detects damage: any one changed word, and all but one in 2^64 of other
+/// changes, give another sum. Not cryptographic. Real-time: safe; about 5 us for 64 KiB.
 inline std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed = 0) noexcept {
-  // An odd factor makes each step reversible, so no difference is lost; the golden ratio's bits.
+  // An odd factor makes each step reversible, so no difference is lost; the bits are the golden
+  // ratio's.
   constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u;
-  // Four sums side by side, so that no multiplication waits for the last.
+  // Four independent sums, so that no multiplication waits for the last.
   std::array<std::uint64_t, 4> sums{seed + 1, seed + 2, seed + 3, seed + 4};
   std::size_t at = 0;
   for (std::size_t lane = 0; at < bytes.size(); lane = (lane + 1) % 4) {

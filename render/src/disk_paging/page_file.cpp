@@ -26,14 +26,14 @@ static_assert(std::is_trivially_copyable_v<PackedTriangle>);
 constexpr std::array<char, 8> kMagic{'T', 'H', 'M', 'B', 'P', 'A', 'G', 'E'};
 constexpr std::uint32_t kVersion = 2;
 constexpr std::int64_t kAlignment =
-    4096;  // of the packed triangles, so that a page covers whole disk pages
+    4096;  // alignment of the packed triangles, so that a page covers whole disk pages
 
 struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint32_t version = kVersion;
   std::uint32_t triangle_bytes = sizeof(PackedTriangle);
   std::uint32_t page_triangles = kPageTriangles;
-  std::uint32_t sum = 0;  // of all that stands before the pages, taken while this is 0
+  std::uint32_t sum = 0;  // of all data before the pages, computed while this is 0
   std::int64_t triangle_count = 0;
   std::array<double, 3> origin{};
   double step = 0;
@@ -103,8 +103,7 @@ float up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
-/// Returns whether a box can be one of packed triangles, whose corners are whole numbers of 32
-/// bits.
+/// Returns whether a box is possible for packed triangles, whose corners are integers of 32 bits.
 bool can_be(const PageBox& box) {
   constexpr float kFarthest = 0x1p31F;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -201,7 +200,7 @@ driver::Result<void> PageFileWriter::finish() {
     return trouble(state.file, std::to_string(state.written) + " triangles were written, but " +
                                    std::to_string(state.header.triangle_count) + " promised.");
   }
-  // The header comes last: a file that was not finished is no page file.
+  // The header is written last: an unfinished file is not a page file.
   const bool flushed = state.flush();
   const std::size_t boxes_size = state.boxes.size() * sizeof(PageBox);
   state.header.sum = sum_of(state.header, state.boxes, state.sums);
@@ -324,7 +323,7 @@ std::int32_t PageFile::read_page(std::int32_t page,
       sums_[static_cast<std::size_t>(page)]) {
     return 0;
   }
-  // The servo follows neighbours without asking: none may lead out of the file.
+  // The servo follows neighbours without a check: none may be outside the file.
   for (std::int32_t i = 0; i < count; ++i) {
     for (const std::int32_t neighbour : triangles[static_cast<std::size_t>(i)].neighbours) {
       if (neighbour < 0 || neighbour >= triangle_count_) return 0;

@@ -15,17 +15,17 @@
 
 namespace thimble::render {
 
-// Page files: a closed surface cut into volumes, so that only what lies around the tip need be in
-// memory [BP 4.1]. A volume is a run of kPageTriangles packed triangles that lie near each other in
-// space.
+// Page files: a closed surface cut into pages, so that only the part around the tip must be in
+// memory [BP 4.1]. A page has kPageTriangles consecutive packed triangles that are near each other
+// in space.
 //
 //   header | one box per page | one checksum per page | padding to a page of the disk | pages
 //
-// Little endian, as the machine is; packed triangles as PackedTriangle lays them out. A file of
-// another version, byte order or packed triangle is refused, and so is damage: on opening that of
-// what stands before the pages, on reading that of a page.
+// Little endian; packed triangles have the layout of PackedTriangle. A file with another version,
+// byte order or packed triangle is refused. Damage is detected: when opening, in the data before
+// the pages; when reading, in a page.
 
-/// How many packed triangles a page holds: 64 KiB, a size that disks read at full speed.
+/// Number of packed triangles per page: 64 KiB, a size that disks read at full speed.
 inline constexpr std::int32_t kPageTriangles = 1024;
 
 /// The box of a page's triangles, in steps of the lattice, rounded outwards.
@@ -34,11 +34,11 @@ struct PageBox {
   std::array<float, 3> max;  ///< Upper corner.
 };
 
-/// Finds the box of some packed triangles. Real-time: safe.
+/// Returns the box of some packed triangles. Real-time: safe.
 PageBox box_of(std::span<const PackedTriangle> triangles) noexcept;
 
-/// Returns whether two boxes share a point; `low` and `high` in steps. NaN shares none.
-/// Real-time: safe.
+/// Returns whether two boxes share a point; `low` and `high` in steps. False for NaN. Real-time:
+/// safe.
 inline bool reaches(const PageBox& box, const Eigen::Vector3d& low,
                     const Eigen::Vector3d& high) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -48,7 +48,7 @@ inline bool reaches(const PageBox& box, const Eigen::Vector3d& low,
   return true;
 }
 
-/// Finds the squared distance from a point to a box, in squared steps; 0 inside. Real-time: safe.
+/// Returns the squared distance from a point to a box, in squared steps; 0 inside. Real-time: safe.
 inline double distance_squared(const PageBox& box, const Eigen::Vector3d& p) noexcept {
   double sum = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -59,7 +59,7 @@ inline double distance_squared(const PageBox& box, const Eigen::Vector3d& p) noe
   return sum;
 }
 
-/// Finds the squared distance from a point to the farthest corner of a box, in squared steps.
+/// Returns the squared distance from a point to the farthest corner of a box, in squared steps.
 /// Real-time: safe.
 inline double farthest_squared(const PageBox& box, const Eigen::Vector3d& p) noexcept {
   double sum = 0;
@@ -71,19 +71,20 @@ inline double farthest_squared(const PageBox& box, const Eigen::Vector3d& p) noe
   return sum;
 }
 
-/// The lattice of a surface: where its middle lies and how long one step is, m in W.
+/// The lattice of a surface: the position of its middle and the length of a step, m in W.
 struct Lattice {
-  Eigen::Vector3d origin{0, 0, 0};  ///< Of the lattice.
-  double step = 0;                  ///< Of the lattice.
+  Eigen::Vector3d origin{0, 0, 0};  ///< Middle of the lattice, m in W.
+  double step = 0;                  ///< Length of a step, m.
 
-  /// Returns where corner `k` of a packed triangle is, m in W; the same as PackedSurface::position.
+  /// Returns the position of corner `k` of a packed triangle, m in W; the same as
+  /// PackedSurface::position.
   Eigen::Vector3d position(const PackedTriangle& packed, std::size_t k) const noexcept {
     return origin + step * packed.corner(k);
   }
 };
 
-/// Writes a page file packed triangle by packed triangle, for surfaces that fit no memory.
-/// Real-time: never from the servo thread.
+/// Writes a page file incrementally, for surfaces that do not fit into memory. Real-time: never
+/// from the servo thread.
 class THIMBLE_EXPORT PageFileWriter {
  public:
   /// Begins a file for `triangle_count` packed triangles (> 0). Fails, naming the file, if it
@@ -91,15 +92,15 @@ class THIMBLE_EXPORT PageFileWriter {
   static driver::Result<PageFileWriter> create(const std::filesystem::path& file,
                                                const Lattice& lattice, std::int64_t triangle_count);
 
-  PageFileWriter(PageFileWriter&&) noexcept;             ///< Takes it over.
-  PageFileWriter& operator=(PageFileWriter&&) noexcept;  ///< Takes it over.
+  PageFileWriter(PageFileWriter&&) noexcept;             ///< Moves the writer.
+  PageFileWriter& operator=(PageFileWriter&&) noexcept;  ///< Moves the writer.
   ~PageFileWriter();
 
   /// Adds packed triangles in the order of their numbers. Fails when the disk is full.
   driver::Result<void> append(std::span<const PackedTriangle> triangles);
 
-  /// Writes what is left and the boxes. Fails if the number of packed triangles is not the one
-  /// promised.
+  /// Writes the remaining data and the boxes. Fails if the number of packed triangles differs from
+  /// `triangle_count`.
   driver::Result<void> finish();
 
  private:
@@ -113,33 +114,35 @@ class THIMBLE_EXPORT PageFileWriter {
 THIMBLE_EXPORT driver::Result<void> write_page_file(const PackedSurface& surface,
                                                     const std::filesystem::path& file);
 
-/// Returns whether a file begins as a page file does; false if it cannot be read.
-/// Real-time: never from the servo thread.
+/// Returns whether a file begins like a page file; false if it cannot be read. Real-time: never
+/// from the servo thread.
 THIMBLE_EXPORT bool is_page_file(const std::filesystem::path& file);
 
-/// An open page file: what stands before the packed triangles, in memory.
-/// Real-time: never from the servo thread.
+/// An open page file: the data before the packed triangles, in memory. Real-time: never from the
+/// servo thread.
 class THIMBLE_EXPORT PageFile {
  public:
-  /// Opens a file. Fails, with what to do, if it cannot be read, is no page file, is cut short, or
-  /// holds numbers that cannot be.
+  /// Opens a file. Fails, with a remedy, if it cannot be read, is not a page file, is truncated, or
+  /// has invalid numbers.
   static driver::Result<PageFile> open(const std::filesystem::path& file);
 
-  PageFile(PageFile&& other) noexcept;             ///< Takes it over.
-  PageFile& operator=(PageFile&& other) noexcept;  ///< Takes it over.
+  PageFile(PageFile&& other) noexcept;             ///< Moves the file.
+  PageFile& operator=(PageFile&& other) noexcept;  ///< Moves the file.
   ~PageFile();
 
   /// Reads a page's packed triangles; `triangles` must have room for `kPageTriangles`. Returns
-  /// how many it holds, or 0 if the disk failed, the page is damaged, or a packed triangle names a
-  /// neighbour that cannot be.
+  /// their number, or 0 if the disk failed, the page is damaged, or a packed triangle names an
+  /// invalid neighbour.
   std::int32_t read_page(std::int32_t page, std::span<PackedTriangle> triangles) const noexcept;
 
-  /// Asks the kernel to bring a page near, for a `read_page` soon: so the disk works on several.
+  /// Asks the kernel to read ahead a page for a later `read_page`, so that the disk works on
+  /// several.
   void announce_page(std::int32_t page) const noexcept;
 
   const Lattice& lattice() const noexcept { return lattice_; }  ///< Returns the lattice.
   std::int32_t triangle_count() const noexcept { return triangle_count_; }
-  /// Returns how far the smooth surface rises above its triangles, m in W; as PackedSurface::rise.
+  /// Returns the maximum height of the smooth surface above its triangles, m in W; as
+  /// PackedSurface::rise.
   double rise() const noexcept { return rise_; }
   /// Returns the box around the whole surface, in steps.
   const PageBox& whole() const noexcept { return whole_; }

@@ -12,8 +12,8 @@
 
 namespace thimble::render {
 
-/// A segment asked about the packed triangles of a page file: boxes and planes drop in a few ns
-/// what is out of reach, `crossing` decides the rest without rounding. Real-time: safe.
+/// A segment tested against the packed triangles of a page file. Boxes and planes drop triangles
+/// out of reach in a few ns; `crossing` decides the rest without rounding. Real-time: safe.
 class PageSegment {
  public:
   /// Takes the ends of the segment (W, m).
@@ -24,8 +24,8 @@ class PageSegment {
         p_to_(p_to),
         from_((p_from - lattice.origin) / lattice.step),
         to_((p_to - lattice.origin) / lattice.step) {
-    // Covers the rounding of these divisions and of Lattice::position, a few times, and two steps
-    // more: that of the boxes.
+    // Covers the rounding of these divisions and of Lattice::position, a few times, plus two steps
+    // for that of the boxes.
     const double size = std::max({lattice.origin.cwiseAbs().maxCoeff(),
                                   p_from.cwiseAbs().maxCoeff(), p_to.cwiseAbs().maxCoeff()});
     rounding_ = 1 + size * 0x1p-50 / lattice.step;
@@ -35,8 +35,8 @@ class PageSegment {
     half_way_ = 0.5 * way_.cwiseAbs();
   }
 
-  /// Returns whether the segment may reach a box: no plane of the box and none through an edge of
-  /// it and the segment parts them. False for NaN.
+  /// Returns whether the segment may reach a box: false only if a plane of the box, or one through
+  /// an edge of it and the segment, separates them. False for NaN.
   bool reaches(const PageBox& box) const noexcept {
     if (!render::reaches(box, low, high)) return false;
     Eigen::Vector3d half, apart;
@@ -51,7 +51,7 @@ class PageSegment {
     const Eigen::Vector3d room(half.y() * w.z() + half.z() * w.y(),
                                half.x() * w.z() + half.z() * w.x(),
                                half.x() * w.y() + half.y() * w.x());
-    // A share more for the rounding of the products.
+    // A larger margin for the rounding of the products.
     return std::abs(across.x()) <= room.x() * kMore && std::abs(across.y()) <= room.y() * kMore &&
            std::abs(across.z()) <= room.z() * kMore;
   }
@@ -62,8 +62,8 @@ class PageSegment {
     const Eigen::Vector3d a = packed.corner(0);
     const Eigen::Vector3d n = (packed.corner(1) - a).cross(packed.corner(2) - a);
     const double above = n.dot(from_ - a), below = n.dot(a - to_);
-    // Both ends far enough on one side of the plane; not written the other way round, so that a
-    // triangle without area goes on to the exact test.
+    // Both ends are far enough on one side of the plane. Written such that a triangle without area
+    // continues to the exact test.
     const double doubt = (rounding_ + 1e-6) * (std::abs(n.x()) + std::abs(n.y()) + std::abs(n.z()));
     if ((above > doubt && below < -doubt) || (above < -doubt && below > doubt)) {
       return Crossing::kNone;
@@ -77,7 +77,7 @@ class PageSegment {
     return way;
   }
 
-  Eigen::Vector3d low, high;  ///< Box around the segment, with room for rounding, in steps.
+  Eigen::Vector3d low, high;  ///< Box around the segment, with a margin for rounding, in steps.
 
  private:
   static constexpr double kMore = 1 + 1e-9;

@@ -12,18 +12,18 @@
 
 namespace thimble::render {
 
-/// Finds which of many boxes a region reaches: a complete binary tree over boxes that lie near each
-/// other when their numbers do. All lengths in steps of the lattice. Questions are Real-time: safe.
+/// Finds the boxes that a region reaches: a complete binary tree over boxes whose numbers are close
+/// if they are near each other. All lengths in steps of the lattice. Queries are Real-time: safe.
 class PageTree {
  public:
   /// Builds the tree. Real-time: never from the servo thread.
   explicit PageTree(std::span<const PageBox> boxes);
 
-  /// Calls `visit(number)` for each box that the box from `low` to `high` reaches, in rising order,
-  /// until it answers false. NaN reaches nothing.
+  /// Calls `visit(number)` for each box that the box from `low` to `high` reaches, in ascending
+  /// order, until it returns false. NaN reaches nothing.
   template <class Visit>
   void visit_reached(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Visit visit) const {
-    // Of each level at most one branch waits, and a complete tree of 2^31 boxes has 31 levels.
+    // At most one branch of each level waits, and a complete tree of 2^31 boxes has 31 levels.
     std::array<std::size_t, 64> waiting;
     std::size_t count = 0;
     waiting[count++] = 1;
@@ -39,9 +39,9 @@ class PageTree {
     }
   }
 
-  /// Calls `visit(number, squared distance)` for boxes nearer to `p` than a limit, near ones first
-  /// as far as the tree tells; `visit` returns the new limit (squared steps). Precondition: `p` is
-  /// finite.
+  /// Calls `visit(number, squared distance)` for boxes nearer to `p` than a limit, approximately in
+  /// the order of their distance; `visit` returns the new limit (squared steps). Precondition: `p`
+  /// is finite.
   template <class Visit>
   void visit_near(const Eigen::Vector3d& p, double limit_squared, Visit visit) const {
     struct Waiting {

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// By how much the depth may grow for each metre that the tip slides sideways: the normal that is
-// felt leans against the surface by some degrees where triangles are coarse.
+// Growth of the depth allowed per metre that the tip slides sideways: the felt normal leans against
+// the surface by some degrees where triangles are coarse.
 constexpr double kSideways = 0.5;
 
 }  // namespace
@@ -25,7 +25,8 @@ const ContactState& PagedContact::update(const driver::DeviceState& state) noexc
   driver::DeviceState in_mesh_state = state;
   in_mesh_state.p_WT = in_mesh(state.p_WT);
   in_mesh_state.v_WT = place_.R_WM.transpose() * state.v_WT * per_scale_;
-  // What a pressed tip touches lies away from it, and so may the path that is still to be examined.
+  // The place touched by a pressed tip is away from it, and so may be the path still to be
+  // examined.
   const Vector3d p_place = state_.touching ? in_mesh(state_.p_WP + (state.p_WT - p_WT_before_))
                            : has_before_   ? contact_.path_begin()
                                            : in_mesh_state.p_WT;
@@ -36,7 +37,7 @@ const ContactState& PagedContact::update(const driver::DeviceState& state) noexc
   pages.note_misses(contact_.ticks_held());
   if (now.touching) {
     now.n_W = place_.R_WM * now.n_W;
-    // Written so that NaN stays and means no force.
+    // Written so that NaN is kept and means no force.
     const double allowed = allowed_depth(state, now.n_W);
     now.depth = place_.scale * now.depth;
     if (now.depth > allowed) now.depth = allowed;
@@ -58,7 +59,7 @@ SurfaceFoot PagedContact::foot(const Vector3d& p_WT) const noexcept {
   return foot;
 }
 
-// Returns how deep the tip can be if the surface was met as it should be.
+// Returns the maximum depth of the tip if the surface had been entered normally.
 double PagedContact::allowed_depth(const driver::DeviceState& state,
                                    const Vector3d& n_W) const noexcept {
   if (!has_before_) return 0;

@@ -11,16 +11,16 @@
 
 namespace thimble::render {
 
-/// A store whose packed triangles come from a page file: what is not near the tip is absent.
+/// A store with packed triangles from a page file; triangles far from the tip are absent.
 class PagedStore {
  public:
   static constexpr bool kComplete = false;
 
   explicit PagedStore(std::shared_ptr<PagedSurface> surface) : surface_(std::move(surface)) {}
 
-  // As PackedStore says. Real-time: safe.
+  // Functions of PackedStore. Real-time: safe.
 
-  // Who asks for one packed triangle walks on to those around it.
+  // A caller that reads one packed triangle continues with those around it.
   const PackedTriangle* find(std::int32_t triangle) const noexcept {
     const std::int32_t group = triangle / PagedSurface::kGroup;
     if (group != group_) {
@@ -59,28 +59,29 @@ class PagedStore {
 
 extern template class PackedContact<PagedStore>;
 
-/// Where a paged mesh M stands in the world: a point of it is at p_WM + scale R_WM p_M.
+/// Place of a paged mesh M in the world: a point of it is at p_WM + scale R_WM p_M.
 struct PagedPlace {
   double scale = 1;                                    ///< Metres in W per metre of the file; > 0.
   Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();  ///< Rotation of the file's frame.
   Eigen::Vector3d p_WM{0, 0, 0};                       ///< m
 };
 
-/// Finds what the tip touches on a surface of which only the volumes around the tip are in memory
-/// [BP 4.1]. The `Contact` stage of ContactForceLaw for meshes that fit no memory; what it measures
-/// is what MemoryContact would.
+/// Finds the contact on a surface that has only the pages around the tip in memory [BP 4.1]. A
+/// `Contact` stage of ContactForceLaw for meshes that do not fit into memory. It measures the same
+/// as MemoryContact.
 ///
-/// The servo never waits for the disk. What it lacks is held (packed_contact.h), and the depth that
-/// is felt never grows faster than the tip sinks in, by more than `kRiseSpeed`: a tip that came in
-/// unseen is let out slowly and not thrown out. What the mesh has and the tip met is felt as it is.
+/// The servo never waits for the disk. Absent parts are held (packed_contact.h), and the felt depth
+/// never grows faster than the tip sinks in by more than `kRiseSpeed`. So a tip that entered while
+/// pages were absent is pushed out slowly and not thrown out. Loaded parts that the tip entered are
+/// felt unchanged.
 class PagedContact {
  public:
-  /// How fast a surface comes back that was entered unseen, m/s in W: so slow that a hand yields
-  /// without effort. [chosen: a quarter of a calm stroke]
+  /// Speed at which a surface rises after the tip entered it while absent, m/s in W: so slow that a
+  /// hand yields without effort. [chosen: a quarter of a calm stroke]
   static constexpr double kRiseSpeed = 0.02;
 
-  /// Takes a surface that this contact alone asks, and its place.
-  /// Real-time: never from the servo thread.
+  /// Takes a surface for exclusive use by this contact, and its place. Real-time: never from the
+  /// servo thread.
   explicit PagedContact(std::shared_ptr<PagedSurface> surface, const PagedPlace& place = {});
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call, as
@@ -90,20 +91,20 @@ class PagedContact {
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  /// Returns the place on the triangles that the tip at `p_WT` (W, m) belongs to
-  /// (PackedContact::foot). Real-time: safe; never waits.
+  /// Returns the surface point of the tip at `p_WT` (W, m) (PackedContact::foot). Real-time: safe;
+  /// never waits.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept;
 
   const TrackerCounters& counters() const noexcept { return contact_.counters(); }
-  /// Counts the ticks in which a page was absent that the answer needed.
+  /// Returns the number of ticks in which a needed page was absent.
   std::uint64_t misses() const noexcept { return contact_.ticks_held(); }
   PagedSurface& surface() const noexcept { return contact_.store().surface(); }
-  const PagedPlace& place() const noexcept { return place_; }  ///< Returns where it stands.
+  const PagedPlace& place() const noexcept { return place_; }  ///< Returns the place.
 
-  /// The question `inside` for who stands beside the servo.
+  /// The query `inside` for other threads than the servo.
   class Search {
    public:
-    /// Returns whether a point (W, m) is inside; reads what it needs from the disk. False if that
+    /// Returns whether a point (W, m) is inside; reads the needed pages from disk. False if that
     /// fails. Real-time: never from the servo thread.
     bool inside(const Eigen::Vector3d& p_W) const;
 

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// So many pages nearer than the nearest triangle found may be absent before a search for it gives
+// Number of absent pages nearer than the nearest triangle found after which a search for it gives
 // up: a few hundred ns.
 constexpr int kAbsentMax = 64;
 
@@ -56,8 +56,8 @@ void PagedSurface::begin_tick(const Vector3d& p_tip, const Vector3d& p_place,
   cursor_.store({.p_tip = {p_tip.x(), p_tip.y(), p_tip.z()},
                  .p_place = {p_place.x(), p_place.y(), p_place.z()},
                  .v_W = {v_W.x(), v_W.y(), v_W.z()}});
-  // In one order with the loader's taking back of pages: either it sees this tick and waits for its
-  // end, or this tick no longer finds the page.
+  // Sequentially consistent with the loader's eviction of pages: either the loader sees this tick
+  // and waits for its end, or this tick no longer finds the page.
   tick_.fetch_add(1, std::memory_order_seq_cst);
 }
 
@@ -121,8 +121,8 @@ std::int32_t PagedSurface::closest(const Vector3d& p_W, double radius,
     const Frame* const frame = frame_of(page);
     if (frame == nullptr) {
       absent_squared = std::min(absent_squared, squared);
-      // No triangle of its own is farther than its box's farthest corner: so no other page that is
-      // farther than that matters. Who lacks many still does not know; and a tick has an end.
+      // No triangle is farther than its page's farthest corner, so pages beyond that do not matter.
+      // With many absent pages the result is unknown, and the time of a tick is bounded.
       limit_squared = std::min(limit_squared,
                                farthest_squared(file_.boxes()[static_cast<std::size_t>(page)], p));
       return ++absent < kAbsentMax ? limit_squared : 0.0;
@@ -162,7 +162,7 @@ bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
   const std::int32_t near = closest(p_W, HUGE_VAL, complete);
   if (!complete || near < 0) return false;
   const PackedTriangle* const nearest = find(near);
-  if (nearest == nullptr) {  // The loader has taken its page back meanwhile.
+  if (nearest == nullptr) {  // The loader has evicted its page meanwhile.
     complete = false;
     return false;
   }
@@ -170,9 +170,9 @@ bool PagedSurface::inside(const Vector3d& p_W, bool& complete) const noexcept {
   const Vector3d a = r.corner(0);
   const Vector3d side = r.corner(1) - a, other = r.corner(2) - a;
   const Vector3d n = side.cross(other);
-  // A thousandth of the triangle below its middle is inside, and a way from there to the point
-  // crosses the surface an even number of times if that is inside too. The way is as short as can
-  // be, so that few pages need be there.
+  // The point a thousandth of the triangle below its middle is inside. A path from there to the
+  // query point crosses the surface an even number of times if that is inside too. The path is as
+  // short as possible, so that few pages are needed.
   const double height = 1e-3 * std::sqrt(n.norm());
   const Vector3d under = a + (side + other) / 3 - height / n.norm() * n;
   int crossings = 0;

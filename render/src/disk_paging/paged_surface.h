@@ -25,18 +25,19 @@ namespace thimble::render {
 
 class PageSegment;
 
-/// Sets how much of a paged surface is kept in memory around the tip.
+/// Settings of the part of a paged surface that is kept in memory around the tip.
 struct PagingSettings {
   std::size_t frames = 4096;  ///< Pages in memory at once: 256 MiB. Must be > 0.
-  double reach = 0.001;       ///< Everything this near to the tip is wanted, m.
-  double horizon = 0.02;      ///< So far ahead of its velocity too, s: twice a disk's worst seek.
+  double reach = 0.001;       ///< Distance around the tip within which everything is loaded, m.
+  double horizon = 0.02;      ///< Time by which loading looks ahead of the tip's velocity, s: twice
+                              ///< a disk's worst seek.
 };
 
-/// A surface of which only the volumes around the tip are in memory [BP 4.1]. A loader brings
-/// what lies ahead of the tip and gives up what it left behind; the servo never waits for it.
+/// A surface that has only the pages around the tip in memory [BP 4.1]. A loader reads pages ahead
+/// of the tip and drops those it left behind; the servo never waits for it.
 ///
-/// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick; a
-/// frame is reused only when a tick that could have seen its page is over.
+/// The servo marks its ticks by `begin_tick` and `end_tick` and keeps no pointer beyond a tick. A
+/// frame is reused only when all ticks that could have used its page are over.
 class THIMBLE_EXPORT PagedSurface {
  public:
   /// Opens a page file; nothing is in memory yet. Fails as PageFile::open does.
@@ -46,28 +47,28 @@ class THIMBLE_EXPORT PagedSurface {
 
   PagedSurface(const PagedSurface&) = delete;
   PagedSurface& operator=(const PagedSurface&) = delete;
-  /// Ends the loader.
+  /// Stops the loader.
   ~PagedSurface();
 
-  // The servo's side: one thread. Real-time: safe.
+  // Functions for the servo: one thread. Real-time: safe.
 
-  /// Begins a tick that will ask about places near the straight way from `p_tip` to `p_place` (W,
-  /// m), which move with `v_W` (m/s): the place that is touched, or for a free tip the begin of a
-  /// path that has not been examined.
+  /// Begins a tick with queries near the straight line from `p_tip` to `p_place` (W, m), which move
+  /// with `v_W` (m/s). `p_place` is the touched place, or for a free tip the begin of a path that
+  /// has not been examined.
   void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& p_place,
                   const Eigen::Vector3d& v_W) noexcept;
   /// The same for a tip that is at the place.
   void begin_tick(const Eigen::Vector3d& p_tip, const Eigen::Vector3d& v_W) noexcept {
     begin_tick(p_tip, p_tip, v_W);
   }
-  /// Ends a tick: packed triangles found in it may go.
+  /// Ends a tick: packed triangles found in it may be dropped.
   void end_tick() noexcept;
-  /// Notes how many ticks up to now needed a page that was absent, for `counters`.
+  /// Sets the number of ticks so far in which a needed page was absent, for `counters`.
   void note_misses(std::uint64_t misses) noexcept {
     misses_.store(misses, std::memory_order_relaxed);
   }
 
-  /// Finds a packed triangle, or nullptr if its page is not in memory. Good until `end_tick`.
+  /// Returns a packed triangle, or nullptr if its page is not in memory. Valid until `end_tick`.
   const PackedTriangle* find(std::int32_t triangle) const noexcept {
     const Frame* const frame = frame_of(triangle / kPageTriangles);
     return frame == nullptr
@@ -75,8 +76,8 @@ class THIMBLE_EXPORT PagedSurface {
                : &frame->triangles[static_cast<std::size_t>(triangle % kPageTriangles)];
   }
 
-  /// Asks the processor to bring the packed triangles around one near, all at once: a walk to them
-  /// would wait for each in turn. Nothing happens if its page is absent.
+  /// Prefetches the packed triangles around one, all at once: a walk to them would wait for each in
+  /// turn. Has no effect if its page is absent.
   void announce(std::int32_t triangle) const noexcept {
     const Frame* const frame = frame_of(triangle / kPageTriangles);
     if (frame == nullptr) return;
@@ -85,16 +86,17 @@ class THIMBLE_EXPORT PagedSurface {
       __builtin_prefetch(&frame->triangles[static_cast<std::size_t>(i)]);
     }
   }
-  /// How many packed triangles stand together: numbers that differ by less are likely near.
+  /// Number of packed triangles in a group: numbers that differ by less are likely near.
   static constexpr std::int32_t kGroup = 16;
 
-  // Answers of the following are about the packed triangles in memory; `complete` tells whether
-  // they are those about the whole surface.
+  // The following functions use the packed triangles in memory; `complete` is set to whether the
+  // result holds for the whole surface.
 
-  /// Finds the first packed triangle that the segment (W, m) crosses from outside to inside.
+  /// Returns the first packed triangle that the segment (W, m) crosses from outside to inside.
   FoundEntry first_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
 
-  /// Finds the packed triangle nearest to a point (W, m) and nearer than `radius` (m), -1 for none.
+  /// Returns the packed triangle nearest to a point (W, m) and nearer than `radius` (m), -1 for
+  /// none.
   std::int32_t closest(const Eigen::Vector3d& p_W, double radius, bool& complete) const noexcept;
 
   /// Returns whether a point (W, m) is inside; false if not `complete`. Needs the pages between the
@@ -102,17 +104,18 @@ class THIMBLE_EXPORT PagedSurface {
   bool inside(const Eigen::Vector3d& p_W, bool& complete) const noexcept;
 
   const PagingSettings& settings() const noexcept { return settings_; }
-  const PageFile& file() const noexcept { return file_; }  ///< Shows the file.
+  const PageFile& file() const noexcept { return file_; }  ///< Returns the file.
   std::int32_t triangle_count() const noexcept { return file_.triangle_count(); }
   const Lattice& lattice() const noexcept { return file_.lattice(); }  ///< Returns the lattice.
 
-  // The loader's side: one thread. Real-time: never from the servo thread.
+  // Functions for the loader: one thread. Real-time: never from the servo thread.
 
-  /// Starts a thread that calls `serve` again and again.
+  /// Starts a thread that calls `serve` repeatedly.
   void start_loader();
 
-  /// Brings what is wanted for the tip's last known place and way; returns how many pages it read.
-  /// Waits for the end of a tick before it reuses a frame. For whoever has no loader thread.
+  /// Loads the pages wanted for the tip's last known position and path; returns the number of pages
+  /// read. Waits for the end of a tick before it reuses a frame. For callers without a loader
+  /// thread.
   std::size_t serve();
 
   /// Returns whether a point (W, m) is inside, by the parity of crossings on the way out; reads the
@@ -120,17 +123,17 @@ class THIMBLE_EXPORT PagedSurface {
   bool inside_by_reading(const Eigen::Vector3d& p_W) const;
 
   PagingCounters counters() const noexcept;
-  /// Counts the bytes held in memory.
+  /// Returns the bytes held in memory.
   std::size_t bytes() const noexcept;
 
  private:
   static constexpr std::int32_t kAbsent = -1;
-  static constexpr std::int32_t kDamaged = -2;  // could not be read; is not asked for again
+  static constexpr std::int32_t kDamaged = -2;  // could not be read; not requested again
   static constexpr std::int32_t kGroups = kPageTriangles / kGroup;
 
   struct Frame {
     std::array<PackedTriangle, kPageTriangles> triangles;
-    std::array<PageBox, kGroups> boxes;  // of each group, in steps
+    std::array<PageBox, kGroups> boxes;  // box of each group, in steps
     std::int32_t count = 0;
   };
   const Frame* frame_of(std::int32_t page) const noexcept {
@@ -157,13 +160,13 @@ class THIMBLE_EXPORT PagedSurface {
   PageFile file_;
   PagingSettings settings_;
   PageTree tree_;
-  std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, or one of the two below
+  std::vector<std::atomic<std::int32_t>> table_;  // frame of each page, or kAbsent or kDamaged
   std::vector<Frame, LargePages<Frame>> frames_;
 
   driver::Snapshot<Cursor> cursor_;
   std::atomic<std::uint64_t> tick_{0};  // odd within a tick
 
-  // The loader's own.
+  // Members used only by the loader.
   std::vector<std::int32_t> page_in_frame_;  // -1 if empty
   std::vector<std::uint64_t> wanted_at_;     // round in which a frame's page was last wanted
   std::vector<std::uint64_t> wanted_in_;     // round in which a page was last wanted

@@ -1,4 +1,4 @@
-// The thread of PagedSurface that brings the pages around the tip and along its path.
+// The thread of PagedSurface that loads the pages around the tip and along its path.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -15,21 +15,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How long the loader rests when there is nothing to bring: at 0.5 m/s the tip moves 0.1 mm, a
-// tenth of the default reach.
+// Pause of the loader if there is nothing to load: at 0.5 m/s the tip moves 0.1 mm, a tenth of the
+// default reach.
 constexpr std::chrono::microseconds kRest{200};
 
-// The loader works little and must not wait: before all programs, after what is real-time.
+// The loader works little and must not wait: before all other programs, after real-time threads.
 constexpr int kLoaderNice = -15;
 
-// Into so many pieces at most a path is cut to find the pages beside it.
+// Maximum number of pieces of a path for finding the pages next to it.
 constexpr int kPiecesMax = 64;
 
 }  // namespace
 
 void PagedSurface::start_loader() {
   loader_ = std::thread([this] {
-    // On a busy machine the pages would come late; where this is refused it goes on as it is.
+    // On a busy machine pages would be late; if this is refused, the loader continues without it.
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLoaderNice);
     while (!stop_.load(std::memory_order_relaxed)) {
       if (serve() == 0) std::this_thread::sleep_for(kRest);
@@ -51,17 +51,18 @@ void PagedSurface::want(const Cursor& cursor) {
     want_along(tip, place - tip);
     want_along(tip, ahead);
   }
-  // What is reached later may come later.
+  // Pages that are reached later may be loaded later.
   std::sort(wanted_.begin(), wanted_.end());
 }
 
-// Adds the pages within reach of a straight way, each with how far along it and beside it they lie.
+// Adds the pages within reach of a straight path, each with its distance along the path and from
+// it.
 void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
   const double reach = settings_.reach / file_.lattice().step;
   const double length = way.norm();
   const Vector3d along = length > 0 ? Vector3d(way / length) : Vector3d::Zero();
-  // Pieces no longer than the reach, so that the boxes around them hold little else.
-  const double asked = std::ceil(length / (2 * reach));  // a way that is no number asks for none
+  // Pieces no longer than the reach, so that the boxes around them contain little else.
+  const double asked = std::ceil(length / (2 * reach));  // a path with NaN requests nothing
   const int pieces = asked > 1 ? static_cast<int>(std::min(asked, double{kPiecesMax})) : 1;
   for (int piece = 0; piece < pieces; ++piece) {
     const Vector3d from = p + way * piece / pieces, to = p + way * (piece + 1) / pieces;
@@ -75,7 +76,7 @@ void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
                             0.5 * (double{box.min[2]} + double{box.max[2]}));
       const Vector3d half =
           Vector3d(double{box.max[0]}, double{box.max[1]}, double{box.max[2]}) - middle;
-      // No part of the box is nearer than the place on the way nearest to its middle tells.
+      // No part of the box is nearer than implied by the place on the path nearest to its middle.
       const double ahead = std::clamp(along.dot(middle - p), 0.0, length);
       const double beside = std::sqrt(distance_squared(box, p + ahead * along));
       if (beside > reach + half.norm()) return true;
@@ -99,7 +100,7 @@ std::size_t PagedSurface::serve() {
     const std::int32_t frame = table_[static_cast<std::size_t>(page)].load();
     if (frame >= 0) wanted_at_[static_cast<std::size_t>(frame)] = round_;
   }
-  // A few pages at a time, then a new look at where the tip is.
+  // A few pages at a time, then the tip's position is read again.
   constexpr std::size_t kAtOnce = 16;
   std::size_t announced = 0;
   for (const auto& [distance, page] : wanted_) {
@@ -146,7 +147,7 @@ bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
   const std::int32_t count = file_.read_page(page, incoming_);
   if (count == 0 || stop_.load(std::memory_order_relaxed)) {
     if (count == 0) {
-      // It would fail again, and keep the loader from what it can bring.
+      // It would fail again, and keep the loader from other pages.
       table_[static_cast<std::size_t>(page)].store(kDamaged, std::memory_order_relaxed);
       failures_.fetch_add(1, std::memory_order_relaxed);
     }

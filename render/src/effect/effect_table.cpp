@@ -18,8 +18,8 @@
 namespace thimble::render {
 namespace {
 
-// A program may be built with one effect only ("": with none), so that it can be counted that the
-// others cost a scene nothing which does not name them (tests/arch).
+// A program may be built with only one effect ("": with none), to verify that unused effects cost a
+// scene nothing (tests/arch).
 constexpr bool kept([[maybe_unused]] std::string_view name) {
 #ifdef THIMBLE_ONLY_EFFECT
   constexpr std::string_view only = THIMBLE_ONLY_EFFECT;

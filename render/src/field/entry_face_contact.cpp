@@ -43,7 +43,8 @@ bool EntryFaceContact::behind(const Eigen::Vector3d& p_O, std::int32_t face) con
          std::abs(p_O[v]) < box_.half_sides[v];
 }
 
-/// Finds the face by which a straight path (O, m) enters the box; -1 if it begins inside or misses.
+/// Returns the face through which a straight path (O, m) enters the box; -1 if it begins inside or
+/// misses.
 std::int32_t EntryFaceContact::entry(const Eigen::Vector3d& from_O,
                                      const Eigen::Vector3d& to_O) const noexcept {
   std::int32_t face = -1;
@@ -58,7 +59,7 @@ std::int32_t EntryFaceContact::entry(const Eigen::Vector3d& from_O,
       left = std::fmin(left, (std::copysign(half, to_O[axis]) - from) / way);
     }
     if (std::abs(from) < half) continue;
-    // Outside between these two faces: the path must come in through the nearer one.
+    // Outside between these two faces: the path must enter through the nearer one.
     if (!(way * from < 0)) return -1;
     const double at = (std::copysign(half, from) - from) / way;
     if (at > entered || (at == entered && std::abs(way) > squareness)) {
@@ -67,7 +68,7 @@ std::int32_t EntryFaceContact::entry(const Eigen::Vector3d& from_O,
       face = 2 * static_cast<std::int32_t>(axis) + (from > 0 ? 1 : 0);
     }
   }
-  // A path that ends inside has left through nothing, so no rounding can make it miss.
+  // A path that ends inside has left through no face, so rounding cannot make it miss.
   return entered <= 1 && entered <= left ? face : -1;
 }
 

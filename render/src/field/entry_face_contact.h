@@ -10,32 +10,32 @@
 
 namespace thimble::render {
 
-/// Finds what the tip touches on a box whose force depends on the path: the face through which the
-/// tip came in pushes it back, however deep it is [BP Fig. 2a]. The `Contact` stage of
-/// ContactForceLaw.
+/// Finds the contact on a box whose force depends on the path: the face through which the tip
+/// entered pushes it back, at any depth [BP Fig. 2a]. A `Contact` stage of ContactForceLaw.
 ///
-/// The face is found on the straight way since the last tick, however fast. It holds the tip as
-/// long as that is below the face's plane and within its outline, also beyond the back of a thin
-/// plate: nothing pops through. Contact ends above the plane, or where the tip leaves sideways; so
-/// a tip that comes out of another face is let go at once, without a pull.
+/// The face is found on the straight path since the last tick, at any speed. It holds the tip while
+/// the tip is below the face's plane and within its outline. This includes the space beyond the
+/// back of a thin plate, so the tip cannot pop through. Contact ends above the plane, or where the
+/// tip leaves sideways. So a tip that comes out of another face is released at once, without a
+/// pull.
 class THIMBLE_EXPORT EntryFaceContact {
  public:
   explicit EntryFaceContact(const Box& box) : box_(box) {}
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
-  /// A path that ends inside has entered; one that goes in and out again within the tick counts if
-  /// it ends behind the face it entered by. Through an edge or a corner, the face that the path
-  /// meets most squarely counts. A tip that is inside on the first tick touches nothing until it
-  /// has been outside. A position that is NaN or beyond `kPositionMax` ends the contact and makes
-  /// the next tick a first one. Real-time: safe; a few ns.
+  /// A path that ends inside has entered. One that goes in and out again within the tick counts if
+  /// it ends behind the face through which it entered. At an edge or a corner, the face that the
+  /// path meets most squarely is chosen. A tip that is inside on the first tick touches nothing
+  /// until it has been outside. A position that is NaN or beyond `kPositionMax` ends the contact
+  /// and makes the next tick a first one. Real-time: safe; a few ns.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
   const Box& shape() const noexcept { return box_; }
-  /// Returns what answers `inside`, as the searches of meshes do. Real-time: safe.
+  /// Returns an object with `inside`, like the searches of meshes. Real-time: safe.
   const Box& search() const noexcept { return box_; }
 
  private:

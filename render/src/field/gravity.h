@@ -9,7 +9,7 @@
 
 namespace thimble::render {
 
-/// The weight of something held in the hand: the same force everywhere. A Field; conservative.
+/// The weight of an object held in the hand: the same force everywhere. A Field; conservative.
 class Gravity {
  public:
   static constexpr std::string_view kName = "gravity";
@@ -30,7 +30,7 @@ class Gravity {
 
   /// Returns the force on the hand, N in W. Real-time: safe.
   Eigen::Vector3d force(const driver::DeviceState&) const noexcept { return weight_W_; }
-  /// Returns its energy at the tip, J: zero at the world's origin. Real-time: safe.
+  /// Returns the energy at the tip, J: zero at the world's origin. Real-time: safe.
   double potential(const driver::DeviceState& state) const noexcept {
     return -weight_W_.dot(state.p_WT);
   }

@@ -21,7 +21,7 @@ void read_target(SettingsReader& reader, MagneticSnap::Settings::Target& target)
     reader.vector("point", target.from_O, kPlace);
     target.to_O = target.from_O;
   }
-  // Larger than any desk-top arm [DEVICES 3]; catches slipped decimal points.
+  // Larger than any desk-top arm [DEVICES 3]; catches misplaced decimal points.
   reader.number("force", target.force, {.unit = "N", .least = 0, .most = 50, .required = true});
   reader.number("capture_radius", target.radius,
                 {.unit = "m", .least = 1e-4, .most = 1, .required = true});
@@ -65,7 +65,7 @@ Eigen::Vector3d MagneticSnap::force(const driver::DeviceState& state) const noex
   Eigen::Vector3d away_W;
   for (const Target& target : targets_) {
     const double left = left_of(target, state.p_WT, away_W);
-    // Written so that NaN is beyond the radius.
+    // Written so that NaN counts as beyond the radius.
     if (left > 0) sum -= target.stiffness * left * away_W;
   }
   return sum;

@@ -11,25 +11,25 @@
 
 namespace thimble::render {
 
-/// What draws the tip onto points and lines once it is near. A Field; conservative.
+/// Attracts the tip to points and lines once it is near. A Field; conservative.
 ///
-/// At distance r from a target, within its capture radius R, the energy is -U (1 - (r/R)^2)^2: the
-/// pull begins at R without a step, is largest at R / sqrt 3 and zero on the target, where it holds
-/// the tip as a spring of 2.6 force / R. Targets that overlap add up. On a line, all its points are
-/// equal: the tip runs along it freely.
+/// At distance r from a target, within its capture radius R, the energy is -U (1 - (r/R)^2)^2. The
+/// pull begins at R without a step, is largest at R / sqrt 3 and zero on the target. There it holds
+/// the tip like a spring of 2.6 force / R. Targets that overlap add up. On a line, all its points
+/// are equal: the tip slides along it freely.
 class MagneticSnap {
  public:
   static constexpr std::string_view kName = "magnetic_snap";
 
   struct Settings {
-    /// One point that pulls the tip in.
+    /// A point or line that attracts the tip.
     struct Target {
       Eigen::Vector3d from_O{0, 0, 0};  ///< The point, or one end of the line; object's frame, m.
-      Eigen::Vector3d to_O{0, 0, 0};    ///< The other end; the same for a point.
-      double force = 0;                 ///< The largest, N.
+      Eigen::Vector3d to_O{0, 0, 0};    ///< The other end; equal to `from_O` for a point.
+      double force = 0;                 ///< Maximum force, N.
       double radius = 0;                ///< R, m
     };
-    std::vector<Target> targets;  ///< All of them.
+    std::vector<Target> targets;  ///< All targets.
 
     /// Reads the list `targets`: point, or from and to; force, capture_radius.
     /// Real-time: never from the servo thread.
@@ -39,23 +39,23 @@ class MagneticSnap {
   /// Real-time: never from the servo thread.
   MagneticSnap(const Settings& settings, const EffectContext& context);
 
-  /// Finds the force on the hand, N in W; zero where the tip is NaN or infinite. Real-time: safe; a
+  /// Returns the force on the hand, N in W; zero if the tip is NaN or infinite. Real-time: safe; a
   /// few ns per target.
   Eigen::Vector3d force(const driver::DeviceState& state) const noexcept;
-  /// Returns its energy at the tip, J: zero beyond all radii; below that of each target that is
-  /// near. Real-time: safe.
+  /// Returns the energy at the tip, J: zero beyond all radii, negative within the radius of a
+  /// target. Real-time: safe.
   double potential(const driver::DeviceState& state) const noexcept;
 
  private:
   struct Target {
     Eigen::Vector3d from_W;
-    Eigen::Vector3d way_W;  // from there to the other end, m; zero for a point
+    Eigen::Vector3d way_W;  // from `from_W` to the other end, m; zero for a point
     double per_square;      // 1 / |way|^2, 0 for a point
     double stiffness;       // at the target, N/m
     double square;          // R^2, m^2
   };
-  /// Finds the way from the nearest point of a target to the tip, m; returns 1 less its square over
-  /// that of the radius.
+  /// Computes the vector from the nearest point of a target to the tip, m; returns 1 less its
+  /// square over that of the radius.
   static double left_of(const Target& target, const Eigen::Vector3d& p_WT,
                         Eigen::Vector3d& away_W) noexcept;
 

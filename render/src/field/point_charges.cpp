@@ -13,7 +13,7 @@ void PointCharges::Settings::read(SettingsReader& reader, const EffectContext&) 
   reader.list("charges", [this](SettingsReader& entry) {
     One& one = charges.emplace_back();
     entry.vector("position", one.p_O, {.unit = "m", .least = -2, .most = 2, .required = true});
-    // Larger than any desk-top arm [DEVICES 3]; catches slipped decimal points.
+    // Larger than any desk-top arm [DEVICES 3]; catches misplaced decimal points.
     entry.number("force", one.force, {.unit = "N", .least = -50, .most = 50, .required = true});
     entry.number("radius", one.radius, {.unit = "m", .least = 1e-4, .most = 1});
   });

@@ -13,11 +13,11 @@ namespace thimble::render {
 
 /// The field of electric charges on a charged tip [BP 2]. A Field; conservative.
 ///
-/// A bare charge pulls without bound. Here each is softened as if spread over a ball (Plummer's
-/// law): with s the vector from charge to tip, F = q s / (|s|^2 + a^2)^(3/2), the gradient of
-/// q / sqrt(|s|^2 + a^2). So the force is largest at |s| = a / sqrt 2, where it is
-/// 2 q / (3 sqrt 3 a^2); a scene names that force and a, and no place has more. At the centre of an
-/// attracting charge the tip is held as by a spring of 2.6 force / a.
+/// The force of a point charge is unbounded. Here each charge is softened as if spread over a ball
+/// (Plummer's law). With s the vector from charge to tip, F = q s / (|s|^2 + a^2)^(3/2), minus the
+/// gradient of q / sqrt(|s|^2 + a^2). So the force is largest at |s| = a / sqrt 2, where it is 2 q
+/// / (3 sqrt 3 a^2). A scene gives this maximum force and a. At the centre of an attracting charge
+/// the tip is held like by a spring of 2.6 force / a.
 class PointCharges {
  public:
   static constexpr std::string_view kName = "charges";
@@ -26,10 +26,10 @@ class PointCharges {
     /// One charge.
     struct One {
       Eigen::Vector3d p_O{0, 0, 0};  ///< In the object's frame, m.
-      double force = 0;              ///< The largest, N; negative pulls.
+      double force = 0;              ///< Maximum force, N; negative attracts.
       double radius = 0.01;          ///< a, m
     };
-    std::vector<One> charges;  ///< All of them.
+    std::vector<One> charges;  ///< All charges.
 
     /// Reads the list `charges`: position, force, radius. Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
@@ -38,7 +38,7 @@ class PointCharges {
   /// Real-time: never from the servo thread.
   PointCharges(const Settings& settings, const EffectContext& context);
 
-  /// Finds the force on the hand, N in W; zero where the tip is NaN or infinite. Real-time: safe; a
+  /// Returns the force on the hand, N in W; zero if the tip is NaN or infinite. Real-time: safe; a
   /// few ns per charge.
   Eigen::Vector3d force(const driver::DeviceState& state) const noexcept {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -49,8 +49,8 @@ class PointCharges {
     }
     return sum.allFinite() ? sum : Eigen::Vector3d::Zero();
   }
-  /// Returns its energy at the tip, J: zero far away; and where the tip is NaN or infinite.
-  /// Real-time: safe.
+  /// Returns the energy at the tip, J: zero far away, and if the tip is NaN or infinite. Real-time:
+  /// safe.
   double potential(const driver::DeviceState& state) const noexcept {
     double sum = 0;
     for (const Charge& charge : charges_) {

@@ -14,9 +14,9 @@
 
 namespace thimble::render {
 
-/// A solid whose force depends on the place of the tip alone [BP 2]: a plane, a sphere, a box in
-/// wedges. `n_before_W` is the last normal felt (zero if none), for places that have none of their
-/// own.
+/// A solid whose force depends only on the position of the tip [BP 2]: a plane, a sphere, a box in
+/// wedges. `n_before_W` is the last felt normal (zero if none), for positions without a unique
+/// normal.
 template <class Shape>
 concept PrimitiveShape = requires(const Shape& shape, const Eigen::Vector3d& p_W,
                                   const Eigen::Vector3d& n_before_W) {
@@ -26,12 +26,13 @@ concept PrimitiveShape = requires(const Shape& shape, const Eigen::Vector3d& p_W
   noexcept->std::same_as<bool>;
 };
 
-/// Finds what the tip touches on an analytic shape: the `Contact` stage of ContactForceLaw in place
-/// of MeshContact, so that every texture and friction works on it. `ContactState::triangle` is the
+/// Finds the contact on an analytic shape: a `Contact` stage of ContactForceLaw, used instead of
+/// MeshContact, so that all textures and frictions work on it. `ContactState::triangle` is the
 /// number of the face.
 ///
-/// Such a shape knows no past: a tip that passes through a thin one feels the far side [BP 2,
-/// "thin objects can be unintentionally penetrated"]. EntryFaceContact does not.
+/// Such a shape has no memory: a tip that passes through a thin one feels the far side
+/// [BP 2, "thin objects can be unintentionally penetrated"]. EntryFaceContact does not have this
+/// flaw.
 template <PrimitiveShape Shape>
 class PrimitiveContact {
  public:
@@ -39,8 +40,8 @@ class PrimitiveContact {
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
-  /// A tip that is inside on the first tick touches nothing until it has been outside: it would be
-  /// thrown out otherwise. A position that is NaN or beyond `kPositionMax` ends the contact and
+  /// A tip that is inside on the first tick touches nothing until it has been outside; otherwise it
+  /// would be thrown out. A position that is NaN or beyond `kPositionMax` ends the contact and
   /// makes the next tick a first one. Real-time: safe; a few ns.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     const Eigen::Vector3d& p_WT = state.p_WT;
@@ -69,20 +70,20 @@ class PrimitiveContact {
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  /// Returns the place on the surface below the tip and how it moves with the tip
-  /// (surface_response.h). Precondition: the last `update` touches. Real-time: safe.
+  /// Returns the surface point below the tip and its derivative by the tip (surface_response.h).
+  /// Precondition: the last `update` touches. Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d&) const noexcept {
     SurfaceFoot foot = flat_foot(state_);
     if constexpr (requires { shape_.stretch(state_.depth); }) {
       const double stretch = shape_.stretch(state_.depth);
-      // At a centre no place is the nearest one.
+      // At a centre no surface point is the closest.
       foot.J_MT *= std::isfinite(stretch) ? stretch : 0;
     }
     return foot;
   }
 
   const Shape& shape() const noexcept { return shape_; }
-  /// Returns what answers `inside`, as the searches of meshes do. Real-time: safe.
+  /// Returns an object with `inside`, like the searches of meshes. Real-time: safe.
   const Shape& search() const noexcept { return shape_; }
 
  private:

@@ -21,7 +21,7 @@ void Viscous::Settings::read(SettingsReader& reader, const EffectContext& contex
 }
 
 double Viscous::most_damping(const EffectContext& context) {
-  // Where the arm's mass is not known there is nothing to compare with.
+  // If the arm's mass is not known, there is nothing to compare with.
   if (!(context.tip_mass > 0)) return std::numeric_limits<double>::infinity();
   const double late = context.tick + context.delay;
   return std::numbers::pi / 2 * context.tip_mass / late;

@@ -11,8 +11,8 @@
 
 namespace thimble::render {
 
-/// A thick liquid that fills the space: a force against the velocity. A Field; takes energy out
-/// of every motion.
+/// A viscous liquid that fills the space: a force against the velocity. A Field; dissipates the
+/// energy of every motion.
 class Viscous {
  public:
   static constexpr std::string_view kName = "viscous";
@@ -20,23 +20,23 @@ class Viscous {
   struct Settings {
     double damping = 0;  ///< N s/m
 
-    /// Reads `damping`, and refuses what the loop cannot hold: against a free mass m a damper that
-    /// acts late by L oscillates more and more beyond pi m / (2 L) [Nyquist's criterion for -b
-    /// exp(-L s) / (m s)]. L is period + delay: the velocity is half a period old, and the force is
-    /// held for another half. The filter of the velocity comes on top. Real-time: never from the
-    /// servo thread.
+    /// Reads `damping`, and refuses values that the loop cannot hold. Against a free mass m, a
+    /// damper delayed by L oscillates with growing amplitude beyond pi m / (2 L)
+    /// [Nyquist's criterion for -b exp(-L s) / (m s)]. L is period + delay: the velocity is half a
+    /// period old, and the force is held for another half. The filter of the velocity adds to this.
+    /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
   };
 
   Viscous(const Settings& settings, const EffectContext& context)
       : damping_(settings.damping), damping_most_(most_damping(context)) {}
 
-  /// Returns what the loop can hold, N s/m: see Settings::read; infinite where the arm's mass is
-  /// not known. Real-time: never from the servo thread.
+  /// Returns the maximum damping that the loop can hold, N s/m: see Settings::read; infinite if the
+  /// arm's mass is not known. Real-time: never from the servo thread.
   static double most_damping(const EffectContext& context);
 
-  /// Lists the damping: up to two thirds of what the loop can hold, for the filter of the
-  /// velocity comes on top. Real-time: never from the servo thread.
+  /// Lists the damping, up to two thirds of the maximum, because the filter of the velocity adds
+  /// delay. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     constexpr double kMargin = 1.5, kUnknown = 20;  // chosen; N s/m
     const double most = damping_most_ < HUGE_VAL ? damping_most_ / kMargin : kUnknown;
@@ -48,8 +48,8 @@ class Viscous {
                 .sensitivity = {.per_speed = 1}});
   }
 
-  /// Finds the force on the hand, N in W; zero where the velocity is NaN or infinite.
-  /// Real-time: safe.
+  /// Returns the force on the hand, N in W; zero if the velocity is NaN or infinite. Real-time:
+  /// safe.
   Eigen::Vector3d force(const driver::DeviceState& state) const noexcept {
     const Eigen::Vector3d push = -damping_ * state.v_WT;
     return push.allFinite() ? push : Eigen::Vector3d::Zero();

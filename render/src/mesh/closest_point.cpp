@@ -4,8 +4,8 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
-// The plane of a triangle falls into seven regions, each nearest to one corner, one edge or the
-// inside; signs of projections on the edges tell them apart [Ericson 5.1.5].
+// The plane of a triangle has seven regions, each nearest to one corner, one edge or the inside;
+// signs of projections on the edges decide the region [Ericson 5.1.5].
 Vector3d closest_point(const Vector3d& p, const Vector3d& a, const Vector3d& b,
                        const Vector3d& c) noexcept {
   const Vector3d ab = b - a;

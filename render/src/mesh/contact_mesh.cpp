@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 // 2^-53 of it, from a normal wrong by a few 2^-53: 64 x 2^-53 of the size covers them with room.
 constexpr double kDepthRounding = 64 * 0x1p-53;
 
-// The sum of two unit normals below which the faces lie back to back: the direction of their
+// The sum of two unit normals below which the faces are back to back. The direction of their
 // average is then rounding, and the plane is put along the faces instead. At 1e-7 the direction
 // would still be good to 1e-9.
 constexpr double kOpposite = 1e-7;
@@ -36,21 +36,21 @@ std::uint16_t rounded_up(double sine) {
 
 }  // namespace
 
-// The face of `n_first` runs the shared edge upwards: from `from` along `edge`.
+// The face of `n_first` has the shared edge upwards: from `from` along `edge`.
 struct ContactMesh::EdgeSides {
   Vector3d from, edge, n_first, n_second;
-  bool turned;  // for who runs it downwards
+  bool turned;  // for the triangle that has it downwards
 
   // Normal to the plane, positive on the side of the first face; of any length.
   Vector3d across() const noexcept { return (n_first + n_second).cross(edge); }
 
-  // What that is divided by; 0 where the normal is the first face's. Of faces back to back with no
-  // matter between, the first keeps all outside its face; a gap of no width is not told apart from
-  // that.
+  // The length of `across`; 0 if the normal is the first face's. Of faces back to back with no
+  // matter between, the first keeps everything outside its face; a gap of no width is treated the
+  // same.
   double size() const noexcept {
     if (!((n_first + n_second).norm() > kOpposite)) return 0;
     const Vector3d wide = across();
-    // By its largest part, so that no square is too large or too small.
+    // By its largest component, so that no square overflows or underflows.
     const double most = wide.cwiseAbs().maxCoeff();
     const double squared = (wide / most).squaredNorm();
     return squared > 0 ? std::sqrt(squared) * most : 1;
@@ -74,7 +74,7 @@ driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
                                                const ContactMeshOptions& options) {
   const auto neighbours = find_adjacency(mesh);
   auto looked = look_at_mesh_beside(mesh, neighbours, options.orient);
-  // What the look finds is told, whatever else is wrong.
+  // The findings of the check are reported, whatever else is wrong.
   std::optional<ContactMesh> contact;
   if (neighbours) contact = assemble(mesh, *neighbours, options);
   auto sound = looked.get();
@@ -147,8 +147,8 @@ void ContactMesh::compute_edge(std::int32_t triangle, std::size_t k) noexcept {
   measure_edges(other);
 }
 
-// Finds the plane over an edge and gives both its triangles the same numbers, whichever asks; names
-// the one behind.
+// Computes the plane over an edge and stores the same numbers in both triangles, whichever is
+// given. Returns the triangle behind it.
 std::int32_t ContactMesh::place_edge(std::int32_t triangle, std::size_t k) noexcept {
   const std::int32_t other = cell(triangle).neighbours[k];
   const std::int32_t from = corners(triangle)[k];
@@ -161,7 +161,7 @@ std::int32_t ContactMesh::place_edge(std::int32_t triangle, std::size_t k) noexc
   return other;
 }
 
-// Found for the triangle that runs the edge upwards, so that both have the same numbers.
+// Computed for the triangle that has the edge upwards, so that both have the same numbers.
 ContactMesh::EdgeSides ContactMesh::edge_sides(std::int32_t triangle,
                                                std::size_t k) const noexcept {
   const std::int32_t other = cell(triangle).neighbours[k];
@@ -196,13 +196,13 @@ void ContactMesh::compute_edges() {
   edges_.resize(triangles_.size());
   for_all([this](std::int32_t t) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
-      // Each edge is done once, by the triangle that runs it upwards.
+      // Each edge is done once, by the triangle that has it upwards.
       if (corners(t)[k] < corners(t)[(k + 1) % 3]) place_edge(t, k);
     }
   });
 }
 
-// An edge plane leans over its face by half the angle there: back if the edge is hollow.
+// An edge plane leans over its face by half the angle there: backwards if the edge is concave.
 void ContactMesh::measure_edges(std::int32_t triangle) noexcept {
   TriangleCell& measured = cells_[static_cast<std::size_t>(triangle)];
   double hollow = 0;

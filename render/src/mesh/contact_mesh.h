@@ -25,89 +25,87 @@ struct Plane {
   double distance(const Eigen::Vector3d& x) const noexcept { return n.dot(x) + d; }
 };
 
-/// Holds what a tracker needs of one triangle, in one place of memory. Points are given relative to
+/// The data of one triangle that a tracker needs, in one place of memory. Points are relative to
 /// ContactMesh::origin, so that a mesh far from the world's origin loses no digits.
 struct TriangleCell {
-  Plane face;                              ///< Normal outwards; positive outside.
+  Plane face;                              ///< Outward normal; positive outside.
   std::array<std::int32_t, 3> neighbours;  ///< Triangle behind the edge from corner k to k + 1.
-  /// How sharp its hollow edges are: sine of half the angle between the normals over the sharpest
+  /// Sharpness of its concave edges: sine of half the angle between the normals over the sharpest
   /// of them, in 1 / kSineUnit, rounded up; 0 if there is none, or the mesh has no edge planes.
   std::uint16_t hollow = 0;
-  /// How far the faces around its corners lean away: the same of the largest angle to one of them,
-  /// as the mesh was built; kSineUnit at a corner of more than `kFanMax` faces; 0 without edge
-  /// planes.
+  /// Lean of the faces around its corners: the same sine for the largest angle to one of them, when
+  /// the mesh was built; kSineUnit at a corner of more than `kFanMax` faces; 0 without edge planes.
   std::uint16_t around = 0;
 
   static constexpr double kSineUnit = 65535;
-  /// Faces around a corner that are looked at one by one.
+  /// Maximum number of faces around a corner that are examined one by one.
   static constexpr std::size_t kFanMax = 64;
   /// Sine of half an angle that is rounding: two faces in one plane.
   static constexpr double kFlat = 1e-9;
 
-  /// Returns how far on this side of a hollow edge's plane (m) a tip `depth` (m) below the face may
-  /// be and still be beside the face, not under it; 0 if no edge is hollow. Real-time: safe.
+  /// Returns the distance inside a concave edge's plane (m) up to which a tip `depth` (m) below the
+  /// face may be next to the face, not under it; 0 if no edge is concave. Real-time: safe.
   double beside_hollow(double depth) const noexcept { return depth * (hollow / kSineUnit); }
 };
 
-/// Sets how a contact mesh is built.
+/// Options of building a contact mesh.
 struct ContactMeshOptions {
-  /// Winds triangles alike and outwards (see orient_mesh): for a closed surface only one answer is
-  /// right. If false, meshes that need it are refused.
+  /// Winds triangles consistently and outwards (see orient_mesh); for a closed surface only one
+  /// result is right. If false, meshes that need it are refused.
   bool orient = true;
-  /// Knows what only those ask for who walk over edges. If false, the mesh must keep its shape.
+  /// Computes the data for trackers that walk over edges. If false, the mesh must keep its shape.
   bool edge_planes = true;
-  /// Keeps edge planes, 96 of 200 bytes per triangle. If false, 24 bytes from which each is made
-  /// anew when it is asked for (`edge_plane`), and the mesh must keep its shape. Nothing without
-  /// `edge_planes`.
+  /// Stores edge planes, 96 of 200 bytes per triangle. If false, stores 24 bytes from which each
+  /// plane is computed when needed (`edge_plane`), and the mesh must keep its shape. No effect
+  /// without `edge_planes`.
   bool keep_planes = true;
   /// How far vertices may later move out of the box, as a share of its longest side, >= 0:
   /// `box_min` and `box_max` grow by it on all sides. 0 for a mesh that keeps its shape.
   double room = 0;
-  /// Up to how many triangles the mesh may grow to by ContactMesh::split_edge; 0 for a mesh that
-  /// keeps its triangles. Memory for them is set aside at once, 350 bytes for each.
+  /// Maximum number of triangles to which the mesh may grow by ContactMesh::split_edge; 0 for a
+  /// mesh that keeps its triangles. Memory for them is reserved at once, 350 bytes each.
   std::size_t triangles_max = 0;
 };
 
-/// Where a vertex goes.
+/// New place of a vertex.
 struct VertexMove {
-  std::int32_t vertex = 0;       ///< Its number.
-  Eigen::Vector3d p_W{0, 0, 0};  ///< m
+  std::int32_t vertex = 0;       ///< Number of the vertex.
+  Eigen::Vector3d p_W{0, 0, 0};  ///< Its new position, m.
 };
 
-/// What became of an edge that was split in its middle, with the two triangles at it. Each
-/// keeps its number and the half at the first of the edge's ends; numbers of the other halves are
-/// new.
+/// Result of splitting an edge in its middle, with the two triangles at it. Each triangle keeps its
+/// number and the half at the first of the edge's ends; the other halves get new numbers.
 struct EdgeSplit {
-  std::int32_t vertex = -1;                 ///< The new one, in the middle; -1: nothing was split.
-  std::array<std::int32_t, 2> ends{};       ///< The vertex kept by `triangles`, and the lost one.
-  std::array<std::int32_t, 2> triangles{};  ///< Those that keep their numbers.
-  std::array<std::int32_t, 2> others{};     ///< The new ones beside each.
+  std::int32_t vertex = -1;                 ///< The new middle vertex; -1: no split.
+  std::array<std::int32_t, 2> ends{};       ///< The vertex kept by `triangles`, the one lost.
+  std::array<std::int32_t, 2> triangles{};  ///< Triangles that keep their numbers.
+  std::array<std::int32_t, 2> others{};     ///< The new triangles next to each.
 };
 
-/// A mesh made ready to be touched: closed, wound alike, with face planes, edge planes and
+/// A mesh prepared for contact: closed, consistently wound, with face planes, edge planes and
 /// neighbours. Frame W, m.
 ///
 /// The edge plane of two neighbours goes through their shared edge and the average of their unit
-/// normals [BP 3.1, Fig. 4b]. Points of it lie equally deep below both faces, so the depth does not
-/// jump when the active triangle changes. Both neighbours hold the same numbers with opposite
-/// signs: no rounding can make each send the tip to the other.
+/// normals [BP 3.1, Fig. 4b]. Points on it are equally deep below both faces, so the depth does not
+/// jump when the active triangle changes. Both neighbours store the same numbers with opposite
+/// signs, so rounding cannot make each send the tip to the other.
 class THIMBLE_EXPORT ContactMesh {
  public:
-  /// Checks a mesh (W, m) and prepares it. The error joins the sentences about everything that
-  /// keeps the mesh from being touched (see check_mesh). Real-time: never from the servo thread.
+  /// Checks a mesh (W, m) and prepares it. The error joins the messages about all faults that
+  /// prevent contact (see check_mesh). Real-time: never from the servo thread.
   static driver::Result<ContactMesh> build(const TriangleMesh& mesh,
                                            const ContactMeshOptions& options = {});
 
-  // All of the following are Real-time: safe. Precondition: numbers name what exists.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(cells_.size()); }
 
   std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(vertices_.size()); }
 
-  /// Returns how many components were wholly inside out and have been turned.
+  /// Returns the number of components that were wholly inside out and have been turned.
   std::size_t turned_components() const noexcept { return orientation_.turned_components; }
 
-  /// Returns all that was turned round.
+  /// Returns the report of all turned triangles.
   const OrientReport& orientation() const noexcept { return orientation_; }
 
   /// Returns the corners of a triangle, counter-clockwise from outside.
@@ -115,37 +113,37 @@ class THIMBLE_EXPORT ContactMesh {
     return triangles_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Returns where a vertex is, m in W. Everything that asks for positions asks here.
+  /// Returns the position of a vertex, m in W. All code reads positions by this function.
   const Eigen::Vector3d& position(std::int32_t vertex) const noexcept {
     return vertices_[static_cast<std::size_t>(vertex)];
   }
 
   /// Moves a vertex to `p_W` (m; finite), and with it the planes of the triangles around it and of
-  /// their neighbours. What was built over the mesh (boxes of a search, smooth normals) knows the
-  /// old place until it is told: MovingMesh does all of it. A triangle that loses its area has the
-  /// normal 0 and no depth. Real-time: safe; some 20 ns per triangle around the vertex.
+  /// their neighbours. Data built over the mesh (boxes of a search, smooth normals) is not updated;
+  /// MovingMesh does that. A triangle that loses its area has the normal 0 and no depth. Real-time:
+  /// safe; some 20 ns per triangle around the vertex.
   void move_vertex(std::int32_t vertex, const Eigen::Vector3d& p_W) noexcept;
 
-  /// Returns whether any vertex has moved, or an edge was split, since the mesh was built.
+  /// Returns whether a vertex has moved, or an edge was split, since the mesh was built.
   bool moved() const noexcept { return moved_; }
 
-  /// Splits edge `k` of a triangle in its middle, with the triangle behind it: one vertex and two
-  /// triangles more, none of which hangs in an edge of another. No place of the surface moves but
-  /// by rounding. Both triangles keep the half at the edge's begin if `keep_begin`, else at its
-  /// end. Splits nothing where the mesh may not grow (ContactMeshOptions::triangles_max), a vertex
-  /// would have more than kValenceMax triangles, or the two triangles share more than this edge.
+  /// Splits edge `k` of a triangle in its middle, with the triangle behind it. This adds one vertex
+  /// and two triangles; no vertex is inside an edge of another triangle. The surface moves only by
+  /// rounding. Both triangles keep the half at the edge's begin if `keep_begin`, else at its end.
+  /// Splits nothing if the mesh may not grow (ContactMeshOptions::triangles_max), a vertex would
+  /// have more than kValenceMax triangles, or the two triangles share more than this edge.
   /// Real-time: safe; about a microsecond.
   EdgeSplit split_edge(std::int32_t triangle, std::size_t k, bool keep_begin) noexcept;
 
-  /// Returns how many triangles and vertices the mesh may grow to.
+  /// Returns the maximum number of triangles.
   std::size_t triangles_max() const noexcept { return std::max(triangles_max_, triangles_.size()); }
-  std::size_t vertices_max() const noexcept {  ///< Returns the same of its vertices.
+  std::size_t vertices_max() const noexcept {  ///< Returns the maximum number of vertices.
     return vertices_.size() + (triangles_max() - triangles_.size()) / 2;
   }
 
-  static constexpr std::size_t kValenceMax = 64;  ///< Of a vertex that splits may make more of.
+  static constexpr std::size_t kValenceMax = 64;  ///< Maximum valence after a split.
 
-  /// Returns where corner `k` of a triangle is, m in W.
+  /// Returns the position of corner `k` of a triangle, m in W.
   const Eigen::Vector3d& position(std::int32_t triangle, std::size_t k) const noexcept {
     return position(corners(triangle)[k]);
   }
@@ -161,16 +159,16 @@ class THIMBLE_EXPORT ContactMesh {
     return edges_[static_cast<std::size_t>(triangle)];
   }
 
-  /// Returns whether edge planes are kept (ContactMeshOptions).
+  /// Returns whether edge planes are stored (ContactMeshOptions).
   bool keeps_planes() const noexcept { return edges_.data() != nullptr; }
 
-  /// Returns one of them, the same to the bit where none is kept; some 60 ns then, 25 to 50 where
-  /// what it is made from is (ContactMeshOptions::keep_planes).
+  /// Returns one edge plane, bit-identical whether stored or computed. Computing takes some 60 ns,
+  /// or 25 to 50 from the stored 24 bytes (ContactMeshOptions::keep_planes).
   Plane edge_plane(std::int32_t triangle, std::size_t k) const noexcept {
     return keeps_planes() ? edge_planes(triangle)[k] : made_edge_plane(triangle, k);
   }
 
-  /// Returns whether edge `k` is hollow: whether the faces rise from it.
+  /// Returns whether edge `k` is concave: whether the faces rise from it.
   bool hollow_edge(std::int32_t triangle, std::size_t k) const noexcept {
     return edge_plane(triangle, k).n.dot(cell(triangle).face.n) < -TriangleCell::kFlat;
   }
@@ -181,22 +179,22 @@ class THIMBLE_EXPORT ContactMesh {
     return {fans_.data() + fan.begin(), fan.count()};
   }
 
-  /// Returns the point that cells are relative to: the middle of the box, m in W.
+  /// Returns the origin of the cells: the middle of the box, m in W.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
 
-  /// Tell the box of the vertices as they were when built, grown by ContactMeshOptions::room; m, W.
-  /// Searches count in it: they find nothing that lies outside.
+  /// Return the corners of the box of the vertices at building, grown by ContactMeshOptions::room;
+  /// m, W. Searches use this box and find nothing outside.
   const Eigen::Vector3d& box_min() const noexcept { return box_min_; }
   const Eigen::Vector3d& box_max() const noexcept {
     return box_max_;
   }  ///< Returns the other corner.
 
-  /// Returns whether a point lies in the box. NaN does not.
+  /// Returns whether a point is in the box; false for NaN.
   bool in_box(const Eigen::Vector3d& p_W) const noexcept {
     return (p_W.array() >= box_min_.array()).all() && (p_W.array() <= box_max_.array()).all();
   }
 
-  /// Returns how far a point lies below a triangle's plane, m; negative outside.
+  /// Returns the depth of a point below a triangle's plane, m; negative outside.
   double depth(std::int32_t triangle, const Eigen::Vector3d& p_W) const noexcept {
     return -cell(triangle).face.distance(p_W - origin_);
   }
@@ -205,10 +203,10 @@ class THIMBLE_EXPORT ContactMesh {
   double depth_rounding() const noexcept { return depth_rounding_; }
 
  private:
-  // Moves many vertices at once and does each face and edge around them once.
+  // Moves many vertices at once and updates each face and edge around them once.
   friend class MovingMesh;
 
-  // Where the triangles around a vertex stand in fans_: of 2^31 triangles at most.
+  // Position of the triangles around a vertex in fans_; of 2^31 triangles at most.
   class Fan {
    public:
     Fan(std::uint64_t begin, std::uint64_t count) noexcept : word_(begin | count << kBits) {}
@@ -231,7 +229,7 @@ class THIMBLE_EXPORT ContactMesh {
   void compute_face(std::int32_t triangle) noexcept;
   void compute_edge(std::int32_t triangle, std::size_t k) noexcept;
   std::int32_t place_edge(std::int32_t triangle, std::size_t k) noexcept;
-  struct EdgeSides;  // what two faces make an edge plane from
+  struct EdgeSides;  // data of two faces for an edge plane
   EdgeSides edge_sides(std::int32_t triangle, std::size_t k) const noexcept;
   Plane made_edge_plane(std::int32_t triangle, std::size_t k) const noexcept;
   void compute_edges();
@@ -243,12 +241,12 @@ class THIMBLE_EXPORT ContactMesh {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<TriangleCell> cells_;
-  std::vector<std::array<Plane, 3>> edges_;  // empty where no planes are kept
-  // Where they are made when asked: what their normals are divided by; 0: they are a face's.
+  std::vector<std::array<Plane, 3>> edges_;  // empty if planes are not stored
+  // For computed planes: the divisor of the normal; 0: the plane is along a face.
   std::vector<std::array<double, 3>> edge_sizes_;
   std::vector<Fan> fan_of_;
   std::vector<std::int32_t> fans_;
-  std::size_t fans_built_ = 0;  // of fans_; behind it stand those that have grown
+  std::size_t fans_built_ = 0;  // size of fans_ at building; grown fans are behind it
   std::size_t triangles_max_ = 0;
   Eigen::Vector3d origin_{0, 0, 0};
   Eigen::Vector3d box_min_{0, 0, 0};

@@ -2,21 +2,21 @@
 
 namespace thimble::render {
 
-/// Returns the depth below a smooth surface that lies `gap` (> 0) below its triangles, for a tip
-/// `below_mesh` (>= 0) below those, in the same unit: exact from twice the gap on; before that it
-/// is softer, with the same depth and slope at the end, so that nobody who is inside is without
+/// Returns the depth below a concave smooth surface `gap` (> 0) below its triangles, for a tip
+/// `below_mesh` (>= 0) below the triangles, in the same unit. Exact from twice the gap on. Before
+/// that it is softer, with the same depth and slope at the join, so that a tip inside always has a
 /// force. Real-time: safe.
 inline double depth_below_hollow(double below_mesh, double gap) noexcept {
   return below_mesh < 2 * gap ? below_mesh * below_mesh / (4 * gap) : below_mesh - gap;
 }
 
-/// How `depth_below_hollow` changes.
+/// Derivatives of `depth_below_hollow`.
 struct HollowDepthChange {
   double per_depth = 1;  ///< By the depth below the triangles.
   double per_gap = -1;   ///< By the gap.
 };
 
-/// Returns its derivatives at the same place. Real-time: safe.
+/// Returns the derivatives at the same place. Real-time: safe.
 inline HollowDepthChange change_below_hollow(double below_mesh, double gap) noexcept {
   if (!(below_mesh < 2 * gap)) return {};
   const double part = below_mesh / (2 * gap);

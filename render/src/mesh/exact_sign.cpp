@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 // terms' magnitudes: (7 + 56 e) e with e = 2^-53 [Shewchuk, section 4.3].
 constexpr double kOrientationError = 7.7715611723761027e-16;
 
-// Is a sum of doubles kept without rounding: components that do not overlap, the largest last.
+// A sum of doubles without rounding: components that do not overlap, the largest last.
 class ExactSum {
  public:
   void add(double value) noexcept {

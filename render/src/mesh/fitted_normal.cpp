@@ -15,12 +15,12 @@ using Eigen::Vector3d;
 // Five coefficients: one point more than that, so that no single point decides.
 constexpr std::size_t kPointsMin = 6;
 
-// Below this share of the largest pivot the points lie too close to a conic through the vertex for
-// their paraboloid to mean anything: its square root is how much it magnifies the points' noise.
+// Below this share of the largest pivot the points are too close to a conic through the vertex for
+// a meaningful paraboloid. Its square root is the magnification of the points' noise.
 constexpr double kPivotMin = 1e-4;
 
-// tan of the angle between guess and fit above which the surface is no graph over the guess: half
-// of the default crease angle.
+// tan of the angle between guess and fit above which the surface is not a graph over the guess:
+// half of the default crease angle.
 constexpr double kLeanMax = 0.5774;
 
 }  // namespace
@@ -43,7 +43,7 @@ Vector3d fitted_normal(const Vector3d& vertex, std::span<const Vector3d> around,
     const double v = axis_v.dot(way);
     Coefficients row;
     row << u, v, u * u, u * v, v * v;
-    // What the paraboloid leaves out grows with the third power of the distance.
+    // The error of the paraboloid grows with the third power of the distance.
     const double distance = way.norm();
     if (!(distance > 0)) return about;
     const double weight = 1 / (distance * distance * distance * distance);

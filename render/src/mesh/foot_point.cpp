@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
-// Finds the foot of a tip that is not over the triangle. The nearest point then lies on an edge
-// that the tip is beside of, and on the nearest of those.
+// Finds the closest point for a tip that is not over the triangle. It is on the nearest of the
+// edges that the tip is outside of.
 void find_on_edges(const Corners& corner, const Vector3d& p_OT, Foot& foot) noexcept {
   foot.distance_squared = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -60,8 +60,8 @@ Foot foot_on(const Vector3d& a, const Vector3d& b, const Vector3d& c,
   foot.edges_squared = ab.squaredNorm() + bc.squaredNorm() + ca.squaredNorm();
 
   if (beside_ab >= 0 && beside_bc >= 0 && beside_ca >= 0) {
-    // A mean of the corners, not the tip's projection: it stays in the plane of the vertices
-    // however wrong the normal of a thin triangle is.
+    // A mean of the corners, not the tip's projection: it stays in the plane of the vertices even
+    // if the normal of a thin triangle is wrong.
     const double share = 1 / (beside_ab + beside_bc + beside_ca);
     foot.p_OP = a + (beside_ca * share) * ab - (beside_ab * share) * ca;
     foot.distance_squared = (p_OT - foot.p_OP).squaredNorm();

@@ -10,8 +10,8 @@
 
 namespace thimble::render {
 
-/// Lists, per vertex, the sides of triangles that begin there: who is whose neighbour in O(n),
-/// where sorting all edges takes several times as long. Real-time: never from the servo thread.
+/// Lists, per vertex, the sides of triangles that begin there. Gives neighbours in O(n), where
+/// sorting all edges takes several times as long. Real-time: never from the servo thread.
 class HalfEdges {
  public:
   /// A side of a triangle without its begin.
@@ -47,7 +47,7 @@ class HalfEdges {
     return {sides_.data() + begin_[v], begin_[v + 1] - begin_[v]};
   }
 
-  /// Finds the one triangle that runs the edge from `from` to `to`; -1 if there is none or several.
+  /// Returns the only triangle with the edge from `from` to `to`; -1 if there is none or several.
   std::int32_t opposite(std::int32_t from, std::int32_t to) const noexcept {
     const std::span<const Side> sides = around(from);
     if (sides.size() > kHub) return only_one(hubs_.find(from)->second, to);
@@ -61,7 +61,7 @@ class HalfEdges {
   }
 
  private:
-  // More sides than this at one vertex are sorted to be looked at: a hub of n triangles would cost
+  // The sides at a vertex are sorted if there are more than this: a hub of n triangles would cost
   // n^2 otherwise.
   static constexpr std::size_t kHub = 64;
 
@@ -75,7 +75,7 @@ class HalfEdges {
   std::vector<std::uint32_t> begin_;
   std::vector<Side> sides_;
   std::unordered_map<std::int32_t, std::vector<Side>>
-      hubs_;  // of vertices with many, by their ends
+      hubs_;  // of vertices with many sides, sorted by their ends
 };
 
 }  // namespace thimble::render

@@ -14,8 +14,8 @@ bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle) {
 }
 
 std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
-  // Sides are dealt to their smaller vertex first, in the order of the triangles; what remains to
-  // be sorted are the few of one vertex.
+  // Sides are first distributed to their smaller vertex, in the order of the triangles; then only
+  // the few of one vertex have to be sorted.
   std::vector<std::size_t> begin(mesh.vertices.size() + 1, 0);
   const auto for_each_side = [&mesh](auto&& take) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

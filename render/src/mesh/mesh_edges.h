@@ -16,15 +16,15 @@ struct EdgeUse {
   std::int32_t high = 0;  ///< The larger one.
   std::int32_t triangle = 0;
   std::int8_t corner = 0;
-  bool upward = false;  ///< True if the triangle runs the edge from `low` to `high`.
+  bool upward = false;  ///< True if the triangle has the edge from `low` to `high`.
 };
 
-/// Lists the sides of all triangles, sorted so that the sides of one edge stand together, in the
+/// Lists the sides of all triangles, sorted so that the sides of one edge are together, in the
 /// order of their triangles. Triangles that name a vertex which does not exist, or one vertex
-/// twice, are left out. Real-time: never from the servo thread.
+/// twice, are omitted. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
 
-/// Finds the end of the group of sides that share the edge of side `begin`.
+/// Returns the end of the group of sides that share the edge of side `begin`.
 THIMBLE_EXPORT std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin);
 
 /// Returns whether a triangle names three different vertices that exist.

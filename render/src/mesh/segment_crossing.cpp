@@ -7,10 +7,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Finds on which side of the directed edge a-b the moved segment passes. The first-order change of
-// the orientation under the move is -(e, e^2, e^3) . ((b - a) x (p_to - p_from)), so the first
-// component that is not zero decides. Zero only if edge and segment are parallel: then no triangle
-// of that edge is crossed.
+// Returns the side of the directed edge a-b on which the moved segment passes. The first-order
+// change of the orientation under the move is -(e, e^2, e^3) . ((b - a) x (p_to - p_from)), so the
+// first component that is not zero decides. Zero only if edge and segment are parallel: then no
+// triangle of that edge is crossed.
 int side_of_edge(const Vector3d& p_from, const Vector3d& p_to, const Vector3d& a,
                  const Vector3d& b) noexcept {
   if (const int side = orientation(p_from, p_to, a, b)) return side;
@@ -20,8 +20,8 @@ int side_of_edge(const Vector3d& p_from, const Vector3d& p_to, const Vector3d& a
   return 0;
 }
 
-// Finds the side of a triangle's plane a moved point lies on; zero only if the triangle has no
-// area.
+// Returns the side of a triangle's plane on which a moved point is; zero only if the triangle has
+// no area.
 int side_of_plane(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                   const Vector3d& p) noexcept {
   if (const int side = orientation(a, b, c, p)) return side;

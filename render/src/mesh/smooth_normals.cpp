@@ -47,7 +47,7 @@ SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, Norma
   done_ = {};
 }
 
-// The corner at the same vertex behind edge `edge` of the triangle.
+// Returns the corner at the same vertex behind edge `edge` of the triangle.
 auto SmoothNormals::across(const ContactMesh& mesh, const Corner& at, std::size_t edge) noexcept
     -> Corner {
   const std::int32_t vertex = mesh.corners(at.triangle)[at.k];
@@ -62,7 +62,7 @@ void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
   const TriangleCell& cell = mesh.cell(triangle);
   const Vector3d& n = cell.face.n;
   const Vector3d& behind = mesh.cell(cell.neighbours[k]).face.n;
-  // The cosine is wrong by some 2^-53: where it is clear of the limit, that decides.
+  // The cosine is wrong by some 2^-53: if it is clear of the limit, it decides.
   constexpr double kClear = 1e-12;
   const double cosine = n.dot(behind);
   const bool hollow = mesh.hollow_edge(triangle, k);
@@ -75,7 +75,7 @@ void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
   creases = static_cast<std::uint8_t>(sharp ? creases | bit : creases & ~bit);
 }
 
-// The vertices of the triangles of a smooth group, and of those behind them.
+// Collects the vertices of the triangles of a smooth group, and of those behind them.
 void SmoothNormals::collect_points(const ContactMesh& mesh, Group& group) const noexcept {
   std::vector<std::int32_t>& vertices = group.vertices;
   vertices.clear();
@@ -130,7 +130,7 @@ void SmoothNormals::average_group(const ContactMesh& mesh, const Corner& start,
     collect_points(mesh, group);
     const Vector3d fitted =
         fitted_normal(mesh.position(start.triangle, start.k), group.points, normal);
-    // A triangle lowered along corner normals that lean more than this away from it soon folds over
+    // A triangle sunk along corner normals that lean more than this away from it soon turns over
     // (offset_tracker.h).
     const bool faces_all = std::all_of(
         group.corners.begin(), group.corners.end(),
@@ -139,7 +139,8 @@ void SmoothNormals::average_group(const ContactMesh& mesh, const Corner& start,
   }
   for (const Corner& at : group.corners) {
     const auto t = static_cast<std::size_t>(at.triangle);
-    // Faces that cancel out (a spike of no width, all smooth) have no mean: each keeps its own.
+    // Faces that cancel out (a spike of no width, all smooth) have no mean: each keeps its own
+    // normal.
     corners_[t][at.k] = length > 0 ? normal : mesh.cell(at.triangle).face.n;
     done_[3 * t + at.k] = true;
   }
@@ -158,8 +159,8 @@ void SmoothNormals::prepare_refit(const ContactMesh& mesh) {
   for (std::int32_t v = 0; v < mesh.vertex_count(); ++v) {
     valence = std::max(valence, mesh.fan(v).size());
   }
-  // A group is at most a fan, which has one vertex around per triangle (two if it is open), and one
-  // more behind each.
+  // A group is at most a fan. A fan has one vertex around it per triangle (two if it is open), and
+  // one more behind each.
   group_.corners.reserve(valence);
   group_.vertices.reserve(3 * valence);
   group_.points.reserve(3 * valence);
@@ -168,7 +169,7 @@ void SmoothNormals::prepare_refit(const ContactMesh& mesh) {
 
 void SmoothNormals::refit(const ContactMesh& mesh,
                           std::span<const std::int32_t> triangles) noexcept {
-  // Those that have come: prepare_refit has set room aside.
+  // New triangles: prepare_refit has reserved memory.
   const auto count = static_cast<std::size_t>(mesh.triangle_count());
   corners_.resize(count);
   creases_.resize(count, 0);
@@ -178,7 +179,7 @@ void SmoothNormals::refit(const ContactMesh& mesh,
   for (const std::int32_t t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       find_crease(mesh, t, k);
-      // The other side of the edge: it names its own begin where this one ends.
+      // The other side of the edge: it begins where this one ends.
       const Corner behind = across(mesh, {t, (k + 1) % 3}, k);
       find_crease(mesh, behind.triangle, behind.k);
     }
@@ -187,7 +188,7 @@ void SmoothNormals::refit(const ContactMesh& mesh,
     std::fill(seen_.begin(), seen_.end(), 0);
     refits_ = 1;
   }
-  // A normal knows the faces around its vertex, and a fitted one the vertices behind them.
+  // A normal depends on the faces around its vertex, a fitted one also on the vertices behind them.
   for (const std::int32_t t : triangles) {
     for (const std::int32_t vertex : mesh.corners(t)) refit_vertex(mesh, vertex);
     if (weights_ != NormalWeights::kFitted) continue;
@@ -208,7 +209,7 @@ void SmoothNormals::refit_vertex(const ContactMesh& mesh, std::int32_t vertex) n
     return done_[3 * static_cast<std::size_t>(at.triangle) + at.k];
   };
   for (const std::int32_t t : mesh.fan(vertex)) done(corner_at(t)) = false;
-  // In the order in which a mesh built anew is gone through.
+  // In the same order as when a mesh is built.
   for (const std::int32_t t : mesh.fan(vertex)) {
     const Corner at = corner_at(t);
     if (!done(at)) average_group(mesh, at, group_);

@@ -13,44 +13,41 @@
 
 namespace thimble::render {
 
-/// The angle between two faces' normals (rad) above which their edge is felt as a crease: the
-/// right angles of made things stay sharp, the steps of a scan do not. A default; scenes may say
-/// another.
+/// The default angle between two faces' normals (rad) above which their edge is a crease. The right
+/// angles of made objects stay sharp, the steps of a scan do not. Scenes may set another.
 inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 
-/// The same of edges in hollows, at most, whatever is said of others: a depth below the faces of
-/// a hollow and a normal that turns over them are the force of a potential only to the square of
-/// the angle, and beyond this one a hand may swing in the hollow (../track/hollows.md).
+/// The maximum crease angle of concave edges, whatever angle is set for others. Below concave
+/// faces, depth and turning normal are the force of a potential only to the square of the angle.
+/// Beyond this angle a hand may oscillate in the groove (../track/hollows.md).
 inline constexpr double kHollowCreaseAngle = kCreaseAngle;
 
 /// The same for shading in bands along the edges, where the normal turns within a band.
 inline constexpr double kHollowCreaseAngleOfBands = std::numbers::pi / 9;
 
-/// Holds the normals that a mesh is shaded with, at each corner of each triangle, and says which
-/// edges are creases.
+/// The normals for shading a mesh, at each corner of each triangle, and the crease flags of its
+/// edges.
 ///
-/// Triangles around a vertex that are joined over edges which are no creases form a smooth group.
+/// Triangles around a vertex that are joined over edges which are not creases form a smooth group.
 /// A corner's normal is the weighted mean of its group's face normals, or fitted to its group's
-/// vertices. So two triangles agree, to
-/// the bit, on the normals at both ends of an edge that is no crease, and nothing is ever averaged
-/// over a crease. W, unit length. 73 bytes per triangle.
+/// vertices. So the normals of two triangles at both ends of a smooth edge are bit-identical, and
+/// nothing is averaged over a crease. W, unit length. 73 bytes per triangle.
 class THIMBLE_EXPORT SmoothNormals {
  public:
-  /// Finds the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in one
-  /// plane are creases, at pi none are but those in hollows above `hollow_crease_angle`.
-  /// Real-time: never from the servo thread.
+  /// Computes the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in
+  /// one plane are creases; at pi only concave edges above `hollow_crease_angle` are. Real-time:
+  /// never from the servo thread.
   explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
                          NormalWeights weights = NormalWeights::kFitted,
                          double hollow_crease_angle = kHollowCreaseAngle);
 
-  /// Makes `refit` possible: 5 bytes more per triangle. Real-time: never from the servo thread.
+  /// Enables `refit`: 5 more bytes per triangle. Real-time: never from the servo thread.
   void prepare_refit(const ContactMesh& mesh);
 
-  // All of the following are Real-time: safe. Precondition: numbers name what exists.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
-  /// Finds again what depends on triangles of the mesh whose corners have moved (all around these)
-  /// or that are new:
-  /// normals and creases are those of the mesh built anew, to the bit. Precondition:
+  /// Updates the data that depends on triangles whose corners have moved (all around these) or that
+  /// are new. Normals and creases are bit-identical to those of the newly built mesh. Precondition:
   /// `prepare_refit` was called with the same mesh. Its time does not grow with the mesh.
   void refit(const ContactMesh& mesh, std::span<const std::int32_t> triangles) noexcept;
 
@@ -65,19 +62,19 @@ class THIMBLE_EXPORT SmoothNormals {
   }
 
  private:
-  // Is a corner of a triangle: one place in the fan of its vertex.
+  // A corner of a triangle: one place in the fan of its vertex.
   struct Corner {
     std::int32_t triangle;
     std::size_t k;
 
     bool operator==(const Corner&) const = default;
   };
-  // What one group needs while its normal is found; kept, so that `refit` asks nothing of the heap.
+  // Work memory for the normal of one group; stored, so that `refit` does not allocate.
   struct Group {
     std::vector<Corner> corners;
     std::vector<std::int32_t> vertices;
     std::vector<Eigen::Vector3d> points;
-    std::vector<std::uint32_t> taken;  // per vertex: the number of the last group that took it
+    std::vector<std::uint32_t> taken;  // per vertex: the number of the last group that used it
     std::uint32_t collected = 0;
   };
 
@@ -89,11 +86,11 @@ class THIMBLE_EXPORT SmoothNormals {
 
   double crease_angle_;
   double crease_cosine_;
-  double hollow_crease_angle_;  // of edges in hollows
+  double hollow_crease_angle_;  // of concave edges
   NormalWeights weights_;
   std::vector<std::array<Eigen::Vector3d, 3>> corners_;
   std::vector<std::uint8_t> creases_;  // bit k for edge k
-  std::vector<bool> done_;             // per corner; empty unless refits are prepared
+  std::vector<bool> done_;             // per corner; empty unless refits are enabled
   std::vector<std::uint32_t> seen_;    // per vertex: the number of the last refit that found it
   std::uint32_t refits_ = 0;
   Group group_;

@@ -1,4 +1,4 @@
-// How a ContactMesh splits an edge without asking the heap.
+// Splitting of edges of a ContactMesh without allocation.
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -8,9 +8,9 @@
 namespace thimble::render {
 namespace {
 
-// Of a triangle that may be: the fan of a vertex moves to twice its room when that is full, so all
-// places a vertex has ever had are less than four of its last ones, and there are three of these
-// per triangle. Most vertices move once; where this room ends nothing more is split. [chosen]
+// Entries per possible triangle. The fan of a vertex moves to twice its room when it is full. So
+// all places that a vertex has ever had are less than four of its last ones, and there are three of
+// these per triangle. Most vertices move once; without room, nothing more is split. [chosen]
 constexpr std::size_t kFanRoom = 8;
 
 }  // namespace
@@ -25,11 +25,11 @@ void ContactMesh::make_room(std::size_t triangles_max) {
   fans_.reserve(fans_.size() + kFanRoom * triangles_max);
 }
 
-// Lists a triangle, of the highest number so far, at a vertex; false if there is no room.
+// Lists a triangle, of the highest number so far, at a vertex. Returns false if there is no room.
 bool ContactMesh::add_to_fan(std::int32_t vertex, std::int32_t triangle) noexcept {
   Fan& fan = fan_of_[static_cast<std::size_t>(vertex)];
   const std::size_t count = fan.count();
-  // One that has moved has room for the next power of two.
+  // A fan that has moved has room for the next power of two.
   if (fan.begin() < fans_built_ || std::has_single_bit(count)) {
     const std::size_t begin = fans_.size();
     const std::size_t room = std::bit_ceil(count + 1);
@@ -43,8 +43,8 @@ bool ContactMesh::add_to_fan(std::int32_t vertex, std::int32_t triangle) noexcep
   return true;
 }
 
-// Lists the new triangles in place of the old ones at the end of the edge that has lost these, in
-// rising order as everywhere.
+// Replaces old triangles by new ones at the end of the edge that has lost the old ones, in
+// ascending order as everywhere.
 void ContactMesh::change_fan(std::int32_t vertex, const EdgeSplit& split) noexcept {
   const Fan fan = fan_of_[static_cast<std::size_t>(vertex)];
   std::int32_t* const begin = fans_.data() + fan.begin();
@@ -71,7 +71,7 @@ EdgeSplit ContactMesh::split_edge(std::int32_t triangle, std::size_t k, bool kee
   }
 
   const auto count = triangle_count();
-  moved_ = true;  // new faces lean on other ones
+  moved_ = true;  // new faces have other neighbours
   const EdgeSplit split{.vertex = vertex_count(),
                         .ends = {keep_begin ? a : b, keep_begin ? b : a},
                         .triangles = {triangle, behind},
@@ -83,7 +83,7 @@ EdgeSplit ContactMesh::split_edge(std::int32_t triangle, std::size_t k, bool kee
     const std::int32_t old = split.triangles[side];
     const std::int32_t other = split.others[side];
     const std::size_t edge = side == 0 ? k : j;
-    // Which of the two other edges ends at the vertex that the old triangle loses.
+    // The one of the two other edges that ends at the vertex that the old triangle loses.
     const bool loses_begin = corners(old)[edge] == lost;
     const std::size_t lost_edge = loses_begin ? (edge + 2) % 3 : (edge + 1) % 3;
     const std::size_t kept_edge = loses_begin ? (edge + 1) % 3 : (edge + 2) % 3;
@@ -96,7 +96,7 @@ EdgeSplit ContactMesh::split_edge(std::int32_t triangle, std::size_t k, bool kee
     TriangleCell& new_cell = cells_.back();
     new_cell.neighbours[edge] = split.others[1 - side];
     new_cell.neighbours[kept_edge] = old;
-    // The triangle behind the edge that has gone over to the new one.
+    // The triangle behind the edge that now belongs to the new one.
     const std::int32_t beyond = new_cell.neighbours[lost_edge];
     const std::int32_t from = triangles_.back()[lost_edge];
     auto& back = cells_[static_cast<std::size_t>(beyond)].neighbours;

@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The least squared cosine between a face and an edge plane's direction: faces back to back have
-// edge planes along the face, and distances to those say nothing of the place on it.
+// The least squared cosine between a face and an edge plane's direction. Faces back to back have
+// edge planes along the face, whose distances do not determine the place on it.
 constexpr double kAlongFace = 1e-6;
 
 }  // namespace

@@ -8,33 +8,33 @@
 
 namespace thimble::render {
 
-// Weights of a triangle's corners say where on it a tip belongs: they sum to 1, weight k is 0 on
-// the side opposite corner k, and all are at least 0 in the triangle.
+// Weights of a triangle's corners describe the place of a tip on it. They sum to 1. Weight k is 0
+// on the side opposite corner k, and all are at least 0 in the triangle.
 
-/// How far a tip is from the edge planes of a triangle, in areas: what edge_plane_weights are the
-/// shares of.
+/// Distances of a tip from the edge planes of a triangle, as areas; edge_plane_weights are their
+/// shares.
 struct EdgePlaneSides {
   Eigen::Vector3d value{0, 0, 0};                    ///< Twice an area, m^2, opposite of corner k.
   Eigen::Matrix3d change = Eigen::Matrix3d::Zero();  ///< Row k: its gradient, m in W.
 };
 
-/// Returns them for a tip at `p_WT` (W, m). Real-time: safe.
+/// Returns the areas for a tip at `p_WT` (W, m). Real-time: safe.
 EdgePlaneSides edge_plane_sides(const ContactMesh& mesh, std::int32_t triangle,
                                 const Eigen::Vector3d& p_WT) noexcept;
 
-/// Finds the weights of a tip (W, m) from its distances to the edge planes of a triangle, so that a
+/// Returns the weights of a tip (W, m) from its distances to the edge planes of a triangle. A
 /// weight vanishes exactly on the edge plane that both neighbours share [BP 4b]. On the surface
 /// they are the barycentric weights. Negative beyond an edge plane; all 1/3 where three planes
 /// leave no room. Real-time: safe.
 Eigen::Vector3d edge_plane_weights(const ContactMesh& mesh, std::int32_t triangle,
                                    const Eigen::Vector3d& p_WT) noexcept;
 
-/// Finds the weights of the foot of the face's normal through a tip (W, m) [BP 4a]. Negative where
-/// the foot lies outside the triangle. Real-time: safe.
+/// Returns the weights of the projection of a tip (W, m) along the face's normal [BP 4a]. Negative
+/// if the projection is outside the triangle. Real-time: safe.
 THIMBLE_EXPORT Eigen::Vector3d projected_weights(const ContactMesh& mesh, std::int32_t triangle,
                                                  const Eigen::Vector3d& p_WT) noexcept;
 
-/// Brings weights back into the triangle: negative ones become 0, the others grow to sum 1.
+/// Limits weights to the triangle: negative ones become 0, the others are scaled to sum 1.
 /// Real-time: safe.
 inline Eigen::Vector3d within_triangle(const Eigen::Vector3d& weights) noexcept {
   if (weights.minCoeff() >= 0) return weights;
@@ -42,7 +42,7 @@ inline Eigen::Vector3d within_triangle(const Eigen::Vector3d& weights) noexcept 
   return positive / positive.sum();
 }
 
-/// Finds the point of a triangle that has these weights, m in W. Real-time: safe.
+/// Returns the point of a triangle with these weights, m in W. Real-time: safe.
 inline Eigen::Vector3d point_at(const ContactMesh& mesh, std::int32_t triangle,
                                 const Eigen::Vector3d& weights) noexcept {
   const Eigen::Vector3d& a = mesh.position(triangle, 0);

@@ -10,28 +10,28 @@
 
 namespace thimble::render {
 
-/// The place of a triangle to which a tip belongs, with its derivatives: what an energy that
-/// depends on the place needs to become a force.
+/// The place of a tip on a triangle, with its derivatives, from which an energy that depends on the
+/// place becomes a force.
 struct TriangleFoot {
   std::int32_t triangle = -1;
-  Eigen::Vector3d weights{0, 0, 0};                  ///< Of the corners: at least 0, sum 1.
+  Eigen::Vector3d weights{0, 0, 0};                  ///< Weights of the corners: at least 0, sum 1.
   Eigen::Matrix3d change = Eigen::Matrix3d::Zero();  ///< Row k: gradient of weight k, 1/m in W.
-  /// Gradient of the depth along the corners' normals, in W; 0 where it is no such place.
+  /// Gradient of the depth along the corners' normals, in W; 0 for other kinds of place.
   Eigen::Vector3d sink{0, 0, 0};
 };
 
-/// Returns the place by the distances to the edge planes (edge_plane_weights, brought back into the
-/// triangle) for a tip at `p_WT` (W, m). Its derivatives are exact; they are 0 where three planes
+/// Returns the place by the distances to the edge planes (edge_plane_weights, limited to the
+/// triangle) for a tip at `p_WT` (W, m). Its derivatives are exact. They are 0 where three planes
 /// leave no room, and along an edge beyond which the tip is. Real-time: safe.
 TriangleFoot edge_plane_foot(const ContactMesh& mesh, std::int32_t triangle,
                              const Eigen::Vector3d& p_WT) noexcept;
 
-/// Returns the place that has these `weights` (at least 0, sum 1) at `depth` (m) along the corners'
+/// Returns the place with these `weights` (at least 0, sum 1) at `depth` (m) along the corners'
 /// normals: p = sum w_k (x_k - d n_k) (OffsetFoot). Differentiated, with d unknown as well:
 ///
 ///   dp = sum dw_k y_k - dd N,  y_k = x_k - d n_k,  N = sum w_k n_k,  sum dw_k = 0
 ///
-/// three equations for dw_1, dw_2 and dd. Derivatives are 0 where they have no solution.
+/// These are three equations for dw_1, dw_2 and dd. Derivatives are 0 where they have no solution.
 /// Real-time: safe.
 TriangleFoot offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
                          std::int32_t triangle, const Eigen::Vector3d& weights,
@@ -42,31 +42,31 @@ TriangleFoot offset_foot(const std::array<Eigen::Vector3d, 3>& x,
                          const std::array<Eigen::Vector3d, 3>& n, const Eigen::Vector3d& weights,
                          double depth) noexcept;
 
-/// A point of a mesh that goes along with a tip.
+/// A point of a mesh that moves with a tip.
 struct FootPath {
   Eigen::Vector3d p_W{0, 0, 0};                 ///< m
-  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of `p_W` by the tip's place.
+  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of `p_W` by the tip's position.
 };
 
-/// Returns the gradient in the tip's place of the depth d |N| that offset corners measure along
-/// N = sum w_k n_k, for a foot made by `offset_foot` with the same normals and `depth`. The
+/// Returns the gradient by the tip's position of the depth d |N| that offset corners measure along
+/// N = sum w_k n_k, for a place made by `offset_foot` with the same normals and `depth`. The
 /// gradient of |N| is sum grad w_k (n_k . N) / |N|. Real-time: safe.
 Eigen::Vector3d offset_depth_slope(const std::array<Eigen::Vector3d, 3>& n,
                                    const TriangleFoot& foot, double depth) noexcept;
 
-/// Returns the gradient in the tip's place of 1/2 sum w_k (x_k - q) . n_k, q = sum w_k x_k: how far
-/// the smooth surface with normals `n` at the corners `x` stands above the place. As sums over
-/// corners go that is 1/2 sum over i < j of w_i w_j (x_i - x_j) . (n_i - n_j). Real-time: safe.
+/// Returns the gradient by the tip's position of 1/2 sum w_k (x_k - q) . n_k, q = sum w_k x_k: the
+/// height of the smooth surface with normals `n` at the corners `x` above the place. Written over
+/// pairs of corners it is 1/2 sum over i < j of w_i w_j (x_i - x_j) . (n_i - n_j). Real-time: safe.
 Eigen::Vector3d height_slope(const std::array<Eigen::Vector3d, 3>& x,
                              const std::array<Eigen::Vector3d, 3>& n,
                              const TriangleFoot& foot) noexcept;
 
-/// Returns the point of a triangle that is such a place. Real-time: safe.
+/// Returns the point of a triangle at such a place. Real-time: safe.
 FootPath path_of(const ContactMesh& mesh, const TriangleFoot& foot) noexcept;
 
-/// Returns where the material at `now` was when the corners of its triangle were at `first` (m),
-/// which are where `mesh` says now, by the linear map that carries the triangle back. One without
-/// area has no material to lie in: its first corner stands for it. Real-time: safe.
+/// Returns the place of the material at `now` when the corners of its triangle were at `first` (m);
+/// now they are at their places in `mesh`. Uses the linear map that carries the triangle back. For
+/// a triangle without area, its first corner is returned. Real-time: safe.
 FootPath carried_back(const ContactMesh& mesh, std::int32_t triangle,
                       const std::array<Eigen::Vector3d, 3>& first, const FootPath& now) noexcept;
 

@@ -7,8 +7,8 @@
 
 namespace thimble::render {
 
-/// A small set of triangles in the order in which they were added: those a walk has visited, or
-/// a patch that grows around a place. All is Real-time: safe; time grows with the size.
+/// A small set of triangles in the order in which they were added: those visited by a walk, or a
+/// patch that grows around a place. All is Real-time: safe; time grows with the size.
 template <std::size_t kMax>
 class TriangleSet {
  public:
@@ -23,8 +23,8 @@ class TriangleSet {
     if (!full() && !has(triangle)) triangles_[size_++] = triangle;
   }
 
-  bool full() const noexcept { return size_ == kMax; }  ///< Returns whether it has no room.
-  std::size_t size() const noexcept { return size_; }   ///< Returns how many it has.
+  bool full() const noexcept { return size_ == kMax; }  ///< Returns whether the set is full.
+  std::size_t size() const noexcept { return size_; }   ///< Returns the number of triangles.
   /// Precondition: i < size().
   std::int32_t operator[](std::size_t i) const noexcept { return triangles_[i]; }
 

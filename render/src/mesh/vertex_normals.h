@@ -8,15 +8,15 @@
 
 namespace thimble::render {
 
-/// Finds the angle (rad, 0 to pi) between two sides that leave a corner, exact for slivers too.
-/// 0 if a side has no length. Real-time: safe.
+/// Returns the angle (rad, 0 to pi) between two sides that leave a corner, exact for slivers too. 0
+/// if a side has no length. Real-time: safe.
 THIMBLE_EXPORT double corner_angle(const Eigen::Vector3d& to_next,
                                    const Eigen::Vector3d& to_last) noexcept;
 
-/// Finds unit normals at the vertices, in the mesh's frame: triangle normals weighted by the
-/// triangle's angle there [Thuermer], so that the answer does not depend on how a surface is cut
-/// up. Zero where a vertex has no triangle. Precondition: triangles name vertices that exist.
-/// Real-time: never from the servo thread.
+/// Returns unit normals at the vertices, in the mesh's frame: triangle normals weighted by the
+/// triangle's angle there [Thuermer]. So the result does not depend on how a surface is divided.
+/// Zero for a vertex without triangle. Precondition: triangles name existing vertices. Real-time:
+/// never from the servo thread.
 THIMBLE_EXPORT std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh);
 
 }  // namespace thimble::render

@@ -26,7 +26,7 @@ ModelFlaw flaw_of(const LocalModel& model) noexcept {
   if (!(most > 0)) {
     return model.f_T_W.isZero(0) ? ModelFlaw::kNone : ModelFlaw::kNoSurface;
   }
-  // A matrix has a Cholesky factor just if all its eigenvalues are above 0.
+  // A matrix has a Cholesky factor if and only if all its eigenvalues are above 0.
   const Eigen::Matrix3d raised = K / most + kTolerance * Eigen::Matrix3d::Identity();
   if (Eigen::LLT<Eigen::Matrix3d>(raised).info() != Eigen::Success) {
     return ModelFlaw::kNegativeStiffness;
@@ -66,7 +66,7 @@ Eigen::Matrix3d without_negative(const Eigen::Matrix3d& stiffness) {
                                                              (stiffness + stiffness.transpose()));
   const Eigen::Matrix3d kept = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() *
                                parts.eigenvectors().transpose();
-  return 0.5 * (kept + kept.transpose());  // symmetric to the bit
+  return 0.5 * (kept + kept.transpose());  // exactly symmetric
 }
 
 }  // namespace thimble::render

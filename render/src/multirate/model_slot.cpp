@@ -26,7 +26,7 @@ driver::Result<void> ModelSlot::publish(const LocalModel& model) {
 
 bool ModelSlot::newest(LocalModel& model) const noexcept {
   Words words;
-  // A writer that was interrupted half-way is not waited for.
+  // Does not wait for a writer that was interrupted half-way.
   constexpr int kAttempts = 2;
   if (!snapshot_.load(words, kAttempts)) return false;
   model.p_WR = Vector(words.p);

@@ -12,25 +12,25 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A direction without stiffness counts as one of this share of the whole [chosen], so that a force
-/// that has just been left behind by a turning normal has a finite energy.
+/// A direction without stiffness counts as having this share of the whole [chosen], so that a force
+/// left in it by a turning normal has a finite energy.
 constexpr double kLeastShare = 0.01;
 
-/// So much of a force goes along its normal, at least, while models change [chosen].
+/// Minimum share of a force along its normal while models change [chosen].
 constexpr double kLeastPush = 0.2;
 
-/// Finds the energy that a force on springs could give, F K^-1 F / 2, J; infinite without springs.
-/// Convex in force and stiffness together, as the largest of F x - x K x / 2 over all x.
+/// Returns the energy that a force on springs can release, F K^-1 F / 2, J; infinite without
+/// springs. Convex in force and stiffness together, as the largest of F x - x K x / 2 over all x.
 double available(const Vector3d& force, const Matrix3d& stiffness) noexcept {
-  // Made good for springs along one line, of which most surfaces are.
+  // Corrected for springs along one line, the case of most surfaces.
   const double least = kLeastShare * stiffness.trace();
   if (!(least > 0)) return force.isZero(0) ? 0 : std::numeric_limits<double>::infinity();
   const Matrix3d raised = stiffness + least * Matrix3d::Identity();
   return 0.5 * (1 + kLeastShare) * force.dot(raised.inverse() * force);
 }
 
-/// Takes the shear out of a force: what is left is the part that begins and ends with the push
-/// along the normal, and is the gradient of an energy by itself.
+/// Removes the shear from a force. The rest is the part that begins and ends with the push along
+/// the normal, and is the gradient of an energy.
 Vector3d without_shear(const Vector3d& force, const Matrix3d& stiffness,
                        const Vector3d& n_W) noexcept {
   const Vector3d along = stiffness * n_W;
@@ -85,7 +85,7 @@ driver::Result<std::unique_ptr<ModelTouch>> ModelTouch::make(const ModelSlot& sl
 }
 
 driver::ForceCommand ModelTouch::update(const driver::DeviceState& state) noexcept {
-  // A tip that is nowhere feels nothing; the gate names that fault.
+  // An invalid tip position gives no force; the gate reports that fault.
   if (!state.p_WT.allFinite() || !state.v_WT.allFinite()) return {};
   take_news(state.time_ns);
   carry(begun_ ? Vector3d(state.p_WT - p_WT_) : Vector3d::Zero());
@@ -112,7 +112,7 @@ void ModelTouch::take_news(std::int64_t now_ns) noexcept {
   const std::uint64_t count = slot_.count();
   if (count == seen_) return;
   LocalModel model;
-  if (!slot_.newest(model)) return;  // it is just being written
+  if (!slot_.newest(model)) return;  // the model is just being written
   seen_ = count;
   // Another process may have written anything.
   const double age = static_cast<double>(now_ns - model.time_ns) * 1e-9;
@@ -121,12 +121,12 @@ void ModelTouch::take_news(std::int64_t now_ns) noexcept {
     ++counters_.refused;
     return;
   }
-  // The length of all its numbers is at least the largest eigenvalue, and equal to it for a plane.
+  // The Frobenius norm is at least the largest eigenvalue, and equal to it for a plane.
   const double size = model.stiffness.norm();
   if (size > settings_.stiffness_max) {
     const double share = settings_.stiffness_max / size;
     model.stiffness *= share;
-    model.f_T_W *= share;  // so the plane stays where it was
+    model.f_T_W *= share;  // keeps the plane in place
     ++counters_.softened;
   }
   newest_ = model;
@@ -135,16 +135,16 @@ void ModelTouch::take_news(std::int64_t now_ns) noexcept {
   ++counters_.taken;
 }
 
-/// Moves what is felt along with the tip, and books the work of the hand.
+/// Moves the felt model along with the tip, and books the work of the hand.
 void ModelTouch::carry(const Vector3d& way) noexcept {
   const Vector3d before = touching_ ? force_ : Vector3d::Zero();
   force_ -= stiffness_ * way;
   const bool pushes = n_W_.dot(force_) > 0;
   if (pushes && touching_) {
-    // Exact for springs. What a held force leaks within a tick is left to K L <= b + B.
+    // Exact for springs. The energy error of a held force within a tick is covered by K L <= b + B.
     energy_ -= 0.5 * (before + force_).dot(way);
   } else if (pushes) {
-    // It began within this tick, from nothing.
+    // The touch began within this tick, from nothing.
     force_ = without_shear(force_, stiffness_, n_W_);
     energy_ = available(force_, stiffness_);
   } else {
@@ -154,7 +154,7 @@ void ModelTouch::carry(const Vector3d& way) noexcept {
   touching_ = pushes;
 }
 
-/// Lets what is felt fade: springs and force go together, so the energy goes with them.
+/// Fades the felt model: springs and force are scaled together, and so is the energy.
 void ModelTouch::fade_to(double share) noexcept {
   if (share_ == 1) ++counters_.faded;
   const double rest = share_ > 0 ? share / share_ : 0;
@@ -170,7 +170,7 @@ void ModelTouch::fade_to(double share) noexcept {
   age_.store(share > 0 ? ModelAge::kFading : ModelAge::kSilent, std::memory_order_relaxed);
 }
 
-/// Takes the newest model as it is: a free tip feels no jump.
+/// Takes the newest model unchanged: a free tip feels no jump.
 void ModelTouch::begin_free(const Vector3d& p_WT) noexcept {
   stiffness_ = newest_.stiffness;
   n_W_ = newest_.n_W;
@@ -178,7 +178,7 @@ void ModelTouch::begin_free(const Vector3d& p_WT) noexcept {
   energy_ = 0;
   const Vector3d force = newest_.f_T_W - stiffness_ * (p_WT - newest_.p_WR);
   if (n_W_.dot(force) > 0) {
-    // The tip is inside what it did not feel coming: it begins where the tip is.
+    // The tip is inside a surface that appeared around it: contact begins at the tip.
     force_.setZero();
     touching_ = true;
   } else {
@@ -189,7 +189,7 @@ void ModelTouch::begin_free(const Vector3d& p_WT) noexcept {
 /// Moves the stiffness as far towards the newest model's as `most` (J) allows at this force.
 void ModelTouch::soften(const Vector3d& goal, double most) noexcept {
   if (stiffness_ == newest_.stiffness) return;
-  // What is too soft to be paid for is felt stiffer, but in its own directions.
+  // A model too soft for the account is felt stiffer, but in its own directions.
   const double length = goal.norm();
   const Vector3d there = length > 0 ? Vector3d(std::min(1.0, force_.norm() / length) * goal) : goal;
   const double size = newest_.stiffness.norm();
@@ -212,11 +212,11 @@ void ModelTouch::soften(const Vector3d& goal, double most) noexcept {
   stiffness_ = between(low);
 }
 
-/// Moves what is felt towards the newest model, as far as jump and account allow.
+/// Moves the felt model towards the newest one, as far as jump and account allow.
 void ModelTouch::approach(const Vector3d& p_WT) noexcept {
   Vector3d goal = newest_.f_T_W - newest_.stiffness * (p_WT - newest_.p_WR);
   if (!(newest_.n_W.dot(goal) > 0)) goal.setZero();
-  // Rounding must not keep a model that is felt already from being felt.
+  // Rounding must not prevent a model that is already felt.
   const double paid = energy_ * (1 + 1e-9);
   soften(goal, std::max(paid, available(force_, stiffness_)));
   const Vector3d change = goal - force_;
@@ -230,7 +230,7 @@ void ModelTouch::approach(const Vector3d& p_WT) noexcept {
   const double c = now - std::max(paid, now);
   if (a + b + c > 0 && a > 0) {
     const double root = std::sqrt(std::max(0.0, b * b - 4 * a * c));
-    // Of the two ways to write it the one without a difference of like numbers.
+    // Uses the form without a difference of nearly equal numbers.
     const double most = b > 0 ? -2 * c / (b + root) : (root - b) / (2 * a);
     if (most < share) {
       share = std::max(0.0, most);
@@ -238,8 +238,8 @@ void ModelTouch::approach(const Vector3d& p_WT) noexcept {
     }
   }
   force_ += share * change;
-  // The normal and the damper follow; but a normal that the force hardly pushes along would end the
-  // touch all of a sudden.
+  // The normal and the damper follow. A normal along which the force hardly pushes would end the
+  // touch abruptly.
   const double turn = std::max(share, settings_.jump);
   const Vector3d n_W = n_W_ + turn * (newest_.n_W - n_W_);
   const double size = n_W.norm(), pushed = force_.norm();
@@ -251,7 +251,7 @@ void ModelTouch::approach(const Vector3d& p_WT) noexcept {
   damping_ += settings_.jump * (newest_.damping - damping_);
 }
 
-/// Brings the force down where it could give more than was put in, and forgets what is too much.
+/// Reduces the force if it could release more energy than was supplied, and drops the excess.
 void ModelTouch::keep_account() noexcept {
   const double could = available(force_, stiffness_);
   if (could > energy_ * (1 + 1e-9)) {

@@ -37,8 +37,8 @@ void BoxNode::set_boxes(std::span<const LatticeAabb> boxes) noexcept {
     }
     size = std::max(size, whole.max[axis] - static_cast<double>(origin[axis]));
   }
-  // The least power of two of which 255 reach over the node, but not below a step: single precision
-  // tells no less apart.
+  // The least power of two for which 255 units span the node, but at least one step: single
+  // precision cannot resolve less.
   constexpr double kUnits = 255;
   int exponent = 0;
   const double share = std::frexp(std::max(size, kUnits) / kUnits, &exponent);

@@ -13,14 +13,14 @@ namespace {
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
-// Side of a volume in edges of the equilateral triangle that is as large as the mean one: narrower
-// costs memory, wider costs triangles per question (measured; README.md).
+// Side of a volume in edges of the equilateral triangle with the mean area. Narrower costs memory,
+// wider costs triangles per query (measured; README.md).
 constexpr double kSideInEdges = 0.8;
 
-// Words of the top and entries of lists per triangle that a surface of whatever shape may take.
+// Maximum words of the top and entries of lists per triangle, for any shape of surface.
 constexpr double kTopMax = 1.5;
 constexpr double kListedMax = 12;
-constexpr double kTopLeast = 4096;  // no use in saving less
+constexpr double kTopLeast = 4096;  // smaller savings are useless
 
 template <class Surface>
 Corners corners_of(const Surface& surface, const SearchFrame& frame, std::size_t i) {
@@ -51,7 +51,7 @@ Extent extent_of(const Surface& surface, const SearchFrame& frame, std::size_t c
   return extent;
 }
 
-// Lays out blocks that cover the box, with half a volume of air around.
+// Lays out blocks that cover the box, with a margin of half a volume.
 void lay_out(VolumeGrid::Parts& parts, const Extent& extent, double side) {
   parts.side = side;
   parts.low = extent.low - Vector3d::Constant(side / 2);
@@ -62,7 +62,7 @@ void lay_out(VolumeGrid::Parts& parts, const Extent& extent, double side) {
   }
 }
 
-// Estimates from every so many-th triangle's box how long all lists are together.
+// Estimates the total length of all lists from the boxes of a sample of the triangles.
 template <class Surface>
 double estimate_listed(const Surface& surface, const SearchFrame& frame, std::size_t count,
                        double side) {
@@ -94,9 +94,9 @@ void choose_side(VolumeGrid::Parts& parts, const Surface& surface, const SearchF
   }
 }
 
-// Writes to every word of an empty block how far the nearest block is that is not: two sweeps over
-// the thirteen neighbours that lie before and behind, which is exact for distances along the
-// farthest axis.
+// Writes the distance to the nearest block that is not empty to every word of an empty block. Two
+// sweeps over the thirteen neighbours before and behind are exact for distances along the farthest
+// axis.
 void measure_emptiness(VolumeGrid::Parts& parts) {
   const std::int32_t nx = parts.blocks[0], ny = parts.blocks[1], nz = parts.blocks[2];
   const auto width = static_cast<std::size_t>(nx);
@@ -144,7 +144,7 @@ void measure_emptiness(VolumeGrid::Parts& parts) {
   }
 }
 
-// Says that a volume (block * 64 + bit) lists a triangle.
+// A volume (block * 64 + bit) that lists a triangle.
 struct Listed {
   std::uint32_t volume;
   std::int32_t triangle;
@@ -183,8 +183,8 @@ void visit_volumes(const VolumeGrid::Parts& parts, const Corners& c, List list) 
   }
 }
 
-// Puts the corners of each list's triangles side by side, eight by eight, as seen from the middle
-// of its volume. `widest` is how wide a triangle is at most along an axis.
+// Stores the corners of each list's triangles in groups of eight, relative to the middle of its
+// volume. `widest` is the maximum width of a triangle along an axis.
 template <class CornersOf>
 void put_side_by_side(VolumeGrid::Parts& parts, double widest, const CornersOf& corners_of_one) {
   constexpr std::size_t kMost = EightTriangles::kMost;
@@ -235,7 +235,7 @@ VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame) {
   const auto ny = static_cast<std::size_t>(parts.blocks[1]);
   parts.top.assign(nx * ny * static_cast<std::size_t>(parts.blocks[2]), VolumeGrid::kEmpty);
 
-  // Blocks are numbered as the triangles come upon them: what is near in space is near in memory.
+  // Blocks are numbered in the order of the triangles: neighbours in space are near in memory.
   std::vector<Listed> listed;
   listed.reserve(4 * count);
   for (std::size_t t = 0; t < count; ++t) {

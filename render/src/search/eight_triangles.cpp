@@ -20,9 +20,9 @@ void EightTriangles::set(std::size_t lane, const std::array<Vector3d, 3>& corner
   }
 }
 
-// A corner is half a unit off; that, and where a question stands, is seen from the middle of a
-// volume in single precision: less than 2^-8 units within the reach of corners, and beyond it by a
-// share that the questions to eight know.
+// A corner is half a unit off. Corner and query are also rounded relative to the middle of a volume
+// in single precision: less than 2^-8 units within the reach of corners. Beyond it the error is a
+// share that the tests of eight triangles take into account.
 constexpr double kCorner = 0.5 + 0x1p-8;
 
 SegmentInUnits segment_in_units(const Vector3d& way, double rounding, double per_step) noexcept {

@@ -9,13 +9,13 @@
 namespace thimble::render {
 
 /// Remembers a ball without any triangle in it, so that a free tip far from the surface costs two
-/// distances per tick and no search. The answers are those of the search: a path within the ball
+/// distances per tick and no search. The results are those of the search: a path within the ball
 /// enters nothing. For a surface that does not move in its frame.
 class FreeSpace {
  public:
   /// Finds the first triangle that the path (m, the search's frame) enters, like
-  /// ContactSearch::first_entry. Real-time: safe; a few ns within the ball, else one question to
-  /// the search, or two where the ball is found anew.
+  /// ContactSearch::first_entry. Real-time: safe; a few ns within the ball, else one search query,
+  /// or two when a new ball is computed.
   Entry first_entry(const ContactSearch& search, const Eigen::Vector3d& p_from,
                     const Eigen::Vector3d& p_to) noexcept {
     if (holds(p_from) && holds(p_to)) return {};
@@ -24,16 +24,16 @@ class FreeSpace {
     return entry;
   }
 
-  /// Returns whether a point is known to be in free space, with all between it and others that are.
-  /// Real-time: safe.
+  /// Returns whether a point is in the known free ball. The ball is convex, so paths between such
+  /// points are free too. Real-time: safe.
   bool holds(const Eigen::Vector3d& p) const noexcept {
-    // Written so that NaN is not held; strictly, so that an empty ball holds nothing.
+    // Written so that NaN is outside; strict, so that an empty ball contains nothing.
     return (p - centre_).squaredNorm() < radius_squared_;
   }
 
  private:
-  // Where the ball lasts less than four ticks, asking for it does not pay: not again for some
-  // ticks, at most 64, in which a hand at 0.3 mm per tick comes 20 mm further.
+  // If the ball lasts less than four ticks, computing it does not pay. It is skipped for some
+  // ticks, at most 64, in which a hand at 0.3 mm per tick moves 20 mm.
   void look_around(const ContactSearch& search, const Eigen::Vector3d& p,
                    double step_squared) noexcept {
     if (wait_ > 0) {

@@ -18,16 +18,16 @@ namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-// A path whose box is this many volumes wide at most is asked about in one go.
+// Maximum width, in volumes, of the box of a path that is examined as a whole.
 constexpr double kShortVolumes = 6;
 
-// Lists as long as these may take longer to ask than the levels of a tree: on the mean as a
-// triangle sees it, and at worst (a vertex of valence 64 fills one of 64).
+// Longer lists may take longer than the levels of a tree: in the mean per triangle, and at worst (a
+// vertex of valence 64 fills one of 64).
 constexpr double kMeanListMax = 24;
 constexpr std::size_t kListMax = 192;
 
-// Remembers triangles that have been asked, as neighbouring volumes list the same ones. Of those
-// with the same last digits it remembers one: another may be asked again.
+// Remembers examined triangles, since neighbouring volumes list the same ones. Of those with the
+// same last digits it remembers one; another may be examined again.
 class Asked {
  public:
   Asked() noexcept { triangles_.fill(-1); }
@@ -43,12 +43,12 @@ class Asked {
   std::array<std::int32_t, kPlaces> triangles_;
 };
 
-// Is a straight piece of a path, to tell the volumes beside it from those on it.
+// A straight piece of a path, to test which volumes it meets.
 class Piece {
  public:
   Piece(const Vector3d& from, const Vector3d& to, double room, double side) noexcept
       : middle_((from + to) / 2 - Vector3d::Constant(side / 2)), half_((to - from) / 2) {
-    // What the cross product with the way is at most, over a cube grown by the room.
+    // Maximum of the cross product with the way over a cube grown by the margin.
     const double grown = side / 2 + room;
     const Vector3d size = half_.cwiseAbs();
     const double rounding = kRounding * (size.maxCoeff() + side) * (size.maxCoeff() + side);
@@ -58,7 +58,7 @@ class Piece {
 
   bool meets(const Vector3d& corner) const noexcept {
     const Vector3d d = corner - middle_;
-    // Written so that NaN meets.
+    // Written so that NaN counts as meeting.
     return !(std::abs(d.y() * half_.z() - d.z() * half_.y()) > reach_.x()) &&
            !(std::abs(d.z() * half_.x() - d.x() * half_.z()) > reach_.y()) &&
            !(std::abs(d.x() * half_.y() - d.y() * half_.x()) > reach_.z());
@@ -75,12 +75,12 @@ SegmentInUnits in_units(const Test& segment, const VolumeGrid& grid) noexcept {
   return segment_in_units(segment.way(), segment.position_rounding(), grid.parts().per_unit);
 }
 
-// Calls visit(eight, there, triangles) for the triangles of a list, eight by eight: there has a bit
-// for each lane with a triangle, whose numbers are triangles[lane].
+// Calls visit(eight, there, triangles) for the triangles of a list in groups of eight. `there` has
+// a bit for each lane with a triangle, whose number is triangles[lane].
 template <class Visit>
 inline void visit_eights(const VolumeList& list, Visit visit) noexcept {
   constexpr std::size_t kMost = EightTriangles::kMost;
-  // Asked for while the corners are looked at.
+  // Prefetched while the corners are tested.
   __builtin_prefetch(list.triangles.data());
   const std::size_t count = list.triangles.size();
   for (std::size_t i = 0; i < count; i += kMost) {
@@ -151,7 +151,7 @@ void GridSearch<Surface>::visit_far(const Test& segment, const Visit& visit) con
     visit_piece(from, from + way, low, high);
     return;
   }
-  // Longer: in pieces of a few volumes, or as long as empty space allows.
+  // Longer paths: in pieces of a few volumes, or as long as empty space allows.
   const ReachedPart part = reached_part(from, way);
   if (!part.any) return;
   const double length = way.cwiseAbs().maxCoeff();
@@ -160,7 +160,7 @@ void GridSearch<Surface>::visit_far(const Test& segment, const Visit& visit) con
   for (double s = part.begin; s <= end;) {
     const Vector3d a = from + s * way;
     const double clear = grid_.clearance(a) - 2 * room;
-    // The way is no longer than sqrt(3) of its longest side.
+    // The way is at most sqrt(3) times its longest side.
     const double step = std::max(clear * 0.577, least);
     const double next = s + step / length;
     const double e = std::min(next, end);
@@ -169,7 +169,7 @@ void GridSearch<Surface>::visit_far(const Test& segment, const Visit& visit) con
       const Vector3d grown = Vector3d::Constant(room);
       visit_piece(a, b, a.cwiseMin(b) - grown, a.cwiseMax(b) + grown);
     }
-    // A step too small to be seen would go on for ever.
+    // A step below rounding would loop forever.
     if (!(next > s)) return;
     s = next;
   }
@@ -221,7 +221,7 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
   if (!within_range(p_W) || !in_frame(frame_.to_steps(p_W))) return false;
   const Vector3d p_far = far_along_x(frame_, p_W);
   const auto segment = segment_test(*surface_, frame_, p_W, p_far);
-  // Each triangle crossed must count once, in however many volumes it is listed.
+  // Each crossed triangle must count once, although several volumes may list it.
   std::array<std::int32_t, 64> crossed;
   std::size_t crossings = 0;
   bool all_kept = true;
@@ -240,7 +240,7 @@ bool GridSearch<Surface>::inside(const Vector3d& p_W) const noexcept {
     });
   });
   if (all_kept) return crossings % 2 == 1;
-  // More layers than anyone keeps in mind: every triangle once.
+  // More layers than the array can hold: test every triangle once.
   unsigned all = 0;
   for (std::int32_t t = 0; t < surface_->triangle_count(); ++t) {
     double parameter = 0;
@@ -285,8 +285,8 @@ inline SurfacePoint GridSearch<Surface>::find_closest(const Vector3d& p_W,
     const double ball = std::sqrt(best.squared()) + room;
     limit = ball * ball;
   };
-  // The volume that the point is in, then wider and wider boxes until one has a triangle within
-  // reach; then the ball up to that one.
+  // The volume of the point, then wider and wider boxes until one has a triangle within reach; then
+  // the ball up to that triangle.
   const VolumeGrid::Place own = grid_.place_of(p);
   const Vector3d own_corner = grid_.corner_of(own);
   grid_.visit_one(own, visit);
@@ -306,7 +306,7 @@ inline SurfacePoint GridSearch<Surface>::find_closest(const Vector3d& p_W,
   }
   const double distance = std::sqrt(best.squared());
   if (!best.found() || distance <= width) return best.point();
-  // Near in the middle of a large volume everything else is farther.
+  // If it is near in the middle of a large volume, all others are farther.
   if (width > 0 || distance + room > grid_.within_volume(p)) ask_within(distance);
   return best.point();
 }

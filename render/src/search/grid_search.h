@@ -12,14 +12,14 @@
 
 namespace thimble::render {
 
-/// Looks for contact in space cut into volumes, of which only those around the question are looked
-/// at [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them. The
-/// fastest search up to some 10^4 triangles of like size; beyond, lists and packed triangles that
-/// are not in the cache take what the volumes save. Where a few volumes hold most of the triangles
-/// it is no better than a linear search: see `even`.
+/// Searches for contact in space divided into volumes. Only the volumes near the query are examined
+/// [BP 4.1]. Volumes are as wide as a mean triangle, so a tick's path meets few of them. It is the
+/// fastest search up to some 10^4 triangles of similar size. Beyond that, loading uncached lists
+/// and packed triangles takes the time that the volumes save. If a few volumes hold most of the
+/// triangles, it is no better than a linear search: see `even`.
 ///
-/// All questions are Real-time: safe. Paths of a tick and nearest points nearby take time that does
-/// not grow with the mesh but by what memory is far; longer paths skip empty space in long steps.
+/// All queries are Real-time: safe. Paths of a tick and closest points nearby take a time that does
+/// not grow with the mesh, except by cache misses. Longer paths skip empty space in long steps.
 ///
 /// `Surface` is ContactMesh or PackedSurface.
 template <class Surface>
@@ -36,14 +36,14 @@ class GridSearch final : public ContactSearch {
   double clearance(const Eigen::Vector3d& p_W) const noexcept override;
   std::size_t bytes() const noexcept override { return grid_.bytes(); }
 
-  /// Returns whether the triangles lie evenly enough for the grid to be the search of choice.
-  /// Real-time: never from the servo thread.
+  /// Returns whether the triangles are distributed evenly enough for the grid to be the default
+  /// search. Real-time: never from the servo thread.
   bool even() const noexcept;
 
-  const VolumeGrid& grid() const noexcept { return grid_; }  ///< Shows its grid.
+  const VolumeGrid& grid() const noexcept { return grid_; }  ///< Returns the grid.
 
  private:
-  // Made twice for different processors (wide_lanes): what is wide is made for AVX2 in one piece.
+  // Compiled twice for different processors (wide_lanes); the wide version for AVX2 in one piece.
   template <bool kWide>
   Entry find_entry(const Eigen::Vector3d& p_from, const Eigen::Vector3d& p_to) const noexcept;
   [[gnu::noinline]] THIMBLE_FOR_AVX2 Entry

@@ -25,9 +25,9 @@
 #include "search/tree_nodes.h"
 #include "search/volume_grid.h"
 
-// The same code for every processor, in lanes_plain, and for those with AVX2, in lanes_avx2
-// (lanes.inc). wide_lanes says which to call. Attributes stand at each function, not at a file, so
-// that no code of the library's own headers is ever made for AVX2 alone.
+// The same code for every processor in lanes_plain, and for those with AVX2 in lanes_avx2
+// (lanes.inc). wide_lanes decides which to call. Attributes are at each function, not at a file, so
+// that no code of the library's own headers is compiled for AVX2 only.
 
 #define THIMBLE_LANES_NAMESPACE lanes_plain
 #define THIMBLE_LANES_AVX2 0

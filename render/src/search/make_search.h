@@ -11,18 +11,18 @@
 
 namespace thimble::render {
 
-/// Builds the search that is named; if none is, a grid for fewer than 8,000 triangles that lie
-/// evenly (GridSearch), else a tree. Keeps a reference: the surface must outlive the search.
+/// Builds the chosen search. The default is a grid for fewer than 8,000 evenly distributed
+/// triangles (GridSearch), else a tree. Keeps a reference: the surface must outlive the search.
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT std::shared_ptr<const ContactSearch> make_search(
     const ContactMesh& mesh, std::optional<SearchChoice> choice = {});
 std::shared_ptr<const ContactSearch> make_search(const PackedSurface& surface,
                                                  std::optional<SearchChoice> choice = {});
 
-/// Builds a search that can be told that triangles have moved (ContactSearch::refit): linear if
-/// that is named, else a tree. A grid cannot: triangles that come into new volumes would need room
-/// in lists that stand close together. Keeps a reference: the mesh must outlive the search.
-/// Real-time: never from the servo thread.
+/// Builds a search that supports moving triangles (ContactSearch::refit): linear if that is chosen,
+/// else a tree. A grid does not: triangles that enter new volumes would need room in lists that are
+/// stored without gaps. Keeps a reference: the mesh must outlive the search. Real-time: never from
+/// the servo thread.
 std::shared_ptr<ContactSearch> make_moving_search(const ContactMesh& mesh,
                                                   std::optional<SearchChoice> choice = {});
 

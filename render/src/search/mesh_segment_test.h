@@ -13,8 +13,8 @@
 
 namespace thimble::render {
 
-/// Decides how one segment passes the triangles of a ContactMesh: the same questions as SegmentTest
-/// answers for a PackedSurface. Real-time: safe; tens of ns for a triangle that is near.
+/// Decides how one segment passes the triangles of a ContactMesh; like SegmentTest for a
+/// PackedSurface. Real-time: safe; tens of ns for a triangle that is near.
 class MeshSegmentTest {
  public:
   /// Precondition: both points (W, m) are `within_range`.
@@ -27,8 +27,7 @@ class MeshSegmentTest {
         from_(frame.to_steps(p_from)),
         to_(frame.to_steps(p_to)) {}
 
-  /// Returns the way in which the segment crosses triangle `t`, and where (0 at its begin, 1 at its
-  /// end).
+  /// Returns how the segment crosses triangle `t`, and where (0 at its begin, 1 at its end).
   Crossing cross(std::int32_t t, double& parameter) const noexcept {
     const Crossing way =
         crossing(p_from_, p_to_, mesh_.position(t, 0), mesh_.position(t, 1), mesh_.position(t, 2));
@@ -36,7 +35,7 @@ class MeshSegmentTest {
     const double sign = way == Crossing::kEnters ? 1 : -1;
     const double above = -sign * mesh_.depth(t, p_from_);
     const double below = sign * mesh_.depth(t, p_to_);
-    // Rounding may make either end seem to lie on the other side: such a crossing is at that end.
+    // Rounding may put either end on the wrong side: such a crossing is at that end.
     parameter = 0;
     if (above > 0) parameter = below > 0 ? above / (above + below) : 1;
     parameter = kept_in_box(parameter, p_to_ - p_from_, mesh_.position(t, 0) - p_from_,
@@ -48,11 +47,11 @@ class MeshSegmentTest {
   const Eigen::Vector3d& from() const noexcept { return from_; }
   Eigen::Vector3d way() const noexcept { return to_ - from_; }
 
-  /// Returns the box around the segment in steps of the frame. Needs no room: turning points into
-  /// steps is monotone.
+  /// Returns the box around the segment in steps of the frame. Needs no margin: conversion to steps
+  /// is monotone.
   Eigen::Vector3d low() const noexcept { return from_.cwiseMin(to_); }
   Eigen::Vector3d high() const noexcept { return from_.cwiseMax(to_); }
-  /// Returns how far those numbers may be from what `crossing` sees, in steps.
+  /// Returns the maximum difference of these numbers from those used by `crossing`, in steps.
   double position_rounding() const noexcept {
     const double size = std::max({p_from_.cwiseAbs().maxCoeff(), p_to_.cwiseAbs().maxCoeff(),
                                   frame_.origin.cwiseAbs().maxCoeff()});
@@ -84,8 +83,8 @@ class MeshSegmentSieve {
  public:
   explicit MeshSegmentSieve(const MeshSegmentTest& segment) noexcept : segment_(segment) {}
 
-  /// Writes to `near` those of a list of triangles that are left, and gives their number.
-  /// Precondition: `near` has room for the whole list.
+  /// Writes the remaining triangles of a list to `near`, and returns their number. Precondition:
+  /// `near` has room for the whole list.
   std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept {
     std::size_t count = 0;
     for (const std::int32_t t : list) {
@@ -99,7 +98,7 @@ class MeshSegmentSieve {
   const MeshSegmentTest& segment_;
 };
 
-// Makes the test that goes with a surface, and the sieve that goes with a test.
+// Returns the test for a surface, and the sieve for a test.
 inline MeshSegmentTest segment_test(const ContactMesh& mesh, const SearchFrame& frame,
                                     const Eigen::Vector3d& p_from,
                                     const Eigen::Vector3d& p_to) noexcept {

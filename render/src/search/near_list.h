@@ -6,16 +6,16 @@
 
 namespace thimble::render {
 
-/// Lists numbers of nodes or triangles that a question came upon on one level of a tree.
+/// Numbers of nodes or triangles that a query has found on one level of a tree.
 struct NearList {
-  static constexpr std::size_t kMost = 64;  ///< Most.
+  static constexpr std::size_t kMost = 64;  ///< Capacity.
   std::array<std::uint32_t, kMost> numbers;
-  std::array<float, kMost> nears;  ///< Squared distances, of a question for the nearest.
+  std::array<float, kMost> nears;  ///< Squared distances, for closest-point queries.
   std::size_t count = 0;
 };
 
-/// Holds for each of the 256 sets of eight bits the numbers of those that are set, one per byte,
-/// the lowest first.
+/// For each of the 256 sets of eight bits: the numbers of the set bits, one per byte, the lowest
+/// first.
 inline constexpr std::array<std::uint64_t, 256> kSetBits = [] {
   std::array<std::uint64_t, 256> all{};
   for (std::size_t set = 0; set < all.size(); ++set) {
@@ -27,7 +27,7 @@ inline constexpr std::array<std::uint64_t, 256> kSetBits = [] {
   return all;
 }();
 
-/// Holds for each set of eight bits the lowest four of those that are set.
+/// For each set of eight bits: its lowest four set bits.
 inline constexpr std::array<std::uint8_t, 256> kFirstFour = [] {
   std::array<std::uint8_t, 256> all{};
   for (unsigned set = 0; set < all.size(); ++set) {

@@ -11,9 +11,9 @@
 
 namespace thimble::render {
 
-/// Looks whether a triangle of a list is nearer to `p` (steps) than the nearest one so far; of
-/// several equally near the one with the lowest number counts, in whatever order they are shown.
-/// Real-time: safe; some 20 ns for four triangles.
+/// Updates `best` with the triangles of a list that are nearer to `p` (steps). Of several equally
+/// near, the one with the lowest number is kept, whatever their order. Real-time: safe; some 20 ns
+/// for four triangles.
 void consider(const PackedSurface& surface, const SearchFrame& frame,
               std::span<const std::int32_t> list, const Eigen::Vector3d& p,
               NearestSoFar& best) noexcept;

@@ -8,13 +8,13 @@
 
 namespace thimble::render {
 
-/// A part of a tree that a question still has to look at.
+/// A part of a tree that a query still has to examine.
 struct Waiting {
   TreeNodes::Name node;
   float near;  ///< Parameter of the segment, or squared distance in steps.
 };
 
-/// Keeps what a question still has to look at. All is Real-time: safe.
+/// Stack of the parts that a query still has to examine. All is Real-time: safe.
 class NodeStack {
  public:
   void push(const Waiting& part) noexcept {
@@ -24,9 +24,9 @@ class NodeStack {
   Waiting pop() noexcept { return items_[--size_]; }
 
  private:
-  // A path from the root leaves at most seven others waiting at each level.
+  // A path from the root leaves at most seven others waiting on each level.
   static constexpr std::size_t kStackMax = (BoxNode::kChildrenMax - 1) * TreeNodes::kLevelsMax;
-  // Not filled: it is larger than all that most questions read.
+  // Not initialised: it is larger than the data that most queries read.
   std::array<Waiting, kStackMax> items_;
   std::size_t size_ = 0;
 };

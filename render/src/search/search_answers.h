@@ -15,10 +15,10 @@
 
 namespace thimble::render {
 
-// What all searches do with the triangles that they come upon, in whatever order, so that their
-// answers are the same. Real-time: safe.
+// Evaluation of the triangles found, shared by all searches, so that their results are the same in
+// any order. Real-time: safe.
 
-/// Calls visit(t) for each triangle of a list, of whatever length, that the segment of a sieve may
+/// Calls visit(t) for each triangle of a list, of any length, that the segment of a sieve may
 /// cross.
 template <class Sieve, class Visit>
 void visit_near(const Sieve& sieve, std::span<const std::int32_t> list, Visit visit) noexcept {
@@ -48,7 +48,7 @@ class FirstEntry {
   }
 
   const Entry& entry() const noexcept { return entry_; }
-  /// Returns the parameter beyond which no more triangles are wanted.
+  /// Returns the parameter beyond which triangles are not wanted.
   double limit() const noexcept { return limit_; }
 
  private:
@@ -57,7 +57,7 @@ class FirstEntry {
   double limit_ = 2;
 };
 
-/// Counts how many triangles of a list a segment crosses.
+/// Returns the number of triangles of a list that a segment crosses.
 template <class Test, class Sieve>
 unsigned count_crossings(const Test& segment, const Sieve& sieve,
                          std::span<const std::int32_t> list) noexcept {
@@ -69,7 +69,7 @@ unsigned count_crossings(const Test& segment, const Sieve& sieve,
   return crossings;
 }
 
-/// Keeps the nearest point among the triangles shown to it. `p` and the reach are in steps.
+/// Keeps the closest point among the triangles shown to it. `p` and the reach are in steps.
 template <class Surface>
 class NearestPoint {
  public:
@@ -82,7 +82,7 @@ class NearestPoint {
   }
 
   bool found() const noexcept { return best_.triangle >= 0; }
-  /// Returns the squared distance beyond which no more triangles are wanted.
+  /// Returns the squared distance beyond which triangles are not wanted.
   double squared() const noexcept { return best_.squared; }
   NearestSoFar& so_far() noexcept { return best_; }
 
@@ -102,19 +102,19 @@ class NearestPoint {
   NearestSoFar best_;
 };
 
-/// Turns a radius (m) into steps, at most such that its square is a finite float.
+/// Converts a radius (m) to steps, bounded so that its square is a finite float.
 inline double reach_of(const SearchFrame& frame, double radius) noexcept {
   return std::min(radius * frame.per_step, 1e18);
 }
 
-/// Returns where the ray ends that leaves the surface from `p_W` along x; along an axis, so that
-/// boxes drop all but the triangles in the way.
+/// Returns the end of the ray that leaves the surface from `p_W` along x. It is along an axis, so
+/// that boxes drop all other triangles.
 inline Eigen::Vector3d far_along_x(const SearchFrame& frame, const Eigen::Vector3d& p_W) noexcept {
   return {frame.origin.x() + 4 * kLatticeHalf * frame.step, p_W.y(), p_W.z()};
 }
 
-/// Returns whether a point (steps) can lie inside at all; NaN cannot. One step of room covers the
-/// rounding of the frame's middle.
+/// Returns whether a point (steps) can be inside at all; false for NaN. One step of margin covers
+/// the rounding of the frame's middle.
 inline bool in_frame(const Eigen::Vector3d& p) noexcept {
   return p.cwiseAbs().maxCoeff() <= kLatticeHalf + 1;
 }

@@ -9,15 +9,15 @@
 
 namespace thimble::render {
 
-/// The frame that searches count in: steps of 2^-31 of the surface's longest side from the
-/// middle of its box, so that nothing in them depends on scale or place. For a PackedSurface its
-/// lattice. Turning W into it is monotone on each axis, rounding included. Real-time: safe.
+/// The frame of a search: steps of 2^-31 of the surface's longest side from the middle of its box,
+/// so that results do not depend on scale or place. For a PackedSurface it is its lattice. The
+/// conversion from W is monotone on each axis, rounding included. Real-time: safe.
 struct SearchFrame {
   Eigen::Vector3d origin{0, 0, 0};  ///< m, W
   double step = 1;                  ///< m
   double per_step = 1;              ///< 1/m
 
-  /// Turns a point (W, m) into steps of the frame. Real-time: safe.
+  /// Converts a point (W, m) to steps of the frame. Real-time: safe.
   Eigen::Vector3d to_steps(const Eigen::Vector3d& p_W) const noexcept {
     return (p_W - origin) * per_step;
   }
@@ -27,7 +27,7 @@ struct SearchFrame {
 SearchFrame frame_of(const PackedSurface& surface) noexcept;
 SearchFrame frame_of(const ContactMesh& mesh) noexcept;
 
-/// Returns how many triangles a surface may grow to. Real-time: safe.
+/// Returns the maximum number of triangles that a surface may grow to. Real-time: safe.
 inline std::size_t room_of(const PackedSurface& surface) noexcept {
   return static_cast<std::size_t>(surface.triangle_count());
 }
@@ -35,8 +35,8 @@ inline std::size_t room_of(const ContactMesh& mesh) noexcept {
   return mesh.triangles_max();
 }
 
-/// Returns where corner `k` of triangle `t` is in steps of the frame: the one accessor that
-/// searches read positions through. Real-time: safe.
+/// Returns the position of corner `k` of triangle `t` in steps of the frame. Searches read
+/// positions only by this accessor. Real-time: safe.
 inline Eigen::Vector3d corner_in(const SearchFrame&, const PackedSurface& surface, std::int32_t t,
                                  std::size_t k) noexcept {
   return surface.triangle(t).corner(k);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Sums of products of three factors as below are wrong by less than 2^-48 of the product of the
-// largest factors, and by less than eight times what one factor is wrong by.
+// largest factors, and by less than eight times the error of one factor.
 constexpr double kRounding = 0x1p-48;
 constexpr double kSpread = 16;
 
@@ -28,7 +28,7 @@ void store_whole(__m128d u, std::size_t half, std::array<std::int32_t, 4>& to) n
   _mm_storel_epi64(reinterpret_cast<__m128i*>(to.data() + 2 * half), whole);
 }
 
-// Nothing branches: which sign it is is beyond prediction.
+// No branches: the sign is not predictable.
 int sign_beyond(double value, double bound) noexcept {
   return static_cast<int>(value > bound) - static_cast<int>(value < -bound);
 }
@@ -77,7 +77,7 @@ Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {
   const bool sure = s0 != 0 && s1 != 0 && s2 != 0;
   const int from = sign_beyond(above, 8 * bound);
   const int to = -sign_beyond(below, 8 * bound);
-  // Passes two edges on different sides, or ends before the plane: one question for all.
+  // Passes two edges on different sides, or ends before the plane: one test for all.
   if (((s0 * s1) | (s1 * s2) | (s2 * s0) | -(from * to)) < 0) return Crossing::kNone;
   Crossing way = from > 0 ? Crossing::kEnters : Crossing::kLeaves;
   if (!sure || from == 0 || to == 0) {
@@ -85,7 +85,7 @@ Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {
                    surface_.position(t, 2));
   }
   if (way == Crossing::kNone) return way;
-  // Rounding may make either end seem to lie on the other side: such a crossing is at that end.
+  // Rounding may put either end on the wrong side: such a crossing is at that end.
   const double sign = way == Crossing::kEnters ? 1 : -1;
   parameter = 0;
   if (sign * above > 0) parameter = sign * below > 0 ? above / (above + below) : 1;
@@ -95,8 +95,8 @@ Crossing SegmentTest::cross(std::int32_t t, double& parameter) const noexcept {
 
 double kept_in_box(double parameter, const Vector3d& way, const Vector3d& a, const Vector3d& b,
                    const Vector3d& c) noexcept {
-  // Divided it is compared only where products leave doubt: 2^-50 of a product is four times what
-  // it and the quotient are wrong by.
+  // The quotient is compared only where products leave doubt: 2^-50 of a product is four times the
+  // error of product and quotient.
   constexpr double kDoubt = 0x1p-50;
   bool within = parameter >= 0 && parameter <= 1;
   for (int i = 0; i < 3; ++i) {

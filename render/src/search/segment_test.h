@@ -14,14 +14,14 @@
 
 namespace thimble::render {
 
-/// Returns the largest part of a vector, without its sign. Real-time: safe.
+/// Returns the largest absolute component of a vector. Real-time: safe.
 inline double largest(const Eigen::Vector3d& v) noexcept {
   return std::max(std::max(std::abs(v.x()), std::abs(v.y())), std::abs(v.z()));
 }
 
 /// Decides how one segment passes the packed triangles of a surface: in double precision on the
-/// lattice where that is beyond doubt, else by `crossing`. Real-time: safe; about 10 ns where there
-/// is no doubt.
+/// lattice where that is certain, else by `crossing`. Real-time: safe; about 10 ns where it is
+/// certain.
 class SegmentTest {
  public:
   /// Precondition: both points (W, m) are `within_range`, and outlive the test.
@@ -33,32 +33,34 @@ class SegmentTest {
         from_(surface.to_lattice(p_from)),
         way_(surface.to_lattice(p_to) - from_),
         way_size_(largest(way_)) {
-    // What `crossing` sees are positions in W, rounded at the size of their coordinates.
+    // `crossing` uses positions in W, rounded at the size of their coordinates.
     const double size =
         std::max(std::max(largest(p_from), largest(p_to)), largest(surface.origin()));
     position_rounding_ = 0x1p-50 * (size * surface.per_step() + kLatticeHalf);
   }
 
-  /// Returns the way in which the segment crosses packed triangle `t`, and where (0 at its begin, 1
-  /// at its end).
+  /// Returns how the segment crosses packed triangle `t`, and where (0 at its begin, 1 at its end).
   Crossing cross(std::int32_t t, double& parameter) const noexcept;
 
-  const PackedSurface& surface() const noexcept { return surface_; }  ///< Shows what it passes.
+  const PackedSurface& surface() const noexcept { return surface_; }  ///< Returns the surface.
   /// Returns the segment in steps of the lattice.
   const Eigen::Vector3d& from() const noexcept { return from_; }
   const Eigen::Vector3d& way() const noexcept { return way_; }
-  double way_size() const noexcept { return way_size_; }  ///< Returns the largest part of the path.
+  double way_size() const noexcept {
+    return way_size_;
+  }  ///< Returns the largest absolute
+     ///< component of the path.
 
-  /// Returns the box around the segment in steps of the lattice, with room for rounding.
+  /// Returns the box around the segment in steps of the lattice, with a margin for rounding.
   Eigen::Vector3d low() const noexcept {
     return from_.cwiseMin(from_ + way_) - Eigen::Vector3d::Constant(room());
   }
   Eigen::Vector3d high() const noexcept {
     return from_.cwiseMax(from_ + way_) + Eigen::Vector3d::Constant(room());
   }
-  /// Returns the room around that box, in steps.
+  /// Returns the margin around that box, in steps.
   double room() const noexcept { return 2 + 4 * position_rounding_; }
-  /// Returns how far those numbers may be from what `crossing` sees, in steps.
+  /// Returns the maximum difference of these numbers from those used by `crossing`, in steps.
   double position_rounding() const noexcept { return position_rounding_; }
 
  private:
@@ -70,14 +72,15 @@ class SegmentTest {
   double position_rounding_;
 };
 
-/// A segment in numbers that tell fast that it does not cross a packed triangle, in steps.
+/// Numbers of a segment that quickly prove that it does not cross a packed triangle, in steps.
 struct SegmentBounds {
-  std::array<std::int32_t, 4> low, high;  ///< Around it, with room for rounding; three count.
-  std::array<std::int32_t, 4> from;       ///< Where it begins, rounded.
+  std::array<std::int32_t, 4> low, high;  ///< Its box, with a margin for rounding; three lanes are
+                                          ///< used.
+  std::array<std::int32_t, 4> from;       ///< Its begin, rounded.
   std::array<float, 3> way;
-  float way_size;    ///< Largest part of `way`.
-  float from_wrong;  ///< How far `from` may be from where it begins.
-  bool single;       ///< Whether single precision says anything.
+  float way_size;    ///< Largest absolute component of `way`.
+  float from_wrong;  ///< Maximum difference of `from` from the true begin.
+  bool single;       ///< Whether single precision is usable.
 };
 
 /// Drops packed triangles that a segment does not cross. Real-time: safe.
@@ -85,9 +88,10 @@ class SegmentSieve {
  public:
   explicit SegmentSieve(const SegmentTest& segment) noexcept;
 
-  /// Writes to `near` those of a list of packed triangles that the segment may cross, and gives
-  /// their number: what is left out is certain, by boxes and by the sides that the segment passes
-  /// the edges on in single precision. Precondition: `near` has room for the whole list.
+  /// Writes the packed triangles of a list that the segment may cross to `near`, and returns their
+  /// number. Triangles are dropped only with certainty: by boxes, and by the sides on which the
+  /// segment passes the edges, in single precision. Precondition: `near` has room for the whole
+  /// list.
   std::size_t select_near(std::span<const std::int32_t> list, std::int32_t* near) const noexcept;
 
  private:
@@ -95,16 +99,16 @@ class SegmentSieve {
   SegmentBounds bounds_;
 };
 
-/// Keeps the parameter of a crossing within the part of the segment that lies in the box of the
-/// triangle a, b, c, given from the segment's begin. Where the two are nearly parallel, the
-/// parameter is rounding: so a triangle whose box begins later never seems to be crossed before.
+/// Limits the parameter of a crossing to the part of the segment in the box of the triangle a, b,
+/// c, given relative to the segment's begin. Where the two are nearly parallel, the parameter is
+/// rounding. The limit ensures that a triangle whose box begins later is never crossed earlier.
 /// Real-time: safe.
 double kept_in_box(double parameter, const Eigen::Vector3d& way, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b, const Eigen::Vector3d& c) noexcept;
 
-/// The room around boxes, in steps, that covers the rounding of a segment within the lattice: of
-/// its begin, of the way to a node, of that divided by its own way, and of the sum with a side (at
-/// most 2^-24 of 2^31 steps each), several times.
+/// Margin around boxes, in steps, for the rounding of a segment within the lattice. Covers several
+/// times the rounding of its begin, of the way to a node, of that divided by its own way, and of
+/// the sum with a side (at most 2^-24 of 2^31 steps each).
 inline constexpr float kBoxRoom = 2048;
 
 /// A segment cut to the part that can reach a surface, in steps of the lattice and single
@@ -112,8 +116,8 @@ inline constexpr float kBoxRoom = 2048;
 struct ReachedPart {
   bool any = false;
   Eigen::Vector3f from, way;
-  double begin = 0, length = 0;  ///< Of the part, as parameters of the whole segment.
-  float room = kBoxRoom;         ///< Around boxes, for this rounding and that of far ends.
+  double begin = 0, length = 0;  ///< Of the part, as parameters of the segment.
+  float room = kBoxRoom;         ///< Margin around boxes, for this rounding and that of far ends.
 };
 
 /// Cuts a segment to the cube of the lattice. Real-time: safe.

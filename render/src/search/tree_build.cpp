@@ -7,8 +7,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Gives the order in which eight triangles that follow each other lie together; empty where they
-// stand in it already.
+// Returns the spatial order of the triangles, in which eight consecutive ones are neighbours; empty
+// if they are already in this order.
 std::vector<std::int32_t> order_of(const PackedSurface&, const SearchFrame&) {
   return {};
 }
@@ -54,7 +54,7 @@ LatticeAabb TreeSearch<Surface>::box_of(std::size_t place) const noexcept {
   return box;
 }
 
-// All but the building stands in tree.cpp and is instantiated there.
+// All functions but the constructor are in tree_search.cpp and instantiated there.
 template TreeSearch<ContactMesh>::TreeSearch(const ContactMesh&, bool);
 template LatticeAabb TreeSearch<ContactMesh>::box_of(std::size_t) const noexcept;
 template TreeSearch<PackedSurface>::TreeSearch(const PackedSurface&, bool);

@@ -13,28 +13,28 @@
 
 namespace thimble::render {
 
-/// A tree of boxes over things that stand in a row, where each node but the last of its level
-/// has eight children: the nodes of the lowest level hold eight things that follow each other,
-/// those above eight nodes that do. So nobody needs to say who is whose child, and a node is one
-/// line of the cache.
+/// A tree of boxes over things in a row, where each node except the last of its level has eight
+/// children. The nodes of the lowest level hold eight consecutive things, those above eight
+/// consecutive nodes. So no child indices are stored, and a node is one cache line.
 class TreeNodes {
  public:
-  /// Names a node: its level, counted from the lowest one, above its number in it.
+  /// Name of a node: its level, counted from the lowest one, in the high bits above its number.
   using Name = std::uint32_t;
-  static constexpr int kNumberBits = 26;                                          ///< Of a name.
-  static constexpr Name kNumber = (Name{1} << kNumberBits) - 1;                   ///< Of a name.
-  static constexpr std::size_t kLevelsMax = 10;                                   ///< 8^10 things.
-  static constexpr std::size_t kThingsMax = std::size_t{1} << (kNumberBits + 2);  ///< Most.
+  static constexpr int kNumberBits = 26;                         ///< Bits of the number in a name.
+  static constexpr Name kNumber = (Name{1} << kNumberBits) - 1;  ///< Mask of the number in a name.
+  static constexpr std::size_t kLevelsMax = 10;                  ///< Maximum: 8^10 things.
+  static constexpr std::size_t kThingsMax = std::size_t{1}
+                                            << (kNumberBits + 2);  ///< Maximum number of things.
 
-  /// Builds the tree in linear time. `box_of(place)` gives the LatticeAabb of a thing, to two
-  /// threads at once.
-  /// Sets room aside for things that come later (`grow`), up to `room` in all.
-  /// Precondition: one to `kThingsMax` things. Real-time: never from the servo thread.
+  /// Builds the tree in linear time. `box_of(place)` returns the LatticeAabb of a thing; it is
+  /// called from two threads at once. Reserves memory for things that are added later (`grow`), up
+  /// to `room` in all. Precondition: one to `kThingsMax` things. Real-time: never from the servo
+  /// thread.
   template <class BoxOf>
   void build(std::size_t things, BoxOf box_of, std::size_t room = 0);
 
-  /// Takes in that there are as many `things` as this, new ones behind the others, within the room
-  /// of `build`; each must then be told to `refit`. Real-time: safe.
+  /// Sets the number of things to `things`, the new ones at the end, within the room of `build`.
+  /// The caller must then `refit` each of them. Real-time: safe.
   void grow(std::size_t things) noexcept {
     counts_[0] = static_cast<std::uint32_t>(things);
     for (std::size_t level = 0; level < levels_; ++level) {
@@ -42,32 +42,33 @@ class TreeNodes {
     }
   }
 
-  /// Takes in that the box of one thing has changed, upwards as far as that changes anything: the
-  /// tree is what `build` would make. Real-time: safe.
+  /// Updates the tree after the box of one thing has changed, upwards as far as anything changes.
+  /// The result is the tree that `build` would make. Real-time: safe.
   template <class BoxOf>
   void refit(std::size_t place, BoxOf box_of) noexcept;
 
-  /// Names the node above all. Real-time: safe.
+  /// Returns the name of the root. Real-time: safe.
   Name root() const noexcept { return static_cast<Name>(levels_ - 1) << kNumberBits; }
   /// Returns a node. Real-time: safe.
   const BoxNode& node(Name name) const noexcept { return nodes_[place_of(name)]; }
   /// Returns whether the children of a node are things, not nodes. Real-time: safe.
   static bool lowest(Name name) noexcept { return name <= kNumber; }
-  /// Names the first child of a node that is not lowest; the others follow. Real-time: safe.
+  /// Returns the name of the first child of a node that is not lowest; the others follow.
+  /// Real-time: safe.
   static Name first_child(Name name) noexcept {
     return (name - (Name{1} << kNumberBits)) + 7 * (name & kNumber);
   }
   /// Returns the place of the first thing of a lowest node; the others follow. Real-time: safe.
   static std::size_t first_thing(Name name) noexcept { return std::size_t{8} * name; }
 
-  /// Returns how many levels there are. Real-time: safe.
+  /// Returns the number of levels. Real-time: safe.
   std::size_t levels() const noexcept { return levels_; }
-  /// Returns how many nodes a level has. Real-time: safe.
+  /// Returns the number of nodes of a level. Real-time: safe.
   std::size_t width(std::size_t level) const noexcept { return counts_[level + 1]; }
-  /// Shows the nodes of a level. Real-time: safe.
+  /// Returns the nodes of a level. Real-time: safe.
   const BoxNode* row(std::size_t level) const noexcept { return nodes_.data() + begins_[level]; }
 
-  /// Counts the bytes of memory held.
+  /// Returns the bytes of memory held.
   std::size_t bytes() const noexcept { return nodes_.capacity() * sizeof(BoxNode); }
 
  private:
@@ -79,9 +80,9 @@ class TreeNodes {
   BoxNode made(std::size_t level, std::size_t number, BoxOf box_of) const noexcept;
 
   std::vector<BoxNode, LargePages<BoxNode>> nodes_;  // the highest level first
-  std::array<std::uint32_t, kLevelsMax> begins_{};   // of each level in them
+  std::array<std::uint32_t, kLevelsMax> begins_{};   // begin of each level in nodes_
   std::array<std::uint32_t, kLevelsMax + 1>
-      counts_{};  // of what stands on each level, things first
+      counts_{};  // number of elements of each level, things first
   std::size_t levels_ = 1;
 };
 

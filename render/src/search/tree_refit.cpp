@@ -20,12 +20,12 @@ void TreeSearch<Surface>::keep_places() {
 template <class Surface>
 bool TreeSearch<Surface>::refit(std::span<const std::int32_t> triangles) noexcept {
   if (places_.empty()) return false;
-  // Neighbours stand in the same eights, each of which is made anew once; of those with the same
-  // last digits one is remembered, another is made again.
+  // Neighbours are in the same eights, each of which is rebuilt once. Of those with the same last
+  // digits one is remembered; another is rebuilt again.
   constexpr std::size_t kRemembered = 32;
   std::array<std::uint32_t, kRemembered> done;
   done.fill(0xffffffffu);
-  // New ones stand behind all others, those of one print together.
+  // New triangles are at the end, those of one print together.
   while (places_.size() < static_cast<std::size_t>(surface_->triangle_count())) {
     if (!order_.empty()) order_.push_back(static_cast<std::int32_t>(places_.size()));
     places_.push_back(static_cast<std::uint32_t>(places_.size()));

@@ -12,8 +12,8 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
-// Calls visit(list) for all leaves near the segment; it returns the parameter beyond which
-// no more are wanted.
+// Calls visit(list) for all leaves near the segment; `visit` returns the parameter beyond which
+// triangles are not wanted.
 template <class Surface>
 template <class Visit>
 void TreeSearch<Surface>::visit_reached(const Vector3d& from, const Vector3d& way,
@@ -73,7 +73,7 @@ SurfacePoint TreeSearch<Surface>::closest(const Vector3d& p_W, double radius) co
   if (!within_range(p_W) || !(radius >= 0)) return {};
   const Vector3d p = frame_.to_steps(p_W);
   NearestPoint best(*surface_, frame_, p, reach_of(frame_, radius));
-  // Twice what turning a point and its distance to a node into single precision may be wrong by.
+  // Twice the error of converting a point and its distance to a node to single precision.
   const auto room = static_cast<float>(0x1p-21 * std::max(p.cwiseAbs().maxCoeff(), kLatticeHalf));
   const std::int32_t* const order = order_.empty() ? nullptr : order_.data();
   if (wide_ ? lanes_avx2::find_nearest(nodes_, order, *surface_, frame_, p.data(), room,
@@ -92,7 +92,7 @@ SurfacePoint TreeSearch<Surface>::closest(const Vector3d& p_W, double radius) co
 
 template <class Surface>
 double TreeSearch<Surface>::clearance(const Vector3d& p_W) const noexcept {
-  // A hair of room for the rounding of the distance.
+  // A margin for the rounding of the distance.
   constexpr double kSurely = 1 - 0x1p-20;
   const double distance = closest(p_W, std::numeric_limits<double>::infinity()).distance;
   return std::isfinite(distance) ? kSurely * distance : 0;

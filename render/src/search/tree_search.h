@@ -15,24 +15,24 @@
 
 namespace thimble::render {
 
-/// Looks for contact in a tree of boxes with eight children per node (TreeNodes) over the triangles
-/// as they lie together (order_in_blocks); each triangle has its own box in it.
+/// Searches for contact in a tree of boxes with eight children per node (TreeNodes) over the
+/// triangles in spatial order (order_in_blocks). Each triangle has its own box in it.
 ///
-/// Boxes are compared in single precision with room for its rounding, eight at a time where the
-/// processor can (wide_lanes), level by level, so that what is far in memory is waited for once per
-/// level; questions that meet more than a few dozen boxes of a level go from one to the next
-/// instead. Triangles are decided in double precision and, where that leaves doubt, without
-/// rounding (segment_crossing.h), so that every processor gives the same answers. Its time grows
-/// with the logarithm of the size however unevenly the triangles lie. All questions are Real-time:
-/// safe; about a microsecond at 10^6 triangles.
+/// Boxes are compared in single precision with a margin for its rounding, eight at a time if the
+/// processor can (wide_lanes). The tree is queried level by level, so that a query waits for main
+/// memory once per level. Queries that meet more than a few dozen boxes of a level go from node to
+/// node instead. Triangles are decided in double precision and, in doubtful cases, without rounding
+/// (segment_crossing.h), so that every processor gives the same results. The time grows with the
+/// logarithm of the size for any distribution of triangles. All queries are Real-time: safe; about
+/// a microsecond at 10^6 triangles.
 ///
 /// `Surface` is ContactMesh or PackedSurface.
 template <class Surface>
 class TreeSearch final : public ContactSearch {
  public:
-  /// Builds the tree. Keeps a reference: the surface must outlive the tree. `wide` false asks as
-  /// processors do that cannot compare eight boxes at a time; true is for those that can.
-  /// Real-time: never from the servo thread.
+  /// Builds the tree. Keeps a reference: the surface must outlive the tree. With `wide` false,
+  /// queries run as on processors that cannot compare eight boxes at a time; true requires one that
+  /// can. Real-time: never from the servo thread.
   explicit TreeSearch(const Surface& surface, bool wide = wide_lanes());
 
   Entry first_entry(const Eigen::Vector3d& p_from,
@@ -46,9 +46,9 @@ class TreeSearch final : public ContactSearch {
            places_.capacity() * sizeof(std::uint32_t);
   }
 
-  /// Makes `refit` possible: four bytes more per triangle, for where each stands. The tree keeps
-  /// the order it was built in, so that triangles that wander far from their neighbours make it
-  /// slower, never wrong. Real-time: never from the servo thread.
+  /// Enables `refit`: four more bytes per triangle for its place. The tree keeps the order in which
+  /// it was built. So triangles that move far from their neighbours make it slower, never wrong.
+  /// Real-time: never from the servo thread.
   void keep_places();
 
   const Surface& surface() const noexcept { return *surface_; }
@@ -59,7 +59,7 @@ class TreeSearch final : public ContactSearch {
   void visit_reached(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
                      Visit visit) const noexcept;
 
-  // Returns which triangle stands at a place of the order.
+  // Returns the triangle at a place of the order.
   std::int32_t triangle_at(std::size_t place) const noexcept {
     return order_.empty() ? static_cast<std::int32_t>(place) : order_[place];
   }
@@ -67,8 +67,8 @@ class TreeSearch final : public ContactSearch {
   const Surface* surface_;
   SearchFrame frame_;
   bool wide_;                          // whether the processor compares eight boxes at a time
-  std::vector<std::int32_t> order_;    // empty where the triangles stand in it already
-  std::vector<std::uint32_t> places_;  // of each triangle in the order; empty unless kept
+  std::vector<std::int32_t> order_;    // empty if the triangles are already in this order
+  std::vector<std::uint32_t> places_;  // place of each triangle in the order; empty unless kept
   TreeNodes nodes_;
 };
 

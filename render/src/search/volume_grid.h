@@ -13,7 +13,7 @@
 
 namespace thimble::render {
 
-/// Counts the ones of a word without the instruction that not every x86-64 has. Real-time: safe.
+/// Counts the ones of a word without popcnt, which not every x86-64 has. Real-time: safe.
 inline std::uint32_t count_ones(std::uint64_t v) noexcept {
   v -= (v >> 1) & 0x5555555555555555u;
   v = (v & 0x3333333333333333u) + ((v >> 2) & 0x3333333333333333u);
@@ -23,60 +23,61 @@ inline std::uint32_t count_ones(std::uint64_t v) noexcept {
 
 /// The triangles that reach into one volume.
 struct VolumeList {
-  std::span<const std::int32_t> triangles;  ///< In rising order.
-  const EightTriangles* eights = nullptr;   ///< The same triangles, eight by eight.
-  Eigen::Vector3d middle;                   ///< Of the volume.
+  std::span<const std::int32_t> triangles;  ///< In ascending order.
+  const EightTriangles* eights = nullptr;   ///< The same triangles in groups of eight.
+  Eigen::Vector3d middle;                   ///< Middle of the volume.
 };
 
-/// Space cut into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes
-/// stand in blocks of 4 x 4 x 4:
+/// Space divided into volumes (cubes) with the triangles that reach into each [BP 4.1]. Volumes are
+/// in blocks of 4 x 4 x 4:
 ///
 ///     top: one word per block of the box  ->  block: which of its 64 volumes hold anything
 ///          (empty: how far all is empty)      ->  volume: where its list begins  ->  triangles
 ///
-/// so that empty space takes no memory but the word per block, and a question near the surface
-/// costs three lines of the cache besides the triangles. A triangle is listed in every volume that
-/// it, made thicker by `kGridRoom` of a volume, reaches into. Lengths are steps of a SearchFrame.
+/// So empty space takes no memory but the word per block, and a query near the surface costs three
+/// cache lines plus the triangles. A triangle is listed in every volume that it reaches into when
+/// thickened by `kGridRoom` of a volume. Lengths are steps of a SearchFrame.
 class VolumeGrid {
  public:
-  /// One block: bit x + 4 y + 16 z is set where that volume lists anything.
+  /// One block: bit x + 4 y + 16 z is set if that volume lists anything.
   struct Block {
     std::uint64_t occupied = 0;      ///< One bit for each volume.
-    std::uint32_t first_volume = 0;  ///< Place of its first occupied volume in `begins`.
+    std::uint32_t first_volume = 0;  ///< Index of its first occupied volume in `begins`.
   };
-  /// Marks a word of `top` as an empty block; the rest tells how many blocks away the nearest block
-  /// is that is not, along the axis where they are farthest apart, at most `kFarthest`.
+  /// Marks a word of `top` as an empty block. The other bits are the distance in blocks to the
+  /// nearest block that is not empty, along the axis of the largest distance, at most `kFarthest`.
   static constexpr std::uint32_t kEmpty = 0x80000000u;
-  static constexpr std::uint32_t kFarthest = 255;  ///< Blocks.
-  /// The most blocks along an axis.
+  static constexpr std::uint32_t kFarthest = 255;  ///< Maximum distance stored, blocks.
+  /// Maximum number of blocks along an axis.
   static constexpr std::int32_t kBlocksMax = 1024;
 
-  /// Where the list of a volume begins.
+  /// Begin of the list of a volume.
   struct ListBegin {
     std::uint32_t triangle = 0;  ///< In `triangles`.
     std::uint32_t eight = 0;     ///< In `eights`.
   };
-  /// What a grid is made of; see build_volume_grid.
+  /// Data of a grid; see build_volume_grid.
   struct Parts {
-    Eigen::Vector3d low{0, 0, 0};                 ///< The corner where the grid begins.
-    double side = 1;                              ///< Of a volume.
-    double per_unit = 1;                          ///< Units of EightTriangles to one step.
-    std::array<std::int32_t, 3> blocks{1, 1, 1};  ///< Along each axis.
-    std::vector<std::uint32_t> top;               ///< Of each block, or how far the next is.
-    std::vector<Block> all_blocks;                ///< Those with something in them.
-    std::vector<ListBegin> begins;                ///< Per occupied volume; and one more, the end.
-    std::vector<std::int32_t> triangles;          ///< Lists of the volumes, each in rising order.
+    Eigen::Vector3d low{0, 0, 0};                 ///< The low corner of the grid.
+    double side = 1;                              ///< Side of a volume.
+    double per_unit = 1;                          ///< Units of EightTriangles per step.
+    std::array<std::int32_t, 3> blocks{1, 1, 1};  ///< Number of blocks along each axis.
+    std::vector<std::uint32_t> top;               ///< Word of each block: its index, or the
+                                                  ///< distance to the next one.
+    std::vector<Block> all_blocks;                ///< Blocks that are not empty.
+    std::vector<ListBegin> begins;                ///< Per occupied volume; one more at the end.
+    std::vector<std::int32_t> triangles;          ///< Lists of the volumes, each ascending.
     std::vector<EightTriangles> eights;           ///< Their corners; each list begins a new one.
   };
 
-  /// Returns where volume `i` of a block begins, x + 4 y + 16 z as in Block::occupied, by the
-  /// block's place along each axis.
+  /// Returns the low corner of volume `i` of a block, x + 4 y + 16 z as in Block::occupied, from
+  /// the block's position along each axis.
   static Eigen::Vector3d corner_of(const Parts& parts, std::int32_t x, std::int32_t y,
                                    std::int32_t z, std::int32_t i) noexcept {
     return parts.low +
            parts.side * Eigen::Vector3d(4 * x + (i & 3), 4 * y + ((i >> 2) & 3), 4 * z + (i >> 4));
   }
-  /// Returns the middle of a volume by where it begins: what its triangles are seen from.
+  /// Returns the middle of a volume from its low corner: the origin of its triangles.
   static Eigen::Vector3d middle_of(const Parts& parts, const Eigen::Vector3d& corner) noexcept {
     return corner + Eigen::Vector3d::Constant(parts.side / 2);
   }
@@ -89,10 +90,10 @@ class VolumeGrid {
     }
   }
 
-  double side() const noexcept { return parts_.side; }    ///< Returns a volume's, m.
-  const Parts& parts() const noexcept { return parts_; }  ///< Shows what it is made of.
+  double side() const noexcept { return parts_.side; }    ///< Returns the side of a volume, m.
+  const Parts& parts() const noexcept { return parts_; }  ///< Returns the data of the grid.
 
-  /// Counts the bytes of memory held.
+  /// Returns the bytes of memory held.
   std::size_t bytes() const noexcept {
     return parts_.top.capacity() * sizeof(std::uint32_t) +
            parts_.all_blocks.capacity() * sizeof(Block) +
@@ -101,21 +102,21 @@ class VolumeGrid {
            parts_.eights.capacity() * sizeof(EightTriangles);
   }
 
-  /// Returns the volume a coordinate is in; what lies beside the grid counts to its outermost ones.
-  /// Monotone. NaN is in the first. Real-time: safe.
+  /// Returns the volume of a coordinate; beyond the grid, its outermost volume. Monotone. NaN is in
+  /// the first. Real-time: safe.
   std::int32_t volume_of(double u, int axis) const noexcept {
     const double v = (u - parts_.low[axis]) * per_side_;
-    // Nothing branches.
+    // No branches.
     return static_cast<std::int32_t>(std::min(v > 0 ? v : 0.0, last_[axis]));
   }
 
-  /// A volume by its place along each axis.
+  /// A volume by its position along each axis.
   using Place = std::array<std::int32_t, 3>;
-  /// Returns the volume a point is in (volume_of). Real-time: safe.
+  /// Returns the volume of a point (volume_of). Real-time: safe.
   Place place_of(const Eigen::Vector3d& p) const noexcept {
     return {volume_of(p.x(), 0), volume_of(p.y(), 1), volume_of(p.z(), 2)};
   }
-  /// Returns where a volume begins. Real-time: safe.
+  /// Returns the low corner of a volume. Real-time: safe.
   Eigen::Vector3d corner_of(const Place& place) const noexcept {
     const auto [x, y, z] = place;
     return corner_of(parts_, x >> 2, y >> 2, z >> 2, number_in_block(place));
@@ -130,11 +131,11 @@ class VolumeGrid {
     return all;
   }
 
-  /// Calls visit(list) for a volume, if it is occupied. Real-time: safe.
+  /// Calls visit(list) for a volume if it is occupied. Real-time: safe.
   template <class Visit>
   void visit_one(const Place& place, Visit visit) const noexcept;
-  /// Calls visit(list) for each occupied volume from one place to another along each axis for which
-  /// wanted(corner) is true; corner is where the volume begins. A triangle may be in several lists.
+  /// Calls visit(list) for each occupied volume between two positions along each axis for which
+  /// wanted(corner) is true; corner is the volume's low corner. A triangle may be in several lists.
   /// Real-time: safe; its time grows with the blocks between.
   template <class Wanted, class Visit>
   void visit_between(const Place& first, const Place& last, Wanted wanted,
@@ -146,8 +147,8 @@ class VolumeGrid {
     if (meets(low, high)) visit_between(place_of(low), place_of(high), wanted, visit);
   }
 
-  /// Returns how far a point is from the border of the volume it is in; not above 0 beside the
-  /// grid. Real-time: safe.
+  /// Returns the distance of a point from the border of its volume; not above 0 outside the grid.
+  /// Real-time: safe.
   double within_volume(const Eigen::Vector3d& p) const noexcept {
     double least = parts_.side;
     for (int i = 0; i < 3; ++i) {
@@ -158,7 +159,7 @@ class VolumeGrid {
   }
 
   /// Returns a distance from a point within which all blocks are empty; 0 near the surface.
-  /// Real-time: safe; one line of the cache.
+  /// Real-time: safe; one cache line.
   double clearance(const Eigen::Vector3d& p) const noexcept;
 
  private:
@@ -183,12 +184,12 @@ class VolumeGrid {
 
   Parts parts_;
   double per_side_ = 1;
-  Eigen::Vector3d last_{0, 0, 0};  // place of the outermost volume along each axis
+  Eigen::Vector3d last_{0, 0, 0};  // position of the outermost volume along each axis
   Eigen::Vector3d high_{0, 0, 0};
 };
 
-/// How far, as a share of a volume's side, triangles count as reaching: it covers the rounding
-/// of places in the grid (2^-52 of 2^12 volumes) by far.
+/// Margin, as a share of a volume's side, within which triangles count as reaching. It covers the
+/// rounding of places in the grid (2^-52 of 2^12 volumes) by far.
 inline constexpr double kGridRoom = 0x1p-16;
 
 template <class Visit>
@@ -204,7 +205,7 @@ inline void VolumeGrid::visit_one(const Place& place, Visit visit) const noexcep
 template <class Wanted, class Visit>
 inline void VolumeGrid::visit_between(const Place& first, const Place& last, Wanted wanted,
                                       Visit visit) const noexcept {
-  // The ones of all places between two along an axis of a block, with `shift` bits per place.
+  // Mask of all positions between two along an axis of a block, with `shift` bits per position.
   const auto between = [](std::int32_t from, std::int32_t to, int shift) noexcept {
     const int end = (to + 1) << shift, begin = from << shift;
     return (~std::uint64_t{0} >> (64 - end)) & (~std::uint64_t{0} << begin);

@@ -8,8 +8,8 @@
 
 namespace thimble::render {
 
-/// Returns which cubes of one size a triangle reaches into: by its plane and, seen along each axis,
-/// by its edges [Schwarz]. The box of the triangle is left to who asks. Never says no where a
+/// Tests which cubes of one size a triangle reaches into: by its plane and, seen along each axis,
+/// by its edges [Schwarz]. The caller tests the box of the triangle. Never returns false where a
 /// triangle grown by `room` on every side reaches in, rounding included.
 class VolumeOverlap {
  public:
@@ -17,7 +17,7 @@ class VolumeOverlap {
     const Eigen::Vector3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const double half = side / 2 + room;
     normal_ = n;
-    // The cube's middle is asked about, so that one number holds its reach in any direction.
+    // Tests the cube's middle, so that one number holds its reach in any direction.
     plane_ = n.dot(corners[0]);
     const double size = (corners[1] - corners[0]).cwiseAbs().maxCoeff() +
                         (corners[2] - corners[0]).cwiseAbs().maxCoeff();
@@ -50,7 +50,7 @@ class VolumeOverlap {
   }
 
  private:
-  // Coordinates are at most 2^12 volumes, products of few factors wrong by less than 2^-48.
+  // Coordinates are at most 2^12 volumes; products of few factors are wrong by less than 2^-48.
   static constexpr double kRounding = 0x1p-48;
   static constexpr double kPlaces = 0x1p13;
   struct Edge {

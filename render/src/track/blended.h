@@ -15,28 +15,27 @@
 
 namespace thimble::render {
 
-/// Smooths what a contact stage finds: a `Contact` stage of ContactForceLaw around another one,
+/// Wraps a contact stage and smooths its normal and depth. A `Contact` stage of ContactForceLaw,
 /// joined at compile time, as in `ContactForceLaw<Blended<MeshContact, FixedBand>, SpringDamper>`.
 ///
-/// `Contact` is any TrackedContact. `Shading` says which normal is felt (edge_blending.h), `Depth`
-/// how deep the tip is (curved_depth.h). Over OffsetContact the result is continuous over smooth
-/// edges and vertices at any depth. Over MeshContact it is so across each edge plane; where the
-/// edge planes of a vertex overlap or leave gaps, below the surface, it may jump by about depth /
+/// `Contact` is any TrackedContact. `Shading` chooses the felt normal (edge_blending.h), `Depth`
+/// the felt depth (curved_depth.h). Over OffsetContact the result is continuous over smooth edges
+/// and vertices at any depth. Over MeshContact it is continuous across each edge plane. Below the
+/// surface, where the edge planes of a vertex overlap or leave gaps, it may jump by about depth /
 /// edge length of the angle between the faces. Real-time: `update` is safe if the contact's is.
 template <class Contact, class Shading, class Depth = MeshDepth>
 class Blended {
  public:
-  /// Takes a contact stage and finds the mesh's normals, with creases where faces meet at more than
-  /// `crease_angle` (rad). Real-time: never from the servo thread.
+  /// Takes a contact stage and computes the mesh's normals, with creases where faces meet at more
+  /// than `crease_angle` (rad). Real-time: never from the servo thread.
   explicit Blended(Contact contact, Shading shading = {}, double crease_angle = kCreaseAngle)
       : Blended(std::move(contact), std::move(shading), nullptr, crease_angle) {}
 
-  /// Takes the normals that somebody has already found of the same mesh.
-  /// Real-time: never from the servo thread.
+  /// Takes normals already computed for the same mesh. Real-time: never from the servo thread.
   Blended(Contact contact, Shading shading, std::shared_ptr<const SmoothNormals> normals)
       : Blended(std::move(contact), std::move(shading), std::move(normals), kCreaseAngle) {}
 
-  /// As its contact's does.
+  /// Whether a copy is cheap, as for the wrapped contact.
   static constexpr bool kCopiesCheaply = Contact::kCopiesCheaply;
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
@@ -52,19 +51,19 @@ class Blended {
     return state_;
   }
 
-  /// Passes on that the surface has moved (TrackedContact). Real-time: safe.
+  /// Forwards that the surface has moved (TrackedContact). Real-time: safe.
   void surface_moved(std::int32_t swept_over) noexcept {
     contact_.surface_moved(swept_over);
     state_ = contact_.state();
   }
-  /// Passes on where the free tip is examined from (TrackedContact). Real-time: safe.
+  /// Returns the start of the free tip's path (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to, with the felt
-  /// normal (surface_response.h). Real-time: safe.
+  /// Returns the surface point of the tip at `p_WT` (W, m), with the felt normal
+  /// (surface_response.h). Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     const SurfacePlace& held = contact_.held();
     const bool by_crease = held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held);
@@ -85,7 +84,7 @@ class Blended {
   const Contact& contact() const noexcept { return contact_; }
   const ContactMesh& mesh() const noexcept { return contact_.mesh(); }
   const auto& search() const noexcept { return contact_.search(); }
-  /// Shows the normals that it blends. Real-time: safe.
+  /// Returns the normals that are blended. Real-time: safe.
   const std::shared_ptr<const SmoothNormals>& smooth_normals() const noexcept { return normals_; }
   auto counters() const noexcept { return contact_.counters(); }
 

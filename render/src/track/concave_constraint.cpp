@@ -18,8 +18,8 @@ std::uint8_t corner_of(const ContactMesh& mesh, std::int32_t triangle,
   return corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
 }
 
-// Names an edge or corner by `wanted` if that triangle has it, else by the first of those that do:
-// which of several is nearer by rounding must not decide.
+// Names an edge or corner by `wanted` if that triangle has it, else by the first triangle that has
+// it. Otherwise rounding would decide which of several is nearer.
 void name_place(const ContactMesh& mesh, std::int32_t wanted, SurfacePlace& place) noexcept {
   const std::int32_t vertex = mesh.corners(place.triangle)[place.k];
   if (place.on == SurfacePlace::On::kCorner) {
@@ -33,7 +33,7 @@ void name_place(const ContactMesh& mesh, std::int32_t wanted, SurfacePlace& plac
   }
   const std::int32_t behind = mesh.cell(place.triangle).neighbours[place.k];
   if (place.triangle == wanted || (behind != wanted && place.triangle < behind)) return;
-  // There the edge ends where it begins here.
+  // In the neighbour, the edge ends where it begins here.
   place.triangle = behind;
   place.k = static_cast<std::uint8_t>((corner_of(mesh, behind, vertex) + 2) % 3);
 }

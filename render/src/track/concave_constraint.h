@@ -10,33 +10,31 @@
 
 namespace thimble::render {
 
-/// What holds a tip in a hollow: the nearest point of the surface around, on a face, on an edge
-/// where two faces hold it, or at a corner where three and more do (hollows.md). W, m.
+/// The closest surface point that holds a tip in a groove or pit: on a face, on an edge of two
+/// faces, or at a corner of three or more (hollows.md). W, m.
 struct HollowHold {
   bool holds = false;             ///< False if the tip is not below the surface there.
-  SurfacePlace place;             ///< What of the surface it is.
-  double depth = 0;               ///< Distance of the tip from it.
-  Eigen::Vector3d n_W{0, 0, 0};   ///< Unit direction from the tip to it; a face's normal on a face.
+  SurfacePlace place;             ///< Face, edge or corner that holds the tip.
+  double depth = 0;               ///< Distance of the tip from the point.
+  Eigen::Vector3d n_W{0, 0, 0};   ///< Unit direction from tip to point; on a face, its normal.
   Eigen::Vector3d p_WH{0, 0, 0};  ///< The point.
-  std::uint16_t hops = 0;         ///< Triangles gone on to.
+  std::uint16_t hops = 0;         ///< Number of triangles crossed.
 };
 
-/// Returns what holds the tip `p_WT` (W, m) where it is beside `triangle`, over a hollow edge of
-/// it: slides from there over the surface to the point nearest to the tip among all around it, as a
-/// god-object does (surface_descent.h). Continuous in the tip as long as the surface around is
-/// hollow. Real-time: safe; two triangles in most cases.
+/// Returns what holds the tip `p_WT` (W, m) if it is next to `triangle`, over a concave edge of it.
+/// Slides from there over the surface to the closest point nearby, as a god-object does
+/// (surface_descent.h). Continuous in the tip as long as the surface nearby is concave. Real-time:
+/// safe; two triangles in most cases.
 HollowHold hold_in_hollow(const ContactMesh& mesh, std::int32_t triangle,
                           const Eigen::Vector3d& p_WT) noexcept;
 
-/// Returns whether a place lies on a crease in a hollow, or at a corner where there is one: there
-/// what holds the tip is felt as it is, and no shading goes across. Real-time: safe; at worst one
-/// fan.
+/// Returns whether a place is on a concave crease, or at a corner with one. The contact is not
+/// shaded there. Real-time: safe; at worst one fan.
 bool on_hollow_crease(const ContactMesh& mesh, const SmoothNormals& normals,
                       const SurfacePlace& place) noexcept;
 
-/// Returns the foot of a tip that is held at the proxy, on a place of the surface, and how it moves
-/// with the tip: over a face, along an edge, not at all in a corner (surface_response.h).
-/// Real-time: safe.
+/// Returns the surface point of a tip that is held at the proxy, and its derivative by the tip:
+/// over a face, along an edge, zero in a corner (surface_response.h). Real-time: safe.
 inline SurfaceFoot resting_foot(const ContactMesh& mesh, const SurfacePlace& place,
                                 const ContactState& state) noexcept {
   SurfaceFoot foot = flat_foot(state);

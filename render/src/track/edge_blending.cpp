@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 Vector3d unit_or(const Vector3d& v, const Vector3d& otherwise) noexcept {
   const double length = v.norm();
-  // Written so that NaN gives the other.
+  // Written so that NaN gives `otherwise`.
   return length > 0 ? Vector3d(v / length) : otherwise;
 }
 
@@ -22,11 +22,11 @@ double ramp(double distance, double width, BlendProfile profile) noexcept {
   return profile == BlendProfile::kSmooth ? t * t * (3 - 2 * t) : t;
 }
 
-// Is a triangle seen from one of its edges, with a place on it.
+// A triangle seen from one of its edges, with a place on it.
 struct EdgeView {
   double length;
   double distance;  // of the place from the edge
-  double along;     // share of the edge before the foot of the place, 0 to 1
+  double along;     // share of the edge before the projection of the place, 0 to 1
 };
 
 EdgeView edge_view(const ContactMesh& mesh, std::int32_t triangle, const Vector3d& weights,
@@ -51,8 +51,8 @@ double twice_area(const ContactMesh& mesh, std::int32_t triangle) noexcept {
   return (mesh.position(triangle, 1) - a).cross(mesh.position(triangle, 2) - a).norm();
 }
 
-// The normal on edge k: the mean of the two faces in the middle, the vertex's at an end. It uses
-// nothing but what both triangles share.
+// The normal on edge k: the mean of the two faces in the middle, the vertex's at an end. Uses only
+// data that both triangles share.
 Vector3d on_edge(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
                  std::size_t k, const EdgeView& view, double end_width,
                  BlendProfile profile) noexcept {
@@ -89,7 +89,7 @@ Vector3d blended(const ContactMesh& mesh, const SmoothNormals& normals, std::int
     shares += share;
   }
   if (!(shares > 0)) {
-    // At a vertex, where both its edges would count without limit.
+    // At a vertex, where the weights of both its edges are infinite.
     Eigen::Index corner = 0;
     weights.maxCoeff(&corner);
     return normals.corners(triangle)[static_cast<std::size_t>(corner)];

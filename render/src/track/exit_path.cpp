@@ -14,26 +14,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The least distance from a face that counts as outside, in roundings of the mesh: a foot and the
-// step from it are wrong by about 3 x 2^-53 of the mesh's size and place, a rounding is 64 of them.
+// The least distance from a face that counts as outside, in roundings of the mesh. A closest point
+// and the step from it are wrong by about 3 x 2^-53 of the mesh's size and place; a rounding is 64
+// of them.
 constexpr double kOutside = 0.25;
 
-// The point of the faces' normals' hull nearest to zero is as long as the sine of half the angle
-// of the notch they form; below 2^-8 (0.45 degrees) the notch counts as having no way out.
+// The point closest to zero of the hull of the faces' normals is as long as the sine of half the
+// angle of their notch. Below 2^-8 (0.45 degrees) the notch counts as having no way out.
 constexpr double kNotchMin = 0x1p-8;
 
 // Distance from an edge, in units of the least distance above, below which a point counts as being
-// on it: twice the longest step, so that no step reaches a face that was not asked.
+// on it. This is twice the longest step, so that no step reaches a face that was not examined.
 constexpr double kOnEdge = 4 / kNotchMin;
 
-// The most faces asked around one place: a vertex of valence 64 with those behind its neighbours.
+// Maximum number of faces examined around one place: a vertex of valence 64 with those behind its
+// neighbours.
 constexpr std::size_t kFacesMax = 192;
 
-// The nearest point of a hull in three dimensions lies on a face of it; each round either ends or
+// The closest point of a hull in three dimensions is on a face of it. Each round either ends or
 // comes strictly nearer. Scans, wedges and a needle of 64 faces took three.
 constexpr int kRoundsMax = 32;
 
-// Is a set of unit normals, and the search for the direction that leads away from all their faces.
+// A set of unit normals, and the search for the direction that leads away from all their faces.
 class Normals {
  public:
   explicit Normals(const ContactMesh& mesh) noexcept : mesh_(mesh) {}
@@ -51,8 +53,8 @@ class Normals {
     }
   }
 
-  // Finds x in the hull so that n . x >= x . x / 2 for every normal n: the point nearest to zero,
-  // as good as needed (the hull's algorithm is that of Gilbert, Johnson and Keerthi [Ericson 9.5]).
+  // Finds x in the hull so that n . x >= x . x / 2 for every normal n: the point closest to zero,
+  // to the accuracy needed (hull algorithm of Gilbert, Johnson and Keerthi [Ericson 9.5]).
   Vector3d away() const noexcept {
     std::array<Vector3d, 3> simplex = {normals_[0], normals_[0], normals_[0]};
     std::size_t corners = 1;
@@ -82,7 +84,7 @@ class Normals {
     return closest_point(Vector3d::Zero(), a, b, c);
   }
 
-  // The nearest point of four lies on a face that holds the new one.
+  // The closest point of four is on a face that contains the new one.
   static Vector3d replace_one(std::array<Vector3d, 3>& simplex, const Vector3d& fresh) noexcept {
     std::size_t dropped = 0;
     Vector3d best = Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -109,7 +111,7 @@ class Normals {
   std::size_t size_ = 0;
 };
 
-// Tells whether a point of a triangle lies so near to edge k that a step may cross the face behind.
+// Returns whether a point of a triangle is so near to edge k that a step may cross the face behind.
 bool on_edge(const ContactMesh& mesh, std::int32_t t, std::size_t k, const Vector3d& p_OP,
              double near) noexcept {
   const Vector3d& from = mesh.position(t, k);
@@ -144,8 +146,8 @@ ExitPath way_out(const ContactMesh& mesh, const Rest& rest) noexcept {
   const double near = kOnEdge * outside;
   const double normal_squared = foot.normal.squaredNorm();
   const double beside = std::min({foot.beside[0], foot.beside[1], foot.beside[2]});
-  // All edges taken to be as long as the three together: too careful by a factor that matters
-  // nowhere, and without a root or a division.
+  // Assumes all edges as long as the three together. This is conservative, and needs no root or
+  // division.
   const bool inside_face = foot.place.on == SurfacePlace::On::kFace &&
                            beside * beside > near * near * foot.edges_squared * normal_squared;
   if (inside_face) return {foot.normal / std::sqrt(normal_squared), 2 * outside, true, true};

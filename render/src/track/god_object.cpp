@@ -59,14 +59,14 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
     hops = static_cast<std::uint16_t>(hops + rest.hops);
     way = way_out(*mesh_, rest);
     pressed = rest.settled && below(*mesh_, rest, p_OT);
-    // A lift that ended no nearer: tip and surface are one but for rounding.
+    // A lift that ended no nearer: tip and surface coincide within rounding.
     if (pressed || !(rest.foot.distance_squared < nearest)) break;
     nearest = rest.foot.distance_squared;
     ++counters_.lifts;
     const Entry entry = search_->first_entry(rest.foot.p_OP + way.length * way.n_O, p_OT);
     if (entry.triangle < 0) {
       state_.hops = hops;
-      // Where a surface passes through itself the proxy was within another part of it.
+      // Where a surface passes through itself, the proxy was inside another part of it.
       if (!search_->inside(p_OT)) return;
       ++counters_.found_far;
       place_ = {.triangle =
@@ -77,7 +77,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
       break;
     }
     ++counters_.stopped;
-    // A slide that its bound has ended goes on from there in the next tick.
+    // A slide that reached its bound continues from there in the next tick.
     if (!rest.settled) {
       ++counters_.long_walks;
       pressed = true;
@@ -87,7 +87,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   }
 
   const Vector3d p_OP = rest.foot.p_OP + way.length * way.n_O;
-  // Held only where no direction is known to lead out, and where the exact answer is "inside".
+  // Held only where no direction is known to lead out and the exact result is "inside".
   if (way.sure || !search_->inside(p_OP)) {
     p_OP_ = p_OP;
   } else {
@@ -97,7 +97,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   if (pressed) {
     const Vector3d p_TP_O = rest.foot.p_OP - p_OT;
     if (rest.settled && rest.foot.place.on == SurfacePlace::On::kFace && !through_itself) {
-      // In a face's outermost hair the way out leads away from the faces beside it, too.
+      // Within rounding of the edge of a face, the way out also leads away from the adjacent faces.
       if (!way.from_face) n_O = rest.foot.normal.normalized();
       state_.depth = n_O.dot(p_TP_O);
     } else {

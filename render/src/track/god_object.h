@@ -19,39 +19,39 @@
 
 namespace thimble::render {
 
-/// The most times the proxy leaves the surface for the tip within one tick and is stopped again
-/// by another part of it. Each time brings it nearer; one suffices to cross a room from wall to
-/// wall and into its corner. Where eight do not, the next tick goes on.
+/// Maximum number of lifts per tick: times the proxy leaves the surface for the tip and is stopped
+/// by another part of it. Each lift brings it nearer; one is enough to cross a room from wall to
+/// wall and into its corner. After eight, the next tick continues.
 inline constexpr int kLiftsMax = 8;
 
-/// Counts what a god-object met besides sliding.
+/// Counts of events other than sliding.
 struct GodObjectCounters {
-  std::uint64_t lifts = 0;       ///< Times the proxy left the surface for a tip it could see.
+  std::uint64_t lifts = 0;       ///< Times the proxy left the surface for a tip in free sight.
   std::uint64_t stopped = 0;     ///< Lifts that ended on another part of the surface.
-  std::uint64_t long_walks = 0;  ///< Ticks whose bound ended the slide before its goal.
+  std::uint64_t long_walks = 0;  ///< Ticks that reached the bound before the slide ended.
   std::uint64_t found_far = 0;   ///< Contact found again where a surface passes through itself.
   std::uint64_t held = 0;        ///< Ticks that kept the proxy's last place: see `update`.
 };
 
-/// Finds what the tip touches with a god-object: a proxy that follows the tip and never enters the
-/// mesh [ZS]. The `Contact` stage of ContactForceLaw, in place of MeshContact.
+/// Finds the contact with a god-object: a proxy that follows the tip and never enters the mesh
+/// [ZS]. A `Contact` stage of ContactForceLaw, used instead of MeshContact.
 ///
-/// While the tip is inside, the proxy slides over the surface to the point that is nearest to the
-/// tip among all around it: one face holds it, or two in a concave edge, or three and more in a
-/// corner, all within one tick. As it stays on the surface, nothing can pass it, however thin the
-/// part: the tip may come out at the back, the proxy does not. Where the straight way to the tip is
-/// free the proxy leaves; that way is searched along its whole length, without rounding.
+/// While the tip is inside, the proxy slides over the surface to the point closest to the tip
+/// nearby. One face holds it, two in a concave edge, or three or more in a corner, all within one
+/// tick. The proxy stays on the surface, so it passes no part, however thin: the tip may come out
+/// at the back, the proxy does not. If the straight way to the tip is free, the proxy leaves. That
+/// way is searched along its whole length, without rounding.
 ///
 /// Frames: W world, T tip, P proxy; O, the mesh's own, is W. No length is compared with a constant
 /// in scene units.
 class THIMBLE_EXPORT GodObjectContact {
  public:
-  /// Takes a prepared mesh and how it is searched (make_search). Real-time: never from the servo
+  /// Takes a prepared mesh and the choice of search (make_search). Real-time: never from the servo
   /// thread.
   explicit GodObjectContact(ContactMesh mesh, std::optional<SearchChoice> search = {});
 
-  /// Takes a mesh and a search over it that somebody else moves (moving_mesh.h).
-  /// Real-time: never from the servo thread.
+  /// Takes a mesh and a search over it that another object moves (moving_mesh.h). Real-time: never
+  /// from the servo thread.
   GodObjectContact(std::shared_ptr<const ContactMesh> mesh,
                    std::shared_ptr<const ContactSearch> search)
       : mesh_(std::move(mesh)), search_(std::move(search)) {}
@@ -62,26 +62,26 @@ class THIMBLE_EXPORT GodObjectContact {
                                                 const ContactMeshOptions& options = {},
                                                 std::optional<SearchChoice> search = {});
 
-  /// A copy shares mesh and search, and takes nothing from the heap.
+  /// A copy shares mesh and search, and does not allocate.
   static constexpr bool kCopiesCheaply = true;
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
-  /// `p_WP` is the proxy: outside the mesh by about its rounding.
-  /// `depth` is its distance from the tip, `n_W` points from the tip to it, or along the surface's
-  /// normal where the distance is rounding. `triangle` is one that the proxy rests on; where those
-  /// around it leave no way out (narrower than 0.5 degrees) the proxy may stay where it was, and
-  /// that is counted.
+  /// `p_WP` is the proxy: outside the mesh by about its rounding. `depth` is its distance from the
+  /// tip. `n_W` points from the tip to it, or along the surface's normal where the distance is
+  /// within rounding. `triangle` is one that the proxy rests on. In a notch narrower than 0.5
+  /// degrees, without a way out, the proxy may stay at its last place; such ticks are counted.
   ///
-  /// Contact begins when the path since the last tick enters the mesh. A tip that
-  /// is inside on the first tick touches nothing until it has been outside. A position that is NaN
-  /// or beyond `kPositionMax` ends the contact and makes the next tick a first one. Real-time:
-  /// safe; one triangle or a few while touching; one question to the search for each lift, and
-  /// while free near the mesh.
+  /// Contact begins when the path since the last tick enters the mesh. A tip that is inside on the
+  /// first tick touches nothing until it has been outside. A position that is NaN or beyond
+  /// `kPositionMax` ends the contact and makes the next tick a first one. Real-time: safe; one
+  /// triangle or a few while touching; one search query for each lift, and while free near the
+  /// mesh.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
-  /// Takes in that vertices have moved since the last `update`, and which triangle has swept over
-  /// the free tip from outside, -1 for none: the proxy rests on it from then on. Real-time: safe.
+  /// Receives that vertices have moved since the last `update`, and which triangle has swept over
+  /// the free tip from outside, -1 for none. The proxy then rests on that triangle. Real-time:
+  /// safe.
   void surface_moved(std::int32_t swept_over) noexcept {
     free_space_ = {};
     if (swept_over < 0 || state_.touching || !has_before_) return;
@@ -92,7 +92,7 @@ class THIMBLE_EXPORT GodObjectContact {
     state_.p_WP = p_OP_;
   }
 
-  /// Returns where a free tip was in the last `update`, m in O; NaN if there was none, or it
+  /// Returns the position of a free tip in the last `update`, m in O; NaN if there was none, or it
   /// touches. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {
     if (has_before_ && !state_.touching) return p_OP_;
@@ -102,8 +102,8 @@ class THIMBLE_EXPORT GodObjectContact {
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  /// Returns the place that the proxy rests on and how it moves with the tip: over a face, along an
-  /// edge, not at all in a corner (surface_response.h). Real-time: safe.
+  /// Returns the surface point of the proxy and its derivative by the tip: over a face, along an
+  /// edge, zero in a corner (surface_response.h). Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_OT) const noexcept;
 
   const GodObjectCounters& counters() const noexcept { return counters_; }
@@ -113,14 +113,14 @@ class THIMBLE_EXPORT GodObjectContact {
  private:
   void follow(const Eigen::Vector3d& p_OT) noexcept;
 
-  // On the heap, so that the search keeps pointing at the mesh when the contact moves.
+  // On the heap, so that the search's pointer to the mesh stays valid when the contact is moved.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const ContactSearch> search_;
   ContactState state_;
   FreeSpace free_space_;  // O
   GodObjectCounters counters_;
   Eigen::Vector3d p_OP_{0, 0, 0};  // The proxy; a free proxy is at the tip.
-  SurfacePlace place_;             // What a touching proxy rests on.
+  SurfacePlace place_;             // Place on which a touching proxy rests.
   bool has_before_ = false;
 };
 

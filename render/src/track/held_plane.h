@@ -7,20 +7,20 @@
 
 namespace thimble::render {
 
-/// Stands in for a surface that is not known for a while: the plane that was felt last. It begins
-/// where the contact was, so nothing jumps, and when the surface is known again the felt one fades
-/// over to it in `kFadeTicks`. All Real-time: safe.
+/// Replaces a surface that is not loaded by the plane that was felt last. The plane begins at the
+/// contact, so nothing jumps. When the surface is loaded, the felt contact fades over to it in
+/// `kFadeTicks`. All Real-time: safe.
 class HeldPlane {
  public:
-  /// How long the plane fades: 32 ms at 1 kHz, as long as the finest change that a hand follows.
+  /// Fade time: 32 ms at 1 kHz, as long as the finest change that a hand follows.
   static constexpr int kFadeTicks = 32;
 
-  /// Puts the contact at `p_WT` (W, m) on the plane; the first call of a hold takes the plane from
-  /// `state`, that of the last tick. The depth is at least 0: nobody knows that the contact ended.
-  /// Once the tip has come above the plane it stays 0: a plane has no end, and who goes round the
-  /// object must not run into it in free air. And it never exceeds twice the depth that the hold
-  /// began with: beyond, the plane gives way, for a surface that bends away would be felt as a
-  /// wall.
+  /// Puts the contact at `p_WT` (W, m) on the plane. The first call of a hold takes the plane from
+  /// `state` of the last tick. The depth is at least 0, because the end of the contact is not
+  /// known. Once the tip has been above the plane, the depth stays 0. The plane is infinite, so a
+  /// tip that goes around the object must not hit it in free air. The depth never exceeds twice the
+  /// depth at the begin of the hold. Beyond that the plane gives way, because a surface that bends
+  /// away would be felt as a wall.
   void hold(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
     if (left_ < kFadeTicks) {
       n_W_ = state.n_W;
@@ -35,8 +35,8 @@ class HeldPlane {
     state.p_WP = p_WT + state.depth * n_W_;
   }
 
-  /// Turns what is felt at `p_WT` (W, m) from the plane towards the surface, which `state` tells:
-  /// direction and depth together, so that two that face each other pass by zero.
+  /// Blends the contact at `p_WT` (W, m) from the plane to the surface in `state`. Direction and
+  /// depth are blended together, so two opposite contacts pass through zero.
   void fade(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
     if (left_ == 0) return;
     --left_;
@@ -48,8 +48,8 @@ class HeldPlane {
     state.p_WP = p_WT + state.depth * state.n_W;
   }
 
-  /// Puts the contact at `p_WT` (W, m) on the fading plane where the surface says that there is
-  /// none; false once the plane has faded or the tip is above it: the contact has ended.
+  /// Puts the contact at `p_WT` (W, m) on the fading plane if the surface reports no contact.
+  /// Returns false once the plane has faded or the tip is above it: the contact has ended.
   bool fade_out(const Eigen::Vector3d& p_WT, ContactState& state) noexcept {
     if (left_ == 0) return false;
     --left_;
@@ -78,10 +78,10 @@ class HeldPlane {
   }
 
   bool lifted_ = false;  // whether the tip has been above the plane since the hold began
-  int left_ = 0;         // ticks of fading to come; kFadeTicks while held
+  int left_ = 0;         // remaining ticks of fading; kFadeTicks while held
   Eigen::Vector3d n_W_{0, 0, 0};
   double height_ = 0;  // n_W . p on the plane, m
-  double most_ = 0;    // depth at most, m
+  double most_ = 0;    // maximum depth, m
 };
 
 }  // namespace thimble::render

@@ -22,25 +22,24 @@
 
 namespace thimble::render {
 
-/// Finds what the tip touches on one mesh: a search along the tip's path while it is free, tracking
-/// over the surface while it touches [BP 3.1]. The `Contact` stage of ContactForceLaw.
+/// Finds the contact on one mesh: a search along the tip's path while it is free, tracking over the
+/// surface while it touches [BP 3.1]. A `Contact` stage of ContactForceLaw.
 ///
-/// `Tracker` is how it is followed: SurfaceTracker, OffsetTracker or NormalProjectionTracker; see
-/// there for what each promises. The names MeshContact and OffsetContact below stand for the first
-/// two.
+/// `Tracker` is SurfaceTracker, OffsetTracker or NormalProjectionTracker; see there for the
+/// guarantees of each. MeshContact and OffsetContact below are aliases for the first two.
 template <class Tracker>
 class THIMBLE_EXPORT TrackedContact {
  public:
-  /// Takes a prepared mesh, how it is searched (make_search), and what the tracker's constructor
-  /// takes after mesh and search. Real-time: never from the servo thread.
+  /// Takes a prepared mesh, the choice of search (make_search), and the tracker's constructor
+  /// arguments after mesh and search. Real-time: never from the servo thread.
   template <class... TrackerOptions>
   TrackedContact(ContactMesh mesh, std::optional<SearchChoice> search, TrackerOptions... options)
       : mesh_(std::make_shared<const ContactMesh>(std::move(mesh))),
         search_(make_search(*mesh_, search)),
         tracker_(*mesh_, *search_, options...) {}
 
-  /// Takes a mesh and a search over it that somebody else moves (moving_mesh.h), and what the
-  /// tracker's constructor takes after them. Real-time: never from the servo thread.
+  /// Takes a mesh and a search over it that another object moves (moving_mesh.h), and the tracker's
+  /// constructor arguments after them. Real-time: never from the servo thread.
   template <class... TrackerOptions>
   TrackedContact(std::shared_ptr<const ContactMesh> mesh,
                  std::shared_ptr<const ContactSearch> search, TrackerOptions... options)
@@ -48,8 +47,7 @@ class THIMBLE_EXPORT TrackedContact {
         search_(std::move(search)),
         tracker_(*mesh_, *search_, options...) {}
 
-  /// Takes a prepared mesh, searched in the way that suits it. Real-time: never from the servo
-  /// thread.
+  /// Takes a prepared mesh and chooses a suitable search. Real-time: never from the servo thread.
   explicit TrackedContact(ContactMesh mesh) : TrackedContact(std::move(mesh), std::nullopt) {}
 
   /// Prepares a mesh (W, m); the error is that of ContactMesh::build.
@@ -62,25 +60,25 @@ class THIMBLE_EXPORT TrackedContact {
     return TrackedContact(std::move(prepared).value(), search);
   }
 
-  /// A copy shares mesh and search, and takes nothing from the heap.
+  /// A copy shares mesh and search, and does not allocate.
   static constexpr bool kCopiesCheaply = true;
 
   /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
   ///
-  /// Contact begins when the path since the last tick enters the mesh, however fast, and the
+  /// Contact begins when the path since the last tick enters the mesh, at any speed, and the
   /// tracker runs in the same tick. A tip that is inside on the first tick touches nothing until it
-  /// has been outside: it would be thrown out otherwise. A tip that comes out behind a thin part is
-  /// held by the face that it has passed through (passed_through.h), until it is back or beside the
+  /// has been outside; otherwise it would be thrown out. A tip that comes out behind a thin part is
+  /// held by the face that it has passed through (passed_through.h), until it is back or past the
   /// rim. A position that is NaN or beyond `kPositionMax` ends the contact and makes the next tick
   /// a first one. In the tick that ends a contact no new one begins, unless the tip is inside.
-  /// Real-time: safe; a few ns in contact and far from the mesh, else one question to the search.
+  /// Real-time: safe; a few ns in contact and far from the mesh, else one search query.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 
-  /// Takes in that the surface has moved since the last `update`, and which triangle has swept over
-  /// the free tip from outside, -1 for none: it is touched from then on. Real-time: safe.
+  /// Receives that the surface has moved since the last `update`, and which triangle has swept over
+  /// the free tip from outside, -1 for none. The tip then touches that triangle. Real-time: safe.
   void surface_moved(std::int32_t swept_over) noexcept {
     free_space_ = {};
     if (swept_over < 0 || state_.touching || !has_before_) return;
@@ -92,30 +90,30 @@ class THIMBLE_EXPORT TrackedContact {
     state_.p_WP = p_WT_before_;
   }
 
-  /// Returns where a free tip was in the last `update`, m in W; NaN if there was none, or it
-  /// touches: what a surface that moves may sweep over. Real-time: safe.
+  /// Returns the position of a free tip in the last `update`, m in W, for surfaces that may sweep
+  /// over it; NaN if there was none, or it touches. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {
     if (has_before_ && !state_.touching) return p_WT_before_;
     return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
 
-  /// Returns where on the active triangle the tip belongs (surface_weights.h). Precondition: the
-  /// last `update` was at `p_WT` (W, m) and touches. Real-time: safe.
+  /// Returns the weights of the tip's place on the active triangle (surface_weights.h).
+  /// Precondition: the last `update` was at `p_WT` (W, m) and touches. Real-time: safe.
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
     return tracker_.weights(p_WT);
   }
 
-  /// Returns the edge or corner of a hollow that holds the tip, as of the last `update`; its
-  /// triangle is -1 where a face does. Real-time: safe.
+  /// Returns the concave edge or corner that holds the tip, as of the last `update`; its triangle
+  /// is -1 if a face holds it. Real-time: safe.
   decltype(auto) held() const noexcept { return tracker_.held(); }
 
-  /// Returns the place on the surface that the tip at `p_WT` (W, m) belongs to
-  /// (surface_response.h). Precondition: as of `weights`. Real-time: safe.
+  /// Returns the surface point of the tip at `p_WT` (W, m) (surface_response.h). Precondition: as
+  /// of `weights`. Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     if (held().triangle >= 0) return resting_foot(mesh(), held(), state_);
     return foot_on_triangle(p_WT);
   }
-  /// Returns the place on the active triangle, whether an edge beside it holds the tip or not.
+  /// Returns the surface point on the active triangle, even if an edge next to it holds the tip.
   /// Precondition: as of `weights`. Real-time: safe.
   SurfaceFoot foot_on_triangle(const Eigen::Vector3d& p_WT) const noexcept {
     if constexpr (kTellsFoot) {
@@ -125,15 +123,16 @@ class THIMBLE_EXPORT TrackedContact {
     }
   }
 
-  /// Whether the tracker tells the place by the weights of the corners and their derivatives.
+  /// Whether the tracker provides the weights of the corners and their derivatives.
   static constexpr bool kTellsFoot = requires(const Tracker& tracker, const Eigen::Vector3d& p) {
     tracker.foot(p);
   };
-  /// Returns that place of the active triangle. Precondition: as of `weights`. Real-time: safe.
+  /// Returns the place on the active triangle with its derivatives. Precondition: as of `weights`.
+  /// Real-time: safe.
   TriangleFoot triangle_foot(const Eigen::Vector3d& p_WT) const noexcept requires kTellsFoot {
     return tracker_.foot(p_WT);
   }
-  /// Returns the foot that lies at such a place. Real-time: safe.
+  /// Returns the surface point at such a place. Real-time: safe.
   SurfaceFoot foot_at(const TriangleFoot& place) const noexcept requires kTellsFoot {
     const FootPath path = path_of(mesh(), place);
     return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J, .fall_W = tracker_.fall(place)};
@@ -145,7 +144,7 @@ class THIMBLE_EXPORT TrackedContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
-  // Shows the mesh to face_above.
+  // Adapter of the mesh for face_above.
   struct Faces {
     const ContactMesh& mesh;
     const Eigen::Vector3d& corner(std::int32_t triangle, std::size_t k) const noexcept {
@@ -159,13 +158,13 @@ class THIMBLE_EXPORT TrackedContact {
     }
   };
 
-  // Whether the tracker can go on from a face that does not hold the tip by its own rules.
+  // Whether the tracker can continue from a face that does not hold the tip by its own rules.
   static constexpr bool kHoldsBehind = requires(Tracker & tracker, const Eigen::Vector3d& p) {
     tracker.hold_by_face(0, p);
   };
 
   void report(const Eigen::Vector3d& p_WT, const TrackerStep& step) noexcept;
-  // What seldom happens.
+  // Rare cases.
   [[gnu::noinline, gnu::cold]] const ContactState& lose(const Eigen::Vector3d& p_WT,
                                                         std::uint16_t hops) noexcept;
   [[gnu::noinline, gnu::cold]] const ContactState& go_round(const Eigen::Vector3d& p_WT,
@@ -174,7 +173,7 @@ class THIMBLE_EXPORT TrackedContact {
       const Eigen::Vector3d& p_WT) noexcept;
   bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
 
-  // On the heap, so that search and tracker keep pointing at them when the contact moves.
+  // On the heap, so that pointers of search and tracker stay valid when the contact is moved.
   std::shared_ptr<const ContactMesh> mesh_;
   std::shared_ptr<const ContactSearch> search_;
   Tracker tracker_;
@@ -182,7 +181,7 @@ class THIMBLE_EXPORT TrackedContact {
   FreeSpace free_space_;
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   bool has_before_ = false;
-  bool follows_ = false;  // touching, as the tracker says
+  bool follows_ = false;  // touching, according to the tracker
   bool behind_ = false;   // touching, held behind a thin part
 };
 
@@ -238,7 +237,7 @@ inline void TrackedContact<Tracker>::report(const Eigen::Vector3d& p_WT,
   state_.hops = step.hops;
 }
 
-// The tracker has lost the tip: it is outside.
+// The tracker has lost the tip: the tip is outside.
 template <class Tracker>
 const ContactState& TrackedContact<Tracker>::lose(const Eigen::Vector3d& p_WT,
                                                   std::uint16_t hops) noexcept {
@@ -251,7 +250,8 @@ const ContactState& TrackedContact<Tracker>::lose(const Eigen::Vector3d& p_WT,
   return state_;
 }
 
-// The tracker has gone over a rim in one tick: so did the tip, or it has passed through the part.
+// The tracker has crossed a rim in one tick. Either the tip went around it too, or it has passed
+// through the part.
 template <class Tracker>
 const ContactState& TrackedContact<Tracker>::go_round(const Eigen::Vector3d& p_WT,
                                                       const TrackerStep& step) noexcept {
@@ -275,7 +275,7 @@ const ContactState& TrackedContact<Tracker>::stay_behind(const Eigen::Vector3d& 
   return state_;
 }
 
-// Holds the tip by the face that it has passed through, if it has passed through one; false if not.
+// Holds the tip by the face that it has passed through. Returns false if there is none.
 template <class Tracker>
 bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept {
   const FaceAbove face = face_above(Faces{*mesh_}, state_.triangle, p_WT);
@@ -288,7 +288,7 @@ bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept 
   if (inside ? !behind_ : !behind_thin_part(p_WT, face.depth, face.n, longest, first_entry)) {
     return false;
   }
-  // Where the tracker itself holds the tip from there, that is what the next tick will feel.
+  // If the tracker itself holds the tip from there, the next tick will feel the same.
   tracker_.start(face.triangle);
   const TrackerStep step = tracker_.follow(p_WT);
   follows_ =
@@ -303,11 +303,11 @@ bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept 
   return true;
 }
 
-/// Follows the surface over edge planes [BP 4b]: flat faces, the least work per tick.
+/// Tracks over edge planes [BP 4b]: flat faces, the least work per tick.
 using MeshContact = TrackedContact<SurfaceTracker>;
 
-/// Follows the smooth surface: Phong's normal and the depth along it, continuous over smooth edges
-/// and vertices at every depth.
+/// Tracks the smooth surface: Phong normal and the depth along it, continuous over smooth edges and
+/// vertices at every depth.
 using OffsetContact = TrackedContact<OffsetTracker>;
 
 extern template class TrackedContact<SurfaceTracker>;

@@ -22,19 +22,19 @@
 
 namespace thimble::render {
 
-/// The `Contact` stage of ContactForceLaw over a surface that changes shape: another contact stage
-/// (MeshContact, OffsetContact, Blended over either, GodObjectContact) made over a MovingMesh, with
-/// the one door through which the surface moves. Frame W, m.
+/// A `Contact` stage of ContactForceLaw over a surface that changes shape. Wraps another contact
+/// stage (MeshContact, OffsetContact, Blended over either, GodObjectContact) over a MovingMesh, and
+/// is the only way to move the surface. Frame W, m.
 ///
-/// Who touches stays in touch while the surface is pressed in below the tip, and lets go when it
-/// falls away faster than the tip follows. A surface that sweeps over a free tip takes it along:
-/// the next `update` touches the triangle that has passed, however fast it was and however thin the
-/// part.
+/// A touching tip stays in contact while the surface is pressed in below it, and is released when
+/// the surface falls away faster than the tip follows. A surface that sweeps over a free tip takes
+/// it along. The next `update` touches the triangle that has passed, at any speed and for any
+/// thickness of the part.
 template <class Contact>
 class MovingContact {
  public:
-  /// Takes a surface and the stage made from mesh_of, search_of and normals_of it.
-  /// Real-time: never from the servo thread.
+  /// Takes a surface and the stage made from its mesh_of, search_of and normals_of. Real-time:
+  /// never from the servo thread.
   MovingContact(std::shared_ptr<MovingMesh> surface, Contact contact)
       : surface_(std::move(surface)), contact_(std::move(contact)) {}
 
@@ -44,8 +44,8 @@ class MovingContact {
     return contact_.update(state);
   }
 
-  /// Keeps where the material of the surface is now, so that `foot` tells places of it however the
-  /// surface is moved. Real-time: never from the servo thread.
+  /// Stores the present places of the surface's material, so that `foot` refers to them however the
+  /// surface moves. Real-time: never from the servo thread.
   void keep_material() {
     first_places_.clear();
     first_places_.reserve(mesh().vertices_max());
@@ -54,9 +54,8 @@ class MovingContact {
     }
   }
 
-  /// Returns the place of the material that the tip at `p_WT` (W, m) belongs to
-  /// (surface_response.h). Precondition: keep_material() was called, and the last `update` touches.
-  /// Real-time: safe.
+  /// Returns the material point of the tip at `p_WT` (W, m) (surface_response.h). Precondition:
+  /// keep_material() was called, and the last `update` touches. Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     const auto first = [this](std::int32_t vertex) {
       return first_places_[static_cast<std::size_t>(vertex)];
@@ -74,11 +73,11 @@ class MovingContact {
             .surface_path = path_felt_};
   }
 
-  /// Moves vertices of the surface, between two updates; gives the number of those refused
+  /// Moves vertices of the surface, between two updates. Returns the number of refused moves
   /// (MovingMesh::move_vertices). Real-time: safe.
   std::int32_t move_vertices(std::span<const VertexMove> moves) noexcept {
-    // Vertices that are refused count as well: the bound on the force is then wider, never tighter
-    // than the surface's own path.
+    // Refused vertices count as well: the bound on the force is then wider, never tighter than the
+    // surface's own path.
     const double path = longest_path(moves);
     path_to_come_ += path;
     const SurfaceMoved moved = surface_->move_vertices(moves, contact_.free_tip());
@@ -90,8 +89,8 @@ class MovingContact {
     return moved.refused;
   }
 
-  /// Splits an edge of the surface in its middle, between two updates (MovingMesh::split_edge): the
-  /// touched triangle keeps its number where it is touched. Real-time: safe.
+  /// Splits an edge of the surface in its middle, between two updates (MovingMesh::split_edge). The
+  /// touched part keeps the triangle's index. Real-time: safe.
   EdgeSplit split_edge(std::int32_t triangle, std::size_t k) noexcept {
     const std::array ends{mesh().corners(triangle)[k], mesh().corners(triangle)[(k + 1) % 3]};
     const EdgeSplit split = surface_->split_edge(triangle, k, !touched_nearer(ends[1], ends[0]));
@@ -106,7 +105,7 @@ class MovingContact {
 
   // All Real-time: safe.
   const ContactState& state() const noexcept { return contact_.state(); }
-  /// Returns the weights of the corners at the place that is touched. Real-time: safe.
+  /// Returns the weights of the corners at the touched place. Real-time: safe.
   auto weights(const Eigen::Vector3d& p_WT) const noexcept { return contact_.weights(p_WT); }
   auto counters() const noexcept { return contact_.counters(); }
   const Contact& contact() const noexcept { return contact_; }
@@ -138,9 +137,9 @@ class MovingContact {
 
   std::shared_ptr<MovingMesh> surface_;
   Contact contact_;
-  double path_to_come_ = 0;                    // since the last tick, m
-  double path_felt_ = 0;                       // in the tick before, m
-  std::vector<Eigen::Vector3d> first_places_;  // if kept, W, m
+  double path_to_come_ = 0;                    // of the surface since the last tick, m
+  double path_felt_ = 0;                       // of the surface before the last tick, m
+  std::vector<Eigen::Vector3d> first_places_;  // places stored by keep_material, W, m
 };
 
 }  // namespace thimble::render

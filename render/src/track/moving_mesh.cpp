@@ -52,7 +52,7 @@ EdgeSplit MovingMesh::split_edge(std::int32_t triangle, std::size_t k, bool keep
 bool MovingMesh::place(const VertexMove& move, const Vector3d& p_WT, const Vector3d& p_far,
                        std::int32_t& swept) noexcept {
   if (!mesh_.in_box(move.p_W)) return false;
-  // Vertex by vertex, so that what is swept over is made of tetrahedra.
+  // Vertex by vertex, so that the swept volume consists of tetrahedra.
   for (const std::int32_t t : mesh_.fan(move.vertex)) {
     const auto& corners = mesh_.corners(t);
     const std::size_t k = corners[0] == move.vertex ? 0 : corners[1] == move.vertex ? 1 : 2;
@@ -62,7 +62,7 @@ bool MovingMesh::place(const VertexMove& move, const Vector3d& p_WT, const Vecto
     if (way > 0) swept = t;
     if (marked(t)) continue;
     marks_[static_cast<std::size_t>(t)] = round_;
-    around_.push_back(t);  // never more than there are triangles: room is there
+    around_.push_back(t);  // at most all triangles; capacity is reserved
   }
   mesh_.vertices_[static_cast<std::size_t>(move.vertex)] = move.p_W;
   return true;

@@ -15,12 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Newton's iteration doubles the digits each round: 2 or 3 from the last tick's depth; 9 were the
-// most seen on a scanned mesh pressed deep, and more than 12 mean that there is no answer.
+// Newton's iteration doubles the digits each round: 2 or 3 rounds from the last tick's depth. The
+// maximum seen on a scanned mesh pressed deep was 9; after 12 there is no solution.
 constexpr int kRoundsMax = 12;
 
-// Rounding of a weight (2^-53 times products of a few sides) that is no reason to hop: neighbours
-// whose shared side runs through the tip would hand it to and fro.
+// Rounding of a weight (2^-53 times products of a few sides) that does not cause a hop. Otherwise
+// neighbours whose shared side passes through the tip would alternate.
 constexpr double kWeightRounding = 1e-13;
 
 // Faces that lean by more, as a cosine, are the back of a thin part (as in SurfaceTracker).
@@ -30,8 +30,8 @@ Vector3d weighted(const std::array<Vector3d, 3>& corners, const Vector3d& weight
   return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
 }
 
-// How far the tip is beyond each edge, as a share of the triangle's height over it; negative means
-// beyond.
+// Distance of the tip inside each edge, as a share of the triangle's height over it; negative
+// beyond the edge.
 std::array<double, 3> edge_shares(const ContactMesh& mesh, const SmoothNormals& normals,
                                   std::int32_t triangle, const OffsetFoot& foot,
                                   const Vector3d& p_WT) noexcept {
@@ -72,9 +72,10 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
     foot.weights[1] = r.cross(e_2).dot(area) * scale;
     foot.weights[2] = e_1.cross(r).dot(area) * scale;
     foot.weights[0] = 1 - foot.weights[1] - foot.weights[2];
-    // Moving along the offset plane changes no height, so only the sinking itself counts.
+    // Moving along the offset plane does not change the height, so only the sinking matters.
     const double sinking = weighted(n, foot.weights).dot(area);
-    // A triangle that has shrunk to a point and grown again faces as before, with its sides turned.
+    // A triangle that has shrunk to a point and grown again faces the same way, but its sides are
+    // reversed.
     const bool turned_over =
         !(sinking > 0 && area.dot(face_n) > 0 && e_1.dot(side_1) > 0 && e_2.dot(side_2) > 0);
     if (turned_over) return foot;
@@ -125,13 +126,13 @@ TrackerStep OffsetTracker::follow(const Vector3d& p_WT) noexcept {
   if (!(foot_.depth >= 0) && !find_again(p_WT)) return step;
   step.touching = true;
   held_.triangle = -1;
-  // No cell holds the tip: most often it is in the gap below a crease in a hollow.
+  // No cell holds the tip: usually it is in the gap below a concave crease.
   if (foot_.weights.minCoeff() < -kWeightRounding && hold(p_WT, step)) return step;
   weights_ = within_triangle(foot_.weights);
   const Vector3d sum = weighted(normals_->corners(active_), weights_);
   const double length = sum.norm();
   n_W_ = length > 0 ? Vector3d(sum / length) : mesh_->cell(active_).face.n;
-  // The corners sink along unit normals; in between, the mean of those is shorter.
+  // The corners sink along unit normals; the interpolated normal between them is shorter.
   step.depth = foot_.found ? foot_.depth * length : foot_.depth;
   return step;
 }
@@ -151,7 +152,7 @@ bool OffsetTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
 
 OffsetFoot OffsetTracker::foot_on(std::int32_t triangle, const Vector3d& p_WT) const noexcept {
   OffsetFoot foot = find_offset_foot(*mesh_, *normals_, triangle, p_WT, foot_.depth);
-  // Once more from the surface: a depth that fits one triangle may turn the next one over.
+  // Again from the surface: the depth of one triangle may be beyond the curvature of the next one.
   if (!foot.found) foot = find_offset_foot(*mesh_, *normals_, triangle, p_WT, 0);
   if (!foot.found) {
     foot.weights = edge_plane_weights(*mesh_, triangle, p_WT);
@@ -199,9 +200,9 @@ OffsetTracker::Walk OffsetTracker::walk(const Vector3d& p_WT) noexcept {
   return {.hops = kHopsMax, .ended = false, .last = last};
 }
 
-// Around a vertex of many faces the sides are violated more before they are violated less, so the
-// best of the triangles visited may be the one where the walk began, and the next tick would end
-// there again.
+// Around a vertex of many faces the violation of the sides rises before it falls. So the best of
+// the visited triangles may be the one where the walk began, and the next tick would end there
+// again.
 std::uint16_t OffsetTracker::walk_on(const Vector3d& p_WT, const Walk& before) noexcept {
   const std::int32_t best = active_;
   const OffsetFoot best_foot = foot_;
@@ -209,7 +210,7 @@ std::uint16_t OffsetTracker::walk_on(const Vector3d& p_WT, const Walk& before) n
   const bool faces_alike =
       hit.triangle >= 0 &&
       mesh_->cell(hit.triangle).face.n.dot(mesh_->cell(best).face.n) > kFacesAway;
-  // The way around a part that is thin there: the next tick continues where this one ended.
+  // The way around a thin part: the next tick continues from here.
   active_ = faces_alike ? hit.triangle : before.last;
   foot_.depth = best_foot.depth;
   if (!faces_alike) {
@@ -228,7 +229,7 @@ bool OffsetTracker::find_again(const Vector3d& p_WT) noexcept {
   active_ = edge_planes_.active();
   foot_.depth = step.depth;
   foot_ = foot_on(active_, p_WT);
-  // Inside, and above the smooth cell by what its sides lean: on the surface.
+  // Inside, but above the smooth cell because its sides lean: on the surface.
   if (!(foot_.depth >= 0)) foot_.depth = 0;
   return true;
 }

@@ -15,43 +15,43 @@
 
 namespace thimble::render {
 
-/// Where a tip belongs on a triangle whose corners sink along their normals.
+/// Place of a tip on a triangle whose corners sink along their normals.
 struct OffsetFoot {
-  Eigen::Vector3d weights{0, 0, 0};  ///< Of the corners; negative beyond a side.
-  double depth = 0;                  ///< How far the corners have sunk, m; negative outside.
-  bool found = false;  ///< False where the offset triangle has turned over: too deep for its bend.
+  Eigen::Vector3d weights{0, 0, 0};  ///< Weights of the corners; negative beyond a side.
+  double depth = 0;                  ///< Sinking of the corners, m; negative outside.
+  bool found = false;                ///< False if the offset triangle has turned over: too deep.
 };
 
 /// Finds weights w and depth d with p = sum of w_k (x_k - d n_k), where x are the corners and n
 /// their normals: the place of the tip (W, m) on the triangle that is sunk by d.
 ///
-///        x_0 ---- q ----- x_1      surface; q = sum w_k x_k
-///         |       |        |       the three ways down are straight
-///        y_0 ---- p ----- y_1      sunk by d; y = x - d n
+///       x_0 ---- q ----- x_1      surface; q = sum w_k x_k
+///        |       |        |       the three ways down are straight
+///       y_0 ---- p ----- y_1      sunk by d; y = x - d n
 ///
-/// Newton's iteration in d alone, from `depth_near`: for given d the offset triangle is plane, and
+/// Newton's iteration in d only, from `depth_near`. For given d the offset triangle is plane, and
 /// the slope of the height above it is known in closed form. Real-time: safe; 2 or 3 rounds from a
-/// depth near by, at worst 12.
+/// near depth, at worst 12.
 OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
                             std::int32_t triangle, const Eigen::Vector3d& p_WT,
                             double depth_near) noexcept;
 
-/// Follows the tip over a smooth surface, with depth and direction continuous over edges and
+/// Tracks the tip over a smooth surface, with depth and direction continuous over edges and
 /// vertices at every depth up to the surface's radius of curvature.
 ///
-/// The cell of a triangle is what it sweeps when its corners sink along their normals. Neighbours
-/// share the swept side to the bit, so cells neither overlap nor leave gaps, at vertices neither:
-/// that is what edge planes cannot do. The normal is that of the corners, weighted; the proxy is
-/// the point q of the surface, and the depth is the distance from it. Over creases there is one
-/// normal on each side, and the edge plane between the two faces decides [BP 4b]; between the cells
-/// of a crease in a hollow the edge or corner itself holds the tip (concave_constraint.h).
+/// The cell of a triangle is the volume swept when its corners sink along their normals. Neighbours
+/// share a bit-identical swept side, so cells neither overlap nor leave gaps, even at vertices,
+/// unlike those of edge planes. The normal is the weighted mean of the corner normals, the proxy is
+/// the point q of the surface, and the depth is the distance from it. At creases there is one
+/// normal on each side, and the edge plane between the two faces decides [BP 4b]. Between the cells
+/// of a concave crease the edge or corner itself holds the tip (concave_constraint.h).
 ///
-/// Where an offset triangle has turned over, the edge planes stand in. A walk that reaches
-/// `kHopsMax`, as around a vertex of hundreds of faces, continues from the nearest triangle, which
-/// the search names, unless that one faces the other way as the back of a thin part does. If the
-/// depth turns negative while the tip is inside, SurfaceTracker finds the contact again.
-/// Deterministic. All but the constructors is Real-time: safe; usually one or two feet per tick, at
-/// worst twice `kHopsMax`, one question to the search, and what SurfaceTracker needs.
+/// Where an offset triangle has turned over, the edge planes replace it. A walk that reaches
+/// `kHopsMax`, as around a vertex of hundreds of faces, continues from the nearest triangle that
+/// the search returns. It does not if that triangle faces the other way, like the back of a thin
+/// part. If the depth turns negative while the tip is inside, SurfaceTracker finds the contact
+/// again. Deterministic. All but the constructors is Real-time: safe; usually one or two places per
+/// tick, at worst twice `kHopsMax`, one search query, and the cost of SurfaceTracker.
 class THIMBLE_EXPORT OffsetTracker {
  public:
   /// Keeps references: mesh and search must outlive the tracker.
@@ -59,15 +59,15 @@ class THIMBLE_EXPORT OffsetTracker {
   OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                 double crease_angle = kCreaseAngle);
 
-  /// Takes the normals that somebody has already found of the same mesh.
-  /// Real-time: never from the servo thread.
+  /// Takes normals already computed for the same mesh. Real-time: never from the servo thread.
   OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
                 std::shared_ptr<const SmoothNormals> normals);
 
-  /// Makes a triangle active, where the tip has just entered.
+  /// Makes the triangle active through which the tip has just entered.
   void start(std::int32_t triangle) noexcept;
 
-  /// Makes a triangle active whose face holds the tip at `p_WT` (W, m), though no cell of it does.
+  /// Makes a triangle active whose face holds the tip at `p_WT` (W, m), although none of its cells
+  /// does.
   void hold_by_face(std::int32_t triangle, const Eigen::Vector3d& p_WT) noexcept;
 
   /// Follows the tip to `p_WT` (W, m; finite). Precondition: `start` was called and the last step
@@ -79,22 +79,23 @@ class THIMBLE_EXPORT OffsetTracker {
   /// Returns the unit normal at the tip's place on the surface, W, as of the last step.
   const Eigen::Vector3d& normal() const noexcept { return n_W_; }
 
-  /// Returns the edge or corner of a hollow that holds the tip as of the last step; its triangle is
-  /// -1 where a smooth cell does.
+  /// Returns the concave edge or corner that holds the tip as of the last step; its triangle is -1
+  /// if a smooth cell holds it.
   const SurfacePlace& held() const noexcept { return held_; }
 
-  /// Returns where on the active triangle the tip belongs (surface_weights.h), as of the last step.
+  /// Returns the weights of the tip's place on the active triangle (surface_weights.h), as of the
+  /// last step.
   const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
 
-  /// Returns the place on the active triangle where the tip belongs, which is at `p_WT` (W, m), as
-  /// of the last step.
+  /// Returns the place on the active triangle of the tip at `p_WT` (W, m), as of the last step.
   TriangleFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     return foot_.found ? offset_foot(*mesh_, *normals_, active_, weights_, foot_.depth)
                        : edge_plane_foot(*mesh_, active_, p_WT);
   }
 
-  /// Returns minus the gradient of the last step's depth in the tip's place, for its `foot`; where
-  /// the corners have not sunk that is the normal of what holds the tip.
+  /// Returns minus the gradient of the last step's depth by the tip's position, for its `foot`.
+  /// Where the corners have not sunk, this is the normal of the face, edge or corner that holds the
+  /// tip.
   Eigen::Vector3d fall(const TriangleFoot& foot) const noexcept {
     if (held_.triangle >= 0) return n_W_;
     if (!foot_.found) return mesh_->cell(active_).face.n;
@@ -108,10 +109,10 @@ class THIMBLE_EXPORT OffsetTracker {
 
  private:
   OffsetFoot foot_on(std::int32_t triangle, const Eigen::Vector3d& p_WT) const noexcept;
-  /// How a walk ended.
+  /// Result of a walk.
   struct Walk {
     std::uint16_t hops = 0;
-    bool ended = false;      // within kHopsMax: a cell holds the tip, or none of those near by does
+    bool ended = false;      // within kHopsMax: a cell holds the tip, or none nearby does
     std::int32_t last = -1;  // triangle that was reached
   };
   Walk walk(const Eigen::Vector3d& p_WT) noexcept;

@@ -21,28 +21,28 @@
 
 namespace thimble::render {
 
-/// Finds what the tip touches on a smooth surface of packed triangles: a search while it is free,
-/// tracking from offset triangle to offset triangle (offset_triangle.h) while it touches. Where the
-/// packed triangles come from is the store's affair; MemoryContact has all of them in memory. The
-/// bodies are in packed_contact_steps.h, for who instantiates it.
+/// Finds the contact on a smooth surface of packed triangles: a search while the tip is free,
+/// tracking from offset triangle to offset triangle (offset_triangle.h) while it touches. The store
+/// provides the packed triangles; MemoryContact has all of them in memory. The function bodies are
+/// in packed_contact_steps.h, for files that instantiate it.
 ///
-/// Depth and direction are continuous over edges and vertices, since neighbours share offset edges
-/// to the bit. Over a crease the tip changes sides at the plane that halves the angle, where both
+/// Depth and direction are continuous over edges and vertices, since neighbours share bit-identical
+/// offset edges. Over a crease the tip changes sides at the plane that halves the angle, where both
 /// faces measure the same depth [BP 3.1, Fig. 4b], and the direction jumps. Between the two sides
-/// of a crease in a hollow the edge or corner itself holds the tip (concave_constraint.h).
+/// of a concave crease the edge or corner itself holds the tip (concave_constraint.h).
 ///
-/// Contact begins where the smooth surface does. On a bulge that is above the triangles, by up to
-/// L^2 / 6R for edges of length L on a radius R [PHYSICS 3]: there the depth rises from 0, as
-/// long as the store can tell how high the surface rises. In a hollow it is below them: there
+/// Contact begins at the smooth surface. On a bulge that is above the triangles, by up to L^2 / 6R
+/// for edges of length L on a radius R [PHYSICS 3]. There the depth rises from 0, if the store
+/// provides the rise of the surface. Where the surface is concave it is below the triangles. There
 /// contact begins and ends at the triangles, softly (depth_below_hollow). So nothing jumps, and
-/// no depth is bent towards the triangles as CurvedDepth has to do, which begins at the mesh.
+/// depth is not bent towards the triangles as in CurvedDepth, which begins at the mesh.
 ///
-/// Where a packed triangle is absent the plane felt last is held (held_plane.h) and the tick is
-/// counted. The contact goes on from the last triangle at hand, or from the one nearest to the tip
-/// if the way there is not; it ends if there is none within the store's reach. A free tip keeps the
-/// path that could not be examined until it is known to be outside where it is; an entry found on
-/// the path later counts if it does not come out again, for nobody knows whether the tip went
-/// straight.
+/// Where a packed triangle is absent, the plane felt last is held (held_plane.h) and the tick is
+/// counted. The contact continues from the last triangle in memory, or from the one nearest to the
+/// tip if the way there is absent. It ends if there is none within the store's reach. A free tip
+/// keeps the path that could not be examined until the tip is known to be outside. An entry found
+/// on the path later counts only if the path does not come out again, because the tip may not have
+/// gone straight.
 template <PackedStore Store>
 class THIMBLE_EXPORT PackedContact {
  public:
@@ -56,7 +56,7 @@ class THIMBLE_EXPORT PackedContact {
   /// number of the input's triangle. A tip that is inside on the first tick touches nothing until
   /// it has been outside. A position that is NaN or beyond `kPositionMax` ends the contact and
   /// makes the next tick a first one. Real-time: safe; tens of ns in contact, at worst `kHopsMax`
-  /// triangles, `kPatchMax` more and two questions to the search.
+  /// triangles, `kPatchMax` more and two search queries.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
   /// Returns the result of the last `update`. Real-time: safe.
@@ -65,31 +65,31 @@ class THIMBLE_EXPORT PackedContact {
     return felt_;
   }
 
-  /// Returns the place on the triangles that the tip at `p_WT` (W, m) belongs to
-  /// (surface_response.h); that on the felt plane where no packed triangle tells. Precondition: the
-  /// last `update` was there and touches. Real-time: safe; some 100 ns.
+  /// Returns the surface point of the tip at `p_WT` (W, m) (surface_response.h); on the felt plane
+  /// if the packed triangle is absent. Precondition: the last `update` was at `p_WT` and touches.
+  /// Real-time: safe; some 100 ns.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept;
 
   const TrackerCounters& counters() const noexcept { return counters_; }
-  /// Counts the ticks in which a packed triangle was absent.
+  /// Returns the number of ticks in which a packed triangle was absent.
   std::uint64_t ticks_held() const noexcept { return ticks_held_; }
-  /// Returns where the path begins that the next tick examines if the tip is free (W, m): the last
+  /// Returns the start of the path that the next tick examines if the tip is free (W, m): the last
   /// tip, or an older one where packed triangles were absent. Real-time: safe.
   const Eigen::Vector3d& path_begin() const noexcept { return p_WT_before_; }
-  const Store& store() const noexcept { return store_; }  ///< Shows whence packed triangles come.
+  const Store& store() const noexcept { return store_; }  ///< Source of the packed triangles.
 
  private:
-  // Surfaces that fit no memory have triangles of 20 um: at 0.5 m/s a tip crosses 60 of them.
+  // Surfaces that do not fit into memory have triangles of 20 um: at 0.5 m/s a tip crosses 60 of
+  // them.
   static constexpr std::uint16_t kWalkMax = Store::kComplete ? kHopsMax : 4 * kHopsMax;
 
-  // Says what a tick in contact came to: kUnknown where a packed triangle that decides it is
-  // absent.
+  // Result of a tick in contact: kUnknown if a packed triangle that decides it is absent.
   using Outcome = Known;
 
   // The triangles around a corner.
   using Fan = TriangleSet<kPatchMax>;
 
-  // Shows packed triangles to face_above, in steps of the lattice.
+  // Adapter of the packed triangles for face_above, in steps of the lattice.
   struct Faces {
     const Store& store;
     Eigen::Vector3d corner(std::int32_t triangle, std::size_t k) const noexcept {
@@ -104,8 +104,9 @@ class THIMBLE_EXPORT PackedContact {
     }
   };
 
-  // The tick in three pieces, so that the first, all of most ticks, is short and straight; each is
-  // made twice for different processors (wide_lanes). The first two tell whether the tick is done.
+  // The tick in three parts, so that the first, which is all of most ticks, is short straight-line
+  // code. Each is compiled twice for different processors (wide_lanes). The first two return
+  // whether the tick is done.
   bool stay(const Eigen::Vector3d& p_WT) noexcept;
   [[gnu::noinline]] THIMBLE_FOR_AVX2 bool stay_wide(const Eigen::Vector3d& p_WT) noexcept;
   bool step_over(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::size_t edge) noexcept;
@@ -116,7 +117,7 @@ class THIMBLE_EXPORT PackedContact {
                                                          std::size_t edge) noexcept;
   void move(const Eigen::Vector3d& p_WT) noexcept;
   [[gnu::noinline]] THIMBLE_FOR_AVX2 void move_wide(const Eigen::Vector3d& p_WT) noexcept;
-  // What seldom happens is not made twice.
+  // Rare code is not compiled twice.
   [[gnu::noinline]] bool begin(const Eigen::Vector3d& p_WT) noexcept;
   bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
@@ -151,27 +152,27 @@ class THIMBLE_EXPORT PackedContact {
     return !Store::kComplete && packed == nullptr;
   }
 
-  // What a tick needs lies together, the rest behind it.
+  // Members used by each tick come first.
   Store store_;
   bool wide_ = wide_lanes();
-  bool steady_ = false;  // in contact, where there is no crease and hops are rare
+  bool steady_ = false;  // in contact, at no crease, and with few hops in the last ticks
   bool has_before_ = false;
   bool behind_ = false;     // in contact, held behind a thin part by the active triangle
   bool path_kept_ = false;  // whether the path began before the last tick
   bool above_ = false;      // free, and known to be above the smooth surface
-  int recent_hops_ = 0;     // counts up to 3 with ticks that hop, and down with the others
+  int recent_hops_ = 0;     // incremented up to 3 by ticks that hop, decremented by others
   std::int32_t active_ = -1;
-  double deepest_;  // steps: who is in a triangle and no deeper is within range
+  double deepest_;  // steps; a tip within a triangle and no deeper than this is within range
   Eigen::Vector3d p_WT_before_{0, 0, 0};
   ContactState state_;
   OffsetTriangle offset_;
-  ContactState felt_;   // of a store that lacks packed triangles: as held or fading
-  ContactState begun_;  // where the contact began, likewise
+  ContactState felt_;   // for a store that lacks packed triangles: the held or fading contact
+  ContactState begun_;  // for such a store: the contact at its begin
   TrackerCounters counters_;
   HeldPlane held_;
-  SurfacePlace::On hollow_ = SurfacePlace::On::kFace;  // what of a hollow held the tip last,
-  Eigen::Vector3d along_{0, 0, 0};                     // the unit direction of its edge,
-  Eigen::Vector3d p_WT_hollow_{0, 0, 0};               // and where the tip was then
+  SurfacePlace::On hollow_ = SurfacePlace::On::kFace;  // place type that held the tip last
+  Eigen::Vector3d along_{0, 0, 0};                     // unit direction of its edge
+  Eigen::Vector3d p_WT_hollow_{0, 0, 0};               // position of the tip then
   std::uint64_t ticks_held_ = 0;
 };
 

@@ -14,30 +14,28 @@
 
 namespace thimble::render {
 
-/// A store that has all packed triangles in memory and a search over them: no question costs
-/// more than its answer. Asked by one thread at a time: it remembers the free space around the last
-/// path.
+/// A store that has all packed triangles in memory and a search over them. For use by one thread at
+/// a time: it remembers the free space around the last path.
 class THIMBLE_EXPORT MemoryStore {
  public:
   static constexpr bool kComplete = true;
 
-  /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
-  /// the servo thread.
-  explicit MemoryStore(PackedSurface surface, std::optional<SearchChoice> search = {});
-  /// Takes a surface and a search over it that others share. Real-time: never from the servo
+  /// Takes a prepared surface and builds its search (make_search). Real-time: never from the servo
   /// thread.
+  explicit MemoryStore(PackedSurface surface, std::optional<SearchChoice> search = {});
+  /// Takes a shared surface and a shared search over it. Real-time: never from the servo thread.
   MemoryStore(std::shared_ptr<const PackedSurface> surface,
               std::shared_ptr<const ContactSearch> search);
 
-  // As PackedStore says. Real-time: safe.
+  // Functions of PackedStore. Real-time: safe.
 
   const PackedTriangle* find(std::int32_t triangle) const noexcept { return triangles_ + triangle; }
   Eigen::Vector3d to_lattice(const Eigen::Vector3d& p_W) const noexcept {
-    return (p_W - origin_) * per_step_;  // as the surface does, from this line of the cache
+    return (p_W - origin_) * per_step_;  // as PackedSurface does, from this cache line
   }
   double step() const noexcept { return step_; }
   double reach() const noexcept { return std::numeric_limits<double>::infinity(); }
-  /// Returns how far the surface rises above its triangles, m (PackedSurface::rise).
+  /// Returns the height by which the surface rises above its triangles, m (PackedSurface::rise).
   double rise() const noexcept { return surface_->rise(); }
   FoundEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) const noexcept {
@@ -54,28 +52,27 @@ class THIMBLE_EXPORT MemoryStore {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
-  // What each tick needs comes first.
+  // Members used by each tick come first.
   const PackedTriangle* triangles_;
   Eigen::Vector3d origin_;
   double per_step_, step_;
-  // On the heap, so that the search keeps pointing at the surface when the contact moves.
+  // On the heap, so that the search's pointer to the surface stays valid when the contact is moved.
   std::shared_ptr<const PackedSurface> surface_;
   std::shared_ptr<const ContactSearch> search_;
-  mutable FreeSpace free_space_;  // changes what a question costs, never its answer
+  mutable FreeSpace free_space_;  // changes the cost of a query, never its result
 };
 
 extern template class PackedContact<MemoryStore>;
 
-/// Finds what the tip touches on a smooth surface of any size that fits into memory. The `Contact`
-/// stage of ContactForceLaw; the place of MeshContact where meshes are large or curved. How it
-/// follows and what it measures: packed_contact.h.
+/// Finds the contact on a smooth surface of any size that fits into memory. A `Contact` stage of
+/// ContactForceLaw, used instead of MeshContact where meshes are large or curved. Tracking and
+/// measures are described in packed_contact.h.
 class THIMBLE_EXPORT MemoryContact : public PackedContact<MemoryStore> {
  public:
-  /// Takes a prepared surface and builds how it is searched (make_search). Real-time: never from
-  /// the servo thread.
-  explicit MemoryContact(PackedSurface surface, std::optional<SearchChoice> search = {});
-  /// Takes a surface and a search over it that others share. Real-time: never from the servo
+  /// Takes a prepared surface and builds its search (make_search). Real-time: never from the servo
   /// thread.
+  explicit MemoryContact(PackedSurface surface, std::optional<SearchChoice> search = {});
+  /// Takes a shared surface and a shared search over it. Real-time: never from the servo thread.
   MemoryContact(std::shared_ptr<const PackedSurface> surface,
                 std::shared_ptr<const ContactSearch> search);
 
@@ -84,7 +81,7 @@ class THIMBLE_EXPORT MemoryContact : public PackedContact<MemoryStore> {
   static driver::Result<MemoryContact> build(const TriangleMesh& mesh,
                                              const PackedSurfaceOptions& options = {});
 
-  /// A copy shares mesh and search, and takes nothing from the heap.
+  /// A copy shares mesh and search, and does not allocate.
   static constexpr bool kCopiesCheaply = true;
 
   const PackedSurface& surface() const noexcept { return store().surface(); }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The bodies of PackedContact: included where it is instantiated for a store, and nowhere else.
+// Function bodies of PackedContact. Include only where it is instantiated for a store.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -69,8 +69,8 @@ inline void PackedContact<Store>::measure(const Eigen::Vector3d& p_WT,
   state_.p_WP = p_WT + state_.depth * felt.n_W;
 }
 
-// Ends the tick if the tip is where the active triangle, or the one over the edge it has crossed,
-// answers alone.
+// Ends the tick if only the active triangle, or the one over the edge that the tip has crossed, is
+// needed.
 template <PackedStore Store>
 inline bool PackedContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
   if (!steady_) return false;
@@ -88,7 +88,7 @@ inline bool PackedContact<Store>::stay(const Eigen::Vector3d& p_WT) noexcept {
   state_.hops = 0;
   recent_hops_ = 0;
   p_WT_before_ = p_WT;
-  // Which triangle it is, is known since the tip came there.
+  // The triangle is known since the tip entered it.
   measure(p_WT, felt);
   if constexpr (!Store::kComplete) felt_ = state_;
   return true;
@@ -106,8 +106,8 @@ bool PackedContact<Store>::step_over_wide(const Eigen::Vector3d& p_WT, double x,
   return step_over(p_WT, {x, y, z}, edge);
 }
 
-// Makes the triangle active that lies over the edge that the tip is outside of; true if it answers
-// alone. If not, the way goes on from there.
+// Makes the triangle over the edge active that the tip is outside of. Returns true if only this
+// triangle is needed; otherwise the walk continues from there.
 template <PackedStore Store>
 inline bool PackedContact<Store>::step_over(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                                             std::size_t edge) noexcept {
@@ -141,15 +141,15 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
     if (behind_ && stay_behind(p_WT)) return;
   }
   [[maybe_unused]] const std::int32_t before = active_;
-  // Where the tip was out of sight the way from the last triangle says nothing.
+  // If triangles were absent, the way from the last triangle is not known.
   const bool late = !Store::kComplete && path_kept_;
   const bool lost = late || (!Store::kComplete && held_.holding());
   Outcome outcome = lost ? Outcome::kUnknown : follow(p_WT);
   recent_hops_ = state_.hops > 0 ? std::min(recent_hops_ + 1, 3) : std::max(recent_hops_ - 1, 0);
   steady_ = recent_hops_ < 2 && outcome == Outcome::kYes && offset_.creases() == 0;
   if constexpr (!Store::kComplete) {
-    // The one place where an absent packed triangle is felt. What the surface tells stays in
-    // `state_`, for the walk to go on from.
+    // The only place where an absent packed triangle affects what is felt. The tracked contact
+    // stays in `state_`, from which the walk continues.
     if (outcome == Outcome::kUnknown) {
       const ContactState last = felt_.touching ? felt_ : begun_;
       felt_ = last;
@@ -190,8 +190,8 @@ void PackedContact<Store>::move(const Eigen::Vector3d& p_WT) noexcept {
   }
 }
 
-// Holds a tip outside by the face that it has passed through, if it has passed through one
-// (passed_through.h); false if not.
+// Holds a tip outside by the face that it has passed through (passed_through.h). Returns false if
+// there is none.
 template <PackedStore Store>
 bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT, std::int32_t from) noexcept {
   const FaceAbove face = face_above(Faces{store_}, from, store_.to_lattice(p_WT));
@@ -205,7 +205,7 @@ bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT, std::int32_t
   if (inside ? !behind_ : !behind_thin_part(p_WT, depth, face.n, longest, first_entry)) {
     return false;
   }
-  // Where an offset triangle holds the tip from there, that is what the next tick will feel.
+  // If an offset triangle holds the tip from there, the next tick will feel the same.
   steady_ = false;
   recent_hops_ = 0;
   activate(face.triangle);
@@ -224,8 +224,8 @@ bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT, std::int32_t
   return true;
 }
 
-// The walk has gone over edges of which one is a crease: where it was a rim, looks whether the tip
-// has gone round it too, or has passed through the part; true if it is held behind it.
+// The walk has crossed edges, one of them a crease. If it was a rim, checks whether the tip has
+// gone around it too or has passed through the part. Returns true if the tip is held behind it.
 template <PackedStore Store>
 bool PackedContact<Store>::passed_by_rim(const Eigen::Vector3d& p_WT,
                                          std::int32_t before) noexcept {
@@ -233,7 +233,7 @@ bool PackedContact<Store>::passed_by_rim(const Eigen::Vector3d& p_WT,
          store_.inside(p_WT) != Known::kYes && hold_behind(p_WT, before);
 }
 
-// Does a tick that begins behind a thin part; false if the tip is held there by nothing any more.
+// Performs a tick that begins behind a thin part. Returns false if nothing holds the tip any more.
 template <PackedStore Store>
 bool PackedContact<Store>::stay_behind(const Eigen::Vector3d& p_WT) noexcept {
   const std::int32_t last = active_;
@@ -256,7 +256,7 @@ void PackedContact<Store>::end() noexcept {
   }
 }
 
-// Looks for the triangle through which the path since the last tick enters, and makes it active.
+// Finds the triangle through which the path since the last tick enters, and makes it active.
 template <PackedStore Store>
 bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   FoundEntry found;
@@ -266,11 +266,13 @@ bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   bool free = found.complete;
   if constexpr (!Store::kComplete) {
     felt_ = {};
-    // Who was out of sight may have gone round what the straight way passes through.
+    // While triangles were absent, the tip may have gone around what the straight way passes
+    // through.
     if (path_kept_ && (found.leaves || !found.complete)) found.entry = {};
     if (!found.complete) ++ticks_held_;
     if (found.entry.triangle < 0) {
-      // A long path may never be at hand as a whole; who is outside by what is near begins anew.
+      // A long path may never be loaded as a whole. A tip that is outside according to nearby
+      // triangles starts a new path.
       free = free || store_.inside(p_WT) == Known::kNo;
       path_kept_ = !free;
     }
@@ -280,7 +282,7 @@ bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   if (found.entry.triangle < 0) {
     if constexpr (TellsRise<Store>) {
       if (found.complete) return begin_above(p_WT);
-      above_ = false;  // for all that is known
+      above_ = false;  // as far as known
     }
     return false;
   }
@@ -292,8 +294,8 @@ bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   return true;
 }
 
-// Looks whether the tip has come from above into where the smooth surface bulges beyond its
-// triangles, and makes the triangle below it active: there contact begins with depth 0.
+// Checks whether the tip has come from above into a bulge of the smooth surface beyond its
+// triangles. If so, makes the triangle below it active: contact begins there with depth 0.
 template <PackedStore Store>
 bool PackedContact<Store>::begin_above(
     const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store> {
@@ -313,7 +315,7 @@ bool PackedContact<Store>::begin_above(
     return false;
   }
   const bool bulges = settled == Outcome::kYes && place.depth < 0 && offset_.feel(place).depth >= 0;
-  // Who is below the triangles has not come from above, nor has who came up through them.
+  // A tip below the triangles has not come from above, nor has one that came up through them.
   above_ = place.depth < 0 && (was_above || !bulges);
   if (!bulges || !was_above) {
     state_ = {};

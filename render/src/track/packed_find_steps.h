@@ -1,7 +1,7 @@
 #pragma once
 
-// How a contact that the walk has lost is found again: bodies of PackedContact, included by
-// packed_contact_steps.h alone.
+// Recovery of a contact that the walk has lost: function bodies of PackedContact, included only by
+// packed_contact_steps.h.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -16,8 +16,8 @@
 
 namespace thimble::render {
 
-// Looks over the surface around where the walk ended and where it began for the nearest triangle
-// that has the tip below it.
+// Searches the surface around the begin and the end of the walk for the nearest triangle that has
+// the tip below it.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::find_near(
     const Eigen::Vector3d& p, std::int32_t before) noexcept {
@@ -51,7 +51,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::find_near(
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::find_again(
     const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before) noexcept {
-  // After a walk that was cut short the triangles around say nothing.
+  // A walk that reached its bound may have ended anywhere, so the triangles around are not used.
   const Outcome near = state_.hops < kWalkMax ? find_near(p, before) : Outcome::kNo;
   if (near == Outcome::kYes) ++counters_.found_near;
   if (near != Outcome::kNo) return near;
@@ -62,9 +62,9 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::find_again(
   return Outcome::kYes;
 }
 
-// Goes on at the surface nearest to the tip, when the way there from the active triangle is not at
-// hand; or nearest to what it touched last, if that other one looks the other way: the back of a
-// thin part is not what was touched.
+// Continues at the surface nearest to the tip if the way there from the active triangle is absent.
+// If that surface faces the other way, it is the back of a thin part; then continues at the surface
+// nearest to the last contact.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::resume(
     const Eigen::Vector3d& p_WT, const ContactState& last) noexcept {
@@ -85,10 +85,10 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::resume(
   const OffsetResponse beside = feel_nearest(p, *packed, offset_);
   OffsetPlace place = offset_.locate(p);
   state_.hops = 0;
-  state_.n_W = offset_.face();  // the direction to walk by
+  state_.n_W = offset_.face();  // direction of the walk
   const Outcome settled = settle(p, false, place);
   if (settled == Outcome::kUnknown) return settled;
-  // Deeper by far than the triangle where it began: a cell of another part.
+  // Much deeper than the triangle where it began: a cell of another part.
   const bool astray = place.depth > 2 * beside.depth && beside.depth > 0;
   if (settled == Outcome::kYes && !astray) {
     const OffsetResponse felt = offset_.feel(place);

@@ -1,7 +1,7 @@
 #pragma once
 
-// How the contact goes from triangle to triangle: bodies of PackedContact, included by
-// packed_contact_steps.h alone.
+// Tracking from triangle to triangle: function bodies of PackedContact, included only by
+// packed_contact_steps.h.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -16,12 +16,12 @@
 
 namespace thimble::render {
 
-/// How far outside a triangle, as a share of its height, the tip may be and stay: rounding on
-/// both sides of an edge must not send it back and forth (offset_triangle.h). The jump that this
-/// leaves is so small a share of the triangle's bulge.
+/// How far outside a triangle, as a share of its height, the tip may be without a hop. Otherwise
+/// rounding on both sides of an edge could send it back and forth (offset_triangle.h). The
+/// resulting jump is the same share of the triangle's bulge.
 inline constexpr double kOutside = -1e-6;
 
-/// The same at a crease, where the direction jumps and everything is in double precision.
+/// The same at a crease, where the direction jumps and all numbers are in double precision.
 inline constexpr double kOutsideOfCrease = -1e-11;
 
 template <PackedStore Store>
@@ -31,12 +31,12 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
   const std::int32_t before = active_;
   const bool sliding = recent_hops_ >= 2;
   state_.hops = 0;
-  // Who hopped in the last ticks will hop again: the cheap walk first spares looking closely at a
+  // If the last ticks hopped, this one is likely to hop: the cheap walk first avoids unpacking a
   // triangle that is left at once.
   if (sliding) {
     std::int32_t next = active_;
-    // The face is known long before what the last tick felt. Where there are creases cells overlap,
-    // and where the walk ends is part of the answer.
+    // The face is known long before the felt normal of the last tick. At creases cells overlap, so
+    // the end of the walk is part of the result.
     const bool smooth = offset_.creases() == 0;
     const Outcome walked = walk(p, smooth ? offset_.face() : state_.n_W, next);
     if (next != active_) activate(next);
@@ -47,7 +47,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
                     place.l2 >= kOutside && offset_.creases() == 0;
   const Outcome settled = held ? Outcome::kYes : settle(p, sliding, place);
   if (settled == Outcome::kYes) {
-    // No cell holds the tip: most often it is in the gap below a crease in a hollow.
+    // No cell holds the tip: usually it is in the gap below a concave crease.
     if (!held && std::min(std::min(place.l0, place.l1), place.l2) < kOutside && place.depth > 0) {
       OffsetResponse felt;
       const Outcome hold = hold_in_hollow(p, felt);
@@ -58,7 +58,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
         return hold;
       }
     }
-    // Above the triangle too, where the surface that it stands for bulges beyond the tip.
+    // Also above the triangle, where the smooth surface bulges beyond the tip.
     const OffsetResponse felt = offset_.feel(place);
     if (felt.depth >= 0) {
       report(p_WT, felt);
@@ -68,7 +68,8 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
   return seek(p_WT, p, before, settled, place);
 }
 
-// Decides what the active triangle alone cannot: whether contact has ended, or where it goes on.
+// Decides cases that need more than the active triangle: whether contact has ended, or where it
+// continues.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::seek(
     const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p, std::int32_t before, Outcome settled,
@@ -78,7 +79,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::seek(
   if (inside == Known::kUnknown) return Outcome::kUnknown;
   if (inside == Known::kNo) return Outcome::kNo;
   if (settled == Outcome::kYes && place.depth >= 0) {
-    // In a hollow, between the triangles and the surface that they stand for.
+    // Where the surface is concave, between the triangles and the smooth surface.
     OffsetResponse felt = offset_.feel(place);
     felt.depth = 0;
     report(p_WT, felt);
@@ -90,8 +91,8 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::seek(
     if (absent(packed)) return Outcome::kUnknown;
     const OffsetResponse beside = feel_nearest(p, *packed, offset_);
     const std::int32_t nearest = active_;
-    // Where an offset triangle here holds the tip, that is what the next tick will feel: a tip that
-    // stands still must not feel one force now and another then.
+    // If an offset triangle here holds the tip, the next tick will feel it: the force at a resting
+    // tip must not change.
     OffsetPlace there = offset_.locate(p);
     const Outcome again = settle(p, true, there);
     if (again == Outcome::kUnknown) return again;
@@ -129,7 +130,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::settle(const Eigen:
     std::int32_t next = packed->neighbours[static_cast<std::size_t>(edge)];
     ++state_.hops;
     if (visited.has(next)) {
-      // A gap between offset triangles: around it all are nearly right.
+      // A gap between offset triangles: all triangles around it are nearly right.
       ++counters_.cycles;
       return Outcome::kYes;
     }
@@ -148,7 +149,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::settle(const Eigen:
   }
 }
 
-// Makes a packed triangle active; false if it is absent.
+// Makes a packed triangle active. Returns false if it is absent.
 template <PackedStore Store>
 bool PackedContact<Store>::activate(std::int32_t triangle) noexcept {
   const PackedTriangle* packed = store_.find(triangle);
@@ -166,16 +167,16 @@ bool PackedContact<Store>::activate(std::int32_t triangle) noexcept {
   return true;
 }
 
-// Asks for the packed triangles that the tip may go to next. Which it is, is known only when this
-// one has been looked at: who waits for that waits for one line of far memory after another. Packed
-// triangles that are near in space are near in memory, so most of the way comes with what lies
-// around.
+// Prefetches the packed triangles that the tip may go to next. The next one is known only after
+// this one has been examined; loading them one by one would wait for main memory at each hop.
+// Packed triangles near in space are near in memory, so the lines around this one contain most of
+// the way.
 template <PackedStore Store>
 inline void PackedContact<Store>::fetch_around(const PackedTriangle& packed) const noexcept {
   if constexpr (Store::kComplete) {
     for (const std::int32_t t : packed.neighbours) __builtin_prefetch(store_.find(t));
   }
-  // Addresses, since some may lie outside of all packed triangles: asking for those does nothing,
+  // Addresses, since some may be outside of all packed triangles: prefetching those has no effect,
   // and no pointer may be moved there. NOLINTBEGIN(performance-no-int-to-ptr)
   constexpr std::uintptr_t kAround = 4, kLine = sizeof(PackedTriangle);
   const auto here = reinterpret_cast<std::uintptr_t>(&packed);
@@ -187,7 +188,7 @@ inline void PackedContact<Store>::fetch_around(const PackedTriangle& packed) con
 }
 
 // Returns the edge that the tip is farthest outside of, as a share of the triangle's height; -1 if
-// the triangle holds it.
+// the triangle holds the tip.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::edge_to_hop(const Eigen::Vector3d& p,
                                                                          const OffsetPlace& place,
@@ -212,8 +213,8 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::edge_to_hop(const E
   return Outcome::kYes;
 }
 
-// Walks over the triangles as they lie, seen along `n`; stops at creases and at the last packed
-// triangle at hand.
+// Walks over the packed triangles themselves, seen along `n`. Stops at creases and at the last
+// packed triangle in memory.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::walk(const Eigen::Vector3d& p,
                                                                   const Eigen::Vector3d& n,

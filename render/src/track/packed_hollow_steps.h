@@ -1,7 +1,7 @@
 #pragma once
 
-// What holds a tip between the packed triangles of a hollow's crease: bodies of PackedContact,
-// included by packed_contact_steps.h alone. The same as concave_constraint.h on packed triangles.
+// The edge or corner that holds a tip at a concave crease: function bodies of PackedContact,
+// included only by packed_contact_steps.h. The same as concave_constraint.h for packed triangles.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace thimble::render {
 
-/// Returns the foot of `p` (steps of the lattice) on a packed triangle. Real-time: safe.
+/// Returns the closest point to `p` (steps of the lattice) on a packed triangle. Real-time: safe.
 inline Foot packed_foot(const PackedTriangle& packed, std::int32_t triangle,
                         const Eigen::Vector3d& p) noexcept {
   Foot foot = foot_on(packed.corner(0), packed.corner(1), packed.corner(2), p);
@@ -24,8 +24,8 @@ inline Foot packed_foot(const PackedTriangle& packed, std::int32_t triangle,
   return foot;
 }
 
-/// Returns whether edge `k` of `own`, behind which `other` lies, is a crease in a hollow: whether
-/// the corner behind it stands above `own`. Real-time: safe.
+/// Returns whether edge `k` of `own` is a concave crease: whether the far corner of its neighbour
+/// `other` is above `own`. Real-time: safe.
 inline bool hollow_crease(const PackedTriangle& own, std::size_t k,
                           const PackedTriangle& other) noexcept {
   if (!own.crease(k)) return false;
@@ -39,7 +39,7 @@ inline bool hollow_crease(const PackedTriangle& own, std::size_t k,
   return false;
 }
 
-// Lists the packed triangles around corner `k` of one, itself first, as many as there is room for;
+// Lists the packed triangles around corner `k` of a triangle, that one first, up to the capacity;
 // kUnknown if one is absent.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::collect_fan(std::int32_t triangle,
@@ -51,7 +51,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::collect_fan(std::in
   std::int32_t t = triangle;
   while (!fan.full()) {
     fan.add(t);
-    // On over the edge that begins at the vertex.
+    // Continues over the edge that begins at the vertex.
     std::size_t at = 0;
     while (at < 2 && packed->corner(at) != vertex) ++at;
     t = packed->neighbours[at];
@@ -62,8 +62,8 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::collect_fan(std::in
   return Outcome::kYes;
 }
 
-// Slides from the active triangle over the surface to the point nearest to the tip among all around
-// it. Where that lies on a crease of a hollow, which alone holds the tip there, it is told.
+// Slides from the active triangle over the surface to the closest point nearby. Returns it if it is
+// on a concave crease, where only the crease holds the tip.
 template <PackedStore Store>
 typename PackedContact<Store>::Outcome PackedContact<Store>::hold_in_hollow(
     const Eigen::Vector3d& p, OffsetResponse& felt) noexcept {
@@ -87,7 +87,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::hold_in_hollow(
       const PackedTriangle* around = store_.find(fan[i]);
       if (absent(around)) return Outcome::kUnknown;
       const Foot there = packed_foot(*around, fan[i], p);
-      // Strictly, so that the same point seen from another side is not gone on to.
+      // Strictly, so that the same point seen from another triangle does not count as progress.
       if (!(there.distance_squared < foot.distance_squared)) continue;
       foot = there;
       moved = true;
@@ -98,7 +98,7 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::hold_in_hollow(
     if (feet > kPatchMax) return Outcome::kNo;
   }
   if (foot.place.on == SurfacePlace::On::kFace) return Outcome::kNo;
-  // The fan is that of the place: an edge's two triangles, or all around a corner.
+  // The fan of the place: an edge's two triangles, or all around a corner.
   const auto sharp = [&](const PackedTriangle& own, std::size_t k) noexcept {
     const PackedTriangle* other = store_.find(own.neighbours[k]);
     return !absent(other) && hollow_crease(own, k, *other);

@@ -9,44 +9,46 @@
 
 namespace thimble::render {
 
-/// An answer of a store that may lack the packed triangles it would need to know.
+/// Result of a query to a store in which packed triangles may be absent.
 enum class Known : std::uint8_t { kNo, kYes, kUnknown };
 
-/// Where a segment first enters the surface; not `complete`: among the packed triangles at hand.
+/// First entry of a segment into the surface; if not `complete`, among the packed triangles in
+/// memory.
 struct FoundEntry {
-  Entry entry;           ///< Where the path goes in, if it does.
-  bool complete = true;  ///< Whether all packed triangles were at hand.
+  Entry entry;           ///< The entry, if there is one.
+  bool complete = true;  ///< Whether all needed packed triangles were in memory.
   bool leaves =
-      false;  ///< Whether it ends outside again; only stores that lack packed triangles tell.
+      false;  ///< Whether the segment ends outside again; only set by stores with absent triangles.
 };
 
-/// The packed triangle nearest to a point, -1 for none; not `complete`: among the packed
-/// triangles at hand.
+/// The packed triangle nearest to a point; if not `complete`, among the packed triangles in memory.
 struct FoundTriangle {
-  std::int32_t triangle = -1;  ///< The nearest; -1: none.
-  bool complete = true;        ///< Whether all packed triangles were at hand.
+  std::int32_t triangle = -1;  ///< Index of the triangle; -1: none.
+  bool complete = true;        ///< Whether all needed packed triangles were in memory.
 };
 
-/// Where a PackedContact takes its packed triangles from. All questions are in W and m, and
-/// Real-time: safe. `kComplete` says that no packed triangle is ever absent; then the contact holds
-/// no code for that.
+/// Source of the packed triangles of a PackedContact. All queries are in W and m, and Real-time:
+/// safe. With `kComplete` no packed triangle is ever absent, and the contact is compiled without
+/// code for that.
 // clang-format off
 template <class Store>
 concept PackedStore = requires(const Store& store, std::int32_t t, const Eigen::Vector3d& p_W,
                                double radius) {
   { Store::kComplete } -> std::convertible_to<bool>;
-  // The packed triangle, nullptr if it is absent; good until the end of the tick.
+  // The packed triangle, nullptr if it is absent; valid until the end of the tick.
   { store.find(t) } noexcept -> std::same_as<const PackedTriangle*>;
   { store.to_lattice(p_W) } noexcept -> std::same_as<Eigen::Vector3d>;
   { store.step() } noexcept -> std::same_as<double>;
-  // Once it has caught up, everything is at hand this near to the tip and to what it touches.
+  // Distance around the tip and the contact within which everything is in memory, once loading has
+  // caught up.
   { store.reach() } noexcept -> std::same_as<double>;
   { store.first_entry(p_W, p_W) } noexcept -> std::same_as<FoundEntry>;
   { store.inside(p_W) } noexcept -> std::same_as<Known>;
   { store.closest(p_W, radius) } noexcept -> std::same_as<FoundTriangle>;
 };
 
-// Can tell how far the surface rises above its triangles at most, m: then contact begins there.
+// The store knows the maximum height of the surface above its triangles, m; contact then begins
+// there.
 template <class Store>
 concept TellsRise = requires(const Store& store) {
   { store.rise() } noexcept -> std::same_as<double>;

@@ -11,10 +11,10 @@
 
 namespace thimble::render {
 
-/// Walks over packed triangles as they lie, looking along one direction, to the one in front of a
-/// point. Both sides of an edge compute its side from the same numbers in swapped order, so that no
-/// rounding sends the walk back and forth. Single precision: where it ends is a good guess.
-/// Real-time: safe; about 45 instructions per packed triangle.
+/// Walks over packed triangles, seen along one direction, to the one in front of a point. Both
+/// sides of an edge compute its side from the same numbers in swapped order, so rounding cannot
+/// send the walk back and forth. Single precision: its end is a good guess. Real-time: safe; about
+/// 45 instructions per packed triangle.
 class PackedWalk {
  public:
   /// Takes the point, in steps of the lattice, and the direction.
@@ -26,8 +26,8 @@ class PackedWalk {
         ny_(_mm_set1_ps(static_cast<float>(n.y()))),
         nz_(_mm_set1_ps(static_cast<float>(n.z()))) {}
 
-  /// Returns the edge that the point is farthest outside of; -1 if it is inside of all that are no
-  /// creases.
+  /// Returns the edge that the point is farthest outside of; -1 if it is inside of all edges that
+  /// are not creases.
   int edge_to_hop(const PackedTriangle& r) const noexcept {
     const __m128 x = relative(r.x.data(), px_);
     const __m128 y = relative(r.y.data(), py_);
@@ -55,7 +55,7 @@ class PackedWalk {
     return _mm_set1_epi32(
         static_cast<std::int32_t>(std::clamp(u, 1 - kLatticeHalf, kLatticeHalf - 1)));
   }
-  // Differences to a point on the lattice; exact before they become floats.
+  // Differences to a lattice point; exact before they become floats.
   static __m128 relative(const std::int32_t* v, __m128i p) noexcept {
     const __m128i corners = _mm_loadu_si128(reinterpret_cast<const __m128i*>(v));
     return _mm_cvtepi32_ps(_mm_sub_epi32(corners, p));

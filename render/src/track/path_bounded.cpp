@@ -7,7 +7,7 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
-// Moves the ball on and returns how far the tip has dragged it or made it wider, m.
+// Moves the ball and returns the path by which the tip has dragged or widened it, m.
 double ProxyFilter::advance(const Vector3d& p_WT, double way_behind) noexcept {
   const Vector3d from_tip = p_WC_ - p_WT;
   const double distance = from_tip.norm();
@@ -23,7 +23,7 @@ bool ProxyFilter::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d
   surface_path_ = 0;
   p_WT_ = p_WT;
   if (!path.allFinite() || !goal.allFinite() || !std::isfinite(surface_path)) {
-    // The path is not known: begins here, without force.
+    // The path is not known: begin here, without force.
     p_WA_ = p_WT;
     felt_ = found;
     felt_.depth = 0;
@@ -48,11 +48,12 @@ bool ProxyFilter::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d
   const double before = (p_WA_ - p_WT).squaredNorm();
   const double after = (next - p_WT).squaredNorm();
   const double rise = 0.5 * (after - before);
-  // What a surface that comes towards the tip puts in by itself.
+  // Energy that a surface supplies by moving towards the tip.
   const double surface_work = surface_path * (std::sqrt(before) + 0.5 * surface_path);
   if (rise > credit_ + surface_work) {
-    // Turns as far as it can and tightens as far as it may. The anchor lies within this ball around
-    // the tip already, so that a point drawn onto the ball comes no farther from it.
+    // Turns as far as possible and tightens as far as allowed. The anchor is already within this
+    // ball around the tip, so moving a point onto the ball does not move it farther from the
+    // anchor.
     next = p_WT + std::sqrt((before + 2 * (credit_ + surface_work)) / after) * (next - p_WT);
     credit_ = 0;
     there = false;
@@ -69,7 +70,7 @@ bool ProxyFilter::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d
   felt_ = found;
   const Vector3d to_anchor = next - p_WT;
   felt_.depth = to_anchor.norm();
-  // An anchor at the tip has no direction: nothing is felt then, along the normal that was found.
+  // An anchor at the tip has no direction: no force, along the tracked normal.
   if (felt_.depth > 0) felt_.n_W = to_anchor / felt_.depth;
   felt_.p_WP = next;
   return false;

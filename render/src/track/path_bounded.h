@@ -11,39 +11,42 @@
 
 namespace thimble::render {
 
-/// The far end of the spring that the hand feels, in the frame of the surface: it follows the place
-/// to which a contact stage pushes the tip, but never faster than the tip's path allows.
+/// The far end of the spring that the hand feels, in the frame of the surface. It follows the proxy
+/// of a contact stage, but never faster than the tip's path allows.
 ///
 /// A contact stage pushes the tip p towards the place g = p + depth n. Where cells of a surface
-/// meet deep inside, and where a tracked foot is found anew, g jumps while p hardly moves, and a
-/// force K (g - p) would jump with it. This anchor a follows g by at most `kPathRatio` times the
-/// tip's path, and what is felt is K (a - p). So from one tick to the next, at any depth, |df| <= K
-/// (1 + kPathRatio) |dp|: a jump of g is caught up over the path that follows, and not at all while
-/// the hand rests. While g does not jump the anchor is g, and what was found is felt to the bit.
+/// meet deep inside, and where contact is found again, g jumps while p hardly moves. A force K (g -
+/// p) would jump with it. This anchor a follows g by at most `kPathRatio` times the tip's path, and
+/// the felt force is K (a - p). So from one tick to the next, at any depth, |df| <= K (1 +
+/// kPathRatio) |dp|. A jump of g is recovered over the path that follows, and not at all while the
+/// hand rests. While g does not jump, the anchor is g, and the felt contact is bit-identical to the
+/// tracked one.
 ///
-/// While the anchor lags behind g it gives the hand no energy that the hand has not put in:
-/// - It may go nearer to the tip freely. Farther away, which tightens the spring, only as far as is
-///   paid for by what it lost before by going nearer, and by `kGift` of the found force over its
-///   path. What is not paid for is missing from the depth, never added to it. A surface that comes
-///   towards the tip by itself puts in what that takes.
-/// - What counts is the tip's way out of a ball that the tip drags along, as wide as the lag and
-///   not wider than the tip has gone: a tip that goes to and fro about an edge moves the anchor
-///   once and then has it standing still, as a god-object stands in a crease. Otherwise the anchor,
-///   always late, would push the tip on from side to side.
+/// While the anchor lags behind g, it gives the hand no energy that the hand has not put in:
+/// - It may move nearer to the tip freely. Farther away, which tightens the spring, it moves only
+/// as
+///   far as is paid for: by the energy it lost before by moving nearer, and by `kGift` of the
+///   tracked force over its path. The unpaid part is missing from the depth, never added to it. A
+///   surface that moves towards the tip by itself supplies the energy for that.
+/// - Only the tip's path out of a ball that it drags along counts. The ball is as wide as the lag
+/// and
+///   not wider than the tip has moved. So a tip that moves to and fro about an edge moves the
+///   anchor once; then the anchor rests, as a god-object rests in a crease. Otherwise the lagging
+///   anchor would push the tip on from side to side.
 class ProxyFilter {
  public:
-  /// Path of the anchor per path of the tip. Over convex surfaces the exact foot needs 1, over the
-  /// smooth cells of a torus 1.2, of a bumpy ball 2.3 (1 + the greatest |dn| L / |dp| of
-  /// render/README.md): 4 leaves these as they are. [chosen]
+  /// Path of the anchor per path of the tip. Over convex surfaces the exact closest point needs 1,
+  /// over the smooth cells of a torus 1.2, of a bumpy ball 2.3 (1 + the greatest |dn| L / |dp| of
+  /// render/src/track/README.md). A ratio of 4 leaves these unchanged. [chosen]
   static constexpr double kPathRatio = 4;
-  /// Share of the found force, along the anchor's path, that is given to a spring that has become
-  /// too short, so that a depth that is missing returns. At 2 N it is 0.04 N: what the dry friction
-  /// of a PHANTOM takes out again. [chosen; friction M, app/arms/vintage_phantom.yaml]
+  /// Share of the tracked force, along the anchor's path, that is given to a spring that has become
+  /// too short, so that missing depth returns. At 2 N it is 0.04 N, which the dry friction of a
+  /// PHANTOM dissipates. [chosen; friction M, app/arms/vintage_phantom.yaml]
   static constexpr double kGift = 0.02;
 
-  /// Takes in where the tip is (m, in the frame of the surface) and what has been found there.
-  /// Returns true if that is what is felt; false if `felt` is. A position that is NaN forgets the
-  /// path; the next contact then begins without force. Real-time: safe; some ns.
+  /// Receives the tip's position (m, in the frame of the surface) and the tracked contact there.
+  /// Returns true if the tracked contact is felt, false if `felt` is. A position that is NaN clears
+  /// the path; the next contact then begins without force. Real-time: safe; some ns.
   bool follow(const Eigen::Vector3d& p_WT, const ContactState& found) noexcept {
     const Eigen::Vector3d path = p_WT - p_WT_;
     if (!found.touching) {
@@ -56,7 +59,7 @@ class ProxyFilter {
     const Eigen::Vector3d goal = p_WT + found.depth * found.n_W;
     const double reach_squared = kPathRatio * kPathRatio * path.squaredNorm();
     const double rounding = kRounding * found.depth;
-    // Written so that NaN takes the other way.
+    // Written so that NaN fails the test.
     if (!lagging_ && (goal - p_WA_).squaredNorm() <= reach_squared + rounding * rounding) {
       surface_path_ = 0;
       p_WT_ = p_WT;
@@ -66,18 +69,18 @@ class ProxyFilter {
     return lag(p_WT, path, goal, found);
   }
 
-  /// Takes in that the surface itself has moved near the tip by up to `path` (m) since the last
-  /// `follow`: that counts like path of the tip. Real-time: safe.
+  /// Receives that the surface itself has moved near the tip by up to `path` (m) since the last
+  /// `follow`. This counts like path of the tip. Real-time: safe.
   void surface_moved(double path) noexcept { surface_path_ += path; }
 
-  /// Returns what is felt in a tick in which `follow` gave false. Real-time: safe.
+  /// Returns the felt contact of a tick in which `follow` returned false. Real-time: safe.
   const ContactState& felt() const noexcept { return felt_; }
 
-  /// Returns the number of ticks in which the anchor was behind. Real-time: safe.
+  /// Returns the number of ticks in which the anchor lagged. Real-time: safe.
   std::uint64_t ticks_behind() const noexcept { return ticks_behind_; }
 
  private:
-  // Of the depth: so much a place that did not move may differ by rounding.
+  // Share of the depth by which a place that did not move may differ by rounding.
   static constexpr double kRounding = 1e-10;  // [chosen: 10^5 roundings of a depth, 1e-9 N at 10 N]
 
   bool lag(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& path, const Eigen::Vector3d& goal,
@@ -88,45 +91,45 @@ class ProxyFilter {
   Eigen::Vector3d p_WT_ = Eigen::Vector3d::Constant(kUnknown);  // tip at the last tick
   Eigen::Vector3d p_WA_ = Eigen::Vector3d::Constant(kUnknown);  // anchor; the tip while free
   double surface_path_ = 0;
-  // While it lags.
+  // Valid while the anchor lags.
   bool lagging_ = false;
   Eigen::Vector3d p_WC_{0, 0, 0};  // centre of the ball that the tip drags along
   double radius_ = 0;              // of that ball, m
-  double credit_ = 0;              // energy per stiffness that tightening may still take, m^2
+  double credit_ = 0;              // energy per stiffness available for tightening, m^2
   std::uint64_t ticks_behind_ = 0;
   ContactState felt_;
 };
 
-/// A stage says that a copy of it costs a few pointers.
+/// A contact stage whose copy costs a few pointers.
 template <class Contact>
 concept CopiesCheaply = Contact::kCopiesCheaply;
 
-/// A `Contact` stage of ContactForceLaw around another one, of any kind: what is felt changes by no
-/// more than the tip's path implies, at any depth (ProxyFilter). Depth, normal and proxy are those
-/// that are felt; triangle and hops are those that were found.
+/// Wraps a `Contact` stage of ContactForceLaw of any kind. The felt contact changes by no more than
+/// the tip's path implies, at any depth (ProxyFilter). Depth, normal and proxy are the felt ones;
+/// triangle and hops are the tracked ones.
 ///
-/// Contact begins and ends with the stage inside. It begins without a step of the force, however
-/// deep it is found; where it ends the force is zero at once.
+/// Contact begins and ends with the wrapped stage. It begins without a step of the force, at any
+/// depth; where it ends the force is zero at once.
 template <class Contact>
 class PathBounded {
  public:
   explicit PathBounded(Contact contact) : contact_(std::move(contact)) {}
 
-  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call.
-  /// Real-time: safe if the stage inside is; some ns more.
+  /// Finds the contact at `state.p_WT` (W, m) and keeps it until the next call. Real-time: safe if
+  /// the wrapped stage is; some ns more.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     const ContactState& found = contact_.update(state);
     as_found_ = anchor_.follow(state.p_WT, found);
     return as_found_ ? found : anchor_.felt();
   }
 
-  /// Asks a copy of the stage inside where the tip is expected: the tick then finds in the cache
-  /// what it needs, code as well, and nothing has changed (ForceLaw::prepare). Only for stages of
-  /// which a copy costs a few pointers (kCopiesCheaply). Real-time: safe.
+  /// Updates a copy of the wrapped stage with the expected tip. The tick then finds its data and
+  /// code in the cache, and no state has changed (ForceLaw::prepare). Only for stages whose copy
+  /// costs a few pointers (kCopiesCheaply). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept requires CopiesCheaply<Contact> {
     Contact guess = contact_;
     const ContactState* found = &guess.update(expected);
-    // Whoever compiles this may not leave out what nobody reads.
+    // Keeps the compiler from removing the unused result.
     asm volatile("" : : "r"(found) : "memory");
   }
 
@@ -135,17 +138,17 @@ class PathBounded {
     return as_found_ ? contact_.state() : anchor_.felt();
   }
 
-  /// Passes on that the surface has moved, and which triangle has swept over the free tip
-  /// (TrackedContact). `path` is how far a vertex near the tip has moved, m. Real-time: safe.
+  /// Forwards that the surface has moved, and which triangle has swept over the free tip
+  /// (TrackedContact). `path` is the path of a vertex near the tip, m. Real-time: safe.
   void surface_moved(std::int32_t swept_over, double path) noexcept {
     contact_.surface_moved(swept_over);
     anchor_.surface_moved(path);
   }
-  /// Returns where the free tip is examined from (TrackedContact). Real-time: safe.
+  /// Returns the start of the free tip's path (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
-  /// Returns the place that was found for the tip at `p_WT` (W, m; surface_response.h). While what
-  /// is felt lags behind, its depth falls along its own normal. Real-time: safe.
+  /// Returns the surface point of the tip at `p_WT` (W, m; surface_response.h). While the felt
+  /// contact lags, minus the gradient of its depth is its own normal. Real-time: safe.
   SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
     SurfaceFoot foot = foot_of(contact_, p_WT);
     if (!as_found_) foot.fall_W = anchor_.felt().n_W;

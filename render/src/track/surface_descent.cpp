@@ -22,14 +22,14 @@ bool below_edge(const ContactMesh& mesh, std::int32_t t, std::size_t k,
   return d.dot(unit_normal(mesh, t) + unit_normal(mesh, mesh.cell(t).neighbours[k])) < 0;
 }
 
-// Slides on over the faces around a place to the one that leads nearest to the tip, and adds the
-// number of feet sought. False if none leads nearer.
+// Slides over the faces around a place to the one that leads nearest to the tip, and adds the
+// number of closest points computed. Returns false if none leads nearer.
 bool slide_on(const ContactMesh& mesh, const SurfacePlace& place, const Vector3d& p_OT, Rest& rest,
               std::size_t& feet) noexcept {
   bool moved = false;
   const auto consider = [&](std::int32_t t) noexcept {
     const Foot foot = foot_on(mesh, t, p_OT);
-    // Strictly, so that the same point seen from another side is not gone on to.
+    // Strictly, so that the same point seen from another triangle does not count as progress.
     if (!(foot.distance_squared < rest.foot.distance_squared)) return;
     rest.foot = foot;
     moved = true;
@@ -68,9 +68,9 @@ bool below(const ContactMesh& mesh, const Rest& rest, const Vector3d& p_OT) noex
   if (place.on == SurfacePlace::On::kFace) return d.dot(rest.foot.normal) < 0;
   if (place.on == SurfacePlace::On::kEdge) return below_edge(mesh, place.triangle, place.k, d);
 
-  // At a settled corner every direction within the surface points away from the tip. The edge that
-  // does so least sees no other part of the surface between itself and the tip, so its two faces
-  // tell on which side the tip is, whatever the fan looks like.
+  // At a settled corner every direction within the surface points away from the tip. Seen from the
+  // tip, the edge that does so least is not hidden by another part of the surface. So its two faces
+  // decide on which side the tip is, for any shape of the fan.
   const std::int32_t vertex = mesh.corners(place.triangle)[place.k];
   std::int32_t best = place.triangle;
   std::size_t best_edge = place.k;

@@ -15,31 +15,30 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A tip pressed straight down sinks by what it moves: twice as much cannot be rounding.
+// A tip pressed straight down sinks by its move: twice as much cannot be rounding.
 constexpr double kRiseSquaredMax = 4;
 
-// Faces around that lean by less are not looked at: the wrong one costs 2 % of the depth. Sine of
+// Faces nearby that lean by less are not examined: the wrong one costs 2 % of the depth. Sine of
 // half the angle, in TriangleCell's unit, and cosine of the angle: 11.5 degrees. [chosen]
 constexpr std::uint16_t kLean = 6554;
 constexpr double kNearlyFlat = 0.98;
 
-// Faces that lean by more, as a cosine, are the back of a thin part and not gone over to but by
-// edges: 104 degrees, so that the walls of a block are all gone over to. [chosen]
+// Faces that lean by more, as a cosine, are the back of a thin part. They become active only over
+// edges. 104 degrees, so that the walls of a block are all included. [chosen]
 constexpr double kLooksAway = -0.25;
 
-// What holds the tip is farther away than the plane of the face by this much. [chosen]
+// Ratio by which the holding point is farther away than the plane of the face. [chosen]
 constexpr double kBeyondPlane = 1.1;
 
-// Each leads to a nearer face; in the next tick it goes on.
+// Each round leads to a nearer face; the next tick continues.
 constexpr int kRoundsAround = 4;
 
-// Squared distances this near to each other, as a share, are those of a common edge or vertex:
-// which is smaller is rounding, and must not decide. A mesh 1e4 sizes from the origin is exact to
-// 1e-12.
+// Squared distances that differ by less than this share belong to a common edge or vertex. Their
+// order is rounding and must not decide. A mesh 1e4 sizes from the origin is exact to 1e-12.
 constexpr double kTie = 1e-6;
 
 // Keeps the triangle nearest to the tip among those that have the tip below them. At an edge or
-// vertex several are equally near: there the deepest one tells inside from outside.
+// vertex several are equally near: there the deepest one separates inside from outside.
 class NearestAbove {
  public:
   NearestAbove(const ContactMesh& mesh, const Vector3d& p_WT) noexcept : mesh_(mesh), p_WT_(p_WT) {}
@@ -106,7 +105,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   step.hops = walk(p, edges);
   const bool far = step.hops >= kHopsMax;
   if (far) [[unlikely]] {
-    // So far that the triangles in between say nothing.
+    // So far that the triangles in between give no information.
     if (!search_->inside(p_WT)) return step;
     reacquire(p_WT);
     ++counters_.found_far;
@@ -119,7 +118,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   }
   if (!(depth >= 0)) {
     if (!search_->inside(p_WT)) return step;
-    // Inside, with the plane above by no more than rounding: the tip is on the surface.
+    // Inside, with the plane above only by rounding: the tip is on the surface.
     if (depth < -mesh_->depth_rounding()) {
       if (find_near(p_WT, before)) {
         ++counters_.found_near;
@@ -138,12 +137,12 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
       !(edges.least >= 0 && is_quiet(p_WT)) && look_around(p_WT, step)) {
     edges = edge_distances(active_, p);
   }
-  // Beside a hollow edge it is not the face alone that holds the tip.
+  // Next to a concave edge, the face is not the only constraint.
   const TriangleCell& cell = mesh_->cell(active_);
   if (cell.hollow > 0 && edges.least < cell.beside_hollow(step.depth)) {
     const double plane = step.depth;
     hold(p_WT, step);
-    // Farther than the plane: faces may be nearer that were not when the plane was asked.
+    // Farther than the plane: other faces may be nearer that were not nearer than the plane.
     if (held_.triangle >= 0 && step.depth > kBeyondPlane * plane && look_around(p_WT, step)) {
       hold(p_WT, step);
     }
@@ -154,9 +153,9 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   return step;
 }
 
-// Cells end at the planes of their own edges only: around a sharp corner, or a ridge of small
-// triangles, a tip may be in the cell of one face while another there is nearer. That one becomes
-// active, unless it looks away from the one that was entered.
+// Cells end only at the planes of their own edges. So around a sharp corner, or a ridge of small
+// triangles, a tip may be in the cell of one face while another is nearer. The nearer face becomes
+// active, unless it faces away from the entered one.
 bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexcept {
   bool moved = false;
   double quiet = 0;
@@ -178,13 +177,13 @@ bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexce
         if (depth >= 0 && depth < nearest) {
           const double distance = std::sqrt(foot_on(*mesh_, t, p_WT).distance_squared);
           farther = distance - step.depth;
-          // Of several equally near the first, whatever rounding says.
+          // The first of several equally near faces, so that rounding does not decide.
           if (distance < nearest * (1 - kTie)) {
             best = t;
             nearest = distance;
           }
         }
-        const auto& beside = cell.neighbours;  // told apart by their edge planes
+        const auto& beside = cell.neighbours;  // separated by their edge planes
         if (t != beside[0] && t != beside[1] && t != beside[2]) quiet = std::min(quiet, farther);
       }
     }
@@ -202,13 +201,13 @@ bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexce
   return moved;
 }
 
-// The tip is beside the active face, over a hollow edge, or where no cell is.
+// The tip is next to the active face, over a concave edge, or in no cell.
 void SurfaceTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
   held_.triangle = -1;
   const HollowHold hold = hold_in_hollow(*mesh_, active_, p_WT);
   if (!hold.holds) return;
-  // The nearest point around changes its distance by no more than the tip moves. Where surfaces
-  // fold over themselves the way to it may end early, far away: there the face goes on.
+  // The distance of the closest point nearby changes by no more than the tip moves. Where surfaces
+  // fold over themselves, the way to it may end early, far away; then the face continues to hold.
   if (has_before_ && too_deep(p_WT, active_, hold.depth)) return;
   counters_.nearer += active_ != hold.place.triangle;
   active_ = hold.place.triangle;
@@ -221,7 +220,7 @@ void SurfaceTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
 
 double SurfaceTracker::reject_hop(const Vector3d& p_WT, std::int32_t before,
                                   double depth_walked) noexcept {
-  // Around the triangle left only: the other end of the walk is what is in doubt.
+  // Only around the triangle that was left: the other end of the walk is in doubt.
   const std::int32_t walked_to = std::exchange(active_, before);
   double depth = find_near(p_WT, before) ? mesh_->depth(active_, p_WT) : depth_walked;
   if (!(depth < depth_walked)) {
@@ -235,7 +234,7 @@ double SurfaceTracker::reject_hop(const Vector3d& p_WT, std::int32_t before,
 
 bool SurfaceTracker::too_deep(const Vector3d& p_WT, std::int32_t before,
                               double depth) const noexcept {
-  // On entering, the triangle that was entered tells how deep the tip may be at least.
+  // On entering, the entered triangle gives the minimum depth of the tip.
   const double rise =
       depth - (has_before_ ? depth_before_ : std::max(mesh_->depth(before, p_WT), 0.0));
   const double moved_squared = has_before_ ? (p_WT - p_WT_before_).squaredNorm() : 0;
@@ -243,7 +242,7 @@ bool SurfaceTracker::too_deep(const Vector3d& p_WT, std::int32_t before,
 }
 
 std::uint16_t SurfaceTracker::walk(const Vector3d& p, EdgeDistances& edges) noexcept {
-  // Nearly every tick ends here or one hop on, without the memory that a long walk needs.
+  // Nearly every tick ends here or one hop later, without the memory that a long walk needs.
   edges = edge_distances(active_, p);
   if (!(edges.least < 0)) return 0;
   return settle(p, edges);
@@ -279,8 +278,8 @@ std::uint16_t SurfaceTracker::settle(const Vector3d& p, EdgeDistances& edges) no
 }
 
 bool SurfaceTracker::find_near(const Vector3d& p_WT, std::int32_t before) noexcept {
-  // Ring by ring over shared vertices, from where the walk ended and from where it began: a far
-  // side is reached only around an edge, never through the material.
+  // Ring by ring over shared vertices, from the end and from the begin of the walk: a far side is
+  // reached only around an edge, never through the material.
   TriangleSet<kPatchMax> patch;
   patch.add(active_);
   patch.add(before);
@@ -304,8 +303,8 @@ bool SurfaceTracker::find_near(const Vector3d& p_WT, std::int32_t before) noexce
 void SurfaceTracker::reacquire(const Vector3d& p_WT) noexcept {
   const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
   if (hit.triangle < 0) return;
-  // Where the nearest point lies on an edge or at a vertex, one of the triangles there has a tip
-  // that is inside below it, but not every one of them.
+  // If the closest point is on an edge or at a vertex, at least one of the triangles there has a
+  // tip that is inside below it, but not every one.
   NearestAbove nearest(*mesh_, p_WT);
   for (const std::int32_t vertex : mesh_->corners(hit.triangle)) {
     for (const std::int32_t t : mesh_->fan(vertex)) nearest.consider(t);

@@ -11,12 +11,12 @@
 namespace thimble::render {
 namespace {
 
-// Points that split keep this far from the ends of what they split, as a share of it, so that no
-// triangle that is drawn is without area. A thousandth of a triangle is below what anybody sees.
+// Minimum distance of splitting points from the ends of what they split, as a share of it, so that
+// no drawn triangle is without area. A thousandth of a triangle is not visible.
 constexpr double kApart = 1e-3;
 
-// No hand is as fast, m/s [PHYSICS 7: strokes of 2 m/s]: what jumps farther in a tick is not
-// handed on by dampers as a blow.
+// Faster than any hand, m/s [PHYSICS 7: strokes of 2 m/s]: dampers do not transmit a larger jump in
+// a tick as a blow.
 constexpr double kSpeedMax = 10;
 
 }  // namespace
@@ -39,7 +39,7 @@ driver::Result<BendablePolygon> BendablePolygon::build(std::shared_ptr<const Con
   return BendablePolygon(std::move(mesh), std::move(motion).value());
 }
 
-// Splits another triangle; an edge that it shares with the last one keeps its point.
+// Splits another triangle; an edge shared with the last one keeps its point.
 void BendablePolygon::go_to(std::int32_t triangle) noexcept {
   const auto& corners = mesh_->corners(triangle);
   const std::array<EdgePoint, 3> before = edges_;
@@ -113,7 +113,7 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
 }
 
 Eigen::Vector3d BendablePolygon::pull_at_tip(const Eigen::Matrix3d& change) const noexcept {
-  // Nearer to a corner the stretch of its spring has lost digits, and its force has not.
+  // Nearer to a corner, the stretch of its spring has lost digits, but its force has not.
   constexpr double kNearCorner = 1e-3;
   if (triangle_ < 0) return Eigen::Vector3d::Zero();
   const auto& corners = mesh_->corners(triangle_);

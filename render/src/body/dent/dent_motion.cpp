@@ -15,15 +15,15 @@ namespace {
 constexpr double kShareOfLimit = 0.98;
 constexpr int kSubstepsMax = 64;
 
-// A vertex has settled where it keeps less than this of the largest dent: nobody sees a thousandth
-// of it end.
+// A vertex has settled when less than this share of the largest dent is left: the end of a
+// thousandth of it is not visible.
 constexpr double kSettled = 1e-3;
 
-// Ticks between two looks at what has settled.
+// Ticks between two checks for settled vertices.
 constexpr int kLookEvery = 16;
 
-// A cursor spring so much stiffer than the surface is rigid to 1e-6 of the dent; stiffer ones would
-// only cost digits.
+// A cursor spring this much stiffer than the surface is rigid to 1e-6 of the dent; stiffer ones
+// would only cost digits.
 constexpr double kRigid = 1e6;
 
 }  // namespace
@@ -46,7 +46,7 @@ DentMotion::DentMotion(std::shared_ptr<const VertexLinks> links, const DentSetti
 }
 
 NetworkBounds DentMotion::bounds() const noexcept {
-  // Gershgorin: the springs of a row, once on the diagonal and once beside it.
+  // Gershgorin: the springs of a row, once on the diagonal and once off it.
   const double edges = 2 * links_->sum_max();
   NetworkBounds bounds;
   bounds.omega_gershgorin = std::sqrt((stiffness_.node + edges * stiffness_.link) / settings_.mass);
@@ -139,10 +139,10 @@ void DentMotion::release() noexcept {
   wanted_ = 0;
 }
 
-// Puts what has settled on its base points.
+// Puts settled vertices on their base points.
 void DentMotion::prune() noexcept {
   if (settings_.whole) {
-    // Waves run through the whole body: it rests as a whole.
+    // Waves travel through the whole body, so it rests as a whole.
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       if (unsettled(i)) {
         until_look_ = kLookEvery;
@@ -157,7 +157,7 @@ void DentMotion::prune() noexcept {
   add_unsettled();
 }
 
-// Goes over from `vertices_` to `gathered_`.
+// Replaces `vertices_` by `gathered_`.
 void DentMotion::take_over() noexcept {
   for (std::size_t i = 0; i < gathered_.size(); ++i) {
     const std::int32_t slot = places_[at(gathered_[i])].slot;

@@ -18,41 +18,42 @@
 namespace thimble::render {
 
 /// Moves the vertices of a dent: those within some rings of the touched triangle, and those that
-/// still swing. All others stand on their base points. Nothing that a tick does grows with the
-/// mesh.
+/// still oscillate. All others rest on their base points. No work in a tick grows with the mesh.
 ///
-/// `u` is the way of a vertex from its base point (m, in the frame the mesh is given in). Springs
-/// and dampers are those of SpringNetwork, alike at all vertices and edges (vertex_links.h), with
-/// up to three cursor springs that change from tick to tick. Those act at the end of the step in
-/// every scheme, so that they may be as stiff as they like: at infinity the vertex is where the
-/// cursor is. The implicit schemes are those of SpringMotion, scaled in the same way: whatever the
-/// rounds, without the cursor they never gain energy, and with it no more than it puts in. So the
-/// rounds may be few and in single precision; what is scaled is in double.
+/// `u` is the displacement of a vertex from its base point (m, in the frame of the given mesh).
+/// Springs and dampers are those of SpringNetwork, equal at all vertices and edges
+/// (vertex_links.h), with up to three cursor springs that change from tick to tick. The cursor
+/// springs act at the end of the step in every scheme, so that they may have any stiffness: at
+/// infinity the vertex is at the cursor. The implicit schemes are those of SpringMotion, scaled in
+/// the same way. For any number of rounds, without the cursor they never gain energy, and with it
+/// no more than it supplies. So a few rounds in single precision are enough; scaled values are in
+/// double precision.
 class THIMBLE_EXPORT DentMotion {
  public:
   using Vector = Eigen::Vector3d;  ///< In W.
-  /// Most vertices that move at once: 8 rings of a regular mesh are 243.
+  /// Maximum number of vertices that move at once: 8 rings of a regular mesh are 243.
   static constexpr std::size_t kNodesMax = 512;
-  static constexpr std::size_t kLinksMax = 8 * kNodesMax;  ///< Most springs at once.
+  static constexpr std::size_t kLinksMax = 8 * kNodesMax;  ///< Maximum number of springs at once.
 
-  /// Makes the vertices of a mesh ready to move, all on their base points. The error says what
-  /// makes no sense, or which limit of the integrator the step breaks and what would help. More
-  /// substeps are taken where they help. Real-time: never from the servo thread.
+  /// Prepares the vertices of a mesh, all on their base points. The error names an invalid setting,
+  /// or the limit of the integrator that the step exceeds, with the remedy. Takes more substeps
+  /// where they help. Real-time: never from the servo thread.
   static driver::Result<DentMotion> build(std::shared_ptr<const VertexLinks> links,
                                           const DentSettings& settings);
 
-  // A copy would not have the room that was reserved for what moves, and nothing would.
+  // A copy would not have the reserved memory for moving vertices, so none would move.
   DentMotion(const DentMotion&) = delete;
   DentMotion& operator=(const DentMotion&) = delete;
   DentMotion(DentMotion&&) = default;
   DentMotion& operator=(DentMotion&&) = default;
 
-  // All of the following are Real-time: safe. Precondition: numbers name vertices that exist.
+  // All of the following are Real-time: safe. Precondition: numbers name existing vertices.
 
-  /// Lets what lies within the rings of `first` move (all of a whole body), and what still moves;
-  /// the rest is put on its base points. Where room ends, what moves is stopped.
+  /// Makes the vertices within the rings of `first` move (all of a whole body), and keeps those
+  /// that still move. All others are put on their base points. If the capacity is exceeded,
+  /// vertices are stopped.
   void gather(std::span<const std::int32_t> first) noexcept;
-  /// Lets nothing new move: what moves goes on until it has settled.
+  /// Stops adding vertices: those that move continue until they have settled.
   void release() noexcept;
 
   /// A spring and a damper from the cursor to a vertex.
@@ -60,17 +61,17 @@ class THIMBLE_EXPORT DentMotion {
     double stiffness = 0;    ///< N/m, 0 to infinity
     double damping = 0;      ///< N s/m, >= 0
     Vector target{0, 0, 0};  ///< Displacement at which it is at rest, m.
-    Vector rate{0, 0, 0};    ///< How that changes, m/s.
+    Vector rate{0, 0, 0};    ///< Rate of change of the target, m/s.
   };
-  /// Pulls `vertex` by cursor spring `k` (0 to 2) during the next step. A vertex that does not move
-  /// is not pulled, nor one by a spring with NaN in it.
+  /// Applies cursor spring `k` (0 to 2) to `vertex` during the next step. Has no effect on a vertex
+  /// that does not move, or if the spring has a NaN.
   void pull(std::size_t k, std::int32_t vertex, const CursorSpring& spring) noexcept;
-  /// Moves on by one step; the cursor springs are then gone. Costs nothing while nothing moves.
+  /// Advances by one step and removes the cursor springs. Costs nothing while no vertex moves.
   void step() noexcept;
   /// Returns the mean force (N) of cursor spring `k` on its vertex over the last step.
   const Vector& force(std::size_t k) const noexcept { return grips_[k].force; }
 
-  /// Returns the displacement (m) and velocity (m/s) of any vertex.
+  /// Returns the displacement of any vertex, m.
   Vector u(std::int32_t vertex) const noexcept {
     const std::int32_t s = places_[at(vertex)].slot;
     return s < 0 ? Vector(0, 0, 0) : Vector(u_[at(s)].head<3>());
@@ -80,30 +81,31 @@ class THIMBLE_EXPORT DentMotion {
     const std::int32_t s = places_[at(vertex)].slot;
     return s < 0 ? Vector(0, 0, 0) : Vector(v_[at(s)].head<3>());
   }
-  /// Returns whether a vertex moves at all.
+  /// Returns whether a vertex moves.
   bool moves(std::int32_t vertex) const noexcept { return places_[at(vertex)].slot >= 0; }
-  /// Lists the vertices that move.
+  /// Returns the moving vertices.
   std::span<const std::int32_t> vertices() const noexcept { return vertices_; }
-  bool resting() const noexcept { return vertices_.empty(); }  ///< Returns whether none moves.
-  /// Returns the stiffness (N/m) of a vertex of valence 6 while its neighbours stand still.
+  bool resting() const noexcept { return vertices_.empty(); }  ///< Returns whether no vertex moves.
+  /// Returns the stiffness (N/m) of a vertex of valence 6 with resting neighbours.
   double stiffness() const noexcept {
     return settings_.stiffness + 6 * settings_.neighbour_stiffness;
   }
   /// Returns the energy of springs and masses, without the cursor's springs, J.
   double energy() const noexcept;
-  /// Counts vertices that were stopped while they still swung, for want of room.
+  /// Returns the number of vertices that were stopped while they still oscillated, for lack of
+  /// capacity.
   std::uint64_t cut() const noexcept { return cut_; }
   const DentSettings& settings() const noexcept { return settings_; }
-  int substeps() const noexcept { return substeps_; }  ///< Returns how many steps make a tick.
+  int substeps() const noexcept { return substeps_; }  ///< Returns the number of steps per tick.
 
  private:
-  // A vector and a zero: four numbers go through the processor two or four at a time.
+  // A vector and a zero: the processor handles four numbers two or four at a time.
   using Lane = Eigen::Vector4d;
   using Lanef = Eigen::Vector4f;
 
   struct Place {
-    std::int32_t slot = -1;   // in the arrays below; -1: on its base point
-    std::uint32_t round = 0;  // in which gather() has seen it
+    std::int32_t slot = -1;   // index in the arrays below; -1: on its base point
+    std::uint32_t round = 0;  // in which gather() has visited it
   };
   struct Link {
     std::int32_t slot = 0;
@@ -150,17 +152,17 @@ class THIMBLE_EXPORT DentMotion {
   std::vector<Place> places_;  // of all vertices
   std::uint32_t round_ = 0;
   std::vector<std::int32_t> vertices_, gathered_;
-  std::size_t wanted_ = 0;  // of them, the first so many are those that the cursor calls for
+  std::size_t wanted_ = 0;  // number of leading elements that are requested by the cursor
   std::size_t links_gathered_ = 0;
   std::vector<std::uint32_t> link_begin_;
   std::vector<Link> link_list_;
   std::vector<double> sum_;    // of all weights around a vertex, moving or not
-  std::vector<double> extra_;  // what the cursor's springs add to the diagonal of the system
+  std::vector<double> extra_;  // contribution of the cursor's springs to the diagonal of the system
   std::vector<Lane> u_, v_, b_, w_, q_;
-  std::vector<Lanef> wf_, rf_, pf_, qf_;  // of the rounds
+  std::vector<Lanef> wf_, rf_, pf_, qf_;  // for the rounds
   std::vector<float> inverse_, extraf_;
   std::array<Grip, 3> grips_;
-  double largest_ = 0;  // displacement that the cursor asked for since it touched, m
+  double largest_ = 0;  // largest displacement of the cursor since it touched, m
   int until_look_ = 0;
   std::uint64_t cut_ = 0;
 };

@@ -10,16 +10,16 @@
 namespace thimble::render {
 namespace {
 
-// Bounds catch slipped decimal points; they are far outside of what a desk-top arm can show
+// Bounds catch misplaced decimal points; they are far outside the range of a desk-top arm
 // [DEVICES 3].
 constexpr double kMassMin = 1e-6;      // kg per vertex
 constexpr double kMassMax = 10;        // kg
 constexpr double kStiffnessMax = 1e5;  // N/m
 constexpr double kDampingMax = 1000;   // N s/m
-constexpr int kSubstepsMax = 64;       // as SpringMotionOptions
+constexpr int kSubstepsMax = 64;       // as in SpringMotionOptions
 constexpr int kRoundsMax = 100;
 
-// Those that can step nodes which springs join, on a patch that changes.
+// Schemes that can step nodes joined by springs, on a patch that changes.
 constexpr std::array kSchemes{SpringScheme::kSymplecticEuler, SpringScheme::kVerlet,
                               SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid};
 

@@ -1,4 +1,4 @@
-// How the vertices of DentMotion move in one tick: its schemes of integration and their solver.
+// Motion of the vertices of DentMotion in one tick: its integration schemes and their solver.
 #include <algorithm>
 #include <cmath>
 
@@ -7,14 +7,14 @@
 namespace thimble::render {
 namespace {
 
-// Rounds also end where what is left moves no vertex by more than this share of the largest dent in
-// a step: 2e-6 of it in a second at 20 kHz. It is what ends the rounds of a dent at rest, of which
-// nothing is left but rounding.
+// Rounds also end when the residual moves no vertex by more than this share of the largest dent in
+// a step: 2e-6 of it in a second at 20 kHz. This ends the rounds of a dent at rest, whose residual
+// is only rounding.
 constexpr double kStill = 1e-10;
 
-// No vertex moves faster, m/s: strokes are up to 2 m/s [PHYSICS 7]. What the cursor throws
-// farther in one tick, as by a lost contact that is found elsewhere, takes energy out here, never
-// in.
+// Maximum speed of a vertex, m/s: strokes are up to 2 m/s [PHYSICS 7]. If the cursor moves it
+// farther in one tick, as when a lost contact is found elsewhere, this dissipates energy and never
+// adds any.
 constexpr double kSpeedMax = 10;
 
 }  // namespace
@@ -55,7 +55,7 @@ void DentMotion::step() noexcept {
   if (vertices_.size() > wanted_ && --until_look_ <= 0) prune();
 }
 
-// Five calls per vertex and tick: a call would cost a quarter of it.
+// Called five times per vertex and tick: a function call would cost a quarter of the time.
 template <class Value>
 [[gnu::always_inline]] inline Value DentMotion::row(const Weights& weights, std::size_t i,
                                                     const std::vector<Value>& x) const noexcept {
@@ -68,12 +68,12 @@ template <class Value>
          static_cast<Number>(weights.link) * sum;
 }
 
-// Tells what a cursor spring does to its vertex while that stands where it is, N.
+// Returns the force of a cursor spring on its vertex at the vertex's present position, N.
 DentMotion::Lane DentMotion::cursor_force(const Grip& grip, std::size_t i) const noexcept {
   return grip.stiffness * (grip.target - u_[i]) + grip.damping * grip.rate;
 }
 
-// Finds what springs and dampers do to each vertex, m/s^2, in b_.
+// Computes the acceleration of each vertex by springs and dampers, m/s^2, in b_.
 void DentMotion::accelerate() noexcept {
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     b_[i] = -1 / settings_.mass * (row(stiffness_, i, u_) + row(damping_, i, v_));
@@ -84,9 +84,8 @@ void DentMotion::drift(double time) noexcept {
   for (std::size_t i = 0; i < vertices_.size(); ++i) u_[i] += time * v_[i];
 }
 
-// Lets the cursor's springs act at the end of the step, by an impulse J that moves a vertex by
-// h J / m: J = h (k (target - u) + c (rate - v)) there. However stiff, it neither overshoots nor
-// rings.
+// Applies the cursor's springs at the end of the step, by an impulse J that moves a vertex by h J /
+// m: J = h (k (target - u) + c (rate - v)) there. At any stiffness it neither overshoots nor rings.
 void DentMotion::reach_out() noexcept {
   for (Grip& grip : grips_) {
     if (grip.slot < 0) continue;
@@ -136,8 +135,8 @@ void DentMotion::implicit(double share) noexcept {
   solve(system);
   for (Grip& grip : grips_) {
     if (grip.slot < 0) continue;
-    // What the vertex needed beside its own springs: unlike the stretch of a stiff spring this
-    // loses no digits.
+    // The force that the vertex needed in addition to its own springs: unlike the stretch of a
+    // stiff spring, this loses no digits.
     const std::size_t i = at(grip.slot);
     const Lane own = b_[i] - per_unit * s * cursor_force(grip, i);
     grip.force += unit / s * (row(system, i, w_) - own).head<3>();
@@ -147,8 +146,8 @@ void DentMotion::implicit(double share) noexcept {
     if (share == 1) {
       v_[i] = w_[i];
     } else {
-      // Beyond the middle of the step by the trapezoid rule; a vertex that the cursor holds does
-      // not swing on.
+      // Extrapolated beyond the middle of the step by the trapezoid rule; a vertex held by the
+      // cursor does not continue to oscillate.
       const double held = extra_[i] / (system.node + system.link * sum_[i] + extra_[i]);
       v_[i] = w_[i] + (1 - held) * (w_[i] - v_[i]);
     }
@@ -158,12 +157,12 @@ void DentMotion::implicit(double share) noexcept {
   }
 }
 
-// Solves for w by conjugate gradients from v on, and scales it as SpringMotion does. The rounds
-// find the change of velocity, and end where the remainder is a share of what springs and dampers
-// have to change: measured against the momentum itself, a slow dent, whose springs change little of
-// it in a step, would get no force at all. At steps far beyond a spring's period the springs ask
-// for more than the momentum, and the remainder is a share of that: the trapezoid damps nothing
-// there, so errors of a larger scale would grow.
+// Solves for w by conjugate gradients from v on, and scales it as in SpringMotion. The rounds
+// compute the change of velocity, and end when the residual is a share of the change due to springs
+// and dampers. Relative to the momentum itself, a slow dent, whose springs change little of it in a
+// step, would get no force. At steps far beyond a spring's period the springs require more than the
+// momentum, and the residual is a share of that. The trapezoid rule damps nothing there, so errors
+// of a larger scale would grow.
 void DentMotion::solve(const Weights& system) noexcept {
   const std::size_t n = vertices_.size();
   float rz = 0;
@@ -171,7 +170,7 @@ void DentMotion::solve(const Weights& system) noexcept {
   for (std::size_t i = 0; i < n; ++i) {
     extraf_[i] = static_cast<float>(extra_[i]);
     inverse_[i] = static_cast<float>(1 / (system.node + system.link * sum_[i] + extra_[i]));
-    // In double: the momentum is a thousand times what a slow dent's springs change.
+    // In double precision: the momentum is a thousand times the change by a slow dent's springs.
     rf_[i] = (b_[i] - row(system, i, v_) - extra_[i] * v_[i]).cast<float>();
     wf_[i].setZero();
     pf_[i] = inverse_[i] * rf_[i];

@@ -12,8 +12,8 @@ driver::ForceCommand DentedTouch::update(const driver::DeviceState& state) noexc
     dent_.rest();
     return command;
   }
-  // Weights that vanish on the planes between triangles, so that the foot does not jump there; a
-  // tracker with other cells may be a little beyond one.
+  // Weights vanish on the planes between triangles, so that the place does not jump there. A
+  // tracker with other cells may be slightly beyond one.
   const TriangleFoot foot = edge_plane_foot(dent_.mesh(), triangle, state.p_WT);
   dent_.touch(triangle, foot.weights, state.p_WT);
   if (dent_.motion().settings().pull > 0) {

@@ -13,27 +13,26 @@
 
 namespace thimble::render {
 
-/// The force law of an object whose surface dents: that of the object, whatever stages it is
-/// made of, with a BendablePolygon that follows. An object that no scene calls so has none around
-/// it.
+/// The force law of an object whose surface dents: the object's own law, with any stages, plus a
+/// BendablePolygon that follows it. Objects without a dent in the scene are not wrapped.
 class DentedTouch final : public ObjectTouch {
  public:
-  /// Puts a dent around an object. The dent's mesh must be the one that `inner` touches, or have
-  /// its numbers and places. Real-time: never from the servo thread.
+  /// Adds a dent to an object. The dent's mesh must be the one that `inner` touches, or have the
+  /// same numbers and places. Real-time: never from the servo thread.
   DentedTouch(std::unique_ptr<ObjectTouch> inner, BendablePolygon dent)
       : inner_(std::move(inner)),
         dent_(std::move(dent)),
         pull_(dent_.motion().settings().pull, dent_.motion().settings().step) {}
 
-  /// Finds the force of the object, with the share of the pull that the settings say, and moves the
-  /// dent on by one tick.
+  /// Returns the force of the object, plus the share of the pull given by the settings, and
+  /// advances the dent by one tick.
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override;
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return inner_->inside(p_W); }
   const ContactMesh* mesh() const noexcept override { return &dent_.mesh(); }
   bool stands_still() const noexcept override { return inner_->stands_still(); }
   std::uint64_t lost_contacts() const noexcept override { return inner_->lost_contacts(); }
   const BodyShape* shape() const noexcept override { return inner_->shape(); }
-  /// Puts the vertices where they hang at the moment, off their base points.
+  /// Moves the vertices from their base points to their present places.
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
     inner_->place_now(vertices);
     for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -47,9 +46,9 @@ class DentedTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { inner_->list_settings(settings); }
 
-  const BendablePolygon& dent() const noexcept { return dent_; }  ///< Shows the dent.
-  BendablePolygon& dent() noexcept { return dent_; }              ///< Gives the dent.
-  const BodyPull& pull() const noexcept { return pull_; }  ///< Shows the pull of the last tick.
+  const BendablePolygon& dent() const noexcept { return dent_; }  ///< Returns the dent.
+  BendablePolygon& dent() noexcept { return dent_; }              ///< Returns the dent.
+  const BodyPull& pull() const noexcept { return pull_; }  ///< Returns the pull of the last tick.
 
  private:
   std::unique_ptr<ObjectTouch> inner_;

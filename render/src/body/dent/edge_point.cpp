@@ -30,7 +30,7 @@ void EdgePoint::step(const Pull& pull, const DentSettings& settings, double stif
         h * (to_cursor * (gap - y_) - to_chord * y_)) /
        weight;
   y_ += h * v_;
-  // Written so that NaN, as of no weight at all, means the edge.
+  // Written so that NaN, as from zero weight, means the edge.
   if (!(y_.squaredNorm() >= 0 && std::isfinite(y_.squaredNorm()))) {
     y_.setZero();
     v_.setZero();

@@ -11,10 +11,10 @@
 namespace thimble::render {
 namespace {
 
-// Stands for a point that found no room.
+// Marks a point for which there was no capacity.
 constexpr std::uint16_t kNone = 0xffff;
 
-// Keeps this share of each triangle's area, seen along its first normal: well above rounding.
+// Minimum share of each triangle's area, seen along its first normal: well above rounding.
 constexpr double kAreaLeft = 0.02;
 
 }  // namespace
@@ -131,7 +131,7 @@ void PatchDrawing::add_moving(const DentMotion& motion) noexcept {
     for (const std::int32_t t : mesh_->fan(vertex)) {
       if (!first_time(t)) continue;
       const auto& c = mesh_->corners(t);
-      std::array<std::uint16_t, 3> at{};  // in an order that no compiler chooses
+      std::array<std::uint16_t, 3> at{};  // in a fixed order, independent of the compiler
       for (std::size_t k = 3; k-- > 0;) at[k] = corner(c[k], motion);
       add_triangle(at[0], at[1], at[2], t);
       if (!complete_) return;
@@ -139,7 +139,7 @@ void PatchDrawing::add_moving(const DentMotion& motion) noexcept {
   }
 }
 
-// Finds the share of the dent at which no triangle has lost its area.
+// Returns the share of the dent at which no triangle has lost its area.
 double PatchDrawing::share() const noexcept {
   double share = 1;
   for (const auto& [a, b, c] : drawn_) {
@@ -194,7 +194,7 @@ void PatchDrawing::finish(BodyPatch& patch) noexcept {
   patch.share = static_cast<float>(drawn);
   for (const Point& point : points_) {
     Eigen::Vector3d n = point.n;
-    // The border keeps its normals, for triangles beside the patch share them.
+    // The border keeps its normals, because triangles next to the patch share them.
     if (point.moves && point.area > 0) n += point.turn / point.area;
     const Eigen::Vector3d p = point.p + point.u;
     const Eigen::Vector3f n_float = n.cast<float>();

@@ -15,37 +15,37 @@ namespace thimble::render {
 
 /// Draws a dent as a BodyPatch: begin, split and add_moving, finish.
 ///
-/// Never turns a triangle over against the base surface. In the plane of its base triangle the
-/// area of a displaced one is a quadratic of the share s of the dent that is drawn; the share is
-/// kept below the least s at which any area vanishes. With displacements along the normal alone it
-/// is 1, for none does; where a dent is deeper than the surface's bend or its triangles allow, a
-/// part of it is drawn and the patch says so.
+/// Never turns a triangle over relative to the base surface. In the plane of its base triangle, the
+/// area of a displaced triangle is a quadratic function of the share s of the dent that is drawn.
+/// The share is kept below the least s at which any area vanishes. With displacements along the
+/// normal only it is 1, because no area vanishes. Where a dent is deeper than the surface's
+/// curvature or its triangles allow, only a part of it is drawn and the patch reports it.
 ///
-/// Normals: that of the untouched surface at the base point, plus how much the mean of the faces
-/// around (by area) has changed by the dent. So they are the untouched ones where nothing is
+/// Normals: that of the untouched surface at the base point, plus the change of the mean of the
+/// faces around (by area) due to the dent. So they are the untouched ones where nothing is
 /// displaced, also at points that split a triangle.
 class PatchDrawing {
  public:
-  /// Where an edge of the touched triangle is split and where that point is now.
+  /// Split of an edge of the touched triangle: base point and displacement.
   struct Split {
-    double place = 0.5;  ///< Of the base point, from 0 at corner k to 1 at k + 1, exclusive.
+    double place = 0.5;  ///< Place of the base point, from 0 at corner k to 1 at k + 1, exclusive.
     Eigen::Vector3d u{0, 0, 0};  ///< Displacement, m.
   };
 
-  /// Sets memory aside and finds the normals of the mesh. Real-time: never from the servo thread.
+  /// Reserves memory and computes the normals of the mesh. Real-time: never from the servo thread.
   explicit PatchDrawing(std::shared_ptr<const ContactMesh> mesh);
 
-  // All of the following are Real-time: safe. Precondition: numbers name what exists.
+  // All of the following are Real-time: safe. Precondition: numbers are valid.
 
-  /// Begins anew.
+  /// Begins a new drawing.
   void begin() noexcept;
   /// Draws `triangle` as 6 around the cursor at the place with these `weights` (above 0), displaced
-  /// by `u` (m), and each neighbour as 2. Once, before `add_moving`.
+  /// by `u` (m), and each neighbour as 2. Call once, before `add_moving`.
   void split(std::int32_t triangle, const Eigen::Vector3d& weights, const Eigen::Vector3d& u,
              const std::array<Split, 3>& edges, const DentMotion& motion) noexcept;
-  /// Draws all triangles around vertices that move.
+  /// Draws all triangles around moving vertices.
   void add_moving(const DentMotion& motion) noexcept;
-  /// Gives what was drawn.
+  /// Returns the drawing.
   void finish(BodyPatch& patch) noexcept;
 
   /// Returns the unit normal of the untouched surface at a vertex: faces weighted by their angles.

@@ -7,7 +7,7 @@ namespace thimble::render {
 VertexLinks::VertexLinks(const ContactMesh& mesh) {
   const auto vertices = static_cast<std::size_t>(mesh.vertex_count());
   begin_.assign(vertices + 1, 0);
-  // A closed surface has each edge twice, once in either direction: one of them per end.
+  // A closed surface has each edge twice, once in each direction: one of them per end.
   other_.reserve(3 * static_cast<std::size_t>(mesh.triangle_count()));
   for (std::size_t v = 0; v < vertices; ++v) {
     const auto vertex = static_cast<std::int32_t>(v);

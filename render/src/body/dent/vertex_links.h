@@ -10,35 +10,35 @@
 
 namespace thimble::render {
 
-/// Lists which vertices of a mesh edges join, and how strong the spring along each edge is against
-/// that of an edge between two vertices of valence 6.
+/// Lists which vertices of a mesh are joined by edges, and the strength of the spring along each
+/// edge relative to an edge between two vertices of valence 6.
 ///
-/// An edge counts 12 / (valence of one end + valence of the other): so the springs around a vertex
-/// are about as strong as six of them at every valence, and a dent is as deep at a corner of four
-/// triangles as at one of eight.
+/// The weight of an edge is 12 / (valence of one end + valence of the other). So the springs around
+/// a vertex are about as strong as six of them at every valence. A dent is as deep at a corner of
+/// four triangles as at one of eight.
 class THIMBLE_EXPORT VertexLinks {
  public:
   /// Finds the edges of a mesh. Real-time: never from the servo thread.
   explicit VertexLinks(const ContactMesh& mesh);
 
-  // All of the following are Real-time: safe. Precondition: numbers name vertices that exist.
+  // All of the following are Real-time: safe. Precondition: numbers name existing vertices.
 
   std::int32_t vertex_count() const noexcept { return static_cast<std::int32_t>(sum_.size()); }
-  /// Lists the vertices that edges join to `vertex`.
+  /// Lists the vertices joined to `vertex` by edges.
   std::span<const std::int32_t> of(std::int32_t vertex) const noexcept {
     const auto v = static_cast<std::size_t>(vertex);
     return {other_.data() + begin_[v], begin_[v + 1] - begin_[v]};
   }
-  /// Returns how many edges meet in `vertex`. Real-time: safe.
+  /// Returns the number of edges at `vertex`. Real-time: safe.
   std::int32_t valence(std::int32_t vertex) const noexcept {
     const auto v = static_cast<std::size_t>(vertex);
     return static_cast<std::int32_t>(begin_[v + 1] - begin_[v]);
   }
-  /// Returns how strong an edge between vertices of these valences is.
+  /// Returns the weight of an edge between vertices of these valences.
   static double weight(std::int32_t one, std::int32_t other) noexcept {
     return 12.0 / (one + other);
   }
-  /// Sums up the weights of all edges at a vertex; 6 on a regular mesh.
+  /// Returns the sum of the weights of all edges at a vertex; 6 on a regular mesh.
   double sum(std::int32_t vertex) const noexcept { return sum_[static_cast<std::size_t>(vertex)]; }
   /// Returns the largest such sum of the mesh.
   double sum_max() const noexcept { return sum_max_; }

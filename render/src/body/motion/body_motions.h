@@ -12,18 +12,19 @@
 
 namespace thimble::render {
 
-// The two ways in which an object moves as a whole [BP 4.3]; see BodyMotion (moving_touch.h).
+// The two kinds of motion of an object as a whole [BP 4.3]; see BodyMotion (moving_touch.h).
 
-/// Moves an object three ways: a TranslatingBody with gravity, a floor and a reach.
+/// Moves an object in three degrees of freedom: a TranslatingBody with gravity, a floor and a
+/// reach.
 class TranslatingMotion {
  public:
-  /// Sets what acts on the body besides what touches it.
+  /// Loads and limits of the body, in addition to contact.
   struct Settings {
     double mass = 1;                     ///< kg
     Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
-    std::optional<Floor> floor{};        ///< Where it cannot go below.
+    std::optional<Floor> floor{};        ///< Floor that the body cannot pass.
     double lowest =
-        0;  ///< m along the floor's normal: where the object's lowest point was at first
+        0;  ///< m along the floor's normal: height of the object's lowest point at first
     double reach = std::numeric_limits<double>::infinity();  ///< m; see RigidBody::keep_within
   };
 
@@ -40,7 +41,7 @@ class TranslatingMotion {
     return body_.gain() * impulse;
   }
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d&) noexcept { body_.push(f_W); }
-  /// Moves on by the step that the body was made for.
+  /// Advances by the step for which the body was made.
   void step(double) noexcept {
     body_.push(settings_.mass * settings_.gravity_W);
     if (settings_.floor) {
@@ -63,10 +64,10 @@ class TranslatingMotion {
   Settings settings_;
 };
 
-/// Moves an object six ways: a RigidBody with a reach.
+/// Moves an object in six degrees of freedom: a RigidBody with a reach.
 class RigidMotion {
  public:
-  /// Takes a body at rest where its mesh stands, and how far it may go (m).
+  /// Takes a body at rest at the place of its mesh, and its reach (m).
   RigidMotion(const RigidBody& body, double reach) noexcept : body_(body), reach_(reach) {}
 
   const Eigen::Matrix3d& R_WB() const noexcept { return R_WB_; }
@@ -106,7 +107,7 @@ class RigidMotion {
   /// Returns the energy of motion and height, J (see BodyMotion). Real-time: safe.
   double energy() const noexcept { return body_.kinetic_energy() + body_.potential_energy(); }
   const RigidBody& body() const noexcept { return body_; }
-  /// Returns the body, to set it in motion before the first tick.
+  /// Returns the body, to set its velocity before the first tick.
   RigidBody& body() noexcept { return body_; }
 
  private:

@@ -13,23 +13,23 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // Penalty of an approach, as a share of the velocity that a point gains by an impulse on it. Each
-// update of the multipliers reduces what is left by about this share (more for slender bodies);
+// update of the multipliers reduces the error by about this share (more for slender bodies). The
 // digits lost in the impulses are those of its inverse.
 constexpr double kSoftness = 1e-3;
 
 // Updates of multipliers and slips: 3 to 6 are usual.
 constexpr int kUpdatesMax = 100;
 
-// How far beyond the last change of the slips the secant may lead, in units of it.
+// Maximum extrapolation of the secant beyond the last change of the slips, in units of that change.
 constexpr double kSecantMax = 10;
 
 // Evaluations of the slope along one direction of search.
 constexpr int kSearchMax = 12;
 
-// A step of Newton's method is accepted where the slope has fallen to this share.
+// A step of Newton's method is accepted if the slope has fallen to this share.
 constexpr double kSlopeLeft = 0.5;
 
-// Of the body's velocity: rounding of the velocity of a point.
+// Rounding of the velocity of a point, as a share of the body's velocity.
 constexpr double kPointRounding = 1e-15;
 
 }  // namespace
@@ -39,7 +39,7 @@ FloorImpulses::FloorImpulses(double mass, const Vector3d& inertia, const Vector3
     : root_mass_(Vector3d::Constant(std::sqrt(mass))),
       root_inertia_(inertia.cwiseSqrt()),
       friction_(friction) {
-  // The tangent is taken from the axis that is farthest from the normal.
+  // The tangent is computed from the axis that is farthest from the normal.
   Eigen::Index axis = 0;
   n_B.cwiseAbs().minCoeff(&axis);
   const Vector3d t = Vector3d::Unit(axis).cross(n_B).normalized();
@@ -58,7 +58,7 @@ void FloorImpulses::add(const Vector3d& arm_B, double allowed) noexcept {
   point.allowed = allowed;
 }
 
-// The argument of the projection: what the penalty and the multiplier press with at velocity v.
+// The argument of the projection: pressure of penalty and multiplier at velocity v.
 Vector3d FloorImpulses::pressed(const Point& point, const Vector3d& v) const noexcept {
   const Vector3d off(v[0] + point.allowed + friction_ * point.slip, v[1], v[2]);
   return point.held - off / softness_;
@@ -95,14 +95,15 @@ void FloorImpulses::add_curvature(const Point& point, Matrix6& hessian) const no
   const double normal = (z[0] + mu * along) / (1 + mu * mu);
   if (!(normal > 0)) return;
   const double c = z[1] / along, s = z[2] / along;
-  // Along the cone's edge the impulse follows, across it by the share that the cone is narrower.
+  // Along the cone's edge the impulse follows; across it, by the share by which the cone is
+  // narrower.
   const Velocity edge = J.row(0) + mu * (c * J.row(1) + s * J.row(2));
   const Velocity across = c * J.row(2) - s * J.row(1);
   hessian.noalias() += weight / (1 + mu * mu) * edge * edge.transpose();
   hessian.noalias() += weight * mu * normal / along * across * across.transpose();
 }
 
-// Returns by which share of the way the convex function falls about as far as it can.
+// Returns the share of the way at which the convex function is near its minimum.
 double FloorImpulses::search(const Velocity& start, const Velocity& y, const Velocity& way,
                              double slope) const noexcept {
   const double rest = way.dot(y - start);
@@ -156,8 +157,8 @@ void FloorImpulses::minimise(const Velocity& start, double small, Velocity& y) n
   }
 }
 
-// Takes over the impulses as multipliers and estimates the slips again. Returns how far the
-// velocities of the points are from what the conditions ask for, m/s.
+// Sets the multipliers to the impulses and estimates the slips again. Returns the error of the
+// velocities of the points with respect to the conditions, m/s.
 double FloorImpulses::update() noexcept {
   double off = 0, falls = 0, change = 0;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -166,7 +167,7 @@ double FloorImpulses::update() noexcept {
     off = std::max(off, softness_ * (now - point.held).norm());
     point.held = now;
     const double wrong = point.v.tail<2>().norm() - point.slip;
-    // Without a load a slip changes nothing.
+    // Without a load a slip has no effect.
     if (now[0] > 0) {
       off = std::max(off, friction_ * std::abs(wrong));
       const double less = wrong - point.wrong;
@@ -176,8 +177,8 @@ double FloorImpulses::update() noexcept {
     point.wrong_before = point.wrong;
     point.wrong = wrong;
   }
-  // The secant of the last two estimates [Anderson]: alone, each would lead closer by a share only,
-  // which is near 1 where friction is large.
+  // The secant of the last two estimates [Anderson]. Without it each update would reduce the error
+  // only by a share, which is near 1 if friction is large.
   const double further = change > 0 ? std::clamp(falls / change, -kSecantMax, 0.0) : 0;
   for (std::size_t i = 0; i < count_; ++i) {
     Point& point = points_[i];
@@ -199,11 +200,11 @@ bool FloorImpulses::iterate(const Velocity& start, double small, double toleranc
   return false;
 }
 
-// What the impulses change, scaled down where it would raise the kinetic energy.
+// Velocity after the impulses, scaled down if it would raise the kinetic energy.
 FloorImpulses::Velocity FloorImpulses::without_gain(const Velocity& start,
                                                     const Velocity& y) const noexcept {
   const Velocity change = y - start;
-  // Energy falls by them up to this share of them.
+  // Energy falls by the impulses up to this share of them.
   const double most = -2 * start.dot(change) / change.squaredNorm();
   // Written so that NaN changes nothing.
   const double share = most >= 1 ? 1 : (most > 0 ? most : 0);
@@ -225,17 +226,17 @@ bool FloorImpulses::solve(Vector3d& v_B, Vector3d& omega_B) noexcept {
     approach = std::max(approach, -(point.v[0] + point.allowed));
     speed = std::max(speed, point.v.norm());
   }
-  // Most steps: no point reaches the floor. Written so that NaN changes nothing.
+  // The usual case: no point reaches the floor. Written so that NaN changes nothing.
   if (!(approach > 0) || !std::isfinite(start.squaredNorm())) return true;
   softness_ = kSoftness * gain;
-  // Rounding of the points' velocities bounds what can be asked for.
+  // Rounding of the points' velocities limits the accuracy.
   const double small = std::max(0.1 * kTolerance * speed / std::sqrt(gain),
                                 kPointRounding / kSoftness * start.norm());
   Velocity y = start;
   const bool reached = iterate(start, small, kTolerance * speed, y);
   y = without_gain(start, y);
   if (!reached) {
-    // Friction may be off by what is left; no point may go through the floor.
+    // Friction may be off by the residual, but no point may go through the floor.
     friction_ = 0;
     for (std::size_t i = 0; i < count_; ++i) points_[i].forget();
     const Velocity rough = y;
@@ -244,7 +245,7 @@ bool FloorImpulses::solve(Vector3d& v_B, Vector3d& omega_B) noexcept {
     y = without_gain(rough, y);
     iterations_ += before;
   }
-  // What is left is not known: the body rests.
+  // The rest is below the tolerance: the body rests.
   if (!(y.norm() > kTolerance * start.norm())) y.setZero();
   v_B = y.head<3>().cwiseQuotient(root_mass_);
   omega_B = y.tail<3>().cwiseQuotient(root_inertia_);

@@ -7,8 +7,8 @@
 
 namespace thimble::render {
 
-/// Impulses by which a floor holds a rigid body at one moment: no rebound, Coulomb friction at each
-/// support point.
+/// Impulses of a floor on a rigid body at one moment: no rebound, Coulomb friction at each support
+/// point.
 ///
 /// Let v_i be the velocity of support point i after the impulses r_i, split into the part along the
 /// floor's normal and the part along the floor. The impulses satisfy, at all points at once,
@@ -16,19 +16,19 @@ namespace thimble::render {
 ///     v_n >= -allowed,   r_n >= 0,   r_n (v_n + allowed) = 0,
 ///     |r_t| <= mu r_n,   and where v_t is not 0, r_t = -mu r_n v_t / |v_t|.
 ///
-/// For a given slip s_i = |v_t| these conditions are those of a convex problem in the body's six
-/// velocities: the closest velocity, measured by the kinetic energy, for which v_n + allowed >=
-/// mu (|v_t| - s_i) [DeSaxce, Cadoux]. The problem is solved by an augmented Lagrangian, whose
-/// smooth convex function is minimised by Newton's method with a line search. The slips are updated
-/// with the multipliers, by the secant of the last two. Accumulated impulses are projected onto
-/// their cones as a whole, so an impulse that was too large is taken back; the result does not
-/// depend on the order of the points, and where several distributions of the load give the same
+/// For a given slip s_i = |v_t| these are the conditions of a convex problem in the body's six
+/// velocities. Its solution is the closest velocity, measured by the kinetic energy, with v_n +
+/// allowed >= mu (|v_t| - s_i) [DeSaxce, Cadoux]. The problem is solved by an augmented Lagrangian,
+/// whose smooth convex function is minimised by Newton's method with a line search. The slips are
+/// updated with the multipliers, by the secant of the last two. Accumulated impulses are projected
+/// onto their cones as a whole, so an impulse that was too large is reduced again. The result does
+/// not depend on the order of the points. If several distributions of the load give the same
 /// motion, the most even one is chosen. The kinetic energy never rises, and no point goes through
-/// the floor: if the iteration ends early, the impulses are scaled down until the energy does not
-/// rise, and the points that still approach too fast are stopped without friction.
+/// the floor. If the iteration ends early, the impulses are scaled down until the energy does not
+/// rise. Points that still approach too fast are stopped without friction.
 class FloorImpulses {
  public:
-  static constexpr std::size_t kPointsMax = 64;  ///< Most support points.
+  static constexpr std::size_t kPointsMax = 64;  ///< Maximum number of support points.
   /// Accuracy of the velocities of the support points at which the iteration ends, as a share of
   /// the fastest one's before.
   static constexpr double kTolerance = 1e-7;
@@ -52,10 +52,10 @@ class FloorImpulses {
   /// Returns how many iterations of Newton's method the last `solve` took. Real-time: safe.
   int iterations() const noexcept { return iterations_; }
 
-  /// Most iterations of Newton's method on few points; on many, `kPointStepsMax` divided by their
-  /// number. After an end by this bound up to as many again, without friction.
+  /// Maximum number of iterations of Newton's method on few points; on many, `kPointStepsMax`
+  /// divided by their number. After reaching this bound, up to as many again, without friction.
   static constexpr int kIterationsMax = 200;
-  static constexpr int kPointStepsMax = 2400;  ///< Most iterations times points.
+  static constexpr int kPointStepsMax = 2400;  ///< Maximum of iterations times points.
 
  private:
   // Velocities of the body in units of the root of its mass and inertias: the squared length is
@@ -68,10 +68,10 @@ class FloorImpulses {
     Eigen::Matrix<double, 3, 6> J;  // velocity of the point by the body's velocity
     double allowed = 0;             // m/s
     double slip = 0;                // m/s along the floor, as estimated
-    double wrong = 0;               // m/s, that the last estimate was too small by
-    double slip_before = 0;         // both of the estimate before
+    double wrong = 0;               // m/s by which the last estimate was too small
+    double slip_before = 0;         // slip and error of the estimate before
     double wrong_before = 0;
-    Eigen::Vector3d held{0, 0, 0};  // impulse that the multiplier stands for, N s
+    Eigen::Vector3d held{0, 0, 0};  // impulse of the multiplier, N s
     Eigen::Vector3d v{0, 0, 0};     // of the point, m/s
     // Starts a new solution.
     void forget() noexcept {

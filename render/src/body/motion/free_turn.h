@@ -8,24 +8,25 @@
 
 namespace thimble::render {
 
-/// Turn of a free rigid body in time: order 4, and the angular momentum kept whatever the step is.
+/// Rotation of a free rigid body in time: order 4, with constant angular momentum for any step.
 ///
-/// The energy of turning is split as L^2 / 2 I_1 + sum over k = 0, 2 of (1 / I_k - 1 / I_1) L_k^2 /
-/// 2, axis 1 the one of middle inertia. Each part alone turns the body at a rate that stays: the
-/// first about the angular momentum itself, which goes with all others, the others about their own
-/// axis [Touma]. Of the latter five in a palindrome are of order 2, three palindromes of order 4
-/// [Yoshida]; what a body with two equal inertias, a cube or a ball does is exact.
+/// The energy of rotation is split as L^2 / 2 I_1 + sum over k = 0, 2 of (1 / I_k - 1 / I_1) L_k^2
+/// / 2, where axis 1 has the middle inertia. Each part by itself turns the body at a constant rate.
+/// The first turns it about the angular momentum, and commutes with all others; the others turn it
+/// about their own axis [Touma]. Five of the latter in a palindrome are of order 2, three
+/// palindromes of order 4 [Yoshida]. The rotation of a body with two equal inertias, a cube or a
+/// ball is exact.
 class FreeTurn {
  public:
-  /// Takes the principal inertias, kg m^2, > 0. Their order is free; in ascending order errors are
-  /// least.
+  /// Takes the principal inertias, kg m^2, > 0. They may be in any order; in ascending order errors
+  /// are least.
   explicit FreeTurn(const Eigen::Vector3d& inertia)
       : rate_1_(1 / inertia[1]),
         rate_2_(1 / inertia[2] - 1 / inertia[1]),
         rate_0_(1 / inertia[0] - 1 / inertia[1]) {}
 
   /// Turns the frame B of the principal axes, given by the unit quaternion `q_WB`, for `time` s
-  /// under the angular momentum `angular_W` (kg m^2/s), which stays. Real-time: safe.
+  /// under the angular momentum `angular_W` (kg m^2/s), which is constant. Real-time: safe.
   void turn(double time, const Eigen::Vector3d& angular_W,
             Eigen::Quaterniond& q_WB) const noexcept {
     State now{q_WB.conjugate() * angular_W, q_WB};
@@ -40,7 +41,7 @@ class FreeTurn {
     const HalfTurn whole = half_turn(half * half * angular_W.squaredNorm());
     const Eigen::Vector3d axis = whole.sine_over_angle * half * angular_W;
     q_WB = Eigen::Quaterniond(whole.cosine, axis.x(), axis.y(), axis.z()) * now.q;
-    // One step towards length 1 of Newton's, from as near as rounding leads away.
+    // One step of Newton's method towards length 1, enough for rounding errors.
     q_WB.coeffs() *= 1.5 - 0.5 * q_WB.squaredNorm();
   }
 
@@ -56,8 +57,8 @@ class FreeTurn {
     double cosine, sine_over_angle;
   };
 
-  // Returns cos x and sin(x) / x of half an angle x by its square. Below a quarter of a radian
-  // Taylor's series end in the last digit: the next terms are below 1e-18.
+  // Returns cos x and sin(x) / x of half an angle x from its square. Below a quarter of a radian
+  // Taylor's series are exact to the last digit: the next terms are below 1e-18.
   static HalfTurn half_turn(double x2) noexcept {
     if (!(x2 <= 0.0625)) {
       const double x = std::sqrt(x2);
@@ -73,7 +74,7 @@ class FreeTurn {
     return {cosine, ratio};
   }
 
-  // Both turn B about one of its own axes, by the rate that this axis' part of the energy gives.
+  // Turn B about one of its own axes, at the rate of this axis' part of the energy.
   void about_0(double time, State& now) const noexcept {
     const double half = rate_0_ * now.L[0] * time / 2;
     const HalfTurn by = half_turn(half * half);
@@ -92,7 +93,7 @@ class FreeTurn {
     now.q = Eigen::Quaterniond(c * q.w() - s * q.z(), c * q.x() + s * q.y(), c * q.y() - s * q.x(),
                                c * q.z() + s * q.w());
   }
-  // Turns the two other components back by the whole angle, of which c and s are of the half.
+  // Turns the two other components back by the whole angle; c and s are those of half the angle.
   static void turn_plane(double c, double s, double& first, double& second) noexcept {
     const double cosine = 1 - 2 * s * s, sine = 2 * s * c;
     const double was = first;
@@ -100,7 +101,7 @@ class FreeTurn {
     second = cosine * second - sine * was;
   }
 
-  double rate_1_, rate_2_, rate_0_;  // of each part, 1 / (kg m^2)
+  double rate_1_, rate_2_, rate_0_;  // rate of each part, 1 / (kg m^2)
 };
 
 }  // namespace thimble::render

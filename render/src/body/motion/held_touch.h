@@ -16,17 +16,18 @@
 
 namespace thimble::render {
 
-/// The force law of an object that the hand holds from the first tick on: a spring and a damper
-/// from the tip to the place of the body that was there then. Its weight, its swing and what it
-/// meets are felt through them; its surface is not touched until it has slipped out.
+/// The force law of an object that the hand holds from the first tick on. A spring and a damper
+/// join the tip to the point of the body that was there in the first tick. The hand feels the
+/// body's weight, swing and contacts through them. The surface is not touched until the body has
+/// slipped out.
 ///
-/// A hand that goes where the body cannot follow, beyond its reach or under its floor, feels no
-/// more than `force_max` and then nothing. Real-time: safe.
+/// A hand that goes where the body cannot follow, beyond its reach or under its floor, feels at
+/// most `force_max` and then nothing. Real-time: safe.
 template <BodyMotion Motion>
 class HeldTouch final : public ObjectTouch {
  public:
-  /// Takes the object as it moves when nobody holds it, and the loop's period (s).
-  /// Real-time: never from the servo thread.
+  /// Takes the object that moves without being held, and the loop's period (s). Real-time: never
+  /// from the servo thread.
   HeldTouch(std::unique_ptr<MovingTouch<Motion>> object, const Grip& grip, double step)
       : object_(std::move(object)), grip_(grip), step_(step) {}
 
@@ -63,15 +64,14 @@ class HeldTouch final : public ObjectTouch {
 
   void list_settings(LiveSettings& settings) override { object_->list_settings(settings); }
 
-  bool slipped() const noexcept { return slipped_; }  ///< Returns whether it left the hand.
+  bool slipped() const noexcept { return slipped_; }  ///< Returns whether the hand lost the body.
 
  private:
   static constexpr double kFarSquared = 1e6;  // m^2; no arm reaches there
 
   driver::ForceCommand pull(Motion& motion, const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
-    // Where the held place will be at the end of the tick: the whole implicit step
-    // (body_coupling.h).
+    // The held point at the end of the tick: the whole implicit step (body_coupling.h).
     const auto [R_WB, p_WB] = motion.frame_after(step_);
     const Eigen::Vector3d p_WG = p_WB + R_WB * p_BG_;
     const Eigen::Vector3d f_W = grip_.stiffness * (p_WG - state.p_WT) +
@@ -98,7 +98,7 @@ class HeldTouch final : public ObjectTouch {
   std::unique_ptr<MovingTouch<Motion>> object_;
   Grip grip_;
   double step_;
-  Eigen::Vector3d p_BG_{0, 0, 0};  // the place that is held
+  Eigen::Vector3d p_BG_{0, 0, 0};  // the held point
   bool held_ = false;
   bool slipped_ = false;
 };

@@ -8,7 +8,7 @@ namespace thimble::render {
 bool MassProperties::valid() const noexcept {
   const double sum = inertia.sum();
   const double largest = inertia.maxCoeff();
-  // A needle or a plate may stand at the bound; rounding may carry it over.
+  // A needle or a plate may be at the bound; rounding may exceed it.
   constexpr double kRounding = 1e-9;
   return mass > 0 && std::isfinite(mass) && p_WC.allFinite() && q_WB.coeffs().allFinite() &&
          std::abs(q_WB.norm() - 1) < kRounding && inertia.minCoeff() > 0 && std::isfinite(sum) &&

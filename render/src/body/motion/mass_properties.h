@@ -8,8 +8,8 @@
 
 namespace thimble::render {
 
-/// Returns how a body resists motion: C its centre of mass, B its frame, with its origin in C and
-/// its axes along the principal ones.
+/// Mass properties of a body: C is its centre of mass, B its frame, with its origin in C and its
+/// axes along the principal ones.
 struct MassProperties {
   double mass = 1;                                           ///< kg, > 0
   Eigen::Vector3d p_WC{0, 0, 0};                             ///< m
@@ -17,15 +17,15 @@ struct MassProperties {
   Eigen::Vector3d inertia{1, 1, 1};  ///< kg m^2 about the axes of B, > 0, smallest first
   double volume = 0;                 ///< m^3
 
-  /// Returns whether a body can have these numbers: all finite and positive, and no inertia larger
-  /// than the other two together.
+  /// Returns whether these numbers are physically possible: all finite and positive, and no inertia
+  /// larger than the sum of the other two.
   bool valid() const noexcept;
 };
 
-/// Finds the mass properties of the matter inside a closed mesh (W, m) of `mass` kg, evenly filled:
-/// exact for the polyhedron, a sum over its triangles. The error says that the mass is not positive
-/// or that the mesh encloses no volume (open, flat or inside out). Real-time: never from the servo
-/// thread.
+/// Computes the mass properties of the matter inside a closed mesh (W, m) of `mass` kg, of uniform
+/// density: exact for the polyhedron, a sum over its triangles. The error states that the mass is
+/// not positive or that the mesh encloses no volume (open, flat or inside out). Real-time: never
+/// from the servo thread.
 driver::Result<MassProperties> mass_properties(const TriangleMesh& mesh, double mass);
 
 }  // namespace thimble::render

@@ -15,7 +15,7 @@ namespace {
 
 using Moved = driver::Result<std::unique_ptr<ObjectTouch>>;
 
-// Bounds of a scene's numbers catch slipped decimal points and values in g or mm.
+// Bounds of a scene's numbers catch misplaced decimal points and values in g or mm.
 constexpr double kMassMin = 1e-4;         // kg
 constexpr double kMassMax = 1e3;          // kg
 constexpr double kAccelerationMax = 100;  // m/s^2
@@ -29,10 +29,10 @@ constexpr double kFrictionMax = 10;
 constexpr double kHoldMax = 1e5;       // N/m
 constexpr double kHoldForceMax = 100;  // N
 
-// A round rim of half of them rolls over sides of 11 degrees.
+// Half of these points on a round rim give sides of 11 degrees.
 constexpr std::size_t kStandOn = RigidBody::kSupportMax;
 
-/// Fails if a hand cannot hold so.
+/// Returns an error if a hand cannot hold with these settings.
 driver::Result<void> check_grip(const MotionChoice& choice) {
   if (!choice.grip) return {};
   const Grip& grip = *choice.grip;
@@ -53,7 +53,7 @@ std::unique_ptr<ObjectTouch> moving(std::unique_ptr<ObjectTouch> surface, const 
   return std::make_unique<HeldTouch<Motion>>(std::move(object), *choice.grip, coupling.step);
 }
 
-// GCC 12 for ARM takes the room of a floor that is not there for one that is read.
+// GCC 12 for ARM treats the storage of an empty optional floor as read.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -80,7 +80,7 @@ TranslatingMotion three_ways(const TriangleMesh& mesh_W, const MotionChoice& cho
 
 using AnyMotion = std::variant<TranslatingMotion, RigidMotion>;
 
-/// Returns how an object moves. Errors: as `move_object`.
+/// Returns the motion of an object. Errors: as `move_object`.
 driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
                                     const BodyCoupling& coupling) {
   if (!(choice.reach >= 0)) return driver::Error{"A body's reach must be 0 m or more."};
@@ -104,7 +104,7 @@ driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoi
   auto body = RigidBody::build(settings);
   if (!body) return body.error();
   if (auto held = check_grip(choice); !held) return held.error();
-  // The numbers have been found right for both kinds.
+  // The numbers have been checked for both kinds.
   if (choice.kind == MotionKind::kTranslate) return AnyMotion(three_ways(mesh_W, choice, coupling));
   const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
   body->set_momentum(choice.mass * choice.v_W / choice.time_scale,

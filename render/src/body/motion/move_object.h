@@ -12,21 +12,21 @@
 
 namespace thimble::render {
 
-/// Lets an object move: wraps its force law, made for `mesh_W` (W, m; closed). The error says which
-/// number a body cannot have, or that the mesh encloses no volume.
-/// Real-time: never from the servo thread.
+/// Makes an object movable: wraps its force law, made for `mesh_W` (W, m; closed). The error names
+/// an invalid number, or states that the mesh encloses no volume. Real-time: never from the servo
+/// thread.
 THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> move_object(
     std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W, const MotionChoice& choice,
     const BodyCoupling& coupling);
 
-/// An object that several hands touch: its force law on each of them, and the body that they share.
+/// An object that several hands touch: one force law per hand, and the shared body.
 struct SharedObject {
   std::vector<std::unique_ptr<ObjectTouch>> touches;  ///< One for each hand.
-  std::shared_ptr<SharedBody> body;                   ///< Moved on by whoever runs the loop.
+  std::shared_ptr<SharedBody> body;                   ///< Advanced by the code that runs the loop.
 };
 
-/// Lets several hands move one object: wraps its force laws, made for `mesh_W`, one for each hand.
-/// Errors and time: as `move_object`.
+/// Makes one object movable by several hands: wraps its force laws, made for `mesh_W`, one for each
+/// hand. Errors and time: as `move_object`.
 THIMBLE_EXPORT driver::Result<SharedObject> move_shared_object(
     std::vector<std::unique_ptr<ObjectTouch>> surfaces, const TriangleMesh& mesh_W,
     const MotionChoice& choice, const BodyCoupling& coupling);

@@ -19,14 +19,14 @@
 
 namespace thimble::render {
 
-/// How all base points of an object move together [BP 4.3]. All of it is Real-time: safe.
+/// Motion of all base points of an object together [BP 4.3]. All of it is Real-time: safe.
 ///
-/// `R_WB` and `p_WB` are the frame B that the mesh stands in now (W before the first tick),
-/// `frame_after` is the frame to which the present velocity leads within a time (s), `velocity_at`
-/// is the velocity of a point of the body (m/s, our time), `gain_at` the velocity that it gains per
-/// impulse given there (our time, m/s per N s), `push` takes a force for the next step, `step`
-/// moves on by s of our time, `energy` is that of its motion and height (J), which changes by the
-/// work of what pushes, and falls where something is lost.
+/// `R_WB` and `p_WB` are the present frame B of the mesh (W before the first tick). `frame_after`
+/// is the frame to which the present velocity leads within a time (s). `velocity_at` is the
+/// velocity of a point of the body (m/s, our time). `gain_at` is the velocity that the point gains
+/// per impulse given there (our time, m/s per N s). `push` takes a force for the next step. `step`
+/// advances by s of our time. `energy` is that of its motion and height (J); it changes by the work
+/// of pushes, and falls by losses.
 template <class Motion>
 concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vector3d& v) {
   { now.R_WB() }
@@ -47,22 +47,22 @@ concept BodyMotion = requires(Motion motion, const Motion& now, const Eigen::Vec
   noexcept->std::same_as<double>;
 };
 
-/// The force law of an object that moves: the tip is taken into the frame B of the object's
-/// mesh, touches there what stands still, and the force comes back; the opposite acts on the body
-/// at the tip, in the same tick and to the bit.
+/// The force law of an object that moves. The tip is transformed into the frame B of the object's
+/// mesh and touches the resting mesh there; the force is transformed back. The opposite force acts
+/// on the body at the tip, in the same tick and bit-identical.
 ///
-/// Contact, texture, friction and dent see the tip move against the surface, whichever of the two
-/// moves: a path of the tip in B covers the body's way since the last tick as well, so a body
-/// cannot pass through a resting tip. They see the body where its velocity leads by the end of the
-/// tick, and the force is scaled by shared_force(): together the whole implicit step, which is
-/// stable for any mass and creates no energy, with and without damping (body_coupling.h). The body
-/// moves on by the loop's period in every tick, so a loop that stalled lets it wait, and every run
-/// is repeatable.
+/// Contact, texture, friction and dent use the motion of the tip relative to the surface, whichever
+/// of the two moves. A path of the tip in B includes the body's path since the last tick, so a body
+/// cannot pass through a resting tip. They use the body's place at the end of the tick according to
+/// its velocity, and the force is scaled by shared_force(). Together this is the whole implicit
+/// step, which is stable for any mass and creates no energy, with and without damping
+/// (body_coupling.h). The body advances by the loop's period in every tick, so it waits for a loop
+/// that stalls, and every run is repeatable.
 template <BodyMotion Motion>
 class MovingTouch final : public ObjectTouch {
  public:
-  /// Wraps an object's force law, made for the mesh as it stands at first.
-  /// Real-time: never from the servo thread.
+  /// Wraps an object's force law, made for the mesh at its first place. Real-time: never from the
+  /// servo thread.
   MovingTouch(std::unique_ptr<ObjectTouch> surface, Motion motion, const BodyCoupling& coupling)
       : surface_(std::move(surface)), motion_(std::move(motion)), coupling_(coupling) {}
 
@@ -94,7 +94,7 @@ class MovingTouch final : public ObjectTouch {
     return {.p_WB = {p.x(), p.y(), p.z()}, .q_WB = {q.w(), q.x(), q.y(), q.z()}};
   }
   const ContactMesh* mesh() const noexcept override { return surface_->mesh(); }
-  /// Draws in B: whoever draws moves it to `pose`.
+  /// Draws in B; the caller moves the drawing to `pose`.
   bool draw(BodyPatch& patch) noexcept override { return surface_->draw(patch); }
   const BodyShape* shape() const noexcept override { return surface_->shape(); }
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
@@ -107,7 +107,7 @@ class MovingTouch final : public ObjectTouch {
     for (Eigen::Vector3d& p : vertices) p = motion_.p_WB() + motion_.R_WB() * p;
   }
 
-  /// The coupling to the body counts on a surface no stiffer than it was built with.
+  /// The coupling assumes a surface no stiffer than when it was built.
   void list_settings(LiveSettings& settings) override {
     LiveSettings own(0, 0);
     surface_->list_settings(own);
@@ -115,12 +115,13 @@ class MovingTouch final : public ObjectTouch {
   }
 
   const Motion& motion() const noexcept { return motion_; }
-  /// Returns the motion, for who holds the body otherwise than by its surface. Real-time: safe.
+  /// Returns the motion, for callers that hold the body by other means than its surface. Real-time:
+  /// safe.
   Motion& motion() noexcept { return motion_; }
   const ObjectTouch& surface() const noexcept { return *surface_; }
 
  private:
-  // Gives the share of the surface's force to the hand and the opposite to the body.
+  // Returns the hand's share of the surface's force and pushes the body with the opposite.
   Eigen::Vector3d share(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_WT) noexcept {
     const double size = f_W.norm();
     // Written so that NaN means no force.

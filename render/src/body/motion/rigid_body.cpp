@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kForceMax = 1e6;  // N or N m; no arm pushes with more
+constexpr double kForceMax = 1e6;  // N or N m; no arm pushes harder
 
 bool is_force(const Vector3d& f) {
   // Written so that NaN means no force.
@@ -70,7 +70,7 @@ Vector3d RigidBody::velocity_at(const Vector3d& p_W) const noexcept {
   return settings_.time_scale * (v_WC() + omega_W().cross(p_W - p_WC_));
 }
 
-// Tells how the point at `arm` from C gains speed by an impulse f there.
+// Returns the velocity that the point at `arm` from C gains by an impulse f there.
 Vector3d RigidBody::give(const Vector3d& arm, const Vector3d& f) const noexcept {
   const Vector3d turn_B = (q_WB_.conjugate() * arm.cross(f)).cwiseQuotient(settings_.mass.inertia);
   return f / settings_.mass.mass + (q_WB_ * turn_B).cross(arm);
@@ -91,7 +91,7 @@ void RigidBody::fade() noexcept {
   }
 }
 
-// The factors of `fade` in steps of `time`, computed anew where the step changed.
+// The factors of `fade` in steps of `time`, computed again if the step has changed.
 void RigidBody::prepare_fading(double time) noexcept {
   if (fading_.time == time) return;
   fading_.time = time;
@@ -109,15 +109,15 @@ void RigidBody::step(double step) noexcept {
     prepare_fading(time);
     kick(time / 2);
     fade();
-    // Before the body moves: what the first half of the kick gave would move it through the floor,
-    // and along it against any friction.
+    // Before the body moves: the velocity from the first half of the kick would move it through the
+    // floor, and along it against any friction.
     if (settings_.floor) stand_on_floor(time, middle_of_turn(time));
     const Vector3d way = time * v_WC();
     p_WC_ += way;
     free_turn_.turn(time, angular_W_, q_WB_);
     fade();
-    // Forces stay at their points in W while C moves: so what the body gains about any point is
-    // what they give, to rounding.
+    // Forces stay at their points in W while C moves, so the body gains exactly their angular
+    // momentum about any point, to rounding.
     tau_W_ -= way.cross(f_W_);
     kick(time / 2);
     if (settings_.floor) {
@@ -129,20 +129,20 @@ void RigidBody::step(double step) noexcept {
   tau_W_.setZero();
 }
 
-// Returns how the body is turned in the middle of a step. Arms taken there keep a corner about
-// which the body turns where it is, to order 2 of the step.
+// Returns the orientation of the body in the middle of a step. With arms from there, a corner about
+// which the body turns stays in place, to order 2 of the step.
 Eigen::Quaterniond RigidBody::middle_of_turn(double time) const noexcept {
   const Vector3d half = time / 4 * omega_W();
   Eigen::Quaterniond turn(1, half.x(), half.y(), half.z());
   return (turn * q_WB_).normalized();
 }
 
-// Takes the speed into the floor from points that are below it or would be after the next step,
-// without rebound, and friction (floor_impulses.h), with the body turned as `q_WB`. To look ahead
-// lets a side come to lie flat: all its corners count at once.
+// Removes the speed into the floor from points that are below it or would be after the next step.
+// There is no rebound. Applies friction (floor_impulses.h). `q_WB` is the body's orientation.
+// Looking ahead lets a side come to rest flat: all its corners count at once.
 void RigidBody::stand_on_floor(double time, const Eigen::Quaterniond& q_WB) noexcept {
   const Floor& floor = *settings_.floor;
-  // Points that the next step cannot bring to the floor, at four times the speed, are left out.
+  // Points that the next step cannot bring to the floor, at four times the speed, are skipped.
   constexpr double kAhead = 4;
   constexpr double kNear = 1e-3;  // of the point's distance from C
   const Vector3d v_WC = this->v_WC();
@@ -164,7 +164,7 @@ void RigidBody::stand_on_floor(double time, const Eigen::Quaterniond& q_WB) noex
   angular_W_ = q_WB * settings_.mass.inertia.cwiseProduct(omega_B);
 }
 
-// Puts the body back up where its turn has led a point below the floor.
+// Moves the body up if its turn has brought a point below the floor.
 void RigidBody::lift_out() noexcept {
   const Floor& floor = *settings_.floor;
   const double height = floor.n_W.dot(p_WC_) - floor.height;

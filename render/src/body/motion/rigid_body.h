@@ -15,78 +15,78 @@
 
 namespace thimble::render {
 
-/// Sets what acts on a body besides what touches it, as data.
+/// Settings of a rigid body and its loads, in addition to contact.
 struct RigidBodySettings {
   MassProperties mass;                 ///< Mass, centre, inertia.
   Eigen::Vector3d gravity_W{0, 0, 0};  ///< m/s^2
   double damping = 0;                  ///< N s/m, >= 0
   double angular_damping = 0;          ///< N m s, >= 0: the torque is this times the turning rate.
-  /// The body's time over ours, > 0: smaller feels heavier, as 1 / time_scale^2 times the mass,
-  /// and as if in a thick liquid [BP 4.3].
+  /// The body's time over ours, > 0. A smaller one feels heavier, as 1 / time_scale^2 times the
+  /// mass, and as if in a viscous liquid [BP 4.3].
   double time_scale = 1;
-  std::optional<Floor> floor{};  ///< Where it cannot go below.
-  /// Points that stand on the floor, m in B; kSupportMax at most. Corners of the hull do.
+  std::optional<Floor> floor{};  ///< Floor that the body cannot pass.
+  /// Points that can rest on the floor, m in B; at most kSupportMax. Normally corners of the hull.
   std::vector<Eigen::Vector3d> support_B;
 };
 
 /// Moves and turns a rigid body in time [BP 4.3].
 ///
-/// Momentum and angular momentum are what is stored, in W, so that nothing but forces changes them.
-/// It turns by `FreeTurn`: of order 4 in time, and the angular momentum is kept to rounding
-/// whatever the step is, so a body cannot spin itself up.
+/// Momentum and angular momentum are stored, in W, so that only forces change them. It turns by
+/// `FreeTurn`, of order 4 in time. The angular momentum is kept to rounding for any step, so a body
+/// cannot spin itself up.
 class THIMBLE_EXPORT RigidBody {
  public:
-  static constexpr std::size_t kSupportMax = 64;  ///< Most points of its hull on the floor.
+  static constexpr std::size_t kSupportMax = 64;  ///< Maximum number of support points.
 
-  /// Makes a body at rest where its mass properties put it. The error says which number a body
-  /// cannot have. Real-time: never from the servo thread.
+  /// Makes a body at rest at the place of its mass properties. The error names an invalid number.
+  /// Real-time: never from the servo thread.
   static driver::Result<RigidBody> build(const RigidBodySettings& settings);
 
   // All of the following are Real-time: safe.
 
   /// Pushes with `f_W` (N) at the point `p_W` (m), and turns with `tau_W` (N m), during the next
-  /// step. What is NaN, or beyond 10^6, is left out.
+  /// step. Values that are NaN or beyond 10^6 are ignored.
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
-  /// Moves on by `step` s under what was pushed, which is then gone. Nonsense: stays.
+  /// Advances by `step` s under the pushes, which are then cleared. An invalid step has no effect.
   void step(double step) noexcept;
 
-  /// Gives momentum (kg m/s) and angular momentum about C (kg m^2/s) at once.
+  /// Sets momentum (kg m/s) and angular momentum about C (kg m^2/s).
   void set_momentum(const Eigen::Vector3d& momentum_W, const Eigen::Vector3d& angular_W) noexcept {
     momentum_W_ = momentum_W;
     angular_W_ = angular_W;
   }
 
-  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }     ///< Returns where C is, m.
-  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }  ///< Returns how it is turned.
+  const Eigen::Vector3d& p_WC() const noexcept { return p_WC_; }  ///< Returns the position of C, m.
+  const Eigen::Quaterniond& q_WB() const noexcept { return q_WB_; }  ///< Returns the orientation.
   /// Returns the momentum, kg m/s, in the body's own time.
   const Eigen::Vector3d& momentum_W() const noexcept { return momentum_W_; }
   /// Returns the angular momentum about C, kg m^2/s, in the body's own time.
   const Eigen::Vector3d& angular_momentum_W() const noexcept { return angular_W_; }
   const RigidBodySettings& settings() const noexcept { return settings_; }
-  /// Returns the velocity of C (m/s) and the turning rate (rad/s), in the body's own time.
+  /// Returns the velocity of C, m/s, in the body's own time.
   Eigen::Vector3d v_WC() const noexcept { return momentum_W_ / settings_.mass.mass; }
-  Eigen::Vector3d omega_W() const noexcept;  ///< Returns the turning rate, rad/s.
+  Eigen::Vector3d omega_W() const noexcept;  ///< Returns the angular velocity, rad/s.
   /// Returns the velocity (m/s, in our time) of the body's point at `p_W`.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const noexcept;
-  /// Returns which velocity (m/s, in our time) the body's point at `p_W` gains by an impulse (N s,
-  /// in our time) given there.
+  /// Returns the velocity (m/s, in our time) that the body's point at `p_W` gains by an impulse (N
+  /// s, in our time) given there.
   Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
                           const Eigen::Vector3d& impulse) const noexcept {
     return settings_.time_scale * settings_.time_scale * give(p_W - p_WC_, impulse);
   }
-  /// Keeps C within `reach` m of where it was at first: puts it back and takes the momentum that
-  /// leads away, so that energy only falls. Nonsense: nothing.
+  /// Keeps C within `reach` m of its first place: moves it back and removes the outward momentum,
+  /// so that energy only falls. An invalid reach has no effect.
   void keep_within(double reach) noexcept;
-  /// Counts half steps in which the floor's impulses ended less accurate than
+  /// Returns the number of half steps in which the floor's impulses were less accurate than
   /// FloorImpulses::kTolerance.
   std::uint64_t floor_unsolved() const noexcept { return floor_unsolved_; }
-  /// Returns where a point of the body that was at `p_W` at first is now, m.
+  /// Returns the present position of the body's point that was at `p_W` at first, m.
   Eigen::Vector3d moved(const Eigen::Vector3d& p_W) const noexcept {
     return p_WC_ + q_WB_ * (settings_.mass.q_WB.conjugate() * (p_W - settings_.mass.p_WC));
   }
-  /// Returns the energy of motion, and of height over the origin where there is gravity, J.
+  /// Returns the kinetic energy, J.
   double kinetic_energy() const noexcept;
-  double potential_energy() const noexcept;  ///< Returns the energy of height, J.
+  double potential_energy() const noexcept;  ///< Returns the energy of height over the origin, J.
 
  private:
   explicit RigidBody(const RigidBodySettings& settings)

@@ -11,8 +11,8 @@
 
 namespace thimble::render {
 
-/// A body that several hands touch in one run: each hand has its own contact with it, and what they
-/// give in a tick adds up until whoever runs the loop moves the body on, once.
+/// A body that several hands touch in one run. Each hand has its own contact with it; their pushes
+/// in a tick add up until the code that runs the loop advances the body, once.
 class SharedBody {
  public:
   SharedBody() = default;
@@ -20,16 +20,16 @@ class SharedBody {
   SharedBody& operator=(const SharedBody&) = delete;
   virtual ~SharedBody() = default;
 
-  /// Moves on by `step` s under what all hands gave since the last step. Real-time: safe.
+  /// Advances by `step` s under the pushes of all hands since the last step. Real-time: safe.
   virtual void step(double step) noexcept = 0;
   /// Returns the momentum, kg m/s, in the body's own time. Real-time: safe.
   virtual Eigen::Vector3d momentum_W() const noexcept = 0;
-  /// Returns the angular momentum about the centre, kg m^2/s, in the body's own time; zero for what
-  /// does not turn. Real-time: safe.
+  /// Returns the angular momentum about the centre, kg m^2/s, in the body's own time; zero for a
+  /// body that does not turn. Real-time: safe.
   virtual Eigen::Vector3d angular_momentum_W() const noexcept = 0;
 };
 
-/// A SharedBody that moves in one way (BodyMotion).
+/// A SharedBody with one kind of motion (BodyMotion).
 template <class Motion>
 class SharedBodyOf final : public SharedBody {
  public:
@@ -41,25 +41,26 @@ class SharedBodyOf final : public SharedBody {
     first_ = motion_.energy();
     return hands_.size() - 1;
   }
-  /// Pushes by the hand of this number with `f_W` (N) at `p_W` (m) during the next step, once in a
-  /// step. Real-time: safe.
+  /// Pushes by this hand with `f_W` (N) at `p_W` (m) during the next step, once per step.
+  /// Real-time: safe.
   void push(std::size_t hand, const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept {
     motion_.push(f_W, p_W);
     hands_[hand].f_W = f_W;
     hands_[hand].p_W = p_W;
   }
-  /// Returns the stored energy of a hand (J), whose fall is what the body gave this hand.
+  /// Returns the stored energy of a hand (J). A fall of it is energy that the body gave to this
+  /// hand.
   ///
-  /// With E the energy of motion and height, E_0 the same at first, W_i the work of hand i on the
-  /// body and L = E_0 + sum W_i - E what the body has lost, the stored energy of hand i is
+  /// Let E be the energy of motion and height, and E_0 its first value. W_i is the work of hand i
+  /// on the body, and L = E_0 + sum W_i - E the loss of the body. The stored energy of hand i is
   ///
   ///     S_i = E - sum of W_j of the other hands + max L = E_0 + W_i + (max L - L).
   ///
-  /// Without a loss that is E less what the other hands put in. What the body loses belongs to no
-  /// hand: without the last term it would be a fall of all S_i, so that one hand's drag over a
-  /// table would pay for a wrong force on another. Energy that a body gains without work lets L
-  /// fall below its maximum and raises S_i, as it does with one hand. The sum of what all hands get
-  /// by falls of S_i is therefore what they put in. Real-time: safe.
+  /// Without a loss this is E less the work of the other hands. A loss of the body belongs to no
+  /// hand. Without the last term it would be a fall of all S_i. Then one hand's drag over a table
+  /// would pay for a wrong force on another hand. Energy that a body gains without work lets L fall
+  /// below its maximum and raises S_i, as with one hand. So the energy that all hands receive by
+  /// falls of S_i is the energy that they supplied. Real-time: safe.
   double energy_for(std::size_t hand) const noexcept {
     double energy = motion_.energy() + lost_;
     for (std::size_t i = 0; i < hands_.size(); ++i) {
@@ -73,7 +74,7 @@ class SharedBodyOf final : public SharedBody {
     motion_.step(step);
     double lost = first_ - motion_.energy();
     for (Hand& hand : hands_) {
-      // A force that is held does work by the mean velocity.
+      // A force held over the step does work by the mean velocity.
       hand.given += step / 2 * (hand.power + hand.f_W.dot(motion_.velocity_at(hand.p_W)));
       hand.f_W.setZero();
       lost += hand.given;
@@ -108,17 +109,16 @@ class SharedBodyOf final : public SharedBody {
 };
 
 /// One hand's side of a SharedBody, as a BodyMotion. Its `step` does nothing: a hand's tick does
-/// not move the body, so all hands of a tick find it at one place.
+/// not move the body, so all hands of a tick find it at the same place.
 ///
-/// `gain_at` is told as if every hand gave the same impulse at the same point. Then the share that
-/// MovingTouch and HeldTouch give (shared_force) is stable for any number of hands: the body's step
-/// by all forces together gains at most the number of hands times what it gains by one
-/// (Cauchy and Schwarz), so the springs' energy falls as with one hand. All of it is Real-time:
-/// safe.
+/// `gain_at` assumes that every hand gives the same impulse at the same point. Then the share in
+/// MovingTouch and HeldTouch (shared_force) is stable for any number of hands. The body's step by
+/// all forces together gains at most the number of hands times the gain by one (Cauchy and
+/// Schwarz). So the springs' energy falls as with one hand. All of it is Real-time: safe.
 template <class Motion>
 class SharedMotion {
  public:
-  /// Takes part in the body as one of `hands`. Real-time: never from the servo thread.
+  /// Joins the body as one of `hands`. Real-time: never from the servo thread.
   SharedMotion(std::shared_ptr<SharedBodyOf<Motion>> body, std::size_t hands)
       : body_(std::move(body)), hand_(body_->join()), hands_(static_cast<double>(hands)) {}
 

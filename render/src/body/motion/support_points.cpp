@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Directions spread evenly over the sphere, in which the hull's corners are looked for.
+// Number of directions, uniform over the sphere, in which the hull's corners are searched.
 constexpr int kDirections = 512;  // 5 degrees apart [chosen]
 
 Vector3d direction(int i) {
@@ -37,7 +37,7 @@ std::vector<Vector3d> support_points(const TriangleMesh& mesh, std::size_t most)
     }
   }
   for (const Vector3d& corner : corners) middle += corner / static_cast<double>(corners.size());
-  // Farthest first, so that what is left out is near to what is kept.
+  // Farthest first, so that dropped corners are near to kept ones.
   std::vector<Vector3d> chosen;
   std::vector<double> away(corners.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < corners.size(); ++i) away[i] = (corners[i] - middle).norm();

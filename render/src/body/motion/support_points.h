@@ -8,10 +8,10 @@
 
 namespace thimble::render {
 
-/// Chooses up to `most` of a mesh's vertices for it to stand on: the corners of its hull that are
-/// farthest apart, beginning with the one farthest from the middle. All corners of a box or any
-/// other hull with few of them; of a round hull what stands for it. m in W, as given. Real-time:
-/// never from the servo thread.
+/// Returns up to `most` of a mesh's vertices as its support points. These are the corners of its
+/// hull that are farthest apart, beginning with the one farthest from the middle. For a box or any
+/// other hull with few corners these are all corners; for a round hull a representative set. m in
+/// W, as given. Real-time: never from the servo thread.
 std::vector<Eigen::Vector3d> support_points(const TriangleMesh& mesh, std::size_t most);
 
 }  // namespace thimble::render

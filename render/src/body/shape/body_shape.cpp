@@ -15,12 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStill = 1e-12;             // of the mesh's size; what is nearer is rounding
-constexpr std::uint8_t kTries = 8;           // for a vertex that others are in the way of [chosen]
+constexpr double kStill = 1e-12;             // of the mesh's size; a smaller distance is rounding
+constexpr std::uint8_t kTries = 8;           // for a vertex blocked by others [chosen]
 constexpr std::size_t kPrintMax = 512;       // vertices that one print moves
 constexpr std::size_t kFinePrintMax = 8192;  // the same of a mesh whose edges are split
 
-// Tells how many vertices lie within `radius` on a mesh whose vertices lie evenly.
+// Returns the number of vertices within `radius` on a mesh with evenly distributed vertices.
 double vertices_within(const ContactMesh& mesh, double radius) {
   double twice_area = 0;
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -53,7 +53,7 @@ driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeC
   }
   if (choice.clay) {
     if (auto fit = choice.clay->check(); !fit) return fit.error();
-    constexpr double kLeast = 0;  // the touched triangle goes in any case
+    constexpr double kLeast = 0;  // the touched triangle moves in any case
     const std::size_t most = choice.clay->edge > 0 ? kFinePrintMax : kPrintMax;
     const double reach = choice.clay->keeps_volume ? VolumeKeeper::kRim : 1;
     auto fit = check_size(mesh, reach > 1 ? "A print with its rim" : "A print",
@@ -62,7 +62,7 @@ driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeC
   }
   if (choice.snap) {
     if (auto fit = choice.snap->check(); !fit) return fit.error();
-    constexpr double kLeast = 12;  // two rings: fewer show no panel
+    constexpr double kLeast = 12;  // two rings: fewer do not form a panel
     auto fit = check_size(mesh, "A panel", choice.snap->radius, kLeast, SnapShape::kVerticesMax);
     if (!fit) return fit.error();
   }
@@ -153,7 +153,7 @@ std::span<const VertexMove> BodyShape::follow(const ContactMesh& mesh,
   return moves_;
 }
 
-// Lets clay flow under a contact, and go to the rim of the print if its volume is kept.
+// Lets clay flow under a contact, and to the rim of the print if its volume is kept.
 void BodyShape::flow(const ContactMesh& mesh, const ShapeContact& contact) noexcept {
   const auto& corners = mesh.corners(contact.triangle);
   const double reach = clay_->radius() * (volume_ ? VolumeKeeper::kRim : 1);
@@ -195,7 +195,7 @@ void BodyShape::take(const ContactMesh& mesh, const EdgeSplit& split) noexcept {
   if (waits) mark(split.vertex);
 }
 
-// Tells how far a place of the mesh lies inwards of where it was at first, m.
+// Returns how far inwards a place of the mesh is from its first place, m.
 double BodyShape::way_of(const ShapeContact& contact,
                          std::span<const std::int32_t> corners) const noexcept {
   double way = 0;
@@ -224,7 +224,7 @@ Vector3d BodyShape::target(std::int32_t vertex) const noexcept {
   return to;
 }
 
-// Carries a vertex as near to where it shall be as it may go; true if it need not wait any longer.
+// Moves a vertex as near to its target as possible. Returns true if it need not wait any longer.
 bool BodyShape::carry(const ContactMesh& mesh, std::int32_t vertex) noexcept {
   Vector3d& place = places_[static_cast<std::size_t>(vertex)];
   const Vector3d to = target(vertex);
@@ -249,7 +249,7 @@ bool BodyShape::carry(const ContactMesh& mesh, std::int32_t vertex) noexcept {
 }
 
 void BodyShape::carry_waiting(const ContactMesh& mesh) noexcept {
-  // Each that waits is looked at once, at most, and no more moved than a tick has time for.
+  // Each waiting vertex is examined at most once, and moves are limited to the time of a tick.
   std::size_t looks = std::min(waiting_, 8 * kMovesMax);
   while (looks-- > 0 && moves_.size() < kMovesMax) {
     const std::int32_t vertex = ring_[first_waiting_];

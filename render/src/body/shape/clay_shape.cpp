@@ -24,14 +24,14 @@ Vector3d ClayShape::add(std::int32_t vertex, const Vector3d& change) noexcept {
   Vector3d& set = sets_[static_cast<std::size_t>(vertex)];
   const Vector3d before = set;
   set += change;
-  // The nearest place in the ball: the way there never goes against the force.
+  // The nearest place in the ball: the way there is never against the force.
   const double away = set.norm();
   if (away > choice_.movement_limit) set *= choice_.movement_limit / away;
   return set - before;
 }
 
 void ClayShape::moved(double way, double depth) noexcept {
-  // The force that the slider holds against while it moves is the one that is left.
+  // The slider moves against the force that is left.
   const double heat = stiffness_ * (depth - way) * way;
   if (way > 0 && heat > 0) dissipated_ += heat;
 }

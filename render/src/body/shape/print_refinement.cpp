@@ -12,23 +12,24 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Triangles gone over from one that is too coarse to one whose longest edge is the next one's, too:
-// where that is farther, the edge that was reached is split. [chosen; 3 on scans]
+// Maximum length of the path from a triangle that is too coarse to a triangle whose longest edge is
+// also that of its neighbour. If the path is longer, the edge reached is split. [chosen; 3 on
+// scans]
 constexpr int kPathMax = 16;
 
 // Narrower triangles, as twice the area over the square of the longest edge, are not split: their
 // parts would be rounding. [chosen]
 constexpr double kNarrow = 1e-4;
 
-// An edge so much shorter than the one asked for is not made: what is so narrow stays. [chosen]
+// Minimum length of a new edge, as a share of the requested one; narrower triangles stay. [chosen]
 constexpr double kShort = 0.125;
 
-// A press that has gone so far, in edges, is looked around anew; one that stays, after so many
-// ticks, since what is pressed in grows. [chosen]
+// A press that has moved this far, in edges, starts a new search. A press that stays starts one
+// after this number of ticks, since the print grows. [chosen]
 constexpr double kGone = 0.25;
 constexpr int kAgain = 32;
 
-// The triangles of the mesh on its first shape: a print is as smooth as it asks for over that, and
+// The triangles of the mesh on its first shape. A print has its nominal smoothness over that, and
 // walls of a pit, however steep, need no more triangles than its floor.
 struct FirstShape {
   const ContactMesh& mesh;
@@ -40,13 +41,13 @@ struct FirstShape {
   }
 };
 
-// An edge's length and numbers, so that of two as long one is always the longer.
+// An edge's length and numbers, so that edges of equal length have a definite order.
 using Length = std::tuple<double, std::int32_t, std::int32_t>;
 
 Length length_of(const FirstShape& shape, std::int32_t triangle, std::size_t k) {
   const std::int32_t a = shape.mesh.corners(triangle)[k];
   const std::int32_t b = shape.mesh.corners(triangle)[(k + 1) % 3];
-  // From the same end whoever asks, so that both triangles at it find the same length.
+  // From the same end in all calls, so that both triangles at the edge compute the same length.
   const std::int32_t low = std::min(a, b);
   const std::int32_t high = std::max(a, b);
   return {(shape.at(high) - shape.at(low)).squaredNorm(), low, high};
@@ -63,11 +64,11 @@ std::size_t longest_edge(const FirstShape& shape, std::int32_t triangle) {
 bool narrow(const FirstShape& shape, std::int32_t triangle, double squared) {
   const Vector3d& a = shape.at(triangle, 0);
   const double area = (shape.at(triangle, 1) - a).cross(shape.at(triangle, 2) - a).norm();
-  // Written so that NaN is narrow.
+  // Written so that NaN counts as narrow.
   return !(area > kNarrow * squared);
 }
 
-// Tells whether splitting an edge would make one shorter than `least` m, to the corners opposite.
+// Returns whether splitting an edge would make one shorter than `least` m, to the opposite corners.
 bool makes_short(const FirstShape& shape, std::int32_t triangle, std::size_t k, double least) {
   const Vector3d middle = (shape.at(triangle, k) + shape.at(triangle, (k + 1) % 3)) / 2;
   for (const std::int32_t t : {triangle, shape.mesh.cell(triangle).neighbours[k]}) {

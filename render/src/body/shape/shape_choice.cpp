@@ -9,8 +9,8 @@
 namespace thimble::render {
 namespace {
 
-// Bounds of a scene's numbers catch slipped decimal points; they are far outside of what a desk-top
-// arm can show [DEVICES 3].
+// Bounds of a scene's numbers catch misplaced decimal points; they are far outside the range of a
+// desk-top arm [DEVICES 3].
 constexpr double kForceMax = 100;    // N
 constexpr double kSpeedMax = 100;    // m/s
 constexpr double kLengthMax = 1;     // m
@@ -52,7 +52,7 @@ void ClayChoice::read(SettingsReader& reader) {
 }
 
 driver::Result<void> ClayChoice::check() const {
-  // What has no limit may be infinite.
+  // Values without an upper limit may be infinite.
   if (!(yield_force >= 0) || !std::isfinite(yield_force)) {
     return driver::Error{"Clay needs a yield_force of 0 N or more."};
   }
@@ -100,7 +100,7 @@ driver::Result<void> SnapChoice::check() const {
 }
 
 SnapSettings SnapChoice::truss() const {
-  // The load is in proportion to the bars' stiffness.
+  // The load is proportional to the bars' stiffness.
   const double per_stiffness = SnapTruss(radius, depth / 2, 1).limit_load();
   return {.half_span = radius,
           .rise = depth / 2,

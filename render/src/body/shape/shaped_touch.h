@@ -16,9 +16,9 @@ namespace thimble::render {
 
 /// The force law of an object whose base points move by themselves: clay, a tin can.
 ///
-/// `Stages` is a ContactForceLaw over a MovingContact. The force of a tick is that of the surface
-/// as it stands; then the surface gives way, and the next tick finds it there. So what gives way
-/// takes energy and never gives any.
+/// `Stages` is a ContactForceLaw over a MovingContact. The force of a tick is that of the present
+/// surface. Then the surface gives way, and the next tick finds the new shape. So giving way only
+/// takes energy.
 template <class Stages>
 class ShapedTouch final : public ObjectTouch {
  public:
@@ -65,7 +65,7 @@ class ShapedTouch final : public ObjectTouch {
   const BodyShape* shape() const noexcept override { return &shape_; }
 
  private:
-  // Splits edges after the moves, so that the surface stands as the shape believes it does.
+  // Splits edges after the moves, so that the surface agrees with the shape's state.
   void refine() noexcept {
     auto& contact = stages_.contact();
     while (const auto edge = shape_.next_split(contact.mesh())) {

@@ -14,15 +14,15 @@ void SnapBase::follow(double load, double spring, double step) noexcept {
   double target = first ? *first : *second;
   bool snapped = snapped_;
   if (!truss_.limit_point(spring)) {
-    // A spring so stiff that nothing jumps has one resting place. It is called snapped from where
-    // it would stay in, and again not from where it would go back, were it let go.
+    // A spring so stiff that nothing jumps has one resting place. It counts as snapped from where
+    // it would stay in if released, and as not snapped from where it would return if released.
     const double limit = truss_.limit_point().value_or(truss_.rise());
     if (target > 2 * truss_.rise() - limit) snapped = true;
     if (target < limit) snapped = false;
     running_ = running_ && snapped == snapped_;
   } else {
-    // Of two resting places the one that the forces lead to from here: where the load is more than
-    // the bars bear it goes on inwards, and stops at the first shape only if that is still ahead.
+    // Chooses the resting place to which the forces lead from here. If the load is more than the
+    // bars can hold, it moves inwards, and stops at the first shape only if that is still ahead.
     const bool inwards = truss_.force(u_) + spring * u_ < load;
     snapped = !first || (second && (inwards ? *first < u_ : *second <= u_));
     if (snapped && second) target = *second;
@@ -36,7 +36,7 @@ void SnapBase::follow(double load, double spring, double step) noexcept {
   const double from = u_;
   u_ += std::clamp(target - from, -most, most);
   if (!running_) return;
-  // The load and the spring's pull over the way gone, less what the bars took up.
+  // Work of the load and of the spring's pull over the path, less the energy taken up by the bars.
   const double work = load * (u_ - from) - spring * (u_ * u_ - from * from) / 2;
   released_ += work - (truss_.energy(u_) - truss_.energy(from));
   running_ = u_ != target;

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPlateau = 0.25;     // of the radius goes in as deep as the middle [chosen]
-constexpr double kPanelsApart = 1.2;  // radii between the middles of two panels, so that walls stay
-constexpr double kFollow = 0.05;      // radii that the tip goes before its panel follows [chosen]
-constexpr double kHoldLeast = 0.05;   // of the profile: less does not press a panel [chosen]
-constexpr double kSmallestWay = 1e-9;  // of the depth: a smaller way is none
+constexpr double kPlateau = 0.25;      // of the radius moves in as deep as the middle [chosen]
+constexpr double kPanelsApart = 1.2;   // radii between the middles of two panels, so walls remain
+constexpr double kFollow = 0.05;       // radii that the tip moves before its panel follows [chosen]
+constexpr double kHoldLeast = 0.05;    // of the profile: less does not press a panel [chosen]
+constexpr double kSmallestWay = 1e-9;  // of the depth: a smaller displacement counts as none
 
 }  // namespace
 
@@ -34,7 +34,7 @@ SnapShape::SnapShape(const SnapChoice& choice, double stiffness, const ContactMe
   }
   for (Vector3d& n : first_normals_) n.normalize();
   panels_.reserve(static_cast<std::size_t>(choice.panels) + 1);
-  // One more, so that the wall gives way elastically when all others are in.
+  // One more, so that the wall gives way elastically when all others have snapped.
   for (int i = 0; i <= choice.panels; ++i) {
     panels_.push_back({.base = SnapBase(truss_, Vector3d::UnitZ()), .vertices = {}});
     panels_.back().vertices.reserve(kVerticesMax);
@@ -49,7 +49,7 @@ double SnapShape::profile(double distance) const noexcept {
   return half * half;
 }
 
-// Tells how far the touched place goes inwards per way of the panel.
+// Returns the inward displacement of the touched place per displacement of the panel.
 double SnapShape::hold_of(const Panel& panel, const ShapeContact& contact) const noexcept {
   if (!panel.used) return 0;
   return profile((contact.p_first - panel.centre).norm()) *
@@ -81,7 +81,7 @@ void SnapShape::put(Panel& panel, const ContactMesh& mesh, const ShapeContact& c
   panel.moved = true;
 }
 
-// Leads the panel that has not snapped along with the tip, or begins one.
+// Moves the panel that has not snapped along with the tip, or begins one.
 void SnapShape::lead(const ContactMesh& mesh, const ShapeContact& contact) noexcept {
   if (live_ != nullptr && live_->base.snapped()) live_ = nullptr;
   if (live_ == nullptr) {
@@ -101,7 +101,7 @@ void SnapShape::lead(const ContactMesh& mesh, const ShapeContact& contact) noexc
   put(*live_, mesh, contact);
 }
 
-// Pulls a panel by a spring (N/m) whose other end is at `end` (m), or lets it go (0).
+// Pulls a panel by a spring (N/m) whose other end is at `end` (m), or releases it (0).
 double SnapShape::pull(Panel& panel, double end, double spring, double step) noexcept {
   const double from = panel.base.way();
   const double energy = panel.base.energy();
@@ -109,8 +109,8 @@ double SnapShape::pull(Panel& panel, double end, double spring, double step) noe
   panel.base.pull_by_spring(end, spring, step);
   const double to = panel.base.way();
   snaps_ += panel.base.snaps() - snaps;
-  // What the spring gave on the way, its other end held, less what the panel keeps. A surface that
-  // falls away from the tip is not held by it.
+  // Work of the spring on the path, with its other end held, less the energy kept in the panel. A
+  // surface that falls away from the tip is not held by it.
   const double pressed_before = std::max(end - from, 0.0);
   const double pressed = std::max(end - to, 0.0);
   released_ += spring / 2 * (pressed_before * pressed_before - pressed * pressed) -
@@ -124,7 +124,7 @@ double SnapShape::press(const ContactMesh& mesh, const ShapeContact& contact,
   left_.clear();
   for (Panel& panel : panels_) panel.moved = false;
   lead(mesh, contact);
-  // Only the one that holds the place most gives way: two at once would give twice.
+  // Only the panel with the largest effect at the place gives way: two at once would give twice.
   Panel* pressed = nullptr;
   double hold = kHoldLeast;
   for (Panel& panel : panels_) {

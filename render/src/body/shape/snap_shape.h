@@ -14,30 +14,30 @@
 
 namespace thimble::render {
 
-/// Moves the base points of a mesh as the wall of a tin can does: around the press a panel gives
-/// way elastically, and past the threshold it jumps to a second shape and stays there.
+/// Moves the base points of a mesh like the wall of a tin can. Around the press a panel gives way
+/// elastically. Past the threshold it jumps to a second shape and stays there.
 ///
-/// All base points of a panel go in together, by a smooth profile times the way of one SnapBase: 1
-/// up to a quarter of the radius, then falling to 0 at the radius. Until it snaps the panel goes
-/// along with the tip; afterwards it stays where it is, and the next one begins elsewhere. Pressed
-/// off its middle, where the profile is p, it feels 1 / p^2 as stiff.
+/// All base points of a panel move in together, by a smooth profile times the displacement of one
+/// SnapBase: 1 up to a quarter of the radius, then falling to 0 at the radius. Until it snaps, the
+/// panel follows the tip. Afterwards it stays in place, and the next one begins elsewhere. Pressed
+/// off its middle, where the profile is p, it feels 1 / p^2 times as stiff.
 class SnapShape {
  public:
-  /// Takes the surface's stiffness (N/m, > 0) and the mesh at first, whose vertices' places
-  /// (`first_places`) must outlive this. Real-time: never from the servo thread.
+  /// Takes the surface's stiffness (N/m, > 0) and the mesh in its first shape. Its vertices' places
+  /// (`first_places`) must outlive this object. Real-time: never from the servo thread.
   SnapShape(const SnapChoice& choice, double stiffness, const ContactMesh& mesh,
             std::span<const Eigen::Vector3d> first_places);
 
   // All of the following are Real-time: safe.
 
-  /// Lets the panels move under a contact for `step` s. Gives the way that the touched place shall
-  /// go inwards, m.
+  /// Moves the panels under a contact for `step` s. Returns the distance by which the touched place
+  /// moves inwards, m.
   double press(const ContactMesh& mesh, const ShapeContact& contact, double step) noexcept;
-  /// Lets the panels move for `step` s with nothing pressing.
+  /// Moves the panels for `step` s without a contact.
   void rest(double step) noexcept;
 
-  /// Returns the vertices whose place may have changed in the last call, of one panel after the
-  /// other.
+  /// Calls `take` with the vertices whose place may have changed in the last call, one panel after
+  /// the other.
   template <class Take>
   void for_each_moved(Take take) const noexcept {
     for (const Panel& panel : panels_) {
@@ -47,16 +47,16 @@ class SnapShape {
     for (const std::int32_t vertex : left_) take(vertex);
   }
 
-  /// Returns how far a vertex that was at `p_first` (m) shall be from there, m.
+  /// Returns the displacement of a vertex that was at `p_first` (m), m.
   Eigen::Vector3d displacement(const Eigen::Vector3d& p_first) const noexcept;
 
-  /// Counts the snaps; tells the energy in the panels, and what they released (J): what pressed
-  /// them in less what they keep. It goes into sound and heat.
+  /// Returns the number of snaps. Each releases energy (J): the work that pressed the panel in less
+  /// the energy that it keeps. It goes into sound and heat.
   std::int64_t snaps() const noexcept;
-  double energy() const noexcept;                         ///< Returns what the panels keep, J.
-  double released() const noexcept { return released_; }  ///< Returns what they released, J.
+  double energy() const noexcept;                         ///< Returns the energy in the panels, J.
+  double released() const noexcept { return released_; }  ///< Returns the total energy released, J.
 
-  static constexpr std::size_t kVerticesMax = 512;  ///< Of a panel.
+  static constexpr std::size_t kVerticesMax = 512;  ///< Maximum number of vertices of a panel.
 
  private:
   struct Panel {
@@ -82,8 +82,8 @@ class SnapShape {
   std::vector<Eigen::Vector3d> first_normals_;  // inwards, of the vertices
   SurfacePatch patch_;
   std::vector<Panel> panels_;
-  std::vector<std::int32_t> left_;  // vertices of a panel that has gone on
-  Panel* live_ = nullptr;           // the one that goes along with the tip
+  std::vector<std::int32_t> left_;  // vertices of a panel that has moved elsewhere
+  Panel* live_ = nullptr;           // the panel that follows the tip
   double released_ = 0;
   std::int64_t snaps_ = 0;
 };

@@ -16,8 +16,8 @@ SnapTruss::SnapTruss(double half_span, double rise, double bar_stiffness) noexce
   bar_ = math::hypot(half_span, rise);
 }
 
-// How much shorter the bars are than at rest: L0^2 - L^2 = u (2 H - u), without the cancellation of
-// L0 - L in a flat truss.
+// Shortening of the bars relative to rest: L0^2 - L^2 = u (2 H - u), without the cancellation of L0
+// - L in a flat truss.
 double SnapTruss::shortening(double u, double length) const noexcept {
   return u * (2 * rise_ - u) / (bar_ + length);
 }
@@ -39,7 +39,7 @@ double SnapTruss::stiffness(double u) const noexcept {
 }
 
 std::optional<double> SnapTruss::limit_point(double spring) const noexcept {
-  // Where the stiffness of the truss is minus that of the spring.
+  // The place where the stiffness of the truss is minus that of the spring.
   if (!valid() || !(spring >= 0)) return std::nullopt;
   const double length = math::cbrt(bar_ * half_span_ * half_span_ / (1 + spring / (2 * k_)));
   if (!(length > half_span_)) return std::nullopt;
@@ -55,8 +55,8 @@ std::optional<double> SnapTruss::settle(double load, double spring, bool snapped
   if (!valid() || !std::isfinite(load) || !(spring >= 0) || !std::isfinite(spring)) {
     return std::nullopt;
   }
-  // Beyond the limit points F(u) + spring u rises with u. Far out it rises by 2 k at least, less
-  // what the bars' own length hides: there the brackets end.
+  // Beyond the limit points F(u) + spring u rises with u. Far out its slope is at least 2 k, less
+  // the effect of the bars' own length: this gives the ends of the brackets.
   const double reach = bar_ + rise_ + (std::abs(load) + spring * rise_) / (2 * k_ + spring);
   const auto limit = limit_point(spring);
   double low = rise_ - reach;
@@ -65,7 +65,7 @@ std::optional<double> SnapTruss::settle(double load, double spring, bool snapped
   if (limit && !snapped) high = *limit;
   const auto excess = [&](double u) { return force(u) + spring * u - load; };
   if (!(excess(low) <= 0) || !(excess(high) >= 0)) return std::nullopt;
-  // Newton's iteration inside a bracket that shrinks; halving where Newton leaves it.
+  // Newton's iteration inside a shrinking bracket; bisection where Newton leaves it.
   double u = std::clamp(snapped ? 2 * rise_ : 0.0, low, high);
   constexpr int kRoundsMax = 80;
   for (int round = 0; round < kRoundsMax; ++round) {

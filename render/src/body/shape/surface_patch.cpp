@@ -16,7 +16,7 @@ std::span<const std::int32_t> SurfacePatch::around(const ContactMesh& mesh, std:
                                                    const Eigen::Vector3d& place,
                                                    double radius) noexcept {
   if (++round_ == 0) {
-    // The count has come round: begin anew, once in 2^32 rounds.
+    // The counter has overflowed: clear the marks, once in 2^32 rounds.
     std::fill(seen_in_.begin(), seen_in_.end(), 0);
     round_ = 1;
   }

@@ -10,31 +10,32 @@
 
 namespace thimble::render {
 
-/// Collects the vertices of a mesh within a distance of a place, going over the surface from a
-/// triangle there: what lies behind a thin wall is not reached. Distances are those of the mesh as
-/// it was at first, so that they stay the same in a deep pit.
+/// Collects the vertices of a mesh within a distance of a place. Goes over the surface from a
+/// triangle there, so it does not reach through a thin wall. Distances are those of the first
+/// shape, so that they stay the same in a deep pit.
 class SurfacePatch {
  public:
-  /// Keeps the first places of the vertices (m; they must outlive the patch). Sets memory aside for
-  /// `capacity` vertices in a patch, and for up to `vertices_max` of the mesh.
-  /// Real-time: never from the servo thread.
+  /// Keeps the first places of the vertices (m; they must outlive the patch). Reserves memory for
+  /// `capacity` vertices in a patch, and for up to `vertices_max` of the mesh. Real-time: never
+  /// from the servo thread.
   SurfacePatch(std::span<const Eigen::Vector3d> first_places, std::size_t capacity,
                std::size_t vertices_max = 0);
 
-  /// Takes in that the mesh has more vertices, whose first places stand behind those of the others.
-  /// Real-time: safe.
+  /// Receives that the mesh has more vertices, whose first places are appended. Real-time: safe.
   void grow(std::span<const Eigen::Vector3d> first_places) noexcept {
     first_places_ = first_places;
     seen_in_.resize(first_places.size(), 0);
   }
 
-  /// Collects what lies within `radius` m of `place`, beginning with the corners of `triangle`,
-  /// which are in it in any case; nearest over the surface first, until the capacity ends. Valid
-  /// until the next call. Real-time: safe; bounded by the capacity times the valence.
+  /// Collects the vertices within `radius` m of `place`, beginning with the corners of `triangle`,
+  /// which are always included; nearest over the surface first, up to the capacity. Valid until the
+  /// next call. Real-time: safe; bounded by the capacity times the valence.
   std::span<const std::int32_t> around(const ContactMesh& mesh, std::int32_t triangle,
                                        const Eigen::Vector3d& place, double radius) noexcept;
 
-  std::span<const std::int32_t> vertices() const noexcept { return patch_; }  ///< Lists it.
+  std::span<const std::int32_t> vertices() const noexcept {
+    return patch_;
+  }  ///< Returns the patch.
 
  private:
   std::span<const Eigen::Vector3d> first_places_;

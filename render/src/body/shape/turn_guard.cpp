@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of the first area, seen along the first normal, this share stays: far above rounding, and small
+// Minimum share of the first area, seen along the first normal: far above rounding, and small
 // enough for walls of 80 degrees around a pit. [chosen]
 constexpr double kLeastShare = 0.15;
 

@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What is left of a volume, as a share of all that was printed, is rounding.
+// A remaining volume below this share of all that was printed is rounding.
 constexpr double kLeft = 1e-9;
 
-// Each leaves a few hundredths of what was left; where limits are in the way it ends. [chosen]
+// Each try leaves a few hundredths of the remainder; limits of movement end it. [chosen]
 constexpr int kTriesMax = 12;
 
 }  // namespace
@@ -54,7 +54,7 @@ void VolumeKeeper::raise(ClayShape& clay, const ShapeContact& contact,
     const double distance =
         (first_places[static_cast<std::size_t>(vertex)] - contact.p_first).norm() / radius_;
     const double x = (distance - 1) / (kRim - 1);
-    // What turns away from the print, as behind an edge, gives it no room.
+    // Surface that faces away from the print, as behind an edge, cannot take volume.
     if (!(x > 0 && x < 1) || !(gradient(vertex).dot(outward_) > 0) ||
         std::find(corners.begin(), corners.end(), vertex) != corners.end()) {
       continue;
@@ -65,7 +65,7 @@ void VolumeKeeper::raise(ClayShape& clay, const ShapeContact& contact,
   lift(clay, -given_, most);
 }
 
-// Lifts the rim until it holds `volume` (m^3) more, by `most` m at most.
+// Lifts the rim until it holds `volume` (m^3) more, by at most `most` m.
 double VolumeKeeper::lift(ClayShape& clay, double volume, double most) noexcept {
   double per_way = 0;
   for (std::size_t i = 0; i < rim_.size(); ++i) {
@@ -79,7 +79,7 @@ double VolumeKeeper::lift(ClayShape& clay, double volume, double most) noexcept 
 
 void VolumeKeeper::moved(const ContactMesh& mesh, std::span<const Vector3d> places,
                          std::int32_t vertex, const Vector3d& way) noexcept {
-  // The gradient is that of its neighbours as they are; its own place does not count.
+  // The gradient depends on the present places of the neighbours, not on its own place.
   find_gradient(mesh, places, vertex);
   change_ += gradient(vertex).dot(way);
 }
@@ -98,7 +98,7 @@ void VolumeKeeper::take(const ContactMesh& mesh, std::span<const Vector3d> place
 std::span<const std::int32_t> VolumeKeeper::settle(ClayShape& clay) noexcept {
   if (rim_.empty() || tries_ >= kTriesMax || !(std::abs(change_) > kLeft * printed_)) return {};
   ++tries_;
-  // No more than a print goes deep, so that a rim of few vertices does not become a needle.
+  // Limited to the depth of a print, so that a rim of few vertices does not become a needle.
   lift(clay, -change_, 0.1 * radius_);
   return rim_;
 }

@@ -12,16 +12,16 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// What the dampers may join two modes by, against their largest rate: some rounding of the
-// eigenvectors, and far below what a hand could tell.
+// Maximum coupling of two modes by the dampers, relative to their largest rate: some rounding of
+// the eigenvectors, and far below what a hand can distinguish.
 constexpr double kJoined = 1e-8;
-constexpr double kForceMax = 1e6;  // N; no arm pushes with more
+constexpr double kForceMax = 1e6;  // N; no arm pushes harder
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-// Writes out M^-1/2 A M^-1/2.
+// Returns M^-1/2 A M^-1/2 as a dense matrix.
 template <int kDof>
 MatrixXd dense(const SpringNetwork<kDof>& network, const NetworkWeights& weights) {
   using Vector = typename SpringNetwork<kDof>::Vector;
@@ -64,8 +64,8 @@ driver::Result<ModalMotion<kDof>> ModalMotion<kDof>::build(const SpringNetwork<k
     shapes = Eigen::SelfAdjointEigenSolver<MatrixXd>(k).eigenvectors();
   } else {
     const MatrixXd c = dense(network, network.damping());
-    // Matrices that commute have eigenvectors in common, and these are the eigenvectors of nearly
-    // every sum of the two; where springs alone leave a choice, dampers decide.
+    // Matrices that commute have common eigenvectors, and these are the eigenvectors of nearly
+    // every sum of the two. Where the springs leave a choice, the dampers decide.
     const double share = k.norm() > 0 ? k.norm() / c.norm() / std::numbers::phi : 1;
     shapes = Eigen::SelfAdjointEigenSolver<MatrixXd>(k + share * c).eigenvectors();
     const MatrixXd by_mode = shapes.transpose() * c * shapes;

@@ -11,38 +11,38 @@
 
 namespace thimble::render {
 
-/// Moves a small spring network exactly, as the sum of its modes: each mode is an oscillator of its
-/// own, stepped by its closed form. Stable and exact at any stiffness, mass and step, for forces
-/// that are held over a step. A step costs some ns per mode; a push or a look at one node costs as
-/// much again.
+/// Moves a small spring network exactly, as the sum of its modes: each mode is an independent
+/// oscillator, stepped by its closed form. Stable and exact at any stiffness, mass and step, for
+/// forces that are held over a step. A step costs some ns per mode; pushing or reading one node
+/// costs the same again.
 template <int kDof>
 class THIMBLE_EXPORT ModalMotion {
  public:
-  using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
+  using Vector = typename SpringNetwork<kDof>::Vector;  ///< Displacement of a node.
 
-  /// The most modes (nodes times directions) that are worked out: about 3 s and 20 MB.
+  /// Maximum number of modes (nodes times directions): about 3 s and 20 MB.
   static constexpr std::int32_t kModesMax = 1600;
 
-  /// Finds the modes for steps of `step` s (> 0). The error says that the network is too large, or
-  /// that its dampers join its modes: dampers must be a share of the springs or of the masses, or
-  /// be alike at all nodes and all edges that are alike. O(modes^3). Real-time: never from the
-  /// servo thread.
+  /// Computes the modes for steps of `step` s (> 0). The error states that the network is too
+  /// large, or that its dampers couple its modes. Dampers must be proportional to the springs or to
+  /// the masses, or be equal at all nodes and all edges that are equal. O(modes^3). Real-time:
+  /// never from the servo thread.
   static driver::Result<ModalMotion> build(const SpringNetwork<kDof>& network, double step);
 
-  // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
+  // All of the following are Real-time: safe. Precondition: numbers name existing nodes.
 
-  /// Returns the frequency of a mode, rad/s; modes go from slow to fast.
+  /// Returns the frequency of a mode, rad/s; modes are in ascending order.
   double omega(std::int32_t mode) const noexcept { return omega_[static_cast<std::size_t>(mode)]; }
 
   /// Adds displacement `u` (m) and velocity `v` (m/s) at a node, relative to its base point.
   void add(std::int32_t node, const Vector& u, const Vector& v) noexcept;
-  /// Pushes a node by `f` (N) during the next step. Forces add up; NaN or beyond 10^6 N is none.
+  /// Pushes a node by `f` (N) during the next step. Forces add up; NaN or beyond 10^6 N is ignored.
   void push(std::int32_t node, const Vector& f) noexcept;
-  /// Moves on by one step under the forces pushed, which are then gone.
+  /// Advances by one step under the pushes, which are then cleared.
   void step() noexcept;
-  /// Returns where a node is (m) and how it moves (m/s), relative to its base point.
+  /// Returns the displacement of a node from its base point, m.
   Vector u(std::int32_t node) const noexcept { return sum(node, x_); }
-  /// Returns how a node moves, relative to its base point, m/s. Real-time: safe.
+  /// Returns the velocity of a node relative to its base point, m/s. Real-time: safe.
   Vector v(std::int32_t node) const noexcept { return sum(node, xdot_); }
   /// Returns the energy of all modes, J.
   double energy() const noexcept;
@@ -51,7 +51,7 @@ class THIMBLE_EXPORT ModalMotion {
   ModalMotion() = default;
   Vector sum(std::int32_t node, const std::vector<double>& of) const noexcept;
 
-  std::vector<double> shapes_;     // row per node and direction, over root of mass
+  std::vector<double> shapes_;     // row per node and direction, divided by the root of the mass
   std::vector<double> root_mass_;  // per node, root of kg
   std::vector<double> omega_;
   std::vector<OscillatorStep> oscillators_;

@@ -8,8 +8,8 @@
 namespace thimble::render {
 namespace {
 
-// Twice the bits of a double throughout: at k = 1e5 N/m, m = 1 mg and 30 ms the phase is 9,500 rad,
-// and in double its rounding alone would be 1e-12. A long double has other bits on each processor.
+// Twice the bits of a double throughout: at k = 1e5 N/m, m = 1 mg and 30 ms the phase is 9,500 rad.
+// Its rounding in double would be 1e-12. A long double differs between processors.
 using Real = math::DoubleDouble;
 
 // Per unit mass: x'' + 2 a x' + w2 x = g.
@@ -23,8 +23,8 @@ struct Flow {
   Real xx, xv, xf, vx, vv, vf;
 };
 
-// Below this phase and damping per step the series is short and loses no digits; it also holds
-// where the spring is so soft that 1 - xx would.
+// Below this phase and damping per step the series is short and loses no digits. It is also used
+// where the spring is so soft that 1 - xx would lose digits.
 constexpr double kSeriesPhase = 1.5;
 
 // Sums the series of the matrix exponential: 3^40 / 40! is below 1e-28.
@@ -49,7 +49,7 @@ Flow by_series(const Rates& r) {
   return flow;
 }
 
-// Finds the flow from c = e^-ah cosh(sh), q = e^-ah sinh(sh) / s.
+// Computes the flow from c = e^-ah cosh(sh), q = e^-ah sinh(sh) / s.
 Flow from(const Rates& r, Real c, Real q) {
   const Real xx = c + r.a * q;
   return {xx, q, (1 - xx) / r.w2, -r.w2 * q, c - r.a * q, q};

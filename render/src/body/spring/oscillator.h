@@ -4,7 +4,7 @@
 
 namespace thimble::render {
 
-/// The exact way of a damped oscillator m x'' + b x' + k x = f over one step, f held:
+/// The exact motion of a damped oscillator m x'' + b x' + k x = f over one step, with f held:
 ///
 ///     x+ = xx x + xv v + xf f        v+ = vx x + vv v + vf f
 ///
@@ -14,13 +14,13 @@ struct THIMBLE_EXPORT OscillatorStep {
   double xx = 1, xv = 0, xf = 0;  ///< 1, s, m/N
   double vx = 0, vv = 0, vf = 0;  ///< 1/s, 1, s/kg
 
-  /// Finds the way for `mass` (kg, > 0), `stiffness` (N/m, >= 0), `damping` (N s/m, >= 0) and
-  /// `step` (s, >= 0); under-, critically and over-damped, and with neither spring nor damper, to
-  /// 1e-12. For anything else, NaN too: a node that stays where it is and stops. Real-time: safe;
-  /// some 0.5 us, so find it once where nothing changes.
+  /// Computes the coefficients for `mass` (kg, > 0), `stiffness` (N/m, >= 0), `damping` (N s/m, >=
+  /// 0) and `step` (s, >= 0); under-, critically and over-damped, and with neither spring nor
+  /// damper, to 1e-12. For any other values, also NaN: a node that stays in place and stops.
+  /// Real-time: safe; some 0.5 us, so call it once if nothing changes.
   static OscillatorStep of(double mass, double stiffness, double damping, double step) noexcept;
 
-  /// Steps place `x` (m, from where the spring is at rest) and velocity `v` (m/s) under the force
+  /// Advances position `x` (m, from the rest of the spring) and velocity `v` (m/s) under the force
   /// `f` (N): numbers or vectors. Real-time: safe.
   template <class Value>
   void apply(Value& x, Value& v, const Value& f) const noexcept {

@@ -10,8 +10,8 @@
 namespace thimble::render {
 namespace {
 
-// Rounds until the remainder is small. Membranes of 10^4 nodes need about 100, since their highest
-// frequencies lie close together.
+// Rounds until the residual is small. Membranes of 10^4 nodes need about 100, since their highest
+// frequencies are close together.
 constexpr int kRoundsMax = 400;
 constexpr int kRoundsBetweenLooks = 20;
 constexpr double kRemainder = 1e-8;
@@ -21,7 +21,7 @@ struct Ritz {
   double remainder = 0;
 };
 
-// Finds the largest eigenvalue of the tridiagonal matrix and how far it may be off.
+// Returns the largest eigenvalue of the tridiagonal matrix and its maximum error.
 Ritz largest(const std::vector<double>& alpha, const std::vector<double>& beta) {
   const auto n = static_cast<Eigen::Index>(alpha.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
@@ -49,7 +49,7 @@ SpectralRadius spectral_radius(const SpringNetwork<kDof>& network, const Network
 
   // On M^-1/2 A M^-1/2, which is symmetric and has the same eigenvalues; scaled to at most 1.
   std::vector<Vector> q(n), before(n, Vector::Zero()), scaled(n), product(n);
-  std::mt19937_64 bits(20);  // any start that is no eigenvector will do; fixed, to be repeatable
+  std::mt19937_64 bits(20);  // any start that is not an eigenvector works; fixed, to be repeatable
   double norm = 0;
   for (Vector& x : q) {
     for (int k = 0; k < kDof; ++k) x[k] = static_cast<double>(bits() >> 11) * 0x1p-53 - 0.5;

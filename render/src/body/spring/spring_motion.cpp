@@ -13,7 +13,7 @@ namespace {
 // Steps this near to the limit count as beyond it: at the limit itself energy grows by rounding.
 constexpr double kShareOfLimit = 0.98;
 
-// No arm pushes with more; it keeps squares far from overflow.
+// No arm pushes harder; the bound keeps squares far from overflow.
 constexpr double kForceMax = 1e6;
 
 // Rounding of a sum over a node and its springs, as a share of it.
@@ -175,8 +175,8 @@ void SpringMotion<kDof>::symplectic_euler() noexcept {
   }
 }
 
-// Half a drift, one kick, half a drift; during the kick dampers act by the midpoint rule, so that
-// the whole stays of order 2 with a force of the springs that is found once.
+// Half a drift, one kick, half a drift. During the kick dampers act by the midpoint rule, so that
+// the scheme stays of order 2 with one evaluation of the springs.
 template <int kDof>
 void SpringMotion<kDof>::verlet() noexcept {
   for (std::int32_t i = 0; i < count_; ++i) u_[at(i)] += h_ / 2 * v_[at(i)];
@@ -216,10 +216,11 @@ void SpringMotion<kDof>::implicit(double share) noexcept {
   }
 }
 
-// Solves A w = b by conjugate gradients from v on, and scales w as the proof in the header asks.
+// Solves A w = b by conjugate gradients from v on, and scales w as required by the proof in the
+// header.
 template <int kDof>
 void SpringMotion<kDof>::solve() noexcept {
-  double start = 0;  // b.D^-1 b, of which the smallest part is rounding
+  double start = 0;  // b.D^-1 b, for the bound by rounding
   double rz = 0;
   for (std::int32_t i = 0; i < count_; ++i) {
     w_[at(i)] = v_[at(i)];
@@ -231,8 +232,8 @@ void SpringMotion<kDof>::solve() noexcept {
     start += d * b_[at(i)].squaredNorm();
     rz += d * r_[at(i)].squaredNorm();
   }
-  // Measured against what springs and dampers have to change: of a slow motion they change little
-  // of the momentum in a step.
+  // Relative to the change due to springs and dampers: in a slow motion they change little of the
+  // momentum in a step.
   const double end = std::max(options_.remainder * options_.remainder * rz,
                               kRoundingOfSum * kRoundingOfSum * start);
   double beta = 0;

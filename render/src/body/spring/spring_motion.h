@@ -14,29 +14,32 @@
 
 namespace thimble::render {
 
-/// Sets how a network is stepped.
+/// Options of stepping a network.
 struct SpringMotionOptions {
-  /// What is done where the step is beyond what the scheme can bear.
+  /// Action if the step exceeds the limit of the scheme.
   enum class Beyond {
     kSubstep,  ///< Take more, shorter steps per tick.
     kRefuse,   ///< Refuse to build.
-    kAllow,    ///< Go on regardless: for tests and studies, which show what happens.
+    kAllow,    ///< Continue regardless: for tests and studies of the failure.
   };
-  SpringScheme scheme = kDefaultScheme;  ///< How it is stepped.
+  SpringScheme scheme = kDefaultScheme;  ///< Integration scheme.
   double step = 1e-3;                    ///< s per call of step(), > 0
-  Beyond beyond = Beyond::kSubstep;      ///< What beyond its bound.
-  int substeps = 1;                      ///< At least so many per call.
-  int substeps_max = 64;                 ///< At most so many; a network that needs more is refused.
-  int rounds_max = 25;                   ///< Of conjugate gradients per substep (implicit schemes).
-  /// Remainder at which these rounds end early, as a share of what a step has to change.
+  Beyond beyond = Beyond::kSubstep;      ///< Action beyond the scheme's limit.
+  int substeps = 1;                      ///< Minimum number of substeps per call.
+  int substeps_max = 64;                 ///< Maximum number of substeps per call; a network that
+                                         ///< needs more is refused.
+  int rounds_max = 25;                   ///< Most rounds of conjugate gradients per substep
+                                         ///< (implicit schemes).
+  /// Residual at which the rounds end early, as a share of the change of a step.
   double remainder = 1e-6;
 };
 
-/// Moves a spring network in time by one scheme, some or all of its nodes.
+/// Moves a spring network in time by one scheme.
 ///
 /// Implicit Euler and the trapezoid rule never gain energy, at any stiffness, mass, step and number
-/// of rounds. Both solve A w = b for the velocity w of the step; the rounds give some w, which is
-/// then scaled to make w.(A w - b) = 0. With that alone, energy H and applied force f obey
+/// of rounds. Both solve A w = b for the velocity w of the step. The rounds give some w, which is
+/// then scaled to make w.(A w - b) = 0. This condition is sufficient: energy H and applied force f
+/// obey
 ///
 ///   implicit Euler  H+ - H = f.du - 1/2 |w - v|^2_M - h w.Cw - h^2/2 w.Kw  <= f.du
 ///   trapezoid       H+ - H = f.du - h w.Cw                                <= f.du
@@ -45,31 +48,36 @@ struct SpringMotionOptions {
 template <int kDof>
 class THIMBLE_EXPORT SpringMotion {
  public:
-  using Vector = typename SpringNetwork<kDof>::Vector;  ///< Numbers of a node.
+  using Vector = typename SpringNetwork<kDof>::Vector;  ///< Displacement of a node.
 
-  /// Makes a network ready to move, at rest. The error says which limit the step
-  /// breaks and what would help. Real-time: never from the servo thread.
+  /// Prepares a network for motion, at rest. The error names the limit that the step exceeds and
+  /// the remedy. Real-time: never from the servo thread.
   static driver::Result<SpringMotion> build(SpringNetwork<kDof> network,
                                             const SpringMotionOptions& options = {});
 
-  // All of the following are Real-time: safe. Precondition: numbers name nodes that exist.
+  // All of the following are Real-time: safe. Precondition: numbers name existing nodes.
 
-  const SpringNetwork<kDof>& network() const noexcept { return network_; }  ///< Shows the network.
-  int substeps() const noexcept { return substeps_; }  ///< Returns the steps of a tick.
-  /// Returns how the step stands to the limit, in a sentence for a log. Real-time: never.
+  const SpringNetwork<kDof>& network() const noexcept {
+    return network_;
+  }                                                    ///< Returns the network.
+  int substeps() const noexcept { return substeps_; }  ///< Returns the number of steps per tick.
+  /// Returns a sentence for a log about the step relative to its limit. Real-time: never.
   std::string describe() const;
 
-  /// Returns displacement (m) and velocity (m/s) of each node, relative to its base point.
+  /// Returns the displacement of each node from its base point, m.
   std::span<const Vector> u() const noexcept { return u_; }
-  std::span<const Vector> v() const noexcept { return v_; }  ///< Returns velocities, m/s.
+  std::span<const Vector> v() const noexcept {
+    return v_;
+  }  ///< Returns the velocity of each node
+     ///< relative to its base point, m/s.
   /// Puts a node at displacement `u` with velocity `v`.
   void place(std::int32_t node, const Vector& u, const Vector& v) noexcept;
 
-  /// Pushes a node by `f` (N) during the next step. Forces add up. What is NaN or beyond 10^6 N is
-  /// no force and is left out.
+  /// Pushes a node by `f` (N) during the next step. Forces add up. A force that is NaN or beyond
+  /// 10^6 N is ignored.
   void push(std::int32_t node, const Vector& f) noexcept;
 
-  /// Moves on by one step under the forces pushed, which are then gone.
+  /// Advances by one step under the pushes, which are then cleared.
   void step() noexcept;
 
   /// Returns the energy of springs and masses, J.
@@ -91,8 +99,8 @@ class THIMBLE_EXPORT SpringMotion {
   int substeps_ = 1;
   std::int32_t count_ = 0;  // nodes
   std::vector<Vector> u_, v_, f_;
-  std::vector<Vector> b_, w_, r_, p_, q_;  // what a step needs
-  // Of the implicit schemes: A, and the diagonal it is preconditioned by.
+  std::vector<Vector> b_, w_, r_, p_, q_;  // work memory of a step
+  // For the implicit schemes: A, and the diagonal of its preconditioner.
   NetworkWeights system_;
   std::vector<double> inverse_diagonal_;
   std::vector<OscillatorStep> oscillators_;

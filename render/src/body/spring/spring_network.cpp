@@ -50,7 +50,7 @@ driver::Result<void> check(std::span<const BodySpring<kDof>> springs, std::size_
       return refuse("Spring", s, "needs a stiffness and a damping of 0 or more, and finite.");
     }
     const double length = spring.along.squaredNorm();
-    constexpr double kUnit = 1e-9;  // looser than rounding, far below what a wrong scale would be
+    constexpr double kUnit = 1e-9;  // looser than rounding, far tighter than a wrong scale
     if (!(length == 0 || std::abs(length - 1) < kUnit)) {
       return refuse("Spring", s, "needs a direction of length 1, or none.");
     }

@@ -11,11 +11,11 @@ namespace {
 constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 
 // For a vector u of unit mass, k = u.Ku and c = u.Cu, each scheme's growth factors solve a
-// quadratic with real coefficients; its roots stay in the unit circle under the conditions below.
+// quadratic with real coefficients. Its roots stay in the unit circle under the conditions below.
 
-// s^2 + c s + k = 0 with |1 + h s| <= 1: h <= c / k where s is complex, h <= 2 / |s| where it is
-// real, and |s| <= c. c / k is at least the least ratio of any spring, and at
-// least the least c over the largest k.
+// s^2 + c s + k = 0 with |1 + h s| <= 1: h <= c / k if s is complex, h <= 2 / |s| if it is real,
+// and |s| <= c. c / k is at least the least ratio of any spring, and at least the least c over the
+// largest k.
 double explicit_euler(const NetworkBounds& bounds) {
   const double stiffest = bounds.omega_max * bounds.omega_max;
   const double by_nodes = stiffest > 0 ? bounds.damping_rate_min / stiffest : kAnyStep;

@@ -15,7 +15,7 @@ namespace {
 using driver::Error;
 using Eigen::Matrix4d;
 
-// A node that is still to be visited, and its pose in the file's frame.
+// A node to be visited, and its pose in the file's frame.
 struct Stop {
   const aiNode* node = nullptr;
   Matrix4d place = Matrix4d::Identity();

@@ -8,7 +8,8 @@
 namespace thimble::render {
 namespace {
 
-// The words of 3MF (core specification 3.4) and of AMF (ISO/ASTM 52915), and two slips that occur.
+// The words of 3MF (core specification 3.4) and of AMF (ISO/ASTM 52915), and two common
+// misspellings.
 constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"micron", 1e-6},
                                                                      {"millimeter", 1e-3},
                                                                      {"millimeters", 1e-3},

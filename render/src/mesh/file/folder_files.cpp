@@ -26,7 +26,7 @@ Assimp::IOStream* FolderFiles::Open(const char* file, const char* mode) {
   }
   const std::filesystem::path path = find(file);
   if (path.empty()) return nullptr;
-  constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // as of the mesh file itself
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // same as for the mesh file itself
   const auto read = driver::read_file(path, kMaxBytes);
   if (!read) return nullptr;
   auto* const owned = new std::uint8_t[read->size() + 1];
@@ -36,7 +36,7 @@ Assimp::IOStream* FolderFiles::Open(const char* file, const char* mode) {
 
 std::filesystem::path FolderFiles::find(const std::string& file) const {
   std::string_view name = file;
-  while (name.starts_with("./")) name.remove_prefix(2);  // Assimp's word for "beside"
+  while (name.starts_with("./")) name.remove_prefix(2);  // Assimp's prefix for the same folder
   const std::filesystem::path relative(name);
   if (folder_.empty() || relative.empty() || relative.is_absolute()) return {};
   for (const auto& step : relative) {

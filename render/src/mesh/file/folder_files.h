@@ -7,9 +7,9 @@
 
 namespace thimble::render {
 
-/// The files that Assimp may see: the one that is being read, from memory under the name `name`,
-/// and, if `folder` is not empty, plain files in it and below, by relative names that do not leave
-/// it. Nothing can be written. The bytes must outlive it.
+/// The files that Assimp may access. These are the file being read, from memory under the name
+/// `name`. If `folder` is not empty, they include plain files in it and below, by relative names
+/// that do not leave it. Nothing can be written. The bytes must outlive it.
 class FolderFiles final : public Assimp::IOSystem {
  public:
   FolderFiles(const std::string& bytes, std::string name, std::filesystem::path folder);
@@ -20,7 +20,7 @@ class FolderFiles final : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { delete stream; }
 
  private:
-  // Where a file that is named lies; empty if it may not be seen.
+  // Returns the path of a named file; empty if access is not allowed.
   std::filesystem::path find(const std::string& file) const;
 
   const std::string& bytes_;

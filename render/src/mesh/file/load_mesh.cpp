@@ -25,8 +25,8 @@ namespace {
 constexpr std::array<std::string_view, 10> kEndings{"off", "obj", "stl", "ply", "gltf",
                                                     "glb", "3mf", "dae", "amf", "3ds"};
 
-// 80 million triangles of the tersest format (binary STL). [chosen: a file of this size takes four
-// times as much memory as contact]
+// 80 million triangles of the most compact format (binary STL). [chosen: a file of this size takes
+// four times as much memory as contact]
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 
 std::string ending_of(const std::filesystem::path& file) {
@@ -43,7 +43,7 @@ std::string capitals(std::string text) {
   return text;
 }
 
-// Takes the byte order mark away that editors put before a text.
+// Removes the byte order mark that editors put before a text.
 driver::Result<void> drop_mark(std::string& bytes) {
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
@@ -71,7 +71,7 @@ driver::Result<TriangleMesh> read(std::string bytes, const std::string& kind,
 
 driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFileInfo* info) {
   const auto error = [&file](const std::string& sentence) {
-    // What is wrong on a line of a text names file and line already.
+    // Errors of a line of text already name file and line.
     return driver::Error{
         sentence.starts_with(file.string() + ':') ? sentence : file.string() + ": " + sentence};
   };

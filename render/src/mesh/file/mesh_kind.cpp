@@ -8,7 +8,7 @@
 namespace thimble::render {
 namespace {
 
-// Where the first element of an XML file stands, behind comments.
+// Bytes searched for the first element of an XML file, behind comments.
 constexpr std::size_t kXmlHead = 4096;
 
 std::string kind_of_archive(std::string_view bytes) {
@@ -45,7 +45,7 @@ std::string mesh_kind_of(std::string_view bytes, const std::string& ending) {
     if (head.find("<amf") != std::string_view::npos) return "amf";
   }
   if (is_off(begin.substr(0, begin.find_first_of(" \t\r\n#")))) return "off";
-  // A chunk that spans the whole file, and nothing else, shows 3DS.
+  // A chunk that spans the whole file identifies 3DS.
   if (bytes.size() > 6 && bytes.starts_with("MM")) {
     std::size_t length = 0;
     for (std::size_t i = 6; i-- > 2;) length = length << 8 | static_cast<unsigned char>(bytes[i]);

@@ -9,7 +9,7 @@
 namespace thimble::render {
 namespace {
 
-// More than any file that can be touched has; instances make many of a small file.
+// More than any file that can be touched has; instances can multiply a small file.
 constexpr std::size_t kTrianglesMax = 100'000'000;
 
 }  // namespace

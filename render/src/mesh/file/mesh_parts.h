@@ -12,16 +12,16 @@
 
 namespace thimble::render {
 
-/// The parts of a file, put together to one mesh where its nodes or instances put them.
+/// Joins the parts of a file to one mesh, each at the place of its nodes or instances.
 class MeshParts {
  public:
-  /// Adds a part at a place in the file's frame; a part that the place mirrors is turned round, so
-  /// that its outer side stays outside. `single`: its coordinates are in single precision. The
-  /// error is a sentence: a coordinate that is no number up to 1e15, or too many triangles.
-  /// Precondition: triangles name vertices that exist. Real-time: never from the servo thread.
+  /// Adds a part at a place in the file's frame. A part that the place mirrors is turned, so that
+  /// its outer side stays outside. `single`: its coordinates are in single precision. The error is
+  /// a sentence: a coordinate that is NaN or beyond 1e15, or too many triangles. Precondition:
+  /// triangles name existing vertices. Real-time: never from the servo thread.
   driver::Result<void> add(const TriangleMesh& part, const Eigen::Affine3d& place, bool single);
 
-  /// Returns the mesh and adds to `notes` how many parts were moved. The error is a sentence: no
+  /// Returns the mesh and adds the number of moved parts to `notes`. The error is a sentence: no
   /// triangle, or coarse coordinates. Real-time: never from the servo thread.
   driver::Result<TriangleMesh> take(std::vector<std::string>& notes);
 

@@ -1,4 +1,4 @@
-// In place of the reader by the Assimp library in a build without it.
+// Replaces the Assimp reader in a build without the library.
 #include "mesh/file/read_with_assimp.h"
 
 namespace thimble::render {

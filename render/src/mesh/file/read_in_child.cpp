@@ -15,8 +15,7 @@ constexpr std::size_t kBytesPerSecond = 500'000;
 constexpr std::size_t kMemoryMin = std::size_t{1} << 30;
 constexpr std::size_t kMemoryPerByte = 200;
 
-// Writes a sentence that says why there is no mesh, or an empty one, what the file says, and the
-// mesh.
+// Writes the error sentence, or an empty one, the information of the file, and the mesh.
 void write_mesh(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& info,
                 driver::ApartWriter& out) {
   const std::string error = mesh ? std::string() : mesh.error().message;
@@ -32,7 +31,7 @@ void write_mesh(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& in
   out.write_array(mesh->triangles.data(), mesh->triangles.size());
 }
 
-// Returns whether each triangle names vertices that exist.
+// Returns whether each triangle names existing vertices.
 bool has_its_vertices(const TriangleMesh& mesh) {
   const auto count = static_cast<std::int32_t>(mesh.vertices.size());
   return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [count](const auto& triangle) {

@@ -11,19 +11,18 @@
 
 namespace thimble::render {
 
-/// Reads a mesh and what its file says of itself; throws std::bad_alloc where memory is short.
+/// Reads a mesh and the information of its file; throws std::bad_alloc if memory is short.
 using MeshReader = std::function<driver::Result<TriangleMesh>(MeshFileInfo& info)>;
 
-/// Returns the limits of reading a file of so many bytes: twenty times the time per byte of the
+/// Returns the limits of reading a file of `bytes` bytes: twenty times the time per byte of the
 /// slowest format, and four times the memory of the hungriest.
 driver::ApartLimits limits_of(std::size_t bytes);
 
-/// Returns the error about a file that is damaged: "this is no GLTF file that can be read (it
-/// ...)".
+/// Returns the error about a damaged file: "this is no GLTF file that can be read (it ...)".
 driver::Error unreadable(const std::string& kind, const std::string& reason);
 
 /// Runs a reader in a separate process with limits of time and memory. The error is the reader's,
-/// or `unreadable` where the process came to its limits or crashed. Real-time: never from the servo
+/// or `unreadable` if the process reached its limits or crashed. Real-time: never from the servo
 /// thread.
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
                                            const driver::ApartLimits& limits, MeshFileInfo& info);

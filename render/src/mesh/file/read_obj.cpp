@@ -18,7 +18,7 @@ namespace {
 
 using driver::Error;
 
-// Statements that say nothing about the polygons of a mesh.
+// Statements that do not affect the polygons of a mesh.
 constexpr std::array<std::string_view, 31> kWithoutShape{
     "vn",     "vt",     "vp",     "g",     "o",     "s",         "mg",        "usemtl",
     "mtllib", "usemap", "maplib", "bevel", "lod",   "c_interp",  "d_interp",  "ctech",
@@ -38,7 +38,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kRefused{
      {"call", "included files"},
      {"csh", "shell commands"}}};
 
-// A face that names vertices which come after it.
+// A face that names vertices defined after it.
 struct EarlyFace {
   std::size_t line = 0;
   std::size_t begin = 0;  // of its corners
@@ -46,7 +46,7 @@ struct EarlyFace {
 };
 
 // Returns the number of the vertex in a corner of a face: V, V/T, V//N or V/T/N, of which T and N
-// may be left out behind their slashes; 0 for any other word.
+// may be omitted after their slashes; 0 for any other word.
 std::int64_t corner_of(std::string_view word) {
   std::int64_t vertex = 0;
   for (int part = 0; part < 3; ++part) {
@@ -78,7 +78,7 @@ class ObjReader {
   TextWords words_;
   TriangleMesh mesh_;
   bool has_lines_ = false;
-  std::vector<std::int32_t> corners_;  // of the face that is being read
+  std::vector<std::int32_t> corners_;  // of the face being read
   std::vector<EarlyFace> early_;
   std::vector<std::int32_t> early_corners_;
 };
@@ -108,7 +108,7 @@ std::optional<Error> ObjReader::read_statement(std::string_view keyword) {
   if (keyword == "v") return read_vertex();
   if (keyword == "f" || keyword == "fo") return read_face();
   if (std::find(kWithoutShape.begin(), kWithoutShape.end(), keyword) != kWithoutShape.end()) {
-    // A backslash joins lines in these too.
+    // A backslash also joins these lines.
     while (!words_.next_on_line().empty()) {
     }
     return std::nullopt;

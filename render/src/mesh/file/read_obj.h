@@ -9,13 +9,13 @@
 
 namespace thimble::render {
 
-/// Reads the text of an OBJ file in double precision [Wavefront, Advanced Visualizer appendix B1]:
-/// vertices with or without a weight of 1 or a colour, faces of any size with positive or negative
-/// numbers, also before their vertices; comments and joined lines. Materials, normals, groups,
-/// lines and points are left out; lines and points are reported in `notes`. Free-form surfaces,
-/// included files and unknown statements are refused. Not welded. The error begins with the file's
-/// `name` and the line ("a.obj:12: ..."), or is a sentence where no line is at fault. Memory
-/// grows with the text. Real-time: never from the servo thread.
+/// Reads the text of an OBJ file in double precision [Wavefront, Advanced Visualizer appendix B1].
+/// Reads vertices with or without a weight of 1 or a colour, comments and joined lines. Faces may
+/// have any size and positive or negative numbers, also before their vertices. Materials, normals,
+/// groups, lines and points are omitted; lines and points are reported in `notes`. Free-form
+/// surfaces, included files and unknown statements are refused. Not welded. The error begins with
+/// the file's `name` and the line ("a.obj:12: ..."), or is a sentence if it concerns no line.
+/// Memory grows with the text. Real-time: never from the servo thread.
 driver::Result<TriangleMesh> read_obj(std::string_view text, const std::string& name,
                                       std::vector<std::string>& notes);
 

@@ -17,7 +17,7 @@ using driver::Error;
 struct Header {
   std::int64_t vertices = 0;
   std::int64_t faces = 0;
-  bool vertex_per_line = false;  // positions are followed by normals, colours or texture places
+  bool vertex_per_line = false;  // positions are followed by normals, colours or texture
 };
 
 driver::Result<Header> read_header(TextWords& words) {
@@ -44,8 +44,8 @@ driver::Result<Header> read_header(TextWords& words) {
     const auto number = whole_number(word);
     if (!number) return words.error("expected a count, found " + shown_word(word) + ".");
     if (*number < 0) return words.error("the count " + shown_word(word) + " is negative.");
-    // The shortest vertex is "0 0 0 ", the shortest face "1 0 ": a larger promise cannot be kept,
-    // and memory must not be set aside for it.
+    // The shortest vertex is "0 0 0 ", the shortest face "1 0 ". A larger count cannot be true, and
+    // memory must not be reserved for it.
     const std::size_t shortest = count == &header.vertices ? 6 : 4;
     if (static_cast<std::uint64_t>(*number) > (words.left() + 2) / shortest) {
       return words.error("the file promises " + std::to_string(*number) +
@@ -54,7 +54,7 @@ driver::Result<Header> read_header(TextWords& words) {
     }
     *count = *number;
   }
-  words.skip_line();  // the count of edges, which many writers leave at 0
+  words.skip_line();  // the count of edges, often 0
   return header;
 }
 

@@ -23,7 +23,7 @@ using driver::Error;
 
 enum class Form { kText, kLittle, kBig };
 
-// The types of PLY, by their first names and by those that say their size [Turk, the PLY format].
+// The types of PLY, by their first names and by those with their size [Turk, the PLY format].
 struct NumberType {
   std::string_view name, other_name;
   std::size_t size;
@@ -100,7 +100,7 @@ std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header&
     if (!count || *count < 0) {
       return Error{"its header has no valid count in " + shown(whole) + "."};
     }
-    // The smallest of anything is a byte.
+    // The smallest element is a byte.
     if (static_cast<std::uint64_t>(*count) > bytes) {
       return Error{"its header promises " + std::to_string(*count) + " of " + shown(name) +
                    " but the file has only " + std::to_string(bytes) + " bytes: it is truncated."};
@@ -129,7 +129,7 @@ std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header&
   return Error{"its header has a line that PLY does not know: " + shown(whole) + "."};
 }
 
-// Reads the header and leaves what follows it in `rest`.
+// Reads the header and returns the remaining bytes in `rest`.
 driver::Result<Header> read_header(std::string_view& rest) {
   const std::size_t bytes = rest.size();
   Header header;
@@ -149,7 +149,7 @@ driver::Result<Header> read_header(std::string_view& rest) {
   return Error{"this is no PLY file that can be read (its header does not reach end_header)."};
 }
 
-// Gives one number after the other; nothing where the file ends or has something else.
+// Returns numbers one by one; empty at the end of the file or for other contents.
 class Numbers {
  public:
   Numbers(std::string_view rest, Form form) : rest_(rest), form_(form) {}
@@ -171,7 +171,7 @@ class Numbers {
     return with_sign ? as<std::int32_t>(bytes) : as<std::uint32_t>(bytes);
   }
 
-  // Tells whether so many numbers can still come.
+  // Returns whether `count` more numbers are possible.
   bool may_hold(double count) const { return count <= static_cast<double>(rest_.size()); }
 
  private:
@@ -255,7 +255,7 @@ std::optional<Error> read_face(const Element& element, std::int64_t number, Numb
   return std::nullopt;
 }
 
-// Refuses what the elements of a file say that would be missing or wrong in the mesh.
+// Refuses elements whose data would be missing or wrong in the mesh.
 std::optional<Error> check_elements(const Header& header) {
   for (const Element& element : header.elements) {
     if (element.name == "tristrips" && element.count > 0) {
@@ -273,7 +273,7 @@ std::optional<Error> check_elements(const Header& header) {
   return std::nullopt;
 }
 
-// Returns whether the coordinates went through single precision: a text keeps all its digits.
+// Returns whether the coordinates are in single precision: a text keeps all its digits.
 bool is_single(const Header& header) {
   if (*header.form == Form::kText) return false;
   for (const Element& element : header.elements) {

@@ -9,11 +9,11 @@
 
 namespace thimble::render {
 
-/// Reads a mesh out of the bytes of a PLY file: text or binary of either byte order, any numbers of
-/// any further properties, faces of any size. Triangle strips are refused. `notes` gets a sentence
-/// where single precision of a binary file is coarse. The error says what is wrong, without the
-/// file's name. Memory grows with the bytes, not with the counts they promise. (Assimp 5.2.5
-/// crashes on damaged files of this format.) Real-time: never from the servo thread.
+/// Reads a mesh from the bytes of a PLY file: text or binary of either byte order, with any further
+/// properties and faces of any size. Triangle strips are refused. `notes` gets a sentence if single
+/// precision of a binary file is coarse. The error states the problem, without the file's name.
+/// Memory grows with the bytes, not with the counts in the header. (Assimp 5.2.5 crashes on damaged
+/// files of this format.) Real-time: never from the servo thread.
 driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::string>& notes);
 
 }  // namespace thimble::render

@@ -23,24 +23,24 @@ using driver::Error;
 constexpr std::size_t kHead = 84;      // a comment of 80 bytes, and the number of triangles
 constexpr std::size_t kTriangle = 50;  // a normal, three corners, and two bytes of colour
 
-// Where a text has its first facet, if it is one: behind "solid NAME".
+// Maximum position of the first facet of a text: after "solid NAME".
 constexpr std::size_t kTextBegin = 1000;
 
-// Of more vertices the numbers do not fit.
+// Maximum number of vertices that numbers can represent.
 constexpr std::size_t kVerticesMax = std::numeric_limits<std::int32_t>::max();
 
 char small_letter(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
-// Returns whether a word is `wanted`, which is in small letters.
+// Returns whether a word is `wanted`, which is in lower case.
 bool is_word(std::string_view word, std::string_view wanted) {
   return word.size() == wanted.size() &&
          std::equal(word.begin(), word.end(), wanted.begin(),
                     [](char a, char b) { return small_letter(a) == b; });
 }
 
-// Returns the length that the head of a binary file promises.
+// Returns the file length implied by the head of a binary file.
 std::uint64_t promised_bytes(std::string_view bytes, std::uint32_t& triangles) {
   std::memcpy(&triangles, bytes.data() + kHead - sizeof triangles, sizeof triangles);
   return kHead + std::uint64_t{kTriangle} * triangles;
@@ -63,13 +63,13 @@ class StlText {
 
   TextWords words_;
   TriangleMesh mesh_;
-  std::string_view word_;  // that is looked at
+  std::string_view word_;  // current word
   std::vector<std::int32_t> corners_;
   bool ended_ = false;  // by endsolid
 };
 
-// Skips the name of a solid: the rest of its line, or up to a facet where all is on one line. A
-// name may have any words in it.
+// Skips the name of a solid: the rest of its line, or up to a facet if all is on one line. A name
+// may contain any words.
 void StlText::skip_name() {
   for (word_ = words_.next_on_line(); !word_.empty(); word_ = words_.next_on_line()) {
     if (!is_word(word_, "facet")) continue;
@@ -105,8 +105,8 @@ std::optional<Error> StlText::expect(std::string_view wanted) {
 }
 
 std::optional<Error> StlText::read_facet() {
-  // The normal is computed from the corners; three words follow "normal" at most, any of which may
-  // be missing or no number.
+  // The normal is computed from the corners. At most three words follow "normal", any of which may
+  // be missing or not a number.
   constexpr int kNormalWords = 4;
   word_ = words_.next();
   for (int i = 0; i < kNormalWords && !word_.empty() && !is_word(word_, "outer"); ++i) {

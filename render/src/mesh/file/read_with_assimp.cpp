@@ -24,7 +24,7 @@ namespace {
 
 using driver::Error;
 
-// Returns why Assimp refused a file, without what it says about itself.
+// Returns the reason why Assimp refused a file, without Assimp's own names.
 std::string reason_of(std::string reason) {
   if (const auto name = reason.find(" for mesh."); name != std::string::npos) reason.resize(name);
   std::replace(reason.begin(), reason.end(), '\n', ' ');
@@ -35,7 +35,7 @@ std::string reason_of(std::string reason) {
   return reason.substr(0, 200);
 }
 
-// Leaves the importers of one ending: all others stay out of reach of a file's bytes.
+// Keeps only the importers of one ending: a file's bytes cannot reach any others.
 void keep_importers(Assimp::Importer& importer, const std::string& ending) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     std::istringstream endings(importer.GetImporterInfo(i)->mFileExtensions);
@@ -77,7 +77,7 @@ driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::stri
   }
   if (ending == "3ds") info.up = 'z';
   if (ending == "dae") {
-    // Assimp 5.2.5 leaves them out, with the mesh that they move.
+    // Assimp 5.2.5 omits them, with the mesh that they move.
     if (has_morph_controller(bytes)) {
       return Error{
           "it has a morph controller, which is not read of DAE. Export the shape without."};
@@ -103,9 +103,9 @@ driver::Result<TriangleMesh> import_by_assimp(const std::string& bytes, const st
   try {
     Assimp::Importer importer;
     keep_importers(importer, ending);
-    // Axes stay the file's own.
+    // Keeps the file's axes.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    // A file without a mesh is no mesh of its bones.
+    // A file without a mesh must not become a mesh of its bones.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     const bool beside = ending == "gltf" || ending == "glb";
     importer.SetIOHandler(new FolderFiles(bytes, name, beside ? folder : ""));
@@ -117,13 +117,13 @@ driver::Result<TriangleMesh> import_by_assimp(const std::string& bytes, const st
       return refused(reason);
     }
     if (ending == "3ds" && scene->mRootNode != nullptr) {
-      // Assimp lays y upwards; in the file z points there.
+      // Assimp turns y upwards; in the file z is up.
       const aiMatrix4x4 back(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
       scene->mRootNode->mTransformation = back * scene->mRootNode->mTransformation;
     }
     return mesh_of_scene(*scene, notes);
   } catch (const std::bad_alloc&) {
-    throw;  // too little memory is told by who set the limit
+    throw;  // the process that set the limit reports lack of memory
   } catch (const std::exception& exception) {
     return refused(exception.what());
   }

@@ -34,7 +34,7 @@ driver::Result<void> save_mesh(const TriangleMesh& mesh, const std::filesystem::
     return driver::Error{file.string() + ": a mesh is written as OFF; let the name end in .off."};
   }
   std::error_code status;
-  // A link stays; what it stands for is replaced.
+  // A symbolic link stays; its target is replaced.
   const std::filesystem::path target = std::filesystem::is_symlink(file, status)
                                            ? std::filesystem::weakly_canonical(file, status)
                                            : file;

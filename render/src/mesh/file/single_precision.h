@@ -16,12 +16,11 @@ inline constexpr double kStepReported = 1e-6;
 /// The step above which a mesh is refused: such normals are wrong by 6 degrees.
 inline constexpr double kStepMax = 1e-3;
 
-/// How far apart the numbers of single precision are at the coordinates of a mesh that went through
-/// it. Real-time: never from the servo thread.
+/// Resolution of single precision at the coordinates of a mesh that went through it. Real-time:
+/// never from the servo thread.
 class SinglePrecision {
  public:
-  /// Takes a position as the file has it, before the file's nodes move it; `scale` is how much
-  /// they enlarge it.
+  /// Adds a position as in the file, before the file's nodes move it; `scale` is their enlargement.
   void add(const Eigen::Vector3d& p, double scale = 1) {
     const double farthest = p.cwiseAbs().maxCoeff();
     if (farthest * scale > farthest_ * scale_) {
@@ -31,8 +30,8 @@ class SinglePrecision {
   }
 
   /// Adds a sentence to `notes` if the step at the farthest position is above `kStepReported`; the
-  /// error is that sentence where it is above `kStepMax`. Both give the remedy. `mesh` is the whole
-  /// mesh as its nodes put it.
+  /// error is that sentence if it is above `kStepMax`. Both give the remedy. `mesh` is the whole
+  /// mesh, placed by its nodes.
   driver::Result<void> judge(const TriangleMesh& mesh, std::vector<std::string>& notes) const;
 
  private:

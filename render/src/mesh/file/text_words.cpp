@@ -25,7 +25,7 @@ std::optional<double> real_number(std::string_view word) {
   const auto [stop, status] = std::from_chars(word.data(), end, number);
   if (status == std::errc() && stop == end) return number;
   if (status == std::errc::result_out_of_range && stop == end) {
-    // Too small is 0; too large is no number that a mesh may have.
+    // Too small is 0; too large is not valid in a mesh.
     const std::size_t exponent = word.find_first_of("eE");
     const bool small = exponent + 1 < word.size() && word[exponent + 1] == '-';
     return small && exponent != std::string_view::npos ? std::optional<double>(0) : std::nullopt;

@@ -10,26 +10,26 @@
 
 namespace thimble::render {
 
-/// Returns the number that a whole word writes: decimal, with an exponent by `e` or, as Fortran
-/// writes it, by `d`; a number too small for a double is 0. Empty for any other word ("1mm",
-/// "1,250.5", "0x10"). May be NaN or infinite ("nan", "inf"). The locale has no influence.
-/// Real-time: never from the servo thread.
+/// Returns the number of a whole word: decimal, with an exponent by `e` or, as in Fortran, by `d`;
+/// a number too small for a double is 0. Empty for any other word ("1mm", "1,250.5", "0x10"). May
+/// be NaN or infinite ("nan", "inf"). Independent of the locale. Real-time: never from the servo
+/// thread.
 std::optional<double> real_number(std::string_view word);
 
-/// Returns the whole number that a whole word writes; empty for any other word. Real-time: never
-/// from the servo thread.
+/// Returns the integer of a whole word; empty for any other word. Real-time: never from the servo
+/// thread.
 std::optional<std::int64_t> whole_number(std::string_view word);
 
-/// Returns a word as it is shown in a sentence: in quotes, cut after 24 characters, with `?` for
-/// characters that are not printable. Real-time: never from the servo thread.
+/// Returns a word for use in a message: in quotes, cut after 24 characters, with `?` for characters
+/// that are not printable. Real-time: never from the servo thread.
 std::string shown_word(std::string_view word);
 
-/// The words of a text and the lines on which they stand. Lines end with a line feed, a carriage
-/// return or both; `#` hides the rest of its line. The text and the name must outlive it.
+/// The words of a text with their lines. Lines end with a line feed, a carriage return or both; `#`
+/// hides the rest of its line. The text and the name must outlive it.
 class TextWords {
  public:
-  /// Reads `text`; errors begin with `name` and the line. Where `joins_lines` is set, a backslash
-  /// at the end of a line joins it with the next one.
+  /// Reads `text`; errors begin with `name` and the line. With `joins_lines`, a backslash at the
+  /// end of a line joins it with the next one.
   TextWords(std::string_view text, const std::string& name, bool joins_lines = false)
       : text_(text), name_(name), joins_lines_(joins_lines) {}
 
@@ -78,9 +78,9 @@ class TextWords {
     ++line_;
   }
 
-  /// Returns whether the text is over.
+  /// Returns whether the end of the text is reached.
   bool at_end() const { return at_ == text_.size(); }
-  /// Returns how many bytes are left.
+  /// Returns the number of bytes left.
   std::size_t left() const { return text_.size() - at_; }
   /// Returns the number of this line, from 1.
   std::size_t line() const { return line_; }

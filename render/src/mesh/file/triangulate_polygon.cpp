@@ -8,16 +8,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Ear cutting looks at every corner for every ear: beyond this size one face of a hostile file
+// Ear cutting examines every corner for every ear: beyond this size one face of a hostile file
 // would take seconds.
 constexpr std::size_t kEarCuttingMax = 2000;
 
-// How often all corners are looked at again where no ear is left: corners on each other's edges
-// hide ears, and a polygon that crosses itself may have none.
+// Maximum number of repeated passes over all corners if no ear is left: corners on each other's
+// edges hide ears, and a polygon that crosses itself may have none.
 constexpr int kLooksMax = 8;
 
-// Is a polygon seen along its mean normal, with the area of three of its corners as the only
-// question.
+// A polygon seen along its mean normal; its only query is the area of three of its corners.
 class FlatPolygon {
  public:
   FlatPolygon(const std::vector<Vector3d>& vertices, std::span<const std::int32_t> corners)
@@ -28,7 +27,7 @@ class FlatPolygon {
     }
   }
 
-  // Positive if a, b, c turn the same way round as the polygon.
+  // Positive if a, b, c turn in the same direction as the polygon.
   double turn(std::int32_t a, std::int32_t b, std::int32_t c) const {
     return normal_.dot((at(b) - at(a)).cross(at(c) - at(a)));
   }
@@ -46,8 +45,8 @@ class FlatPolygon {
   Vector3d normal_;
 };
 
-// Cuts a polygon ear by ear, always the first one. Which corners are ears is kept; a cut changes it
-// at its two neighbours.
+// Cuts a polygon ear by ear, always the first one. The ear flags are stored; a cut changes those of
+// its two neighbours.
 class EarCutting {
  public:
   EarCutting(const FlatPolygon& polygon, std::span<const std::int32_t> corners)
@@ -95,7 +94,7 @@ class EarCutting {
     } while (i != first_);
   }
 
-  // Returns the first ear; where none is left cutting anywhere keeps the count right.
+  // Returns the first ear; if none is left, cutting any corner gives the right number of triangles.
   std::size_t first_ear() {
     for (;;) {
       std::size_t i = first_;
@@ -120,7 +119,7 @@ class EarCutting {
 
   const FlatPolygon& polygon_;
   std::span<const std::int32_t> corners_;
-  std::vector<std::size_t> next_, last_;  // of each corner that is left
+  std::vector<std::size_t> next_, last_;  // of each remaining corner
   std::vector<bool> is_ear_;
   std::size_t first_ = 0;
   int looks_ = 0;

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 std::uint64_t hash_of(const Vector3d& p) noexcept {
   std::uint64_t hash = 0;
   for (int i = 0; i < 3; ++i) {
-    // Adding +0.0 turns -0.0 into +0.0, which compares equal and so must hash alike.
+    // Adding +0.0 turns -0.0 into +0.0: both compare equal and so must have the same hash.
     hash ^= std::bit_cast<std::uint64_t>(p[i] + 0.0);
     hash *= 0x9e3779b97f4a7c15u;
     hash ^= hash >> 32;
@@ -41,7 +41,7 @@ TriangleMesh weld_mesh(TriangleMesh mesh) {
       slot = (slot + 1) & (slots - 1);
     }
     if (places[slot] < 0) {
-      // Never behind the vertex that is read: as many stay as were read, or fewer.
+      // Never behind the vertex being read: at most as many are written as were read.
       vertices[static_cast<std::size_t>(count)] = p;
       places[slot] = count++;
     }

@@ -5,10 +5,10 @@
 
 namespace thimble::render {
 
-/// Makes one vertex of all vertices that lie at exactly the same place (0.0 and -0.0 are the same
-/// place; NaN is nowhere and stays alone). The first one of each place keeps its order; triangles
-/// keep theirs. Takes 8 to 16 bytes of memory per vertex. Precondition: triangles name vertices
-/// that exist (load_mesh guarantees it). Real-time: never from the servo thread.
+/// Merges all vertices at exactly the same place (0.0 and -0.0 are the same place; a vertex with
+/// NaN is not merged). The first one of each place keeps its order; triangles keep theirs. Takes 8
+/// to 16 bytes of memory per vertex. Precondition: triangles name existing vertices (load_mesh
+/// guarantees it). Real-time: never from the servo thread.
 THIMBLE_EXPORT TriangleMesh weld_mesh(TriangleMesh mesh);
 
 }  // namespace thimble::render

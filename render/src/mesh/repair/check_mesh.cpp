@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Kind = MeshFault::Kind;
 
-// Looks at one mesh and writes findings; each function adds what it is named after.
+// Checks one mesh and collects findings; each function adds the kind in its name.
 class Inspection {
  public:
   explicit Inspection(const TriangleMesh& mesh) : mesh_(mesh), uses_(sorted_edge_uses(mesh)) {}
@@ -30,7 +30,7 @@ class Inspection {
     look_at_edges();
     look_at_fans();
     look_at_components();
-    // Faults appear in the order of their kinds, whatever order they were found in.
+    // Faults are sorted by kind, in whatever order they were found.
     std::sort(found_.faults.begin(), found_.faults.end(),
               [](const MeshFault& a, const MeshFault& b) { return a.kind < b.kind; });
     return std::move(found_);

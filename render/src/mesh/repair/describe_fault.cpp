@@ -3,7 +3,7 @@
 namespace thimble::render {
 namespace {
 
-// Says what is wrong (for one and for many) and what to do about it.
+// The fault (for one and for many) and its remedy.
 struct Wording {
   const char* one;
   const char* many;

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Angles nearer than this may be rounding: such triangles lie one on top of the other.
+// Angles that differ by less than this may be rounding: such triangles are on top of each other.
 constexpr double kSameAngle = 1e-6;
 
 struct Side {

@@ -17,14 +17,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Places of a rim no farther apart than this share of the mesh's size are one: copies of a vertex
-// that split_fans made.
+// Places of a rim closer than this share of the mesh's size are the same: copies of a vertex made
+// by split_fans.
 constexpr double kSamePlace = 1e-12;
 
-// A ring of open edges, and what will close it.
+// A ring of open edges, and its filling.
 struct Ring {
   std::vector<EdgeUse> sides;          // in the order of the ring
-  std::vector<std::int32_t> vertices;  // where each side begins
+  std::vector<std::int32_t> vertices;  // begin of each side
   std::vector<std::array<std::int32_t, 3>> triangles;
   bool closes_at_middle = false;  // a vertex of its own, the number after the mesh's last
   Vector3d middle{0, 0, 0};
@@ -99,7 +99,7 @@ class Filling {
     }
   }
 
-  // Lets the triangles of parts that were closed name one vertex where rings came twice.
+  // Merges vertices where rings came twice, in the triangles of parts that were closed.
   void join_copies(const std::unordered_set<std::int32_t>& closed) {
     if (same_.empty()) return;
     for (std::size_t t = 0; t < old_triangles_; ++t) {
@@ -115,8 +115,8 @@ class Filling {
     }
   }
 
-  // Joins open edges to rings: each vertex of a rim has two of them.
-  // A ring that comes to one place twice is two rings there, and its copies of the vertex are one.
+  // Joins open edges to rings: each vertex of a rim has two of them. A ring that comes to one place
+  // twice is two rings there, and its copies of the vertex are one.
   void find_rings() {
     std::unordered_map<std::int32_t, std::array<std::int32_t, 2>> open_at;
     for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -131,7 +131,7 @@ class Filling {
       const std::int32_t part = parts_.find(open_[first].triangle);
       if (seen[first] || spoilt_.contains(part)) continue;
       Ring ring;
-      // The hole runs an edge against the triangle beside it.
+      // The hole has an edge in the opposite direction of the adjacent triangle.
       std::int32_t vertex = open_[first].upward ? open_[first].high : open_[first].low;
       std::size_t i = first;
       while (!seen[i]) {
@@ -151,7 +151,7 @@ class Filling {
     }
   }
 
-  // Cuts a ring where it comes to one place twice. What is left of two sides closes by itself.
+  // Cuts a ring where it comes to one place twice. A rest of two sides closes by itself.
   void cut_ring(const Ring& whole, std::vector<Ring>& rings) {
     Ring rest;
     const auto take = [&rings, &rest](std::size_t from) {
@@ -225,7 +225,7 @@ class Filling {
       const double twice_area = side.cross(in).norm();
       const double longest =
           std::max({side.squaredNorm(), in.squaredNorm(), (in - side).squaredNorm()});
-      // A slit of no width has nothing to be filled with.
+      // A slit of no width cannot be filled.
       if (!(twice_area > kFillFlatness * longest))
         ring.area = std::numeric_limits<double>::infinity();
       ring.area += twice_area / 2;
@@ -275,7 +275,7 @@ class Filling {
   std::unordered_set<std::int32_t> spoilt_;  // parts that cannot be closed
   std::unordered_map<std::int32_t, double> area_of_;
   double size_ = 0;                                      // of the mesh's places
-  std::unordered_map<std::int32_t, std::int32_t> same_;  // copies of a vertex that one ring meets
+  std::unordered_map<std::int32_t, std::int32_t> same_;  // copies of a vertex in one ring
   std::map<std::int32_t, std::vector<Ring>> rings_of_;   // in the order of the parts
   std::vector<FilledHole> filled_;
 };

@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 using Triangle = std::array<std::int32_t, 3>;
 using Taken = std::function<bool(std::int32_t, std::int32_t)>;
 
-// A ring that leaves its mean plane by less than this share of its size is closed as a flat one.
+// A ring within this share of its size from its mean plane is closed as a flat one.
 constexpr double kFlat = 1e-3;
 
-// All triangulations of a ring of so many corners are compared, which takes their number cubed.
+// Maximum size of a ring for which all triangulations are compared, which takes its cube.
 constexpr std::size_t kWholeMax = 64;
 
 std::size_t index(std::int32_t i) {
@@ -32,7 +32,7 @@ Vector3d normal_of(const HoleRing& ring, std::int32_t a, std::int32_t b, std::in
   return (ring.corners[index(b)] - p).cross(ring.corners[index(c)] - p);
 }
 
-// Returns whether three corners with such a normal (twice the area) make a triangle.
+// Returns whether three corners with this normal (twice the area) make a triangle.
 bool has_area(const HoleRing& ring, std::int32_t a, std::int32_t b, std::int32_t c,
               double twice_area) {
   const Vector3d &p = ring.corners[index(a)], &q = ring.corners[index(b)],
@@ -60,7 +60,7 @@ bool is_flat(const HoleRing& ring) {
   });
 }
 
-// True if no triangle joins corners that are joined already, and each has an area.
+// Returns whether no triangle joins corners that are joined already, and each has an area.
 bool may_stand(const HoleRing& ring, const std::vector<Triangle>& triangles, const Taken& taken) {
   const auto count = static_cast<std::int32_t>(ring.corners.size());
   for (const Triangle& t : triangles) {
@@ -74,7 +74,7 @@ bool may_stand(const HoleRing& ring, const std::vector<Triangle>& triangles, con
   return true;
 }
 
-// How good a triangulation of a ring is: the cosine of its sharpest bend, then its area.
+// Quality of a triangulation of a ring: the cosine of its sharpest bend, then its area.
 struct Merit {
   double bend = 1;  // cosine; 1 for none
   double area = 0;
@@ -116,7 +116,8 @@ class Best {
 
   Way& at(std::size_t from, std::size_t to) { return ways_[from * size_ + to]; }
 
-  // What lies behind a chord: the triangle of its best triangulation, or what is beside the ring.
+  // Normal behind a chord: of the triangle of its best triangulation, or of the triangle next to
+  // the ring.
   const Vector3d& behind(std::size_t from, std::size_t to) {
     return to == from + 1 ? beside_[from] : at(from, to).normal;
   }
@@ -156,15 +157,15 @@ class Best {
   }
 
   const HoleRing& ring_;
-  const std::vector<std::int32_t> kept_;  // corners of the ring that are left, in order
+  const std::vector<std::int32_t> kept_;  // remaining corners of the ring, in order
   const std::vector<Vector3d> beside_;    // behind the side from each of them to the next
   const Taken& taken_;
   const std::size_t size_;
   std::vector<Way> ways_;
 };
 
-// Cuts corners off until few enough are left to compare all triangulations; what bends least goes
-// first.
+// Cuts corners off until few enough are left to compare all triangulations, those with the least
+// bend first.
 bool cut_corners(const HoleRing& ring, const Taken& taken, std::vector<std::int32_t>& kept,
                  std::vector<Vector3d>& beside, std::vector<Triangle>& triangles) {
   while (kept.size() > kWholeMax) {
@@ -181,7 +182,7 @@ bool cut_corners(const HoleRing& ring, const Taken& taken, std::vector<std::int3
       normal /= area;
       const Vector3d to_last = ring.corners[index(kept[last])] - ring.corners[index(kept[i])];
       const Vector3d to_next = ring.corners[index(kept[next])] - ring.corners[index(kept[i])];
-      // A narrow corner that lies flat is cut first: it meets nothing else of the ring.
+      // A narrow corner that is flat is cut first: it meets nothing else of the ring.
       const double narrow = to_last.normalized().dot(to_next.normalized());
       const double merit = std::min(normal.dot(beside[last]), normal.dot(beside[i])) + narrow;
       if (merit > best) {

@@ -16,8 +16,8 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-// Enough that components which overlap by half are told apart from nested ones, few enough that a
-// file of many small parts is checked in seconds.
+// Enough to distinguish components which overlap by half from nested ones, few enough that a file
+// of many small parts is checked in seconds.
 constexpr std::size_t kWitnesses = 8;
 
 const Vector3d& corner(const TriangleMesh& mesh, std::int32_t triangle, std::size_t k) {
@@ -25,7 +25,7 @@ const Vector3d& corner(const TriangleMesh& mesh, std::int32_t triangle, std::siz
   return mesh.vertices[static_cast<std::size_t>(triangle_corners[k])];
 }
 
-// The triangles of closed components, those of one together, in the order of their numbers.
+// The triangles of closed components, grouped by component, in the order of their numbers.
 class Parts {
  public:
   Parts(const TriangleMesh& mesh, const MeshComponents& found)
@@ -56,7 +56,8 @@ class Parts {
     return {triangles_.data() + begin_[part], begin_[part + 1] - begin_[part]};
   }
 
-  // Six times the volume, about the part's own middle: far from the origin it would drown.
+  // Six times the volume, about the part's own middle: far from the origin it would be lost in
+  // rounding.
   double volume(std::size_t part) const {
     double volume = 0;
     const Vector3d middle = boxes_[part].center();
@@ -85,7 +86,7 @@ RayTree tree_of(const TriangleMesh& mesh, std::span<const std::int32_t> triangle
   return RayTree(std::move(items));
 }
 
-// Finds in which others each part lies, from the largest to the smallest.
+// Finds the parts around each part, from the largest to the smallest.
 class Nesting {
  public:
   Nesting(const TriangleMesh& mesh, const Parts& parts)
@@ -128,14 +129,14 @@ class Nesting {
   }
 
  private:
-  // In what a part lies: its smallest `parent`, all that this lies in, and what else.
+  // The parts around a part: the smallest, `parent`, all around that one, and others.
   struct Nest {
     std::int32_t parent = -1;
     std::vector<std::int32_t> others;
   };
 
-  // `outer`: those whose boxes hold the part's box, the smallest first. A part that lies in its
-  // parent lies in all that the parent lies in; only others need rays.
+  // `outer`: those whose boxes contain the part's box, the smallest first. A part inside its parent
+  // is inside all parts around the parent; only others need rays.
   std::size_t nest(std::int32_t part, const std::vector<std::int32_t>& outer) {
     const auto i = static_cast<std::size_t>(part);
     std::size_t count = 0;
@@ -156,9 +157,9 @@ class Nesting {
     return count;
   }
 
-  // Notes for `part` all that `parent` lies in.
+  // Marks for `part` all parts around `parent`.
   void mark(std::int32_t parent, std::int32_t part) {
-    // Parts that are each other's copies may lie in each other.
+    // Parts that are copies of each other may be inside each other.
     for (std::int32_t at = parent; at >= 0 && asked_[static_cast<std::size_t>(at)] != part;
          at = nests_[static_cast<std::size_t>(at)].parent) {
       asked_[static_cast<std::size_t>(at)] = part;
@@ -168,7 +169,7 @@ class Nesting {
     }
   }
 
-  // Returns whether a part lies in another one, by up to eight of its vertices.
+  // Returns whether a part is inside another one, by up to eight of its vertices.
   bool lies_in(std::size_t inner, std::size_t outer) {
     if (!trees_[outer]) trees_[outer].emplace(tree_of(mesh_, parts_.triangles(outer)));
     const std::span<const std::int32_t> triangles = parts_.triangles(inner);
@@ -192,7 +193,7 @@ class Nesting {
   const Parts& parts_;
   std::vector<Nest> nests_;
   std::vector<std::optional<RayTree>> trees_;
-  std::vector<std::int32_t> asked_;  // for which part each was marked last
+  std::vector<std::int32_t> asked_;  // the part for which each was marked last
 };
 
 }  // namespace

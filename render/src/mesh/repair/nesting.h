@@ -8,17 +8,17 @@
 
 namespace thimble::render {
 
-/// What is known of a closed component as a body.
+/// Properties of a closed component as a body.
 struct ClosedPart {
   double volume = 0;          ///< Six times the signed volume, the mesh's unit cubed.
-  std::size_t nested_in = 0;  ///< How many other closed components it lies in.
+  std::size_t nested_in = 0;  ///< Number of other closed components around it.
 };
 
-/// Returns what the closed components of a mesh are as bodies; others keep zeros. Reads
-/// `component_of`, `count` and `closed` of `found`. A component lies in another if up to eight
-/// vertices of it do, each by the parity of what a ray along x crosses. Rays ask trees of boxes:
-/// O(n log n), and the triangles that lie over or under such a vertex. Real-time: never from the
-/// servo thread.
+/// Returns the properties of the closed components of a mesh; others keep zeros. Reads
+/// `component_of`, `count` and `closed` of `found`. A component is inside another if up to eight
+/// vertices of it are, each by the parity of crossings of a ray along x. Rays use trees of boxes:
+/// O(n log n), plus the triangles over or under such a vertex. Real-time: never from the servo
+/// thread.
 std::vector<ClosedPart> nest_components(const TriangleMesh& mesh, const MeshComponents& found);
 
 }  // namespace thimble::render

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A seam is followed no farther than so many vertices: a bound for hostile files only.
+// Maximum number of vertices along a seam: a bound for hostile files only.
 constexpr std::size_t kChainMax = 10000;
 
 using Cell = std::array<std::int64_t, 3>;
@@ -30,13 +30,13 @@ struct CellHash {
   }
 };
 
-// Holds vertices by place, to find one within the tolerance.
+// Vertices by place, to find one within the tolerance.
 class Places {
  public:
   Places(const std::vector<Vector3d>& vertices, double tolerance)
       : vertices_(vertices), tolerance_(tolerance) {}
 
-  // Finds the vertex with the smallest number within the tolerance of `p`, -1 for none.
+  // Returns the vertex with the smallest number within the tolerance of `p`, -1 for none.
   std::int32_t find(const Vector3d& p) const {
     std::int32_t found = -1;
     const Cell middle = cell_of(p);
@@ -58,8 +58,8 @@ class Places {
 
  private:
   Cell cell_of(const Vector3d& p) const {
-    // Far from the origin neighbouring cells may round to one: then it just holds more. The bound
-    // keeps the numbers within 64 bits.
+    // Far from the origin neighbouring cells may round to one, which then just holds more. The
+    // bound keeps the numbers within 64 bits.
     constexpr double kCellMax = 1e18;
     Cell cell;
     for (int axis = 0; axis < 3; ++axis) {
@@ -85,8 +85,8 @@ class Seams {
     }
   }
 
-  // Lists the vertices of the chain beside the edge from `from` to `to`, in order; empty if there
-  // is none. `third` is the corner opposite, whose edges are not beside but the same triangle's.
+  // Lists the vertices of the chain along the edge from `from` to `to`, in order; empty if there is
+  // none. `third` is the opposite corner, whose edges belong to the same triangle.
   std::vector<std::int32_t> chain(std::int32_t from, std::int32_t to, std::int32_t third) const {
     const Vector3d& a = at(from);
     const Vector3d edge = at(to) - a;
@@ -187,7 +187,7 @@ std::vector<std::int32_t> close_seams(TriangleMesh& mesh, double tolerance,
   std::vector<std::int32_t> split;
   for (const EdgeUse& use : open) {
     const auto t = static_cast<std::size_t>(use.triangle);
-    // A triangle with several long edges has its turn again in the next round.
+    // A triangle with several long edges continues in the next round.
     if (touched[t]) continue;
     const auto corner = static_cast<std::size_t>(static_cast<unsigned char>(use.corner));
     const std::int32_t from = mesh.triangles[t][corner];
@@ -197,7 +197,7 @@ std::vector<std::int32_t> close_seams(TriangleMesh& mesh, double tolerance,
     if (chain.empty()) continue;
     chain.insert(chain.begin(), from);
     chain.push_back(to);
-    // An edge that another seam has closed in this round is open no longer.
+    // An edge that another seam has closed in this round is no longer open.
     bool stale = closed.contains(edge(from, to));
     for (std::size_t i = 1; i < chain.size(); ++i) {
       stale |= closed.contains(edge(chain[i - 1], chain[i]));

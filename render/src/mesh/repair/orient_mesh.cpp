@@ -16,7 +16,7 @@ bool is_whole(const TriangleMesh& mesh, std::size_t t) {
          });
 }
 
-// Numbers the parts that hang together over edges, in the order of their first triangles.
+// Numbers the parts connected over edges, in the order of their first triangles.
 void number_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses,
                        MeshComponents& found) {
   Groups groups(mesh.triangles.size());

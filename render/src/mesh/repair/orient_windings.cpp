@@ -11,8 +11,8 @@
 namespace thimble::render {
 namespace {
 
-// Is the way over an edge: to the triangle behind it, and whether both run the edge the same way,
-// so that one of them must be turned.
+// A link over an edge: the triangle behind it, and whether both have the edge in the same
+// direction, so that one of them must be turned.
 struct Link {
   std::int32_t triangle = -1;
   bool against = false;
@@ -37,8 +37,8 @@ std::vector<std::array<Link, 3>> links_of(const TriangleMesh& mesh) {
   return links;
 }
 
-// Spreads winding over one patch from `seed`: afterwards `turn` says for each of its triangles
-// whether it stands against the seed. Returns the patch's triangles, and whether it has two sides.
+// Spreads winding over one patch from `seed`: afterwards `turn` is set for each of its triangles
+// that is wound against the seed. Returns the patch's triangles, and whether it has two sides.
 std::pair<std::vector<std::int32_t>, bool> spread(const std::vector<std::array<Link, 3>>& links,
                                                   std::int32_t seed, std::vector<bool>& seen,
                                                   std::vector<bool>& turn) {
@@ -105,7 +105,7 @@ OrientReport orient_mesh(TriangleMesh& mesh) {
   OrientReport report;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (parts.inside_out[part_of(t)]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-    // Two swaps give the original order back; one never does, for the corners differ.
+    // Two swaps give the original order back; one never does, because the corners differ.
     if (mesh.triangles[t] == original[t]) continue;
     if (report.turned_triangles++ == 0) report.first_turned = static_cast<std::int32_t>(t);
   }

@@ -14,16 +14,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far above the triangle a ray starts, in its smallest height. The first is far above rounding
-// and far below any gap for nearly all triangles; the others are for slivers, then for gaps.
+// Heights of a ray's start above the triangle, in its smallest height. The first is far above
+// rounding and far below any gap for nearly all triangles; the others are for slivers, then for
+// gaps.
 constexpr std::array<double, 4> kStarts{0x1p-24, 0x1p-12, 0x1p-4, 0x1p-40};
 
-// Where in the triangle a ray starts: weights of its corners, apart enough that what spoils one
-// start (an edge just above it) spares another.
+// Places of a ray's start in the triangle: weights of its corners, far enough apart that an edge
+// just above one start does not affect another.
 constexpr std::array<std::array<double, 3>, 3> kWeights{
     {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.3, 0.2}, {0.15, 0.25, 0.6}}};
 
-// The columns of one axis hold at most so many entries per triangle, whatever the triangles' sizes.
+// Maximum number of entries per triangle in the columns of one axis, for any sizes of triangles.
 constexpr std::size_t kEntriesPerTriangle = 8;
 
 struct Sphere {
@@ -42,13 +43,13 @@ const Vector3d& corner(const TriangleMesh& mesh, std::size_t t, std::size_t k) n
   return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
 }
 
-// Is a ray along an axis: from below the triangle over its start above to the sphere.
+// A ray along an axis: from below the triangle over its start above to the sphere.
 struct Ray {
   int axis = 0;
   Vector3d p_below{0, 0, 0}, p_start{0, 0, 0}, p_end{0, 0, 0};
 };
 
-// Is what a triangle's rays have in common.
+// Data shared by a triangle's rays.
 struct RayFrame {
   int axis = 0;
   double sign = 0;  // 0: no ray can be cast
@@ -72,7 +73,7 @@ Ray ray_at(const TriangleMesh& mesh, const Sphere& sphere, std::size_t t, const 
            const std::array<double, 3>& weights, double start) noexcept {
   Ray ray;
   ray.axis = frame.axis;
-  // Relative to one corner, so that a mesh far from the origin loses as little as it can.
+  // Relative to one corner, so that a mesh far from the origin loses the least precision.
   const Vector3d& a = corner(mesh, t, 0);
   ray.p_start = ray.p_below = ray.p_end =
       a + weights[1] * (corner(mesh, t, 1) - a) + weights[2] * (corner(mesh, t, 2) - a);
@@ -95,14 +96,14 @@ bool out_of_reach(const Ray& ray, const Vector3d& a, const Vector3d& b,
                                  : std::min({a[ray.axis], b[ray.axis], c[ray.axis]}) > p;
 }
 
-// Counts what a ray crosses, as long as it is sure that the ray starts above its own triangle with
+// Counts the crossings of a ray while it is certain that the ray starts above its own triangle with
 // nothing else between.
 class RayCount {
  public:
   RayCount(const TriangleMesh& mesh, const Ray& ray, std::size_t own) noexcept
       : mesh_(mesh), ray_(ray), own_(own) {}
 
-  // Returns false as soon as the start is spoilt.
+  // Returns false as soon as the start is not valid.
   bool consider(std::size_t t) noexcept {
     const Vector3d& a = corner(mesh_, t, 0);
     const Vector3d& b = corner(mesh_, t, 1);
@@ -110,7 +111,7 @@ class RayCount {
     if (out_of_reach(ray_, a, b, c)) return t != own_;
     const Crossing near = crossing(ray_.p_below, ray_.p_start, a, b, c);
     if (t == own_) {
-      // From below to above is the way out of the triangle's own plane.
+      // From below to above leaves through the triangle's own plane.
       starts_above_ = near == Crossing::kLeaves;
       return starts_above_;
     }
@@ -132,8 +133,8 @@ class RayCount {
   bool starts_above_ = false;
 };
 
-// Finds the sign of a triangle. `visit_near(ray, count)` must show `count` every triangle that the
-// ray may reach, until it returns false; it returns false then too.
+// Returns the sign of a triangle. `visit_near(ray, count)` must pass to `count` every triangle that
+// the ray may reach, until it returns false; then it returns false too.
 template <class VisitNear>
 std::int8_t find_sign(const TriangleMesh& mesh, const Sphere& sphere, std::size_t t,
                       VisitNear visit_near) noexcept {
@@ -143,7 +144,7 @@ std::int8_t find_sign(const TriangleMesh& mesh, const Sphere& sphere, std::size_
     for (const double start : kStarts) {
       const Ray ray = ray_at(mesh, sphere, t, frame, weights, start);
       RayCount count(mesh, ray, t);
-      // The own triangle first: it is what most often spoils a start.
+      // The own triangle first: it is the most frequent reason of an invalid start.
       if (!count.consider(t)) continue;
       if (visit_near(ray, count)) return count.sign();
     }
@@ -191,8 +192,8 @@ class Columns {
     }
   }
 
-  // Lists the triangles that a ray along the axis through `p` may meet: rounding is monotone, so a
-  // box that holds `p` covers its cell.
+  // Visits the triangles that a ray along the axis through `p` may meet. Rounding is monotone, so a
+  // box that contains `p` covers its cell.
   bool visit(const Vector3d& p, std::size_t own, RayCount& count) const noexcept {
     const std::size_t cell = index(p[u_], 0) * side_ + index(p[v_], 1);
     for (std::size_t i = begin_[cell]; i < begin_[cell + 1]; ++i) {

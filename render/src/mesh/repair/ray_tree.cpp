@@ -9,7 +9,7 @@ namespace thimble::render {
 
 RayTree::RayTree(std::vector<Item> items) : items_(std::move(items)) {
   if (items_.empty()) return;
-  // Halving rounds up at most once per level: one level more than the whole number of halvings.
+  // Halving rounds up at most once per level: one level more than the exact number of halvings.
   nodes_.resize(4 * std::bit_ceil((items_.size() + kLeaf - 1) / kLeaf));
   build(0, 0, items_.size());
 }

@@ -6,11 +6,11 @@
 
 namespace thimble::render {
 
-/// A tree of boxes that rays along +x are asked about: what lies over a point's y and z and does
-/// not end before its x. Real-time: never from the servo thread.
+/// A tree of boxes for rays along +x: finds boxes that contain a point's y and z and do not end
+/// before its x. Real-time: never from the servo thread.
 class RayTree {
  public:
-  /// A box with a number, as a ray along x sees it.
+  /// A numbered box, projected for a ray along x.
   struct Item {
     std::int32_t number = 0;
     double x_max = 0;
@@ -22,7 +22,7 @@ class RayTree {
     return {number, box.max().x(), Eigen::AlignedBox2d(box.min().tail<2>(), box.max().tail<2>())};
   }
 
-  /// Takes the items and sorts them into a tree: O(n log n), however they lie.
+  /// Takes the items and sorts them into a tree: O(n log n) for any distribution.
   explicit RayTree(std::vector<Item> items);
 
   /// Calls `take(number)` for every item that the ray from `p` along +x may meet, ends included.
@@ -32,7 +32,7 @@ class RayTree {
   }
 
  private:
-  // What is asked one by one, not cut further.
+  // Maximum number of items in a leaf.
   static constexpr std::size_t kLeaf = 8;
 
   struct Node {
@@ -44,7 +44,7 @@ class RayTree {
     return x_max >= p.x() && yz.contains(p.tail<2>());
   }
 
-  // Nodes stand as in a heap: the halves of node i are 2 i + 1 and 2 i + 2.
+  // Nodes are stored as in a heap: the halves of node i are 2 i + 1 and 2 i + 2.
   void build(std::size_t node, std::size_t begin, std::size_t end);
 
   template <class Take>

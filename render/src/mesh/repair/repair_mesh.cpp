@@ -24,14 +24,14 @@ namespace {
 using Eigen::Vector3d;
 using Kind = RepairChange::Kind;
 
-// Wider, whole fingers of a scanned hand would be welded together.
+// A larger tolerance would weld whole fingers of a scanned hand together.
 constexpr double kToleranceMax = 0.01;
 
-// Dropping a triangle may open a seam whose closing makes another one: what is not done after so
-// many rounds does not converge.
+// Dropping a triangle may open a seam whose closing makes another one. After this number of rounds
+// it does not converge.
 constexpr int kRoundsMax = 16;
 
-// Repairs one mesh; each function does what it is named after and tells of it.
+// Repairs one mesh; each function does the step in its name and reports it.
 class Repair {
  public:
   Repair(const TriangleMesh& mesh, const RepairOptions& options)
@@ -107,7 +107,7 @@ class Repair {
     return sum;
   }
 
-  // Drops the triangles for which `is_bad` holds; it is asked once each, in order.
+  // Drops the triangles for which `is_bad` holds; it is called once each, in order.
   template <class IsBad>
   void drop(Kind kind, IsBad is_bad) {
     std::size_t kept = 0;
@@ -145,7 +145,7 @@ class Repair {
       const Vector3d ab = at(b) - at(a);
       const Vector3d ac = at(c) - at(a);
       const double longest = std::max({ab.stableNorm(), ac.stableNorm(), (ac - ab).stableNorm()});
-      // As check_mesh decides it.
+      // Same criterion as check_mesh.
       return !(ab.cross(ac).stableNorm() > kFlatness * longest * longest);
     });
   }
@@ -201,7 +201,7 @@ class Repair {
     for (const auto& triangle : mesh.triangles) {
       for (const std::int32_t v : triangle) number[static_cast<std::size_t>(v)] = 0;
     }
-    // Vertices that were welded away have been told already.
+    // Vertices that were welded have been reported already.
     std::vector<bool> used_before(number.size(), false);
     for (const auto& triangle : before_.triangles) {
       for (const std::int32_t v : triangle) {
@@ -229,7 +229,7 @@ class Repair {
 
   const RepairOptions options_;
   const TriangleMesh& before_;
-  std::vector<std::int32_t> origin_;  // the number that each triangle, or its whole, came with
+  std::vector<std::int32_t> origin_;  // original number of each triangle or of its whole
   double tolerance_ = 0;              // in the mesh's unit
   RepairedMesh done_;
 };

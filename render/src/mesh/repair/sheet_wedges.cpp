@@ -69,8 +69,8 @@ CutMesh with_ambiguous_edges_cut(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& corners = mesh.triangles[t];
     const auto& middle = middles[t];
-    // Corners in front of a cut edge on both sides go off as triangles of their own; what remains
-    // is a fan from the first middle, or the triangle itself.
+    // Corners in front of a cut edge on both sides become triangles of their own; the rest is a fan
+    // from the first middle, or the triangle itself.
     std::vector<std::int32_t> rest;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t before = (k + 2) % 3;

@@ -11,18 +11,18 @@
 
 namespace thimble::render {
 
-// Steps of thicken_sheets: which sides of triangles look at each other over the edges of a mesh. A
-// triangle t has two sides, 2 t its front and 2 t + 1 its back, and a side s the corners 3 s to
-// 3 s + 2, in the triangle's order for both. Real-time: never from the servo thread.
+// Steps of thicken_sheets: finds the sides of triangles that face each other over the edges of a
+// mesh. A triangle t has two sides, 2 t its front and 2 t + 1 its back. A side s has the corners 3
+// s to 3 s + 2, in the triangle's order for both. Real-time: never from the servo thread.
 
 /// Returns the corner of a side at a vertex of its triangle.
 std::int32_t corner_of(const TriangleMesh& mesh, std::size_t side, std::int32_t vertex);
 
-/// Two sides of triangles that look at each other over an edge.
+/// Two sides of triangles that face each other over an edge.
 using Wedge = std::pair<std::size_t, std::size_t>;
 
 // Calls `take(edge, wedges)` for each edge: its first side, and the pairs of sides of triangles
-// that look at each other over it; none at an open edge.
+// that face each other over it; none at an open edge.
 template <class Take>
 void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
                    std::span<const std::int32_t> sources, Take&& take) {
@@ -40,7 +40,7 @@ void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
       for (std::size_t i = 0; i < edge.size(); ++i) {
         const EdgeUse& one = edge[i];
         const EdgeUse& next = edge[(i + 1) % edge.size()];
-        // The front of one that runs upwards looks at the next.
+        // The front of a triangle that has the edge upwards faces the next.
         wedges.emplace_back(2 * static_cast<std::size_t>(one.triangle) + (one.upward ? 0 : 1),
                             2 * static_cast<std::size_t>(next.triangle) + (next.upward ? 1 : 0));
       }
@@ -50,19 +50,19 @@ void for_each_edge(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
   }
 }
 
-/// Joins the corners of sides that will be one vertex: what hangs together around it.
+/// Joins the corners of sides that become one vertex: those connected around it.
 Groups join_corners(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
                     std::span<const std::int32_t> sources);
 
-/// A mesh of pieces of triangles, and which triangle each comes from.
+/// A mesh of pieces of triangles, with the source triangle of each.
 struct CutMesh {
   TriangleMesh mesh;
   std::vector<std::int32_t> sources;
 };
 
-/// Returns the mesh with those edges cut in the middle over which two wedges, or front and back of
-/// an open edge, hang together at both ends: a thin body would have one edge there for both. In the
-/// middle each has a vertex of its own.
+/// Returns the mesh with ambiguous edges cut in the middle. These are edges where two wedges, or
+/// front and back of an open edge, are connected at both ends: a thin body would have one edge
+/// there for both. In the middle each has its own vertex.
 CutMesh with_ambiguous_edges_cut(const TriangleMesh& mesh);
 
 }  // namespace thimble::render

@@ -39,14 +39,14 @@ driver::Result<SoundMesh> look_closely(const TriangleMesh& mesh, bool orient) {
   return sound;
 }
 
-// `neighbours`: what find_adjacency says of the mesh.
+// `neighbours`: result of find_adjacency for the mesh.
 driver::Result<SoundMesh> look_with(const TriangleMesh& mesh,
                                     const driver::Result<Adjacency>& neighbours, bool orient) {
   if (neighbours && surely_sound(mesh, *neighbours)) return SoundMesh{};
   return look_closely(mesh, orient);
 }
 
-// Starts a look on a thread where that is worth it.
+// Starts a check on a thread if that is worth it.
 template <class Look>
 std::future<driver::Result<SoundMesh>> beside(const TriangleMesh& mesh, Look look) {
   // Below, a thread costs more than it saves [measured: 10 us against 300 ns per triangle].

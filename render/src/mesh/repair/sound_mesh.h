@@ -10,25 +10,24 @@
 
 namespace thimble::render {
 
-/// A mesh that was looked at and can be touched.
+/// A checked mesh that is valid for contact.
 struct SoundMesh {
-  /// With its triangles wound alike and outwards, where they were not; else it is sound as it is.
+  /// The mesh wound consistently and outwards, if it was not; empty if it was sound unchanged.
   std::optional<TriangleMesh> turned;
-  OrientReport orientation;  ///< What was turned.
+  OrientReport orientation;  ///< Report of the turned triangles.
 };
 
-/// Looks at a whole mesh. The error says what is wrong with it: it has no triangles, is not closed,
-/// or, unless `orient` lets it be put right, is wound wrongly. Real-time: never from the servo
-/// thread.
+/// Checks a whole mesh. The error states its faults: it has no triangles, is not closed, or, unless
+/// `orient` permits turning, is wound wrongly. Real-time: never from the servo thread.
 driver::Result<SoundMesh> look_at_mesh(const TriangleMesh& mesh, bool orient);
 
-/// Does the same on a thread of its own, so that the caller may go on meanwhile as if the mesh were
-/// sound and drop what he has if it is not; small meshes are looked at when the answer is asked
-/// for. The mesh must outlive the answer. Real-time: never from the servo thread.
+/// Does the same on another thread, so that the caller may continue meanwhile as if the mesh were
+/// sound, and discard its results if it is not. Small meshes are checked when the result is
+/// requested. The mesh must outlive the result. Real-time: never from the servo thread.
 std::future<driver::Result<SoundMesh>> look_at_mesh_beside(const TriangleMesh& mesh, bool orient);
 
-/// Does the same for who knows `neighbours`, what find_adjacency says of the mesh; they must
-/// outlive the answer as well.
+/// Does the same for callers that have `neighbours`, the result of find_adjacency for the mesh;
+/// they must outlive the result as well.
 std::future<driver::Result<SoundMesh>> look_at_mesh_beside(
     const TriangleMesh& mesh, const driver::Result<Adjacency>& neighbours, bool orient);
 

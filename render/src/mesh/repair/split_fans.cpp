@@ -18,12 +18,12 @@ namespace {
 using Eigen::Vector3d;
 using Pair = std::pair<EdgeUse, EdgeUse>;
 
-// An edge whose ends its pairs still share is cut in the middle; a mesh that has such edges after
-// so many rounds keeps them.
+// An edge whose ends its pairs still share is cut in the middle. After this number of rounds, a
+// mesh keeps such edges.
 constexpr int kCutRoundsMax = 4;
 
-// Returns the pairs of sides between which an edge of many triangles has matter; empty if its
-// triangles do not lie around it by turns.
+// Returns the pairs of sides with matter between them at an edge of many triangles; empty if matter
+// and gap do not alternate around it.
 std::vector<Pair> matter_pairs(const TriangleMesh& mesh, std::span<const EdgeUse> uses) {
   std::vector<Pair> pairs;
   const std::size_t count = uses.size();
@@ -33,18 +33,19 @@ std::vector<Pair> matter_pairs(const TriangleMesh& mesh, std::span<const EdgeUse
     const EdgeUse& one = around[i];
     const EdgeUse& next = around[(i + 1) % count];
     if (one.upward == next.upward) return {};
-    // The outer side of one that runs upwards looks at the next: between them is a gap.
+    // The outer side of a triangle that has the edge upwards faces the next: between them is a gap.
     if (!one.upward) pairs.emplace_back(one, next);
   }
   return pairs;
 }
 
-// What belongs together at each edge: pairs, and of edges that cannot be parted all their sides.
+// Connections at each edge: pairs, and for edges that cannot be split all their sides.
 struct Links {
   std::vector<Pair> pairs;
   std::vector<std::int32_t> parted;       // a triangle at each edge of several pairs
   std::vector<std::vector<Pair>> crowds;  // pairs of each such edge
-  std::size_t unclear = 0;                // even edges whose triangles do not lie by turns
+  std::size_t unclear = 0;                // edges with an even number of triangles where matter and
+                                          // gap do not alternate
 };
 
 Links find_links(const TriangleMesh& mesh) {
@@ -68,7 +69,8 @@ Links find_links(const TriangleMesh& mesh) {
   return links;
 }
 
-// Turns triangles as rays tell, if that makes the sides of more edges match. Returns those turned.
+// Turns triangles according to rays, if that makes the sides of more edges match. Returns those
+// turned.
 std::vector<std::int32_t> turn_by_rays(TriangleMesh& mesh, Links& links) {
   if (links.unclear == 0) return {};
   TriangleMesh turned = mesh;
@@ -138,7 +140,7 @@ std::vector<std::int32_t> split_vertices(TriangleMesh& mesh, const Links& links)
         doubled.push_back(vertex);
       }
     }
-    // A group's root is its smallest corner, so it has been here before.
+    // A group's root is its smallest corner, so it has been visited before.
     mesh.triangles[corner / 3][corner % 3] = vertex_of[root];
   }
   return doubled;
@@ -154,7 +156,7 @@ bool cut_shared_edges(TriangleMesh& mesh, std::vector<std::int32_t>& origin) {
            touched[static_cast<std::size_t>(pair.second.triangle)];
   };
   for (const std::vector<Pair>& crowd : links.crowds) {
-    // A triangle with several such edges has its turn again in the next round.
+    // A triangle with several such edges continues in the next round.
     if (std::any_of(crowd.begin(), crowd.end(), is_touched)) continue;
     int steps = 0;
     for (const Pair& pair : crowd) {

@@ -28,11 +28,11 @@ Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) noexcept {
   return box;
 }
 
-// Whether each triangle has an area by far, and all of them hold matter, not its opposite.
+// Returns whether each triangle clearly has an area, and all of them enclose matter, not a cavity.
 bool holds_matter(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box) noexcept {
-  // Sizes of which no square of an area is too large or too small for a double.
+  // Sizes for which no square of an area overflows or underflows.
   constexpr double kSizeMax = 1e60, kSquareMin = 1e-140;
-  // Roundings of the norms that check_mesh takes are 1e-15 of them.
+  // Roundings of the norms in check_mesh are 1e-15 of them.
   constexpr double kByFar = 1.001;
   const double reach = box.diagonal().norm() / 2;
   if (!(reach < kSizeMax)) return false;
@@ -50,15 +50,15 @@ bool holds_matter(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box) noex
     volume += part;
     sizes += std::abs(part);
   }
-  // A part is a sum of six products of three factors up to `reach`, each wrong by a few 2^-53, and
-  // a sum is wrong by 2^-53 of what has been added for each that is. Twice all that, because the
-  // volume that check_mesh takes the sign of is wrong by as much.
+  // A part is a sum of six products of three factors up to `reach`, each wrong by a few 2^-53. A
+  // sum is wrong by 2^-53 of each partial sum. Twice all that, because the volume whose sign
+  // check_mesh uses is wrong by as much.
   const auto count = static_cast<double>(mesh.triangles.size());
   return volume > count * (0x1p-46 * reach * reach * reach + 0x1p-51 * sizes);
 }
 
-// Whether the triangles at each vertex are one fan, and none lies back to back with another on the
-// same three vertices.
+// Returns whether the triangles at each vertex are one fan, and none is back to back with another
+// on the same three vertices.
 bool has_single_fans(const TriangleMesh& mesh, const Adjacency& neighbours) {
   std::vector<std::uint32_t> around(mesh.vertices.size(), 0);
   for (const auto& corners : mesh.triangles) {

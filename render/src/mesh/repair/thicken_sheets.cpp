@@ -22,18 +22,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A corner goes out by at most so many half thicknesses to keep the faces around it apart by one.
+// Maximum offset of a corner, in half thicknesses, to keep the faces around it apart by one.
 constexpr double kMiterMax = 2;
 
-// Vertices of triangles without area are moved by this share of half the thickness, by turns along
-// the axes, until they have one.
+// Vertices of triangles without area are moved by this share of half the thickness, along
+// alternating axes, until they have one.
 constexpr double kNudge = 1e-3;
 constexpr int kNudgesMax = 6;
 
-// A face of the thin body may turn against the one that it comes from by at most this cosine.
+// A face of the thin body may turn against its source face by at most this cosine.
 constexpr double kTurnedMin = 0.2;
 
-// Corners are pulled back to half as often as this where faces would turn over.
+// Maximum number of times that corners are pulled back to half, where faces would turn over.
 constexpr int kPullBackMax = 24;
 
 // Makes thin bodies of the chosen triangles of a mesh.
@@ -70,12 +70,12 @@ class Thickening {
 
   const Vector3d& at(std::int32_t v) const { return mesh_.vertices[static_cast<std::size_t>(v)]; }
 
-  // The vertex of the thin body that a corner of a side has become.
+  // Returns the vertex of the thin body for a corner of a side.
   std::int32_t vertex_at(std::int32_t corner) {
     return number_[static_cast<std::size_t>(groups_.find(corner))];
   }
 
-  // Puts a vertex for each group of corners along the mean of its faces.
+  // Places a vertex for each group of corners along the mean of its faces.
   void make_vertices() {
     number_.assign(6 * mesh_.triangles.size(), -1);
     for_each_corner([this](std::size_t side, std::size_t k, std::int32_t corner) {
@@ -96,7 +96,7 @@ class Thickening {
       const double length = ways_[v].norm();
       ways_[v] = length > 1e-6 ? Vector3d(ways_[v] / length) : way_between(v);
     }
-    std::vector<double> lean(ways_.size(), 1);  // the cosine of the face that looks away most
+    std::vector<double> lean(ways_.size(), 1);  // cosine of the face that leans away most
     for_each_corner([&](std::size_t side, std::size_t, std::int32_t corner) {
       const auto v = static_cast<std::size_t>(vertex_at(corner));
       lean[v] = std::min(lean[v], face_normal(side).dot(ways_[v]));
@@ -106,7 +106,7 @@ class Thickening {
     }
   }
 
-  // Faces that lie on each other have no way out: their vertex goes between them, into the first.
+  // Faces on top of each other have no way out: their vertex goes between them, into the first.
   Vector3d way_between(std::size_t vertex) const {
     Vector3d in = Vector3d::Zero();
     for (const std::int32_t v : mesh_.triangles[firsts_[vertex] / 2]) in += at(v) - from_[vertex];
@@ -137,7 +137,7 @@ class Thickening {
     if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
   }
 
-  // Joins front and back along open edges. What a rim leaves open at its ends is noted.
+  // Joins front and back along open edges. Sides left open at the ends of a rim are recorded.
   void make_rims() {
     for (const EdgeUse& use : open_) {
       const std::size_t front = 2 * static_cast<std::size_t>(use.triangle);
@@ -154,7 +154,7 @@ class Thickening {
     }
   }
 
-  // Where rims of three and more fans meet, their ends go round a polygon: closes it.
+  // Where rims of three or more fans meet, their ends form a polygon: closes it.
   void make_caps() {
     while (!ends_.empty()) {
       std::vector<std::int32_t> ring{ends_.begin()->first};
@@ -173,7 +173,7 @@ class Thickening {
     return from_[i] + lengths_[i] * ways_[i];
   }
 
-  // Halves the way of corners around faces that would turn over, until none does.
+  // Halves the offset of corners around faces that would turn over, until none does.
   void pull_back() {
     for (int round = 0; round < kPullBackMax; ++round) {
       std::vector<bool> halve(lengths_.size(), false);
@@ -228,14 +228,14 @@ class Thickening {
   Groups groups_;                     // of corners that become one vertex
   std::vector<std::int32_t> number_;  // of the vertex, per root of a group
   std::vector<EdgeUse> open_;
-  // Per vertex: the one it comes from, which way it goes and how far, and a side that it belongs
-  // to.
+  // Per vertex: its source position, the direction and length of its offset, and a side that it
+  // belongs to.
   std::vector<Vector3d> from_, ways_;
   std::vector<double> lengths_;
   std::vector<std::size_t> firsts_;
-  std::vector<std::array<std::int32_t, 3>> triangles_;  // the sides first, front and back by turns
+  std::vector<std::array<std::int32_t, 3>> triangles_;  // sides first, front and back alternating
   std::size_t sides_ = 0;
-  std::map<std::int32_t, std::int32_t> ends_;  // sides of the polygons where rims end
+  std::map<std::int32_t, std::int32_t> ends_;  // sides of the polygons at the ends of rims
 };
 
 }  // namespace

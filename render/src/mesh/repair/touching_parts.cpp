@@ -18,25 +18,26 @@ using Eigen::AlignedBox3d;
 using Eigen::AlignedBox3f;
 using Eigen::Vector3d;
 
-// The pairs of boxes that are looked at, about a second's worth.
+// Maximum number of pairs of boxes examined, about a second's worth.
 constexpr std::size_t kBoxPairsMax = 5'000'000;
 
-// What is compared one by one, not cut further.
+// Maximum number of items in a leaf.
 constexpr std::size_t kTouchLeaf = 4;
 
-// The least share of a node's triangles on one side of the middle; else they are halved by number.
+// The minimum share of a node's triangles on one side of the middle; else they are halved by
+// number.
 constexpr std::size_t kShareMin = 16;
 
-// A triangle of a part whose box meets that of another part. The box is about the mesh's middle; it
-// is larger than the triangle by more than what rounding takes.
+// A triangle of a part whose box meets that of another part. The box is relative to the mesh's
+// middle and larger than the triangle by more than the rounding.
 struct PartTriangle {
   AlignedBox3f box;
   std::int32_t number = 0;
   std::int32_t part = 0;
 };
 
-// Returns whether some axis of the two triangles shows a gap wider than `tolerance` between them.
-// Those of the separating-axis theorem, with the edges' normals in each plane for flat pairs.
+// Returns whether the two triangles are separated by more than `tolerance` along some axis: an axis
+// of the separating-axis theorem, or for flat pairs a normal of the edges in each plane.
 bool are_apart(const std::array<Vector3d, 3>& a, const std::array<Vector3d, 3>& b,
                double tolerance) {
   const auto gap = [&](const Vector3d& axis) {
@@ -61,8 +62,8 @@ bool are_apart(const std::array<Vector3d, 3>& a, const std::array<Vector3d, 3>& 
   return false;
 }
 
-// A tree of boxes over triangles of parts, which is compared with itself. Nodes are cut when they
-// are looked into: much of the mesh never is.
+// A tree of boxes over triangles of parts, which is compared with itself. Nodes are split when they
+// are visited: much of the mesh never is.
 class TouchSearch {
  public:
   TouchSearch(const TriangleMesh& mesh, std::vector<PartTriangle> triangles, const Vector3d& middle,
@@ -82,7 +83,7 @@ class TouchSearch {
     AlignedBox3f box;
     std::int32_t part_min = 0, part_max = 0;
     std::size_t begin = 0, end = 0;
-    std::size_t left = 0, right = 0;  // 0: not cut yet
+    std::size_t left = 0, right = 0;  // 0: not split yet
 
     std::size_t size() const { return end - begin; }
     bool is_leaf() const { return size() <= kTouchLeaf; }
@@ -110,7 +111,7 @@ class TouchSearch {
 
   const TriangleMesh& mesh_;
   std::vector<PartTriangle> triangles_;
-  const Vector3d middle_;  // far from the origin products would drown
+  const Vector3d middle_;  // far from the origin products would lose precision
   const double tolerance_;
   std::vector<Node> nodes_;
   std::unordered_set<std::uint64_t> pairs_;
@@ -194,7 +195,7 @@ void TouchSearch::between(std::size_t a, std::size_t b) {
     }
     return;
   }
-  // The larger one is cut.
+  // Splits the larger one.
   if (!first.is_leaf() && (second.is_leaf() || first.size() > second.size())) {
     const Node halves = cut(a);
     between(halves.left, b);
@@ -232,7 +233,7 @@ std::vector<bool> find_near_parts(const std::vector<AlignedBox3d>& boxes) {
     std::erase_if(
         open, [&](std::size_t other) { return boxes[other].max().x() < boxes[part].min().x(); });
     compared += open.size();
-    if (compared > kBoxPairsMax) {  // so many side by side: all are looked at
+    if (compared > kBoxPairsMax) {  // many parts side by side: all are examined
       near.assign(boxes.size(), true);
       return near;
     }

@@ -11,24 +11,24 @@
 
 namespace thimble::render {
 
-/// How near triangles of two parts lie that count as touching, as a share of the diagonal of the
-/// mesh's box: what rounding to single precision leaves of faces that are flush.
+/// Distance at which triangles of two parts count as touching, as a share of the diagonal of the
+/// mesh's box: the error of flush faces after rounding to single precision.
 inline constexpr double kFlushTolerance = 1e-6;
 
-/// The parts of a mesh that overlap or touch each other: where they overlap, contact finds a
-/// cavity, and at their seam a tip may catch or lose contact.
+/// The parts of a mesh that overlap or touch each other. Where they overlap, contact finds a
+/// cavity; at their seam a tip may catch or lose contact.
 struct TouchingParts {
-  std::size_t pairs = 0;                          ///< How many pairs of parts touch.
-  std::array<std::int32_t, 2> triangles{-1, -1};  ///< Of the first pair, one of each part.
-  Eigen::Vector3d place{0, 0, 0};                 ///< Where they touch, a corner of the first.
-  bool complete = true;                           ///< False if the search was cut off by its bound.
+  std::size_t pairs = 0;                          ///< Number of pairs of parts that touch.
+  std::array<std::int32_t, 2> triangles{-1, -1};  ///< Triangles of the first pair, one per part.
+  Eigen::Vector3d place{0, 0, 0};                 ///< A corner of the first triangle.
+  bool complete = true;                           ///< False if the search reached its bound.
 };
 
-/// Finds the parts of a mesh that cross or touch other parts; parts share no vertex. Parts that lie
-/// wholly within others, and away from their surface, do not touch them. Total; triangles that name
-/// no three finite vertices are left out. O(n) where no boxes of parts meet, else O(n log n) and
-/// the pairs of triangles whose boxes meet, up to a bound of about a second. Real-time: never from
-/// the servo thread.
+/// Finds the parts of a mesh that cross or touch other parts; parts share no vertex. Parts wholly
+/// within others, and away from their surface, do not touch them. Total; triangles that do not name
+/// three finite vertices are omitted. O(n) if no boxes of parts meet, else O(n log n) plus the
+/// pairs of triangles whose boxes meet, up to a bound of about a second. Real-time: never from the
+/// servo thread.
 THIMBLE_EXPORT TouchingParts find_touching_parts(const TriangleMesh& mesh);
 
 /// Returns the finding as a sentence for the user; empty if no parts touch.

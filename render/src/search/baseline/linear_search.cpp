@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Triangles looked at between two branches: several vectors of any width, and few enough that a hit
-// costs little to find again.
+// Triangles tested between two branches: several vectors of any width, and few enough that a hit is
+// found again cheaply.
 constexpr std::size_t kBlock = 32;
 
 }  // namespace
@@ -35,7 +35,7 @@ LinearSearchOver<Surface>::LinearSearchOver(const Surface& surface)
   for (std::int32_t t = 0; t < surface.triangle_count(); ++t) fit_box(t);
 }
 
-// Makes as many boxes, those that come to them empty.
+// Resizes to this number of boxes; new ones are empty.
 template <class Surface>
 void LinearSearchOver<Surface>::pad(std::size_t boxes) noexcept {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -86,7 +86,7 @@ void LinearSearchOver<Surface>::visit_reached(const Vector3d& low, const Vector3
     int reached[kBlock];
     int any = 0;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      // Bitwise, so that nothing branches and the loop becomes vector code.
+      // Bitwise, so that there is no branch and the loop is vectorised.
       reached[i] = static_cast<int>(min_x[i] <= high_x) & static_cast<int>(max_x[i] >= low_x) &
                    static_cast<int>(min_y[i] <= high_y) & static_cast<int>(max_y[i] >= low_y) &
                    static_cast<int>(min_z[i] <= high_z) & static_cast<int>(max_z[i] >= low_z);

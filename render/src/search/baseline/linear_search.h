@@ -13,14 +13,14 @@
 
 namespace thimble::render {
 
-/// Looks for contact by asking every triangle, as the paper does [BP 3.1]: the baseline that other
-/// searches are compared with.
+/// Searches for contact by testing every triangle, as in the paper [BP 3.1]: the baseline for
+/// comparison.
 ///
 /// A first pass over boxes in single precision, written for vector units, drops all triangles that
-/// are out of reach (rounding is monotone, so it never drops one too many); what is left is decided
-/// without rounding. All questions are Real-time: safe; time grows with the number of triangles.
+/// are out of reach. Rounding is monotone, so it never drops one too many. The others are decided
+/// without rounding. All queries are Real-time: safe; time grows with the number of triangles.
 ///
-/// `Surface` is ContactMesh or PackedSurface; LinearSearch stands for the first.
+/// `Surface` is ContactMesh or PackedSurface; LinearSearch is an alias for the first.
 template <class Surface>
 class LinearSearchOver final : public ContactSearch {
  public:

@@ -3,7 +3,7 @@
 namespace thimble::render {
 namespace {
 
-constexpr double kHoldAgain = 0.5;  // of the sliding force: many counts, so noise does not do it
+constexpr double kHoldAgain = 0.5;  // of the sliding force: many counts, above noise
 
 }  // namespace
 
@@ -17,7 +17,7 @@ Eigen::Vector3d BristleLaw::pull(const SlideTick& tick) noexcept {
   const double sliding = settings_.coulomb.sliding * tick.load;
   const double limit = slides_ ? sliding : settings_.coulomb.holding * tick.load;
   const double pull = pull_.norm();
-  // Written so that NaN lets go.
+  // Written so that NaN slides.
   if (!(pull <= limit)) {
     slides_ = true;
     pull_ = shortened(pull_, sliding);

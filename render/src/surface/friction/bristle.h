@@ -9,14 +9,14 @@
 
 namespace thimble::render {
 
-/// The friction to use: a bristle between tip and surface that bends with the way, and is
-/// dragged along where it would pull harder than friction can (the form of Hayward and Armstrong)
+/// The recommended friction: a bristle between tip and surface that bends with the path. It is
+/// dragged along when it would pull harder than friction can (the form of Hayward and Armstrong)
 /// [PHYSICS 2.2, H].
 ///
-/// From positions alone, so it neither drifts nor relaxes, and a count more or less moves its force
-/// by stiffness times step. Once it slides it holds with the sliding coefficient until it has bent
+/// It uses only positions, so it neither drifts nor relaxes, and an encoder count changes its force
+/// by stiffness times step. Once it slides, it holds with the sliding coefficient until it has bent
 /// back by half; then static friction holds again. The bristle's spring is the same at every load:
-/// one that stiffened with the load would make energy out of pressing.
+/// one that stiffened with the load would create energy when pressed.
 class THIMBLE_EXPORT BristleLaw {
  public:
   static constexpr std::string_view kName = "bristle";
@@ -37,7 +37,7 @@ class THIMBLE_EXPORT BristleLaw {
     slides_ = false;
   }
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

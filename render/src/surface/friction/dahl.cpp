@@ -14,7 +14,7 @@ void DahlLaw::Settings::read(SettingsReader& reader, const EffectContext& contex
 Eigen::Vector3d DahlLaw::pull(const SlideTick& tick) noexcept {
   const double limit = settings_.coulomb.sliding * tick.load;
   const double way = tick.slip.norm();
-  // What was stretched under more load slides back to what this load holds.
+  // A bend from a higher load slides back to the limit of this load.
   pull_ = shortened(pull_, limit);
   if (way > 0 && limit > 0) {
     const Eigen::Vector3d end = limit / way * tick.slip;

@@ -8,9 +8,10 @@
 
 namespace thimble::render {
 
-/// Dahl's friction: it grows with the way, dF/dx = stiffness (1 - F / F_c), and nears sliding
-/// friction without a corner. Taken over each tick by its exact solution, exp in |dx|, so that no
-/// step is too long [PHYSICS 2.2, I]. Soft and rounded; static and sliding friction are the same.
+/// Dahl's friction: it grows with the path, dF/dx = stiffness (1 - F / F_c), and approaches sliding
+/// friction without a corner. Integrated over each tick by its exact solution, exp in |dx|, so that
+/// no step is too long [PHYSICS 2.2, I]. Soft and rounded; static and sliding friction are the
+/// same.
 class DahlLaw {
  public:
   static constexpr std::string_view kName = "dahl";
@@ -28,7 +29,7 @@ class DahlLaw {
   void turn(const Turn& turn) noexcept { pull_ = turn.carry(pull_); }
   void forget() noexcept { pull_.setZero(); }
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

@@ -8,7 +8,7 @@
 namespace thimble::render {
 namespace {
 
-// Rubber on clean glass reaches about 4 [M]; more is a slipped decimal point.
+// Rubber on clean glass reaches about 4 [M]; more is a misplaced decimal point.
 constexpr double kCoefficientMax = 5;
 constexpr double kCoefficient = 0.3;   // wood or metal under a tool [chosen]
 constexpr double kHandDamping = 3;     // N s/m, pinch grip [PHYSICS 0]

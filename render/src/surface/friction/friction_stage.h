@@ -14,14 +14,14 @@
 
 namespace thimble::render {
 
-/// How one kind of friction answers a way along the surface.
+/// A friction law: the response of one kind of friction to slip along the surface.
 ///
-/// `pull` gives the force (N in W) along the surface with which the surface holds back, in the
-/// direction in which the tip moved: the hand feels its opposite. `turn` carries what is remembered
-/// along when the normal turns; `forget` ends the contact; `coulomb` returns the coefficients,
-/// which may be changed between two ticks. All Real-time: safe. `kName` is the name by which scenes
-/// choose it, `Settings` what they set, read by `Settings::read`; a law is made of them. A law on
-/// which a tip that is held still does not come to rest has a constant `kRests` that is false.
+/// `pull` returns the friction force (N in W) along the surface, in the direction in which the tip
+/// moved. The hand feels its opposite. `turn` carries the state along when the normal turns.
+/// `forget` ends the contact. `coulomb` returns the coefficients, which may be changed between two
+/// ticks. All Real-time: safe. `kName` is its name in scenes. `Settings` are its settings in
+/// scenes, read by `Settings::read`; a law is constructed from them. If a tip that is held still
+/// does not come to rest on a law, its constant `kRests` is false.
 template <class Law>
 concept FrictionLaw = std::constructible_from<Law, const typename Law::Settings&> &&
     std::default_initializable<typename Law::Settings> &&
@@ -42,10 +42,10 @@ concept FrictionLaw = std::constructible_from<Law, const typename Law::Settings&
 
 /// A friction on a surface: a SurfaceStage around a FrictionLaw.
 ///
-/// It acts along the surface only, and only as far as the surface presses back, so that it ends
-/// with the contact: leaving neither pulls nor sticks. It stands after the surface's spring and
-/// takes the normal force from there; so it follows textures and damping too. All positions and
-/// forces are in W; what is not finite gives no friction. Real-time: safe.
+/// It acts only along the surface, and only as far as the surface presses back. So it ends with the
+/// contact, and leaving neither pulls nor sticks. It comes after the surface's spring and uses the
+/// normal force from there, so it includes textures and damping. All positions and forces are in W;
+/// values that are not finite give no friction. Real-time: safe.
 template <FrictionLaw Law>
 class FrictionStage {
  public:
@@ -56,9 +56,9 @@ class FrictionStage {
     if constexpr (requires { Law::kRests; }) return Law::kRests;
     return true;
   }();
-  using Settings = typename Law::Settings;  ///< Of the law.
+  using Settings = typename Law::Settings;  ///< Settings of the law.
 
-  /// Takes settings that Settings::read found right. Real-time: never from the servo thread.
+  /// Takes settings validated by Settings::read. Real-time: never from the servo thread.
   FrictionStage(const Settings& settings, const EffectContext& context)
       : law_(settings), motion_(context.tick) {}
 
@@ -84,7 +84,7 @@ class FrictionStage {
     law_.forget();
   }
 
-  /// Lists the coefficient; how stiff friction holds hangs on arm and loop, and stays.
+  /// Lists the coefficient. The stiffness of the friction depends on arm and loop, and is fixed.
   /// Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     settings.add<[](FrictionStage& stage, double mu) noexcept {
@@ -98,7 +98,7 @@ class FrictionStage {
   }
 
  private:
-  // What a hand may choose from: less is not felt, more is not met [chosen].
+  // Range of the live coefficient: less is not felt, more does not occur [chosen].
   static constexpr double kLeastCoefficient = 0.01, kMostCoefficient = 1.5;
 
   Law law_;

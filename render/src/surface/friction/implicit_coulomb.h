@@ -8,9 +8,9 @@
 
 namespace thimble::render {
 
-/// Coulomb's set-valued friction on a point without mass that hangs on the tip by a spring and a
-/// damper, solved by the implicit Euler step (the form of Kikuuwe and others) [PHYSICS 2.2, J].
-/// Like the bristle with damping of its own; static and sliding friction are the same.
+/// Coulomb's set-valued friction on a massless point that is joined to the tip by a spring and a
+/// damper. Solved by the implicit Euler step (the form of Kikuuwe and others) [PHYSICS 2.2, J].
+/// Like the bristle with its own damping; static and sliding friction are the same.
 class ImplicitCoulombLaw {
  public:
   static constexpr std::string_view kName = "implicit_coulomb";
@@ -29,7 +29,7 @@ class ImplicitCoulombLaw {
   void turn(const Turn& turn) noexcept { bend_ = turn.carry(bend_); }
   void forget() noexcept { bend_.setZero(); }
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

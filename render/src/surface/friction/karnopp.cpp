@@ -7,7 +7,7 @@ namespace thimble::render {
 void KarnoppLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read(reader);
   stiffness = read_stick_stiffness(reader, context, coulomb.holding);
-  // Not stiffer than published unless asked for: the damper adds its own latency.
+  // Not stiffer than published unless requested: the damper adds its own latency.
   if (!reader.has("stiffness") && !reader.has("z_max")) stiffness = std::min(stiffness, 1000.0);
   reader.number("damping", damping, {.unit = "N s/m", .most = 3});
   reader.number("speed", speed, {.unit = "m/s", .least = 1e-3, .most = 1});
@@ -24,7 +24,7 @@ Eigen::Vector3d KarnoppLaw::pull(const SlideTick& tick) noexcept {
     spring_ = direction_of(velocity) * shortened(spring_, sliding).norm();
     return spring_;
   }
-  // Written so that NaN lets go.
+  // Written so that NaN slides.
   if (!(spring_.norm() <= holding)) {
     spring_ = shortened(spring_, sliding);
     slides_ = speed > settings_.speed;

@@ -8,21 +8,20 @@
 
 namespace thimble::render {
 
-/// Karnopp's friction with a stick spring: above a speed it slides, against the smoothed
-/// velocity; below half of it, or when the tip turns back, a spring and a damper hold
-/// [PHYSICS 2.2, G].
+/// Karnopp's friction with a stick spring. Above a speed it slides, against the smoothed velocity.
+/// Below half of it, or when the tip turns back, a spring and a damper hold [PHYSICS 2.2, G].
 ///
-/// While sliding the spring stays stretched and turns with the direction, so that changing between
-/// the two makes no energy.
+/// While sliding, the spring stays stretched and turns with the direction, so that changing between
+/// the two creates no energy.
 class KarnoppLaw {
  public:
   static constexpr std::string_view kName = "karnopp";
 
   struct Settings {
     CoulombSettings coulomb;
-    double stiffness = 1000;  ///< Of the stick spring, N/m [PHYSICS 2.2].
-    double damping = 1;       ///< Beside it, N s/m [PHYSICS 2.2].
-    double speed = 0.02;      ///< It slides above this, m/s [chosen: 4 times one smoothed count].
+    double stiffness = 1000;  ///< Stiffness of the stick spring, N/m [PHYSICS 2.2].
+    double damping = 1;       ///< Damping parallel to the spring, N s/m [PHYSICS 2.2].
+    double speed = 0.02;      ///< Minimum sliding speed, m/s [chosen: 4 times one smoothed count].
 
     void read(SettingsReader& reader, const EffectContext& context);
   };
@@ -34,7 +33,7 @@ class KarnoppLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

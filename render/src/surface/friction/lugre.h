@@ -8,13 +8,13 @@
 
 namespace thimble::render {
 
-/// The LuGre friction: Dahl's bristles with damping (sigma1), viscous friction (sigma2) and less
-/// friction the faster it slides (Stribeck), from static to sliding over `stribeck_speed`.
+/// The LuGre friction: Dahl's bristles with damping (sigma1), viscous friction (sigma2) and
+/// friction that falls with speed (Stribeck), from static to sliding over `stribeck_speed`.
 ///
-/// The bristles follow z <- z_ss + (z - z_ss) exp(-sigma0 |v| T / g), which no stiffness and no
-/// speed makes unstable; Euler's step would diverge where T sigma0 |v| / g > 2 [PHYSICS 2.4]. Dry
-/// part and damping together stay below static friction. Known to drift under a load that
-/// oscillates (4.9 um per cycle there): for holding still take the bristle.
+/// The bristles follow z <- z_ss + (z - z_ss) exp(-sigma0 |v| T / g), which is stable at any
+/// stiffness and speed. Euler's step would diverge where T sigma0 |v| / g > 2 [PHYSICS 2.4]. Dry
+/// part and damping together stay below static friction. It is known to drift under an oscillating
+/// load (4.9 um per cycle there); use the bristle for holding still.
 class LugreLaw {
  public:
   static constexpr std::string_view kName = "lugre";
@@ -26,7 +26,7 @@ class LugreLaw {
     double damping = 0;            ///< sigma1, N s/m.
     double stribeck_speed = 0.01;  ///< m/s [chosen: the knee of PHYSICS 2.2]
 
-    /// Refuses what is not passive: sigma2 >= sigma1 (F_s - F_c) / F_c [PHYSICS 2.4].
+    /// Refuses settings that are not passive: sigma2 >= sigma1 (F_s - F_c) / F_c [PHYSICS 2.4].
     void read(SettingsReader& reader, const EffectContext& context);
   };
 
@@ -37,11 +37,11 @@ class LugreLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:
-  // Hz; one count per tick would else throw the Stribeck curve from end to end [PHYSICS 2.2].
+  // Hz; without it one count per tick would sweep the whole Stribeck curve [PHYSICS 2.2].
   static constexpr double kSpeedCorner = 30;
 
   Settings settings_;

@@ -13,7 +13,7 @@ void PaperFrictionLaw::Settings::read(SettingsReader& reader, const EffectContex
   reader.choice("smooth", chosen, {"velocity", "direction", "twice"});
   smooth = static_cast<Smooth>(chosen);
   corner_frequency = smooth == Smooth::kTwice ? 10 : 30;  // [PHYSICS 2.2]
-  // Above half the rate there is nothing left to smooth.
+  // Above half the rate nothing is left to smooth.
   reader.number("corner_frequency", corner_frequency,
                 {.unit = "Hz", .least = 0.5, .most = 0.5 / context.tick});
   reader.number("speed", speed, {.unit = "m/s", .least = 1e-4, .most = 10});

@@ -10,27 +10,27 @@
 
 namespace thimble::render {
 
-/// The paper's cure: friction that depends on velocity, its direction smoothed, dry friction
+/// The paper's solution: friction that depends on velocity, with smoothed direction, dry friction
 /// (depth times stiffness times coefficient) and viscous friction in any proportion [BP 4.2]. It is
-/// quiet, but holds nothing at rest: under any load it creeps. [PHYSICS 2.2, D, E and F]
+/// quiet, but cannot hold at rest: it creeps under any load. [PHYSICS 2.2, D, E and F]
 class PaperFrictionLaw {
  public:
   static constexpr std::string_view kName = "paper";
   static constexpr bool kRests = false;  // it creeps under any load
 
-  /// What is smoothed.
+  /// Smoothed quantity.
   enum class Smooth : std::size_t {
-    kVelocity,   ///< The velocity; force in proportion to it up to `speed` (D).
-    kDirection,  ///< The direction of the last move only: the force is calmer, the hand is not (E).
+    kVelocity,   ///< The velocity; force proportional to it up to `speed` (D).
+    kDirection,  ///< Only the direction of the last move: the force is calmer, the hand is not (E).
     kTwice,      ///< Velocity and then direction, rounded by tanh: quietest, slowest (F).
   };
 
   struct Settings {
     CoulombSettings coulomb;
     ViscousSettings viscous;
-    Smooth smooth = Smooth::kVelocity;  ///< What is smoothed.
+    Smooth smooth = Smooth::kVelocity;  ///< Smoothed quantity.
     double corner_frequency = 30;       ///< Hz [PHYSICS 2.2]; 10 for kTwice.
-    double speed = 0.01;                ///< Dry friction is full from here on, m/s [PHYSICS 2.2].
+    double speed = 0.01;                ///< Speed of full dry friction, m/s [PHYSICS 2.2].
 
     void read(SettingsReader& reader, const EffectContext& context);
   };
@@ -44,7 +44,7 @@ class PaperFrictionLaw {
   void turn(const Turn& turn) noexcept;
   void forget() noexcept;
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:

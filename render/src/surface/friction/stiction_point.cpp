@@ -9,7 +9,7 @@ void StictionPointLaw::Settings::read(SettingsReader& reader, const EffectContex
 
 Eigen::Vector3d StictionPointLaw::pull(const SlideTick& tick) noexcept {
   pull_ += settings_.stiffness * tick.slip;
-  // Written so that NaN lets go.
+  // Written so that NaN slides.
   if (!(pull_.norm() <= settings_.coulomb.holding * tick.load)) {
     pull_ = shortened(pull_, settings_.coulomb.sliding * tick.load);
   }

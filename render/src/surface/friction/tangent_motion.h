@@ -8,8 +8,8 @@
 
 namespace thimble::render {
 
-/// Shortens `v` to the length `limit` if it is longer. A limit that is not above zero and a vector
-/// that is not finite give zero. Real-time: safe.
+/// Shortens `v` to the length `limit` if it is longer. A limit not above zero and a vector that is
+/// not finite give zero. Real-time: safe.
 inline Eigen::Vector3d shortened(const Eigen::Vector3d& v, double limit) noexcept {
   const double length2 = v.squaredNorm();
   // Written so that NaN gives zero.
@@ -24,17 +24,17 @@ inline Eigen::Vector3d direction_of(const Eigen::Vector3d& v) noexcept {
   return v / std::sqrt(length2);
 }
 
-/// One tick of contact as a friction sees it.
+/// Input of a friction law in one tick of contact.
 struct SlideTick {
   Eigen::Vector3d n_W{0, 0, 1};   ///< Outward unit normal.
-  Eigen::Vector3d slip{0, 0, 0};  ///< Way of the tip along the surface since the last tick, m in W.
+  Eigen::Vector3d slip{0, 0, 0};  ///< Path along the surface since the last tick, m in W.
   double load = 0;                ///< Force of the surface along n_W, N, >= 0.
   double depth = 0;               ///< Depth as felt, m.
-  double dt = 0.001;              ///< Time of that way, s, > 0.
+  double dt = 0.001;              ///< Time of that path, s, > 0.
 };
 
-/// Turns what lies along the surface with the surface's normal, on the shortest way, so that its
-/// length stays: a stretched bristle that is carried over an edge keeps its energy and gains none.
+/// Turns vectors along the surface with the surface's normal, on the shortest way. Their length
+/// stays, so a stretched bristle that is carried over an edge keeps its energy and gains none.
 class Turn {
  public:
   Turn() = default;
@@ -42,11 +42,11 @@ class Turn {
   Turn(const Eigen::Vector3d& n_before_W, const Eigen::Vector3d& n_W) noexcept
       : n_W_(n_W), sum_(n_before_W + n_W), scale_(1 + n_before_W.dot(n_W)) {}
 
-  /// Carries a vector that was along the surface. A surface that turned its back (more than 150
-  /// degrees in one tick) is another one: nothing is carried onto it. Real-time: safe.
+  /// Carries a vector that was along the surface. If the normal turned by more than 150 degrees in
+  /// one tick, it is another surface, and the result is zero. Real-time: safe.
   Eigen::Vector3d carry(const Eigen::Vector3d& v) const noexcept {
     constexpr double kLeast = 0.13;  // 1 + cos 150 degrees [chosen]
-    // Written so that NaN carries nothing.
+    // Written so that NaN gives zero.
     if (!(scale_ > kLeast)) return Eigen::Vector3d::Zero();
     return v - v.dot(n_W_) / scale_ * sum_;
   }
@@ -57,17 +57,18 @@ class Turn {
   double scale_ = 2;
 };
 
-/// Follows the tip along the surface of one contact. All of it from positions: a velocity estimate
-/// would bring its delay and its noise into the friction.
+/// Follows the tip along the surface of one contact. Uses only positions: a velocity estimate would
+/// bring its delay and its noise into the friction.
 class TangentMotion {
  public:
-  /// Takes the loop's period (s), which stands in where a tick knows none.
+  /// Takes the loop's period (s), which replaces an unknown `dt` of a tick.
   explicit TangentMotion(double period) noexcept : period_(period > 0 ? period : 0.001) {}
 
-  /// Takes one tick of contact. False, with the past forgotten, if position, normal or force is not
-  /// finite: there is no friction then. In the first tick of a contact the way is zero.
+  /// Takes one tick of contact. Returns false and clears the state if position, normal or force is
+  /// not finite: then there is no friction. In the first tick of a contact the path is zero.
   /// Real-time: safe.
-  // Inlined by force: otherwise a friction costs 40 instructions more in a program that has others.
+  // Forced inline: otherwise a friction costs 40 instructions more in a program with other
+  // frictions.
   [[gnu::always_inline]] bool follow(const driver::DeviceState& state,
                                      const SurfaceResponse& response, SlideTick& tick,
                                      Turn& turn) noexcept {
@@ -97,11 +98,11 @@ class TangentMotion {
     return true;
   }
 
-  /// Forgets the past: the next tick begins a contact. Real-time: safe.
+  /// Clears the state: the next tick begins a contact. Real-time: safe.
   void leave() noexcept { following_ = false; }
 
  private:
-  static constexpr double kLoadMax = 1e9;   // N; beyond it a force is a mistake
+  static constexpr double kLoadMax = 1e9;   // N; a larger force is an error
   static constexpr double kPauseMax = 0.1;  // s; the arm's watchdog has fired by then
 
   double period_;

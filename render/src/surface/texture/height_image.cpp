@@ -11,7 +11,7 @@
 namespace thimble::render {
 namespace {
 
-/// The part of each of four neighbours of a uniform cubic B-spline, and how it changes.
+/// Weights of the four neighbours of a uniform cubic B-spline, and their derivatives.
 struct Spline {
   std::array<double, 4> weight, slope;
 
@@ -21,7 +21,7 @@ struct Spline {
         slope{-(1 - t) * (1 - t) / 2, t * (3 * t - 4) / 2, (1 + t * (2 - 3 * t)) / 2, t * t / 2} {}
 };
 
-/// Finds the four pixels around a place on a side that repeats, and the place between them.
+/// The four pixels around a place on a side that repeats, and the place between them.
 struct Neighbours {
   std::array<std::size_t, 4> pixel;
   double t = 0;
@@ -30,7 +30,7 @@ struct Neighbours {
     const double whole = std::floor(place);
     t = place - whole;
     const auto count = static_cast<double>(side);
-    // All whole numbers below 2^53, so that only the quotient can be off, and upwards: by one.
+    // All integers below 2^53, so that only the quotient can be wrong: by one, upwards.
     double first = whole - count * std::floor(whole / count);
     if (first < 0) first += count;
     auto at = static_cast<std::size_t>(first);

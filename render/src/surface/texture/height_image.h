@@ -10,36 +10,36 @@
 
 namespace thimble::render {
 
-/// A grey picture read as heights that repeats in both directions. Between its pixels runs a
-/// cubic B-spline: smooth in value, slope and curvature, never above the brightest nor below the
-/// darkest pixel nearby. It rounds off what is finer than about three pixels.
+/// A grey picture as heights, repeated in both directions. A cubic B-spline interpolates its
+/// pixels: smooth in value, slope and curvature, never above the brightest nor below the darkest
+/// pixel nearby. It rounds off details finer than about three pixels.
 class THIMBLE_EXPORT HeightImage {
  public:
-  /// The most pixels that a side may have: 32 MB of heights. [chosen]
+  /// Maximum pixels per side: 32 MB of heights. [chosen]
   static constexpr std::size_t kSideMax = 2048;
 
   /// Takes `values` (0 to 1, rows from the bottom, each from the left).
   /// Precondition: width * height of them. Real-time: never from the servo thread.
   HeightImage(std::size_t width, std::size_t height, std::vector<float> values);
 
-  /// Reads a PNG of any kind: its grey value is the height, white 1, whatever gamma it claims;
-  /// transparency is ignored. Fails, naming the file, if it is no PNG, damaged or larger than
-  /// kSideMax. Real-time: never from the servo thread.
+  /// Reads a PNG of any kind: its grey value is the height, white 1, ignoring gamma and
+  /// transparency. Fails, naming the file, if it is not a PNG, damaged or larger than kSideMax.
+  /// Real-time: never from the servo thread.
   static driver::Result<HeightImage> load(const std::filesystem::path& file);
 
-  /// What the image says at a place: height and slope.
+  /// Height and slope of the image at a place.
   struct Sample {
     double value = 0;  ///< 0 to 1
     double du = 0;     ///< Per pixel to the right.
     double dv = 0;     ///< Per pixel up.
   };
-  /// Finds the value at `u` pixels from the left and `v` from the bottom, counted from the middle
-  /// of the first pixel. NaN gives NaN; so does what is beyond 1e15. Real-time: safe.
+  /// Returns the value at `u` pixels from the left and `v` from the bottom, counted from the middle
+  /// of the first pixel. NaN, and coordinates beyond 1e15, give NaN. Real-time: safe.
   Sample at(double u, double v) const noexcept;
 
   std::size_t width() const noexcept { return width_; }    ///< Pixels.
   std::size_t height() const noexcept { return height_; }  ///< Pixels.
-  /// A bound of the slope's size, per pixel. Real-time: safe.
+  /// Returns a bound of the slope's size, per pixel. Real-time: safe.
   double slope_max() const noexcept { return slope_max_; }
 
  private:

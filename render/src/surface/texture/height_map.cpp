@@ -13,7 +13,7 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectContext& cont
   auto chosen = static_cast<std::size_t>(along);
   reader.choice("along", chosen, {"all", "x", "y", "z"});
   along = static_cast<Along>(chosen);
-  if (file.empty() || !std::filesystem::is_regular_file(file)) return;  // was refused already
+  if (file.empty() || !std::filesystem::is_regular_file(file)) return;  // refused already
   auto loaded = HeightImage::load(file);
   if (!loaded) {
     reader.reject("image", loaded.error().message);
@@ -59,8 +59,8 @@ void HeightMap::list_settings(LiveSettings& settings) {
 TextureHeight HeightMap::at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n_M) const noexcept {
   const Eigen::Vector3d place = pixels_per_metre_ * (R_WO_.transpose() * (p_M - p_WO_));
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
-  // -1 for each axis that the face looks against: seen from outside, the picture would be mirrored
-  // there. Where a normal changes over from one side to the other the axis' share is 0.
+  // -1 for each axis that the face points against: seen from outside, the picture would be mirrored
+  // there. Where a normal changes from one side to the other, the axis' share is 0.
   Eigen::Vector3d side = Eigen::Vector3d::Ones();
   if (along_ == Along::kAll) {
     const Eigen::Vector3d n_O = R_WO_.transpose() * n_M;
@@ -73,7 +73,7 @@ TextureHeight HeightMap::at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n
   Eigen::Vector3d slope_O = Eigen::Vector3d::Zero();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (share[axis] == 0) continue;
-    // Seen from the tip of each axis: the next axis to the right, the one after it up. From behind
+    // Seen from the tip of each axis: the next axis to the right, the one after it up. From behind,
     // the same axis is up and the other one to the left.
     const Eigen::Index right = (axis + 1) % 3, up = (axis + 2) % 3;
     const HeightImage::Sample sample = image_->at(side[axis] * place[right], place[up]);

@@ -13,36 +13,35 @@
 
 namespace thimble::render {
 
-/// Makes a surface of a grey picture: white lies in the object's surface, black deepest below. A
+/// A texture from a grey picture: white is in the object's surface, black deepest below. A
 /// FootStage.
 ///
-/// The picture is laid on in the object's frame, along one axis or along all three at once, each
-/// counting by the square of the normal's part along it; it repeats. Laid on along all, it reads
-/// the same way round on every face, seen from outside; along one axis, as seen from that axis'
-/// tip. On flat faces that is conservative. Where a curved face turns from one axis to the next,
-/// the change of the parts is left out: about (height / radius of curvature) of the force. All
-/// textures: texture_height.h.
+/// The picture is projected in the object's frame, along one axis or along all three at once, each
+/// weighted by the square of the normal's component along it. It repeats. Projected along all axes,
+/// it has the same orientation on every face, seen from outside; along one axis, as seen from that
+/// axis' tip. On flat faces that is conservative. Where a curved face turns from one axis to the
+/// next, the change of the weights is neglected: about (height / radius of curvature) of the force.
+/// All textures: texture_height.h.
 class THIMBLE_EXPORT HeightMap {
  public:
   static constexpr std::string_view kGroup = "texture";
   static constexpr std::string_view kName = "height_map";
   static constexpr EffectOrder kOrder = EffectOrder::kDepth;
 
-  /// Says along which axes of the object the image is laid on: on every face from its own side, or
-  /// from one side alone.
+  /// Axes of the object along which the image is projected: on every face from its own side, or
+  /// only from one side.
   enum class Along : std::uint8_t { kAll, kX, kY, kZ };
 
   struct Settings : TextureSettings {
     std::shared_ptr<const HeightImage> image;  ///< Its heights.
-    double width = 0;                          ///< Of the picture on the surface, m.
-    double height = 0;                         ///< From black to white, m.
-    Along along = Along::kAll;                 ///< Where it is laid from.
+    double width = 0;                          ///< Width of the picture on the surface, m.
+    double height = 0;                         ///< Height from black to white, m.
+    Along along = Along::kAll;                 ///< Axes of projection.
 
     /// Reads `form`, `hand_speed`, `image`, `width`, `height`, `along`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
-    /// Returns how high and steep it is. Precondition: it has an image and a width. Real-time:
-    /// safe.
+    /// Returns its height and slope. Precondition: it has an image and a width. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 
@@ -63,8 +62,8 @@ class THIMBLE_EXPORT HeightMap {
   /// Lists the height. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
-  /// Finds the height at a place (M, m) of a surface with the normal `n_M`. NaN gives NaN.
-  /// Real-time: safe; 16 pixels for each axis that counts.
+  /// Returns the height at a place (M, m) of a surface with the normal `n_M`. NaN gives NaN.
+  /// Real-time: safe; 16 pixels for each axis with a weight.
   TextureHeight at(const Eigen::Vector3d& p_M, const Eigen::Vector3d& n_M) const noexcept;
 
  private:

@@ -17,14 +17,14 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// What a PNG is turned into: one 16-bit grey value per pixel, rows from the top.
+/// A decoded PNG: one 16-bit grey value per pixel, rows from the top.
 struct Picture {
   std::size_t width = 0, height = 0;
   std::vector<png_uint_16> grey;
   std::vector<png_bytep> rows;
 };
 
-/// Frees what libpng holds, also after it jumped back.
+/// Frees libpng's memory, also after libpng has jumped back.
 class PngReader {
  public:
   PngReader() : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, &fail, &ignore)) {
@@ -34,9 +34,9 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  /// Reads size and kind and asks for 16-bit grey; false, with `said` filled, if libpng fails.
-  // No object with a destructor may live in a frame that libpng jumps over, so each step is a
-  // function of its own.
+  /// Reads size and kind and requests 16-bit grey; false, with `said` filled, if libpng fails.
+  // No object with a destructor may be in a frame that libpng jumps over, so each step is a
+  // separate function.
   bool begin(std::FILE* file) {
     if (png_ == nullptr || info_ == nullptr) return false;
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
@@ -45,7 +45,7 @@ class PngReader {
     png_read_info(png_, info_);
     png_set_expand_16(png_);
     png_set_strip_alpha(png_);
-    // Refused colours would only annoy: weigh them as libpng does by itself.
+    // Colours are not refused: libpng's default weights convert them to grey.
     png_set_rgb_to_gray(png_, PNG_ERROR_ACTION_NONE, PNG_RGB_TO_GRAY_DEFAULT,
                         PNG_RGB_TO_GRAY_DEFAULT);
     png_set_swap(png_);  // the file has the high byte first
@@ -87,7 +87,7 @@ driver::Error broken(const std::filesystem::path& file, const std::string& why) 
 }  // namespace
 
 driver::Result<HeightImage> HeightImage::load(const std::filesystem::path& file) {
-  // Sixteen bits of every colour and of transparency, uncompressed, and what else a file may hold.
+  // Sixteen bits of every colour and of transparency, uncompressed, plus other contents of a file.
   constexpr std::uint64_t kMaxBytes = 8 * kSideMax * kSideMax + 30'000'000;
   auto regular = driver::RegularFile::open(file);
   if (!regular) return broken(file, "it is absent, or no regular file");

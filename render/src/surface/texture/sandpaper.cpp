@@ -10,7 +10,7 @@
 namespace thimble::render {
 namespace {
 
-// Enough for heights that are spread like noise, at 800 instructions per tick. [chosen]
+// Enough for heights distributed like noise, at 800 instructions per tick. [chosen]
 constexpr int kWaves = 16;
 
 std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const EffectContext& context) {
@@ -19,7 +19,7 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
   const auto uniform = [&bits] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
   std::vector<Wave> waves;
   for (int i = 0; i < kWaves; ++i) {
-    // Even over the sphere: height and longitude are.
+    // Uniform over the sphere, because height and longitude are uniform.
     const double z = 2 * uniform() - 1;
     const double turn = 2 * std::numbers::pi * uniform();
     const double across = std::sqrt(1 - z * z);
@@ -27,7 +27,7 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
     const double wavelength = settings.wavelength * math::exp2(uniform() - 0.5);
     const Eigen::Vector3d k_M = 2 * std::numbers::pi / wavelength * (context.R_WO * direction_O);
     const double phase = 2 * std::numbers::pi * uniform();
-    // A sine's mean square is half its amplitude's; those of different waves add.
+    // A sine's mean square is half its squared amplitude; those of different waves add.
     waves.push_back(
         {settings.roughness * std::sqrt(2.0 / kWaves), k_M, phase - k_M.dot(context.p_WO)});
   }

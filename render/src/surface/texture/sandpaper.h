@@ -10,11 +10,11 @@
 
 namespace thimble::render {
 
-/// Makes a rough surface that catches the tip sideways, by the slope of a random height [BP 4.2:
-/// the sandpaper system]. A FootStage.
+/// A rough surface that catches the tip sideways, by the slope of a random height
+/// [BP 4.2: the sandpaper system]. A FootStage.
 ///
 /// The height is a sum of plane waves in random directions with lengths in one octave around the
-/// wavelength, the same for the same seed on every machine. So it holds no waves shorter than
+/// wavelength, the same for the same seed on every machine. So it has no waves shorter than
 /// wavelength / sqrt 2 and is smooth. All textures: texture_height.h.
 class THIMBLE_EXPORT Sandpaper {
  public:
@@ -25,12 +25,12 @@ class THIMBLE_EXPORT Sandpaper {
   struct Settings : TextureSettings {
     double wavelength = 0.002;   ///< Middle wavelength, m.
     double roughness = 0.00003;  ///< Root mean square of the height, m.
-    double seed = 1;             ///< A whole number; another one, another piece of sandpaper.
+    double seed = 1;             ///< An integer; each seed gives another piece of sandpaper.
 
     /// Reads `form`, `hand_speed`, `wavelength`, `roughness`, `seed`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
-    /// Returns how high and steep it is. Real-time: safe.
+    /// Returns its height and slope. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 
@@ -51,7 +51,7 @@ class THIMBLE_EXPORT Sandpaper {
   /// Lists the roughness. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
-  const WaveSum& height() const noexcept { return height_; }  ///< Shows its waves.
+  const WaveSum& height() const noexcept { return height_; }  ///< Returns its waves.
 
  private:
   void set_roughness(double roughness) noexcept;

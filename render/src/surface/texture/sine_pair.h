@@ -5,7 +5,7 @@
 
 namespace thimble::render {
 
-/// Two numbers that every processor computes with at once.
+/// Two numbers that every processor computes at once.
 using Pair = double __attribute__((vector_size(16)));
 
 /// Sines and cosines of two angles.
@@ -14,16 +14,16 @@ struct SinePair {
 };
 
 /// Returns them for angles in quarters of a turn of at most 2^50 either way, to 2e-16. NaN gives
-/// NaN. The same bits on every processor: products, sums and whole numbers only. A texture asks for
-/// many at once; math::sin_cos is right to the last places of small sines too. Real-time: safe.
+/// NaN. Bit-identical on every processor: only products, sums and integers. A texture needs many at
+/// once; `math::sin_cos` is also exact in the last digits of small sines. Real-time: safe.
 inline SinePair sine_pair(Pair quarters) noexcept {
   using Words = std::int64_t __attribute__((vector_size(16)));
-  // Adding this rounds to a whole number, whose lowest bits are those of the sum.
+  // Adding this rounds to an integer, whose lowest bits are those of the sum.
   constexpr double kWhole = 0x1.8p52;
   const Pair shifted = quarters + kWhole;
   const Pair x = (quarters - (shifted - kWhole)) * 0x1.921fb54442d18p+0;  // pi / 2: an eighth turn
   const Pair x2 = x * x;
-  // Taylor's series as far as pi / 4 asks for: the next terms are below 5e-17.
+  // Taylor's series, enough up to pi / 4: the next terms are below 5e-17.
   constexpr double kSine[] = {1,           -1. / 6,        1. / 120,        -1. / 5040,
                               1. / 362880, -1. / 39916800, 1. / 6227020800, -1. / 1307674368000};
   constexpr double kCosine[] = {1,
@@ -40,7 +40,7 @@ inline SinePair sine_pair(Pair quarters) noexcept {
   sine = x + x * x2 * sine;
   Pair cosine = kCosine[8] * x2 + kCosine[7];
   for (int i = 6; i >= 0; --i) cosine = cosine * x2 + kCosine[i];
-  // In the odd quarters both change places; in two of the four each changes its sign.
+  // In the odd quarters sine and cosine are exchanged; in two of the four each changes its sign.
   const Words quarter = std::bit_cast<Words>(shifted), odd = -(quarter & 1);
   const Words s = std::bit_cast<Words>(sine), c = std::bit_cast<Words>(cosine);
   const Words sign = {INT64_MIN, INT64_MIN};

@@ -7,7 +7,7 @@
 namespace thimble::render {
 namespace {
 
-// Bounds catch slipped decimal points; what is felt is checked as a whole.
+// Bounds catch misplaced decimal points; the total effect is checked separately.
 constexpr double kAmplitudeMax = 0.05;                       // m
 constexpr double kWavelengthMin = 1e-5, kWavelengthMax = 1;  // m
 constexpr std::size_t kWavesMax = 64;  // 12,000 instructions per tick [chosen: a few us]
@@ -57,7 +57,7 @@ void Sines::Settings::read(SettingsReader& reader, const EffectContext& context)
     reader.reject("waves", "expected at most 64 waves, found " + std::to_string(waves.size()));
   }
   for (const One& wave : waves) {
-    if (!(wave.wavelength > 0)) return;  // was refused already
+    if (!(wave.wavelength > 0)) return;  // refused already
   }
   check_texture(reader, "waves", extent(), *this, context);
 }

@@ -12,11 +12,11 @@
 
 namespace thimble::render {
 
-/// Makes a surface of sine waves of several amplitudes, lengths and directions, which change the
+/// A texture of sine waves of several amplitudes, lengths and directions, which change the
 /// effective depth [BP 4.2]. A FootStage.
 ///
-/// Sliding at speed v along a wave of length L the force has a line at v / L with the amplitude
-/// stiffness * amplitude. All textures: texture_height.h.
+/// Sliding at speed v along a wave of length L, the force has a spectral line at v / L with the
+/// amplitude stiffness * amplitude. All textures: texture_height.h.
 class THIMBLE_EXPORT Sines {
  public:
   static constexpr std::string_view kGroup = "texture";
@@ -26,18 +26,17 @@ class THIMBLE_EXPORT Sines {
   struct Settings : TextureSettings {
     /// One wave.
     struct One {
-      double amplitude = 0;                ///< Half from valley to peak, m.
+      double amplitude = 0;                ///< Half the distance from valley to peak, m.
       double wavelength = 0;               ///< m
-      Eigen::Vector3d direction{1, 0, 0};  ///< In which it changes, in the object's frame.
-      double phase = 0;                    ///< At the object's place, rad.
+      Eigen::Vector3d direction{1, 0, 0};  ///< Direction of the wave, in the object's frame.
+      double phase = 0;                    ///< Phase at the object's place, rad.
     };
-    std::vector<One> waves;  ///< All of them.
+    std::vector<One> waves;  ///< All waves.
 
     /// Reads `form`, `hand_speed` and the list `waves`: amplitude, wavelength or frequency (waves
     /// per metre), direction, phase. Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
-    /// Returns how high and steep they are together. Precondition: each has a length.
-    /// Real-time: safe.
+    /// Returns their total height and slope. Precondition: each has a length. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
 
@@ -58,7 +57,7 @@ class THIMBLE_EXPORT Sines {
   /// Lists the height of all waves, as a factor. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 
-  const WaveSum& height() const noexcept { return height_; }  ///< Shows them.
+  const WaveSum& height() const noexcept { return height_; }  ///< Returns the waves.
 
  private:
   void set_gain(double gain) noexcept;

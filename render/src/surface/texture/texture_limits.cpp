@@ -36,7 +36,7 @@ void check_texture(SettingsReader& reader, std::string_view key, const TextureEx
                    const TextureSettings& settings, const EffectContext& context) {
   const double deepest =
       context.surface_stiffness > 0 ? context.force_max / context.surface_stiffness : 0;
-  // Where arm or spring is not known there is nothing to compare with.
+  // If arm or spring is not known, there is nothing to compare with.
   if (deepest > 0 && !(extent.relief <= deepest)) {
     reader.reject(
         key, fmt::format("is {:.3g} mm from peak to valley, but the arm's {:.3g} N press no deeper "

@@ -16,8 +16,8 @@ struct Wave {
   double phase = 0;              ///< rad
 };
 
-/// A height made of plane waves, lowered so that its highest possible peak is 0. The waves run
-/// through the whole space, and the object's surface is cut out of them.
+/// A height made of plane waves, lowered so that its highest possible peak is 0. The waves fill the
+/// whole space, and the object's surface cuts through them.
 class WaveSum {
  public:
   /// Takes any number of waves. Real-time: never from the servo thread.
@@ -31,7 +31,8 @@ class WaveSum {
     }
   }
 
-  /// Finds the height at a place (M, m). NaN gives NaN. Real-time: safe; 50 instructions per wave.
+  /// Returns the height at a place (M, m). NaN gives NaN. Real-time: safe; 50 instructions per
+  /// wave.
   TextureHeight at(const Eigen::Vector3d& p_M) const noexcept {
     Pair height{}, slope[3]{};
     for (const TwoWaves& two : pairs_) {
@@ -47,17 +48,17 @@ class WaveSum {
                         slope[2][0] + slope[2][1]}};
   }
 
-  /// Makes all waves higher or lower by a factor (> 0). Real-time: safe.
+  /// Scales the height of all waves by a factor (> 0). Real-time: safe.
   void scale(double factor) noexcept {
     for (TwoWaves& two : pairs_) two.amplitude *= factor;
     peak_ *= factor;
   }
 
-  /// Returns how far the height goes down from 0 at most, m. Real-time: safe.
+  /// Returns the maximum depth below 0, m. Real-time: safe.
   double relief() const noexcept { return 2 * peak_; }
 
  private:
-  /// Two waves side by side; where their number is odd the last has no amplitude.
+  /// Two waves side by side; if their number is odd, the last has no amplitude.
   struct TwoWaves {
     Pair amplitude{};  // m
     Pair k_M[3]{};     // rad/m

@@ -34,7 +34,7 @@ std::uint16_t NormalProjectionTracker::walk(const Vector3d& p_WT) noexcept {
   for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
     Eigen::Index corner = 0;
     const double least = projected_weights(*mesh_, active_, p_WT).minCoeff(&corner);
-    // Written so that NaN stays where it is.
+    // Written so that NaN stays in the triangle.
     if (!(least < 0)) return hops;
     if (least > best_weight) {
       best = active_;
@@ -55,7 +55,7 @@ std::uint16_t NormalProjectionTracker::walk(const Vector3d& p_WT) noexcept {
   return kHopsMax;
 }
 
-// Around a vertex of many faces the best of the triangles visited may be the one where the walk
+// Around a vertex of many faces the best of the visited triangles may be the one where the walk
 // began, and each tick would end there again (as in OffsetTracker).
 std::uint16_t NormalProjectionTracker::walk_on(const Vector3d& p_WT, std::int32_t before) noexcept {
   const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
@@ -66,7 +66,7 @@ std::uint16_t NormalProjectionTracker::walk_on(const Vector3d& p_WT, std::int32_
   active_ = hit.triangle;
   ++counters_.found_far;
   const std::uint16_t hops = walk(p_WT);
-  // Beside the vertex itself many are equally near.
+  // Next to the vertex itself many are equally near.
   if (hops == kHopsMax) active_ = hit.triangle;
   return hops;
 }

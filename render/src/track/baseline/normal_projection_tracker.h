@@ -12,25 +12,25 @@
 
 namespace thimble::render {
 
-/// Follows the tip by normal projection [BP 4a]: the way the paper looked at and left for edge
-/// planes, kept so that the two can be compared.
+/// Tracks the tip by normal projection [BP 4a]: the method that the paper rejected for edge planes,
+/// kept for comparison.
 ///
-/// A triangle is active while the foot of its face normal through the tip lies in it; then the
-/// neighbour over the side that is left most becomes active. Below a convex edge of angle a the
-/// prisms overlap, and the depth d jumps by d (1 - cos a) on the way over; below a concave edge
-/// they leave a gap, where the least left triangle stays active. Contact ends when the depth turns
-/// negative, as in the paper, so it can be lost while the tip is inside. Not for touching things:
+/// A triangle is active while the projection of the tip along its face normal is in it. Then the
+/// neighbour over the most violated side becomes active. Below a convex edge of angle a the prisms
+/// overlap, and the depth d jumps by d (1 - cos a) at the change. Below a concave edge they leave a
+/// gap, where the least violated triangle stays active. Contact ends when the depth turns negative,
+/// as in the paper, so it can be lost while the tip is inside. Not for use in scenes:
 /// SurfaceTracker and OffsetTracker have neither fault. A walk that reaches `kHopsMax` continues
-/// from the nearest triangle, as OffsetTracker's. Real-time: safe; at worst twice `kHopsMax` cells
-/// and one question to the search.
+/// from the nearest triangle, as in OffsetTracker. Real-time: safe; at worst twice `kHopsMax` cells
+/// and one search query.
 class THIMBLE_EXPORT NormalProjectionTracker {
  public:
-  /// Keeps references: mesh and search must outlive the tracker. The search serves walks that reach
-  /// `kHopsMax` alone; contact that is lost stays lost.
+  /// Keeps references: mesh and search must outlive the tracker. The search is used only for walks
+  /// that reach `kHopsMax`; contact that is lost stays lost.
   NormalProjectionTracker(const ContactMesh& mesh, const ContactSearch& search) noexcept
       : mesh_(&mesh), search_(&search) {}
 
-  /// Makes a triangle active, where the tip has just entered.
+  /// Makes the triangle active through which the tip has just entered.
   void start(std::int32_t triangle) noexcept { active_ = triangle; }
 
   /// Follows the tip to `p_WT` (W, m; finite). Precondition: `start` was called and the last step
@@ -42,7 +42,7 @@ class THIMBLE_EXPORT NormalProjectionTracker {
   /// Returns the unit normal of the active triangle, W.
   const Eigen::Vector3d& normal() const noexcept { return mesh_->cell(active_).face.n; }
 
-  /// Finds where on the active triangle the tip belongs (surface_weights.h).
+  /// Returns the weights of the tip's place on the active triangle (surface_weights.h).
   Eigen::Vector3d weights(const Eigen::Vector3d& p_WT) const noexcept {
     return within_triangle(projected_weights(*mesh_, active_, p_WT));
   }

@@ -25,7 +25,7 @@ enum AccessorType : std::size_t {
   kFloat = 5126
 };
 
-// Of a file that is named, as of a mesh file itself, bytes.
+// Maximum size of a named file, the same as for a mesh file, bytes.
 constexpr std::uint64_t kFileMax = std::uint64_t{4} << 30;
 
 std::size_t size_of(std::size_t type) {
@@ -95,7 +95,7 @@ driver::Result<std::string> data_of_uri(std::string_view uri) {
   return percent_decoded(data);
 }
 
-// Returns how a name is shown in an error: the file may be anything.
+// Returns a name for use in an error message: the file may contain anything.
 std::string shown(std::string_view name) {
   std::string text = "\"";
   for (const char c : name.substr(0, 80)) text += c >= ' ' && c < 127 ? c : '?';
@@ -192,7 +192,7 @@ driver::Result<std::string_view> GltfBuffers::buffer(std::size_t index) {
   const std::string file = percent_decoded(name);
   if (!files_.contains(file)) {
     auto bytes = bytes_of_file(folder_, file);
-    // Names that were written as they are, with a per cent sign in them.
+    // Names that were not encoded but contain a per cent sign.
     if (!bytes && file != name) {
       if (auto plain = bytes_of_file(folder_, name)) bytes = std::move(plain);
     }

@@ -14,10 +14,10 @@
 
 namespace thimble::render {
 
-/// Returns a member of a JSON object; null if it is none or has no such member.
+/// Returns a member of a JSON object; null if it is not an object or has no such member.
 const nlohmann::json* json_member(const nlohmann::json& object, const char* key);
 
-/// Returns a member that is a whole number from 0 on; empty if it is absent or anything else.
+/// Returns a member that is a non-negative integer; empty if it is absent or anything else.
 std::optional<std::size_t> json_index(const nlohmann::json& object, const char* key);
 
 /// Returns an element of the array `key` of a glTF file; null if it does not exist.
@@ -32,21 +32,20 @@ struct GltfNumbers {
   bool single = false;         ///< Whether they were in single precision.
 };
 
-/// The buffers of a glTF file and the numbers in them. Errors are half a sentence. What it refers
-/// to must outlive it. Real-time: never from the servo thread.
+/// The buffers of a glTF file and the numbers in them. Errors are half a sentence. The referenced
+/// data must outlive it. Real-time: never from the servo thread.
 class GltfBuffers {
  public:
   /// Takes the JSON of a file, the binary chunk of a GLB file, and the folder of both.
   GltfBuffers(const nlohmann::json& gltf, std::string_view chunk, std::filesystem::path folder)
       : gltf_(gltf), chunk_(chunk), folder_(std::move(folder)) {}
 
-  /// Returns the numbers of an accessor with elements of `columns` numbers; whole numbers are
-  /// scaled where the accessor is normalized. Zeros where it names no view, with its sparse ones
-  /// put over.
+  /// Returns the numbers of an accessor with elements of `columns` numbers; integers are scaled if
+  /// the accessor is normalized. Zeros if it names no view, with its sparse values applied.
   driver::Result<GltfNumbers> read(std::size_t accessor, std::size_t columns);
 
  private:
-  /// Where the elements of a view are.
+  /// Location of the elements of a view.
   struct View {
     std::string_view bytes;
     std::size_t stride = 0;  // 0: packed
@@ -63,8 +62,8 @@ class GltfBuffers {
   const nlohmann::json& gltf_;
   std::string_view chunk_;
   std::filesystem::path folder_;
-  std::map<std::size_t, std::string> buffers_;             // decoded ones
-  std::map<std::string, std::string, std::less<>> files_;  // each once
+  std::map<std::size_t, std::string> buffers_;             // decoded buffers
+  std::map<std::string, std::string, std::less<>> files_;  // files, each read once
 };
 
 }  // namespace thimble::render

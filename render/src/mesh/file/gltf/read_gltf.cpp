@@ -26,7 +26,8 @@ using Json = nlohmann::json;
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
-// Required extensions that are read, or that change no shape; besides those of materials.
+// Required extensions that are read, or that do not change the shape; in addition to those of
+// materials.
 constexpr std::array<std::string_view, 12> kKnownExtensions{kInstancing,
                                                             "KHR_mesh_quantization",
                                                             "KHR_texture_transform",
@@ -40,10 +41,10 @@ constexpr std::array<std::string_view, 12> kKnownExtensions{kInstancing,
                                                             "KHR_xmp",
                                                             "KHR_animation_pointer"};
 
-// What reading may use: a small file may name large ones beside it.
+// Limits of reading: a small file may name large files in its folder.
 constexpr driver::ApartLimits kGltfLimits{.seconds = 20, .bytes = std::size_t{4} << 30};
 
-// How primitives are built of their corners [glTF 2.0, 3.7.2.1].
+// Modes of primitives [glTF 2.0, 3.7.2.1].
 constexpr std::size_t kTriangles = 4, kStrip = 5, kFan = 6;
 
 // Reads the JSON and the binary chunk of a GLB file.
@@ -79,7 +80,7 @@ class GltfReader {
   driver::Result<TriangleMesh> read(std::vector<std::string>& notes);
 
  private:
-  /// A node that is still to be visited, and the place of its parent.
+  /// A node to be visited, and the place of its parent.
   struct Stop {
     std::size_t node = 0;
     Affine3d place = Affine3d::Identity();
@@ -107,13 +108,13 @@ class GltfReader {
   bool moves_ = false, lines_ = false, morphed_ = false;
 };
 
-// Returns the array at a pointer; an empty one if there is none.
+// Returns the array at a pointer; an empty one if it is null.
 const Json& elements_of(const Json* array) {
   static const Json kNone = Json::array();
   return array != nullptr && array->is_array() ? *array : kNone;
 }
 
-// Returns the numbers of an array, `fallback` if there is none; empty for anything else.
+// Returns the numbers of an array, or `fallback` if it is absent; empty for anything else.
 template <std::size_t kCount>
 std::optional<std::array<double, kCount>> numbers_of(const Json& node, const char* key,
                                                      std::array<double, kCount> fallback) {
@@ -127,7 +128,7 @@ std::optional<std::array<double, kCount>> numbers_of(const Json& node, const cha
   return fallback;
 }
 
-// Returns translation times rotation times scale; empty if the rotation is no direction.
+// Returns translation times rotation times scale; empty if the rotation is not valid.
 std::optional<Affine3d> composed(const std::array<double, 3>& t, const std::array<double, 4>& r,
                                  const std::array<double, 3>& s) {
   const Eigen::Quaterniond rotation(r[3], r[0], r[1], r[2]);
@@ -165,7 +166,7 @@ std::optional<Error> GltfReader::check_extensions() const {
   for (const Json& extension : *required) {
     if (!extension.is_string()) return damaged("it requires an extension without a name");
     const auto& name = extension.get_ref<const std::string&>();
-    // Draco is refused where a primitive has nothing else.
+    // Draco is refused only if a primitive has nothing else.
     const bool known =
         name.starts_with("KHR_materials_") || name == kDraco ||
         std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
@@ -182,7 +183,7 @@ driver::Result<std::vector<std::size_t>> GltfReader::roots() const {
   const std::size_t count = nodes != nullptr && nodes->is_array() ? nodes->size() : 0;
   std::vector<std::size_t> roots;
   if (json_member(gltf_, "scenes") == nullptr) {
-    // No scene: what is no child.
+    // No scene: all nodes that are not children.
     std::vector<bool> child(count);
     for (std::size_t i = 0; i < count; ++i) {
       const Json* const children = json_member((*nodes)[i], "children");
@@ -426,7 +427,7 @@ driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::stri
   info.up = 'y';
   std::string_view text = bytes, chunk;
   if (kind == "glb") {
-    constexpr std::size_t kVersion = 4;  // its place
+    constexpr std::size_t kVersion = 4;  // position of the version
     if (bytes.size() > kVersion && bytes[kVersion] == 1) {
       return import_by_assimp(bytes, kind, folder, info.notes);
     }

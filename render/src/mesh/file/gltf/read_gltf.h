@@ -10,12 +10,12 @@
 namespace thimble::render {
 
 /// Reads the bytes of a glTF or GLB file of version 2 in a separate process [Khronos, glTF 2.0].
-/// `kind` is gltf or glb; `folder` is where the file is, which may name plain files in it and
-/// below. Nodes, instances (EXT_mesh_gpu_instancing), quantized and sparse positions and the
-/// weights of morph targets are read; bones, animations, lines and points are left out and
-/// reported. A required extension that is not known is refused by name. Files of version 1 are read
-/// by Assimp. Not welded. The error is a sentence without the file's name. Real-time: never from
-/// the servo thread.
+/// `kind` is gltf or glb; `folder` is the file's folder, from which the file may use plain files
+/// there and below. Nodes, instances (EXT_mesh_gpu_instancing), quantized and sparse positions and
+/// the weights of morph targets are read; bones, animations, lines and points are omitted and
+/// reported. An unknown required extension is refused by name. Files of version 1 are read by
+/// Assimp. Not welded. The error is a sentence without the file's name. Real-time: never from the
+/// servo thread.
 driver::Result<TriangleMesh> read_gltf(const std::string& bytes, const std::string& kind,
                                        const std::filesystem::path& folder, MeshFileInfo& info);
 

@@ -29,19 +29,19 @@ constexpr std::string_view kProduction =
 constexpr std::string_view kBeamLattice =
     "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
 
-// Extensions that may be required and change no shape.
+// Extensions that may be required and do not change the shape.
 constexpr std::array<std::string_view, 5> kKnown{
     kCore, kProduction, "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
     "http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04"};
 
-// What components may be nested in and how many a file may have put in place.
+// Maximum nesting of components, and maximum number of placed objects of a file.
 constexpr int kDepthMax = 32;
 constexpr int kPlacedMax = 1'000'000;
 
-// An object that a build or another object puts somewhere.
+// An object placed by a build or by another object.
 struct Component {
-  std::string path;  // of its model; empty: the same one
+  std::string path;  // path of its model; empty: the same model
   std::int64_t object = 0;
   Affine3d place = Affine3d::Identity();
 };
@@ -79,15 +79,15 @@ class ModelReader {
 
   std::string_view text_;
   std::string part_;                                        // its name
-  std::map<std::string, std::string, std::less<>> spaces_;  // by prefix
+  std::map<std::string, std::string, std::less<>> spaces_;  // namespaces by prefix
   Model model_;
-  ModelObject* object_ = nullptr;  // that is being read
+  ModelObject* object_ = nullptr;  // object being read
   bool opened_ = false, closed_ = false;
 };
 
 std::string_view ModelReader::space_of(std::string_view prefix) const {
   const auto found = spaces_.find(prefix);
-  // Files without any namespace occur, and mean the core.
+  // Files without any namespace occur; it means the core namespace.
   if (found == spaces_.end()) return prefix.empty() ? kCore : std::string_view();
   return found->second;
 }
@@ -210,7 +210,7 @@ std::optional<Error> ModelReader::read_component(const XmlTag& tag,
   return std::nullopt;
 }
 
-// Reads the models of an archive, each once, and puts their objects together.
+// Reads the models of an archive, each once, and assembles their objects.
 class PackageReader {
  public:
   PackageReader(const ZipArchive& archive, MeshFileInfo& info) : archive_(archive), info_(info) {}

@@ -11,13 +11,13 @@ namespace {
 
 using driver::Error;
 
-// What the directory says where the number stands in a ZIP64 field.
+// Value in the directory if the number is in a ZIP64 field.
 constexpr std::uint64_t kInZip64 = 0xffffffff;
 
-// How much a byte of deflated data can become [RFC 1951].
+// Maximum growth of a byte of deflated data [RFC 1951].
 constexpr std::uint64_t kGrowthMax = 1032;
 
-// Reads whole numbers, least byte first; 0 beyond the end.
+// Reads little-endian integers; 0 beyond the end.
 std::uint64_t number_at(std::string_view bytes, std::size_t place, std::size_t size) {
   std::uint64_t number = 0;
   for (std::size_t i = size; i-- > 0;) {

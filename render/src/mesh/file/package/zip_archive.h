@@ -9,8 +9,8 @@
 
 namespace thimble::render {
 
-/// The files in a ZIP archive of one volume, stored or deflated, with or without the numbers of
-/// ZIP64 [PKWARE, APPNOTE 4.3]. The bytes must outlive it.
+/// The files in a ZIP archive of one volume, stored or deflated, with or without ZIP64 numbers
+/// [PKWARE, APPNOTE 4.3]. The bytes must outlive it.
 class ZipArchive {
  public:
   /// Reads the directory of an archive; the error is half a sentence. Real-time: never from the
@@ -23,11 +23,10 @@ class ZipArchive {
   /// Returns whether it holds a file of this name.
   bool holds(std::string_view name) const { return find(name) != nullptr; }
 
-  /// Returns the contents of a file; large and small letters of its name are the same, and a slash
-  /// before it is left out, as parts of packages are named [ISO/IEC 29500-2]. The error is half a
-  /// sentence: no such file, encrypted, packed in another way, or damaged. Takes memory of the
-  /// unpacked size, at most a thousand times the packed one. Real-time: never from the servo
-  /// thread.
+  /// Returns the contents of a file. Its name is case-insensitive and a leading slash is ignored,
+  /// as for parts of packages [ISO/IEC 29500-2]. The error is half a sentence: no such file,
+  /// encrypted, unknown compression, or damaged. Takes memory of the unpacked size, at most a
+  /// thousand times the packed one. Real-time: never from the servo thread.
   driver::Result<std::string> read(std::string_view name) const;
 
  private:

@@ -9,22 +9,22 @@
 
 namespace thimble::render {
 
-/// The friction of the textbook, against the direction of the last move. With encoders that have
-/// steps it has a limit cycle [BP 4.2]: kept to show why the others exist. [PHYSICS 2.1, A and B]
+/// Textbook friction, against the direction of the last move. With quantized encoders it has a
+/// limit cycle [BP 4.2]: kept to show why the others exist. [PHYSICS 2.1, A and B]
 class NaiveFrictionLaw {
  public:
   static constexpr std::string_view kName = "naive";
   static constexpr bool kRests = false;  // it has a limit cycle
 
-  /// What happens in a tick without a move.
+  /// Force in a tick without a move.
   enum class AtRest : std::size_t {
-    kZero,  ///< No force: below one count per tick it is a damper and holds nothing.
+    kZero,  ///< No force: below one count per tick it is a damper and cannot hold.
     kHold,  ///< The last direction stays: after a stop it buzzes.
   };
 
   struct Settings {
     CoulombSettings coulomb;
-    AtRest at_rest = AtRest::kZero;  ///< What it does at rest.
+    AtRest at_rest = AtRest::kZero;  ///< Force in a tick without a move.
 
     void read(SettingsReader& reader, const EffectContext& context);
   };
@@ -35,7 +35,7 @@ class NaiveFrictionLaw {
   void turn(const Turn& turn) noexcept { direction_ = turn.carry(direction_); }
   void forget() noexcept { direction_.setZero(); }
 
-  /// Returns the coefficients, to be changed between two ticks. Real-time: safe.
+  /// Returns the coefficients, which may be changed between two ticks. Real-time: safe.
   CoulombSettings& coulomb() noexcept { return settings_.coulomb; }
 
  private:
