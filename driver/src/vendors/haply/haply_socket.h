@@ -47,9 +47,8 @@ class Socket {
 
   /// Returns the first message. Real-time: never from the servo thread.
   const std::string& first() const;
-  /// Returns whether the other side is Thimble's own stand-in for the service, which has no
-  /// Inverse3
-  /// (`thimble exec --serve haply`). Real-time: never from the servo thread.
+  /// Returns whether the other side is Thimble's own stand-in for the service (`thimble exec
+  /// --serve haply`), which has no Inverse3. Real-time: never from the servo thread.
   bool is_stand_in() const;
   /// Reads and writes until `leave` or until the other side is lost. Run it in its own thread.
   void serve(Traffic& traffic);
