@@ -34,9 +34,9 @@ Finding examine_log(const std::filesystem::path& file);
 /// Returns the data of this machine and user. Real-time: never from the servo thread.
 SystemInfo this_machine();
 
-/// Finds reasons why an arm cannot be used or touch may suffer: the udev rule, each arm's node,
-/// access, driver, hub, power saving and latency timer, and the timing of a loop. Opens and changes
-/// nothing. Real-time: never from the servo thread.
+/// Finds reasons why an arm cannot be used or touch may suffer. Examines the udev rule, each arm's
+/// node, access, driver, hub, power saving and latency timer, and the timing of a loop. Opens and
+/// changes nothing. Real-time: never from the servo thread.
 std::vector<Finding> examine(const SystemInfo& system);
 
 }  // namespace thimble::bringup

@@ -19,7 +19,7 @@ std::string mend_for_closed(const driver::FoundArm& arm);
 Finding examine_linked(const driver::FoundArm& arm);
 
 /// Returns whether the user may open the node through which a vendor's library reaches an arm on
-/// USB, below `root`, and the remedy if not: our udev rule covers only arms that we open ourselves.
+/// USB, below `root`, and the remedy if not. Our udev rule covers only arms that we open ourselves.
 Finding examine_access(const driver::FoundArm& arm, const std::filesystem::path& root);
 
 /// Returns the problems of a service whose arm is on USB; `arms` are all arms found.

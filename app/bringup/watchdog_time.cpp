@@ -20,7 +20,7 @@ constexpr int kHalfWindow = 12;    // ticks, of the speed
 constexpr double kMoved = 0.0005;  // m
 constexpr int kUnasked = 3;        // reports that come unasked
 constexpr int kPushes = 4;
-// Error of one push in addition to the spread of pushes, s: firmware checks its watchdog only now
+// Error of one push in addition to the spread of pushes, s. Firmware checks its watchdog only now
 // and then, and friction is not exactly dry [chosen so that intervals hold 95 % of the truths of
 // hidden arms, identify_link_test].
 constexpr double kKink = 0.3e-3;

@@ -43,10 +43,10 @@ struct WatchdogSeen {
 inline constexpr double kWatchdogWayMost = 0.015;
 
 /// Pushes a free tip with slightly more than its dry friction along y of the world (no weight acts
-/// there), `sign` 1 or -1, then stops sending: its speed is greatest when the force ends. A tip
-/// that has moved 15 mm, or left the workspace, is released before that by a message of zero force.
-/// The device must be active, its soft start over; it is idle afterwards. Real-time: never from the
-/// servo thread.
+/// there), `sign` 1 or -1, then stops sending. The tip's speed is greatest when the force ends. A
+/// tip that has moved 15 mm, or left the workspace, is released before that by a message of zero
+/// force. The device must be active, its soft start over; it is idle afterwards. Real-time: never
+/// from the servo thread.
 WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
                           const std::atomic<bool>& stop);
 

@@ -42,19 +42,19 @@ struct EdgeOfWall {
 /// kick of the motors: no hand holds the arm. A start is the speed of the tip and the position of
 /// the wall between two encoder steps. Both determine whether a stiff wall comes to rest, and every
 /// arm is tested with the same starts. A wall grew if the oscillation some periods later is as wide
-/// as at the beginning, or if the wall gave the tip ten times the energy of the kick (an observer
-/// sums the sent force times the motion). It is then removed within that tick. A tip that moves
-/// more than 6 mm away also ends the search. The other axes are held weakly. No force exceeds 0.95
-/// N. The device is idle before and after. Fails on a fault, if the tip does not stay, or if even
-/// the first wall grows. Real-time: never from the servo thread.
+/// as at the beginning, or if it gave the tip ten times the energy of the kick (an observer sums
+/// force times motion). It is then removed within that tick. A tip that moves more than 6 mm away
+/// also ends the search. The other axes are held weakly. No force exceeds 0.95 N. The device is
+/// idle before and after. Fails on a fault, if the tip does not stay, or if even the first wall
+/// grows. Real-time: never from the servo thread.
 driver::Result<EdgeOfWall> find_edge_of_wall(bringup::BenchArm& bench, const scene::ArmFile& file,
                                              const EdgeSearch& search,
                                              const std::atomic<bool>& stop);
 
-/// Returns the prediction of the law: stiffness K at which dry friction c and viscous friction b no
-/// longer stop an oscillation of the kick's speed v, (b + 4 c / (pi v)) / L, N/m [PHYSICS 1.4]; L
-/// is the latency of the arm file's loop. Too low for late loops, by a third at 4 ms: friction
-/// reduces the kick's speed before so soft a wall reverses the tip.
+/// Returns the prediction of the law, (b + 4 c / (pi v)) / L, N/m [PHYSICS 1.4]. It is the
+/// stiffness at which dry friction c and viscous friction b no longer stop an oscillation of the
+/// kick's speed v. L is the latency of the arm file's loop. Too low for late loops, by a third at 4
+/// ms: friction reduces the kick's speed before so soft a wall reverses the tip.
 double edge_by_law(const scene::ArmFile& file, double speed);
 
 }  // namespace thimble::hil

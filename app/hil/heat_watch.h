@@ -12,10 +12,10 @@
 
 namespace thimble::hil {
 
-/// Heat of an arm's motors during a check, from up to three sources: the driver's estimate
-/// (driver::HeatGuard); the arm file's first-order model with the forces that were sent; and the
-/// true value of a simulated arm whose motors warm. Heat is a share of the winding's limit; 1 is
-/// the steady state at the continuous current. Real-time: never from the servo thread.
+/// Heat of an arm's motors during a check, from up to three sources. These are the driver's
+/// estimate (driver::HeatGuard), the arm file's first-order model with the forces that were sent,
+/// and the true value of a simulated arm whose motors warm. Heat is a share of the winding's limit;
+/// 1 is the steady state at the continuous current. Real-time: never from the servo thread.
 class HeatWatch {
  public:
   /// Begins with the driver's present heat. Both must outlive it.

@@ -57,13 +57,13 @@ class EvenSurface {
   double load_, depth_;
 };
 
-/// Rubs along a straight line, with everything from the wire up: simulated vintage arm at its home
-/// pose, where only one joint moves x, its encoder quantized to the given step; wire, driver,
-/// velocity estimate, safety gate and servo loop as in any session, in virtual time. The surface
-/// presses with a constant force, which is not sent, as if the hand held it exactly, so that only
-/// friction is measured. Begins at rest; forces open softly within the first 0.3 s. Precondition:
-/// the settings are in the simulator's range (not checked; otherwise Result::value throws).
-/// Real-time: never from the servo thread.
+/// Rubs along a straight line through the whole loop. The simulated vintage arm is at its home
+/// pose, where only one joint moves x; its encoder is quantized to the given step. Wire, driver,
+/// velocity estimate, safety gate and servo loop are those of any session, in virtual time. The
+/// surface presses with a constant force, which is not sent, as if the hand held it exactly, so
+/// that only friction is measured. Begins at rest; forces open softly within the first 0.3 s.
+/// Precondition: the settings are in the simulator's range (not checked; otherwise Result::value
+/// throws). Real-time: never from the servo thread.
 RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double duration,
            const FrictionRigSettings& settings);
 

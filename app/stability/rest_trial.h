@@ -38,10 +38,10 @@ struct RestTrial {
 };
 
 /// Runs a scene with its simulated arm and a hand with these constants on the virtual clock, and
-/// observes the hand at rest, for 1.6 s each: wherever its path holds for 0.3 s or more, and at its
-/// end. If none of these rests touches anything, the hand is stopped where it is deepest in each
-/// object that it touches, and observed there. Trials of one scene may share `meshes`. The error
-/// explains why the scene cannot be run. Real-time: never from the servo thread.
+/// observes the hand at rest. It rests for 1.6 s wherever its path holds for 0.3 s or more, and at
+/// its end. If none of these rests touches anything, the hand is stopped where it is deepest in
+/// each object that it touches, and observed there. Trials of one scene may share `meshes`. The
+/// error explains why the scene cannot be run. Real-time: never from the servo thread.
 driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim::HandSettings& hand,
                                     const std::shared_ptr<scene::SharedMeshes>& meshes = nullptr);
 

@@ -22,10 +22,11 @@ namespace thimble::stability {
 std::vector<std::string> energy_warnings(const scene::Scene& scene);
 
 /// Lists possible causes, by the laws, of a limit cycle of a hand that rests on the object of this
-/// name (empty: on any), a sentence each with the remedy: facets, textures, frictions, springs that
-/// add up, light bodies, damping on coarse encoders. They are only possible causes: arm and hand
-/// may damp them, so only `try_rests` shows whether there is a limit cycle. Reads the meshes that
-/// are in memory; unreadable ones are skipped, because the loader reports them.
+/// name (empty: on any). Each is a sentence with the remedy. Causes are facets, textures,
+/// frictions, springs that add up, light bodies, and damping on coarse encoders. They are only
+/// possible causes: arm and hand may damp them, so only `try_rests` shows whether there is a limit
+/// cycle. Reads the meshes that are in memory; unreadable ones are skipped, because the loader
+/// reports them.
 std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on = {});
 
 /// Returns a sentence for each rest of a trial with a perceptible oscillation, with its size and
@@ -41,18 +42,17 @@ double curvature_of(const render::EffectPlan& texture);
 /// it does not stick.
 double hold_of(const render::EffectPlan& friction);
 
-/// Returns the sharpest concave edge of a mesh as it is touched (wound outwards), rad: the change
-/// of the normal when a tip that rests in the edge passes from one facet to the next. Edges up to
-/// `from` (rad) are skipped.
+/// Returns the sharpest concave edge of a mesh as it is touched (wound outwards), rad. It is the
+/// change of the normal when a tip that rests in the edge passes from one facet to the next. Edges
+/// up to `from` (rad) are skipped.
 double sharpest_hollow(const render::ContactMesh& mesh, double from);
 
 /// Returns the quantisation noise (N RMS) of a damping `damping` (N s/m) on encoders of `step` (m)
-/// at a `speed` (m/s), through a velocity filter of `corner` (Hz; 0: none) in a loop of `period`
-/// (s).
+/// at a `speed` (m/s). The velocity filter has the corner `corner` (Hz; 0: none), the loop the
+/// period `period` (s).
 ///
 /// A count is a pulse of b d / T in the unfiltered velocity. At p = v T / d counts per tick their
-/// RMS about the mean is b d / T sqrt(p (1 - p)), of which a pole of gain g leaves g / (2 - g) of
-/// the power.
+/// RMS about the mean is b d / T sqrt(p (1 - p)). A pole of gain g leaves g / (2 - g) of the power.
 double quantisation_noise_of(double damping, double step, double speed, double corner,
                              double period);
 

@@ -6,8 +6,8 @@ namespace thimble::stability {
 
 // The laws of [PHYSICS 1.1 to 1.5 and 2.3] as pure functions, for one direction of motion;
 // worst_direction.h defines the worst direction. Letters as there: m, b, c mass, viscous and dry
-// friction of the device (with the hand, if a caller adds it), K, B stiffness and damping of the
-// wall, T the period, d the encoder step. SI throughout. Arguments that are not finite give results
+// friction of the device (with the hand, if a caller adds it); K, B stiffness and damping of the
+// wall; T the period; d the encoder step. SI throughout. Arguments that are not finite give results
 // that are not. Real-time: never from the servo thread.
 
 /// As `stiffness_limit`, including the effect of latency on the oscillation's period: (b / L) u /
@@ -63,13 +63,13 @@ struct SampledWall {
 /// one tick; below 1 it decays. For regimes in which `stiffness_limit` is not yet exact.
 double growth_per_tick(const SampledWall& wall);
 
-/// Returns the largest stiffness at which a delayed spring balances the arm, N/m: the smallest K
-/// with K S e^(-i w L) = -Z(w) at some w > 0 below half the loop's rate. L is half a period, the
-/// delay and the amplifier's lag, which counts by its phase at low frequency [PHYSICS 1.1]. S =
-/// sin(w T / 2) / (w T / 2) is the attenuation by the hold. Z is the arm's force over displacement
-/// at the motor, Z = -w^2 M + C H / (C + H), with H = h + i w b - w^2 m of tip and hand and C = k +
-/// i w d of the cable; without a cable Z = H. `wall.stiffness`, `damping` and `velocity_corner` are
-/// ignored. 0 if there is none.
+/// Returns the largest stiffness at which a delayed spring balances the arm, N/m. It is the
+/// smallest K with K S e^(-i w L) = -Z(w) at some w > 0 below half the loop's rate. L is half a
+/// period, the delay and the amplifier's lag, which counts by its phase at low frequency [PHYSICS
+/// 1.1]. S = sin(w T / 2) / (w T / 2) is the attenuation by the hold. Z is the arm's force over
+/// displacement at the motor, Z = -w^2 M + C H / (C + H); without a cable Z = H. H = h + i w b -
+/// w^2 m is that of tip and hand, C = k + i w d that of the cable. `wall.stiffness`, `damping` and
+/// `velocity_corner` are ignored. 0 if there is none.
 double limit_by_phase(const SampledWall& wall);
 
 /// Returns the largest stiffness up to which the wall does not grow, N/m, by bisection to 1e-6 of

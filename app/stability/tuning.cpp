@@ -82,7 +82,7 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
 constexpr double kRateMost = 1e5;
 
 /// Returns a rate at which the law allows the values of an object, an integer multiple of the
-/// scene's; empty if a faster loop would wait for the arm's reports and wire.
+/// scene's. Empty if a faster loop would wait for the arm's reports and wire.
 std::optional<double> rate_that_carries(const scene::Scene& scene,
                                         const scene::SceneObject& object) {
   const auto carries = [&](double rate) {

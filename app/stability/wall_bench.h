@@ -17,8 +17,8 @@ struct ArmDirection {
   Eigen::Vector3d p_WT{0, 0, 0};  ///< Tip in the home pose, m.
   double step = 0;  ///< Apparent jump of the tip along it when all encoders step at once, m.
   double largest_step = 0;  ///< The same for a step of the encoder with the largest effect, m.
-  /// Ratio of the dry friction of a straight path along it to that along an axis of the base: the
-  /// sum of the direction's absolute components there, since each axis has friction of its own.
+  /// Ratio of the dry friction of a straight path along it to that along an axis of the base. It is
+  /// the sum of the direction's absolute components there, since each axis has friction of its own.
   double friction_share = 1;
   double force_step = 0;  ///< Below half of this no motor gets a current, N.
 
@@ -27,9 +27,9 @@ struct ArmDirection {
   bool is_one_dimensional() const;
 };
 
-/// Finds the worst direction for a wall: the axis of the base along which the sum of the encoders'
-/// steps is largest relative to its dry friction (worst_direction.h explains why an axis). Fails if
-/// the arm has no pose to simulate. Real-time: never from the servo thread.
+/// Finds the worst direction for a wall. It is the axis of the base along which the sum of the
+/// encoders' steps is largest relative to its dry friction (worst_direction.h explains why an
+/// axis). Fails if the arm has no pose to simulate. Real-time: never from the servo thread.
 driver::Result<ArmDirection> worst_direction_at_home(const scene::ArmFile& arm);
 /// Finds the direction in which the sum of the encoders' steps is largest, regardless of friction.
 driver::Result<ArmDirection> diagonal_direction_at_home(const scene::ArmFile& arm);

@@ -46,7 +46,7 @@ inline constexpr double kQuietSteps = 5;  ///< See kQuietAtRest.
 bool comes_to_rest(const WallTouch& touch, double quiet);
 
 /// Returns the stiffest wall on which the tip comes to rest (`comes_to_rest`), when raised over
-/// softer ones (`raised_edge`), N/m, between a tenth and some ten times `guess`, to 1 %;
+/// softer ones (`raised_edge`), N/m, to 1 %. Searches between a tenth and some ten times `guess`;
 /// `trial.stiffness` is ignored. Fails like `press_on_wall`.
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet);

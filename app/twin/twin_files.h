@@ -20,9 +20,9 @@ std::vector<session::Figure> twin_figures(const TwinComparison& comparison, doub
 std::string twin_table(const TwinComparison& comparison);
 
 /// Writes figures.json, data/ and, if gnuplot is installed, three pictures into a folder, which is
-/// created: both motions in the window of largest error (twin_motion), the error over time
-/// (twin_error), and over frequency (twin_spectrum). Fails if a file cannot be written. Real-time:
-/// never from the servo thread.
+/// created. The pictures show both motions in the window of largest error (twin_motion), the error
+/// over time (twin_error), and over frequency (twin_spectrum). Fails if a file cannot be written.
+/// Real-time: never from the servo thread.
 driver::Result<void> write_twin(const TwinResult& result,
                                 const std::vector<session::Figure>& figures,
                                 const std::string& title, const std::filesystem::path& folder);

@@ -32,7 +32,7 @@ namespace thimble::device_sim {
 /// motors `delay_out` after its write. The watchdog fires when no message came within its time. At
 /// equal times the encoders are sampled first, then messages arrive, then the watchdog is checked.
 /// So a report shows the state before a message of the same moment, and a message just in time
-/// keeps the motors on. Without delay this is an ideal zero-order hold: a host that reads at k
+/// keeps the motors on. Without delay this is an ideal zero-order hold. A host that reads at k
 /// periods and writes at once sees the sample of that very moment, and its force acts from then on.
 ///
 /// Between events the plant moves by its exact map, in sub-steps of at most 1 ms. The hand's point

@@ -99,9 +99,9 @@ std::span<const ShapeRow, std::variant_size_v<ArmGeometry>> arm_shapes() noexcep
 }
 
 ArmKind kind_of(BoardKind board) noexcept {
-  // A board with text lines reports its model when asked, so the row of that protocol is preferred
-  // to that of an arm that may also have such a board: the row whose usual board it is, else the
-  // first that has it.
+  // Select the row whose usual board it is, else the first that has it. A board with text lines
+  // reports its model when asked, so the row of that protocol is preferred to that of an arm that
+  // may also have such a board.
   const ArmRow* any = nullptr;
   for (const ArmRow& row : kArms) {
     const std::span<const BoardKind> boards(row.boards.data(), row.board_count);

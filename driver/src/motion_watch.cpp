@@ -36,7 +36,7 @@ constexpr double kProofChange = 0.7, kProofAnswer = 0.4;
 // window or three doubtful ones are a fault.
 constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 
-// A joint that does not count may be held by dry friction, or may not move at all: a straight
+// A joint that does not count may be held by dry friction, or may not move at all. A straight
 // stroke may lie in the surface in which the other two joints move the tip, with a hand that takes
 // up any force along this one. 1 in some 5000 strokes into a wall does. So coincidences are
 // counted. The first kind is each leg of the tip's path, straight for kLeg, whose direction differs

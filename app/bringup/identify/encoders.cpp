@@ -12,8 +12,8 @@ constexpr std::size_t kReportsLeast = 100;
 // If none of n reports changes, the probability of a change is below 3/n in 19 of 20 rests: the
 // rule of three [M Hanley and Lippman-Hand 1983].
 constexpr double kRuleOfThree = 3;
-// Allowed difference between the two halves of a rest in counts: multiple of the standard error of
-// their noise, and a constant part [chosen: half a step is the effect of rounding].
+// Allowed difference between the two halves of a rest in counts. A multiple of the standard error
+// of their noise, and a constant part [chosen: half a step is the effect of rounding].
 constexpr double kDriftMost = 4, kDriftFree = 0.5;
 
 EncoderStep step_of(const ArmMotion& motion, Eigen::Index joint) {

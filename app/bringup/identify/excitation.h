@@ -10,8 +10,8 @@
 namespace thimble::bringup {
 
 /// A force that moves a free arm in all directions at once, so that mass, friction and gains show
-/// in its motion: sines of many frequencies per axis, and a weak spring and damper that keep the
-/// tip near its start. At most `kShareMost` of the allowed force. Frame W: world.
+/// in its motion. It consists of sines of many frequencies per axis, and a weak spring and damper
+/// that keep the tip near its start. At most `kShareMost` of the allowed force. Frame W: world.
 class Excitation {
  public:
   static constexpr double kShareMost = 0.95;  ///< Share of the allowed force.
@@ -25,8 +25,9 @@ class Excitation {
   Excitation(const Eigen::Vector3d& p_WM, std::uint64_t seed, Lines lines = Lines::kWithout,
              double allowed = 1);
 
-  /// Returns the force (N) at a time since the beginning (s), `dt` (s) after the last call, for a
-  /// tip at p_WT (m) with v_WT (m/s); zero for a tip outside of its allowed space. Real-time: safe.
+  /// Returns the force (N) at a time since the beginning (s), for a tip at p_WT (m) with v_WT
+  /// (m/s). Zero for a tip outside of its allowed space. `dt`: time since the last call, s.
+  /// Real-time: safe.
   Eigen::Vector3d force(double time, double dt, const Eigen::Vector3d& p_WT,
                         const Eigen::Vector3d& v_WT) noexcept;
 

@@ -9,8 +9,8 @@ namespace thimble::bringup {
 
 /// Coulomb friction along each axis of the base, and in its two directions.
 ///
-/// Friction of c+ in one direction and c- in the other is exactly equal, moving or at rest, to (c+
-/// + c-)/2 in both directions plus a constant force of (c- - c+)/2. So a difference along the
+/// Friction of c+ in one direction and c- in the other equals exactly, moving or at rest, (c+ +
+/// c-)/2 in both directions plus a constant force of (c- - c+)/2. So a difference along the
 /// vertical is part of the weight. A horizontal constant force is a difference, or a tilted base.
 struct FrictionDirections {
   std::array<Estimate, 3> mean;  ///< Mean of both directions, N for each axis of the base.

@@ -291,8 +291,8 @@ driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptio
 }
 
 /// The steps of an identification, for the motion with the bare tip and then for the one with the
-/// known mass: record it, remove the effects of motors, joints and cables, fit it, store it.
-/// Finally judge both and write the constants.
+/// known mass. For each: record it, remove the effects of motors, joints and cables, fit it, store
+/// it. Finally judge both and write the constants.
 class Identification {
  public:
   Identification(const OpenBench& open, const scene::ArmFile& file, const IdentifyOptions& options,

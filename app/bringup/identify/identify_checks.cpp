@@ -10,7 +10,7 @@ namespace thimble::bringup {
 namespace {
 
 // The residual of a correct model is 1 to 4 times that of its encoders' steps, or below 1 % of its
-// acceleration for a light arm; that of a wrong model is larger in both.
+// acceleration for a light arm. That of a wrong model exceeds both.
 constexpr double kResidualMost = 4;
 constexpr double kUnexplainedMost = 0.02;
 // Behind cables the motion of the links is known only through them. The residual of correct soft

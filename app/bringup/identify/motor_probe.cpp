@@ -17,8 +17,8 @@ constexpr double kReach = 0.002;   // m, at which a push reverses [chosen: a twe
 constexpr double kStill = 0.02;    // s without a count, after which it is at rest
 constexpr double kRestMost = 2;    // s, after which it moves by itself [chosen]
 constexpr double kNoticed = 3, kClear = 10;  // counts
-// Max. tip acceleration per requested N, 1/kg, for which HoldPlace is stable with a delay of 5 ms:
-// at the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w), equals
+// Max. tip acceleration per requested N, 1/kg, for which HoldPlace is stable with a delay of 5 ms.
+// At the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w), equals
 // the phase lag of 5.5 ms.
 constexpr double kLivelyMost = 30;
 
@@ -114,10 +114,10 @@ class Probe {
     double peak = 0;   ///< m, max. distance along the push, with its sign
   };
 
-  /// Returns the sign of the force at a time (s) in a push that reversed at `turn` (s, negative
-  /// before that), with the tip `gone` (m) along it at `rate` (m/s). With a weight the motions
-  /// there and back differ, so each ends by position, at the latest after twice the time of the
-  /// push.
+  /// Returns the sign of the force at time `t` (s) in a push that reversed at `turn` (s, negative
+  /// before that). The tip has moved `gone` (m) along it, with `rate` (m/s). With a weight the
+  /// motions there and back differ, so each ends by position, at the latest after twice the time of
+  /// the push.
   static double sign_of(Phases& phases, double t, double turn, double gone, double rate) {
     if (turn < 0) return 1;
     if (std::abs(gone) > std::abs(phases.peak)) phases.peak = gone;
@@ -148,7 +148,7 @@ class Probe {
     return file_.R_WB * J.inverse().row(joint).transpose().normalized();
   }
 
-  /// Returns the acceleration of a motion from rest that began at an unknown time: x = a (t - t0)^2
+  /// Returns the acceleration of a motion from rest that began at an unknown time. x = a (t - t0)^2
   /// / 2 moves from a quarter of its end to its end in half of its time.
   static double acceleration_of(const std::vector<std::pair<double, double>>& way) {
     if (way.empty() || way.back().second <= 0) return 0;

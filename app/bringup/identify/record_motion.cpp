@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kTick = 1e-3;       // s, of BenchArm
 constexpr double kProbeShare = 0.4;  // of the max. allowed force, while motors are tested
-// Integral gain of the force that carries a known mass, N/s for each m that it is too low: the
-// spring of HoldPlace over 0.4 s, long compared with its oscillation; and its duration, five times
-// that.
+// Integral gain of the force that carries a known mass, N/s for each m that it is too low. It is
+// the spring of HoldPlace over 0.4 s, long compared with its oscillation. Its duration is five
+// times that.
 constexpr double kCarry = 150, kCarried = 2;
 constexpr double kLeadSpeed = 0.06;  // m/s, between points [chosen: slower than a hand's reach]
 constexpr double kSettled = 0.3;     // s, at a new point

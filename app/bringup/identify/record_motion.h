@@ -30,9 +30,9 @@ struct MotionOrder {
 driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& file,
                                         const MotionOrder& order, const std::atomic<bool>& stop);
 
-/// Returns up to nine points (world, m) of a serial arm to move about: the middle of its workspace,
-/// then towards its corners, opposite ones in turn, as far as excitation and reach permit.
-/// Real-time: never from the servo thread.
+/// Returns up to nine points (world, m) of a serial arm to move about. The first is the middle of
+/// its workspace. The others are towards its corners, opposite ones in turn, as far as excitation
+/// and reach permit. Real-time: never from the servo thread.
 std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count);
 
 /// Returns whether a serial arm at a point (world, m) is far from stretched, from folded and from

@@ -25,9 +25,9 @@ constexpr double kSticks = 10;
 // joint that mostly stands still as the cause [chosen].
 constexpr Eigen::Index kPiecesLeast = 300, kPiecesToBlame = 50;
 constexpr int kRubRounds = 4;  // of the search for friction and the reversals of the joints
-// Errors due to the smoothing of signs beyond the statistics, of dry friction, and N m s/rad for
-// each N m of it of the viscous [chosen: so that intervals hold 95 % of the truths,
-// identify_rubbing_test].
+// Errors due to the smoothing of signs beyond the statistics: of dry friction, as a share; of
+// viscous friction, N m s/rad per N m of dry friction [chosen: so that intervals hold 95 % of the
+// truths, identify_rubbing_test].
 constexpr double kMethodDry = 0.004;
 constexpr double kMethodBeside = 0.008;  // likewise, per dry friction of the tip
 constexpr double kMethodViscous = 0.003;

@@ -7,7 +7,7 @@
 
 namespace thimble::bringup {
 
-/// Opens the simulated arm of a file for identification: its tip in the middle of the workspace,
+/// Opens the simulated arm of a file for identification. Its tip is in the middle of the workspace,
 /// without a hand, and with a mass fixed to it (kg, 0: none) on which gravity acts. With `hold_it`,
 /// the arm file's hand holds it. Forces are limited to `force_most` (N). Real-time: never from the
 /// servo thread.

@@ -37,9 +37,9 @@ class Firmware {
   static constexpr std::int64_t kNever_ns = INT64_MAX;
 
   /// Makes the board for a model's motors and encoders; its geometry does not matter. Fails if a
-  /// period is not above zero, the range is negative, an encoder has no counts, the wiring names a
-  /// joint that does not exist, or the protocol cannot carry the settings. Real-time: never from
-  /// the servo thread.
+  /// period is not above zero, the range is negative, or an encoder has no counts. Also fails if
+  /// the wiring names a joint that does not exist, or the protocol cannot carry the settings.
+  /// Real-time: never from the servo thread.
   static driver::Result<Firmware> make(const driver::ArmModel& model,
                                        const FirmwareSettings& settings);
 

@@ -65,9 +65,9 @@ double zero_of_velocity(const AxisMotion& m, double low, double high, double gue
 }
 
 // Returns whether a velocity with the same sign at both ends of a piece might lose it in between.
-// Inside a piece an acceleration that rises from a < 0 through zero stays above a (the boundary
-// value problem's influence functions are at most 1 within a quarter period), so the velocity stays
-// above v + a t.
+// Inside a piece an acceleration that rises from a < 0 through zero stays above a, so the velocity
+// stays above v + a t. (The boundary value problem's influence functions are at most 1 within a
+// quarter period.)
 bool may_dip(const AxisMotion& m, double direction, double t, double a_end) noexcept {
   return m.a * direction < 0 && a_end * direction > 0 && (m.v + m.a * t) * direction <= 0;
 }

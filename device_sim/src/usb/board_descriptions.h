@@ -18,8 +18,8 @@ inline constexpr const char* kMbedSerial = "0123456789";
 /// mbed USBHID.h, USBHID.cpp, USBDevice.cpp]. An empty serial number means kMbedSerial.
 UsbDescription mbed_hid_description(std::uint8_t report_size, std::string serial);
 
-/// Returns the description of a Teensy with the USB type "Raw HID": the raw reports on its first
-/// interface, an emulated serial port ("seremu") for debug output on its second [S
+/// Returns the description of a Teensy with the USB type "Raw HID". Raw reports are on its first
+/// interface, an emulated serial port ("seremu") for debug output is on its second [S
 /// PaulStoffregen/cores teensy3/usb_desc.h, usb_desc.c]. Its serial number is a decimal number of
 /// each chip; an empty one means ours, 1234560.
 UsbDescription teensy_raw_hid_description(std::string serial);

@@ -19,10 +19,10 @@ struct FalconCounters {
   std::uint64_t resets = 0;     ///< Restarts of the boot loader.
 };
 
-/// Behaviour of a Falcon on a packet without the homing bit. libnifalcon's header says of the flags
-/// of the homed legs "if homing mode on", and programs that need the encoders keep the bit in every
-/// packet [S FalconFirmwareNovintSDK.h; "keep track of encoders" in programs on top of it]. The
-/// effect on the counts is unknown.
+/// Behaviour of a Falcon on a packet without the homing bit. libnifalcon's header comments the
+/// flags of the homed legs with "if homing mode on". Programs that need the encoders keep the bit
+/// in every packet [S FalconFirmwareNovintSDK.h; "keep track of encoders" in programs on top of
+/// it]. The effect on the counts is unknown.
 enum class FalconHoming : std::uint8_t {
   kForgets,     ///< Flags and homes are lost; the arm must be homed again. The hardest case for a
                 ///< driver.

@@ -57,10 +57,10 @@ class SerialBoard {
   virtual void wires(bool dtr, bool rts) noexcept = 0;
 };
 
-/// An FT232BM converter: bytes in both directions at the line's rate, two status bytes at the start
-/// of every packet to the host, the latency timer, and the vendor requests of FTDI [S Linux,
-/// drivers/usb/serial/ftdi_sio.h; libftdi]. Bytes sent at a baud rate other than that of the board
-/// are lost, as noise would be.
+/// An FT232BM converter. It moves bytes in both directions at the line's rate, starts every packet
+/// to the host with two status bytes, and has the latency timer and the vendor requests of FTDI [S
+/// Linux, drivers/usb/serial/ftdi_sio.h; libftdi]. Bytes sent at a baud rate other than that of the
+/// board are lost, as noise would be.
 class FtdiChip {
  public:
   static constexpr std::uint8_t kInEndpoint = 0x81;       ///< To the host.

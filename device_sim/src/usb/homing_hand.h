@@ -5,7 +5,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Motion of the hand on a Falcon during homing, as a user is instructed: it pulls the grip out,
+/// Motion of the hand on a Falcon during homing, as a user is instructed. It pulls the grip out,
 /// pushes it in, and returns to where it was, until every leg has passed its home. Frame B: base of
 /// the arm. All functions are Real-time: safe.
 class HomingHand {

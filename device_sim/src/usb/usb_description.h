@@ -65,10 +65,11 @@ enum DescriptorKind : std::uint8_t {
 std::vector<std::byte> build_descriptor(const UsbDescription& description, std::uint8_t kind,
                                         std::uint8_t index, std::uint8_t interface = 0);
 
-/// Builds the report descriptor of a device that exchanges plain bytes: one report of `in_bytes` to
-/// the host and one of `out_bytes` from it, no report ids, on a vendor's usage page. The order of
-/// items is that of mbed's USBHID class and of Teensy's raw HID, which are the same [S mbed
-/// USBHID.cpp; PaulStoffregen/cores teensy3/usb_desc.c]. Real-time: never from the servo thread.
+/// Builds the report descriptor of a device that exchanges plain bytes. It has one report of
+/// `in_bytes` to the host and one of `out_bytes` from it, without report ids, on a vendor's usage
+/// page. The order of items is that of mbed's USBHID class and of Teensy's raw HID, which are the
+/// same [S mbed USBHID.cpp; PaulStoffregen/cores teensy3/usb_desc.c]. Real-time: never from the
+/// servo thread.
 std::vector<std::byte> build_raw_report_descriptor(std::uint16_t usage_page, std::uint16_t usage,
                                                    std::uint8_t in_bytes, std::uint8_t out_bytes);
 

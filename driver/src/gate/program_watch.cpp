@@ -7,7 +7,7 @@ namespace thimble::driver {
 namespace {
 
 /// Returns by how much a force must return from its extreme to count as turned, N, after a swing of
-/// `swing`: more than a stiff wall's answer to one or two counts.
+/// `swing`. It is more than a stiff wall's answer to one or two counts.
 double turn_of(double swing) noexcept {
   constexpr double kLeast = 0.1;  // N [chosen]
   return std::max(kLeast, swing / 4);

@@ -9,9 +9,9 @@ namespace thimble::driver {
 
 namespace {
 
-/// Returns the limits of a gate for which a gap of five times the stall is a fault, even if the
-/// board's own watchdog waits longer (0.5 s on the mbed boards). [chosen: 0.1 s in all arm files,
-/// the watchdog of the boards with text lines]
+/// Returns the limits of a gate for which a gap of five times the stall is a fault. This holds even
+/// if the board's own watchdog waits longer (0.5 s on the mbed boards). [chosen: 0.1 s in all arm
+/// files, the watchdog of the boards with text lines]
 GateLimits with_gap(GateLimits limits) noexcept {
   limits.watchdog_ns = std::min(limits.watchdog_ns, 5 * std::max<std::int64_t>(limits.stall_ns, 1));
   return limits;

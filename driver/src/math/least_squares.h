@@ -64,7 +64,7 @@ struct SearchEffort {
   double ridge = 0;          ///< Added to the diagonal, as a share of its largest element.
 };
 
-/// Minimizes a sum of squares from `x` by the steps of Levenberg and Marquardt, with the damping
+/// Minimizes a sum of squares from `x` by the steps of Levenberg and Marquardt. The damping is
 /// scaled by the diagonal of J^T J (D W Marquardt, An algorithm for least-squares estimation of
 /// nonlinear parameters, 1963). Changes `x` only to values with a smaller sum. Returns the sum of
 /// squares; it does not include priors.

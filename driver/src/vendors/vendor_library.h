@@ -28,9 +28,10 @@ class VendorFunction {
 
 /// Opens the first of these files that exists, looks up the functions, and returns the file. The
 /// library is never closed: threads and handlers that such libraries leave behind would not survive
-/// it. The error lists the files that were tried; or the linker's message for a file that cannot be
-/// opened, for example because another library is missing; or the missing function and `otherwise`:
-/// what the library is not, and what to install. Real-time: never from the servo thread.
+/// it. If there is none, the error lists the files that were tried. If one cannot be opened, for
+/// example because another library is missing, it is the linker's message. If a function is
+/// missing, it names the function and ends with `otherwise`: what the library is not, and what to
+/// install. Real-time: never from the servo thread.
 Result<std::string> open_vendor_library(std::span<const std::string> files,
                                         std::initializer_list<VendorFunction> functions,
                                         const std::string& otherwise);

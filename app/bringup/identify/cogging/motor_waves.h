@@ -49,9 +49,9 @@ struct MotorWaves {
   bool told() const { return seen() && rivals.empty(); }
 };
 
-/// Returns the cogging of a motor, N m at the motor, whose true torque is `gain` times that of the
-/// arm file; empty if it has none or its periods are unknown. Real-time: never from the servo
-/// thread.
+/// Returns the cogging of a motor, N m at the motor; empty if it has none or its periods are
+/// unknown. `gain`: ratio of its true torque to that of the arm file. Real-time: never from the
+/// servo thread.
 Estimate cogging_at_motor(const MotorWaves& waves, std::size_t motor, const Estimate& gain);
 
 /// Returns a motion with the true torques of motors with such waves, in the arm file's constants.
@@ -59,7 +59,7 @@ Estimate cogging_at_motor(const MotorWaves& waves, std::size_t motor, const Esti
 ArmMotion freed_of_waves(const ArmMotion& motion, const MotorWaves& waves);
 
 /// Searches for cogging and ripple in the residual of a rigid arm's fit. `held`: the fit with a
-/// spring, so that a spring is not taken for a wave; `ratio`: motor turns per joint turn; `named`:
+/// spring, so that a spring is not taken for a wave. `ratio`: motor turns per joint turn. `named`:
 /// periods per turn in the arm file; 0: none, and plausible numbers are tried. Fails like
 /// `fit_motion`. Real-time: never from the servo thread.
 driver::Result<MotorWaves> find_waves(const ArmMotion& motion, const PerMass& held,

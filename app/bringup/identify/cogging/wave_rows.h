@@ -10,10 +10,10 @@
 
 namespace thimble::bringup {
 
-/// Effect of waves over the motors' angles on the equations of a fitted motion: cogging, a torque
-/// that is a sine of the motor's angle, and ripple, a sine in the torque constant. Both are linear
-/// in the factors of sine and cosine. The motion must outlive it. Real-time: never from the servo
-/// thread.
+/// Effect of waves over the motors' angles on the equations of a fitted motion. Cogging is a torque
+/// that is a sine of the motor's angle; ripple is such a sine in the torque constant. Both are
+/// linear in the factors of sine and cosine. The motion must outlive it. Real-time: never from the
+/// servo thread.
 class WaveRows {
  public:
   /// Columns of each joint: sine and cosine of the cogging, of the ripple.

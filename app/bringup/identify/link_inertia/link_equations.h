@@ -13,10 +13,11 @@ namespace thimble::bringup {
 
 /// Factors of the constants of a serial arm's links in the weak form: the equations of motion of
 /// device_sim::LinkSettings, which names their sources, mapped to the tip by G^T. Motion does not
-/// distinguish a mass m at the tip from inertia B and yaw_b of m length_b^2, inertia C and yaw_c of
-/// m length_c^2 and coupling of m length_b length_c. It also does not distinguish a weight at the
-/// tip from moments along both links. So coupling and moment_c have no columns: they are part of
-/// the tip. The motion must outlive it. Real-time: never from the servo thread.
+/// distinguish a mass m at the tip from these constants together: inertia B and yaw_b of m
+/// length_b^2, inertia C and yaw_c of m length_c^2, coupling of m length_b length_c. It also does
+/// not distinguish a weight at the tip from moments along both links. So coupling and moment_c have
+/// no columns: they are part of the tip. The motion must outlive it. Real-time: never from the
+/// servo thread.
 class LinkEquations {
  public:
   /// Index of each constant in a row: inertia A, B, C, yaw_b and yaw_c (kg m^2), moment_b (kg m).
@@ -30,7 +31,7 @@ class LinkEquations {
   Row row(const MotionEquations::Equation& equation) const;
 
   /// Effect of the encoders' steps on mass at the tip (first) and on the five inertias in one
-  /// equation: the covariance of these columns if the steps were uniform noise, (m/s^2)^2 and
+  /// equation. It is the covariance of these columns if the steps were uniform noise, (m/s^2)^2 and
   /// corresponding units.
   using StepNoise = Eigen::Matrix<double, 6, 6>;
   StepNoise step_noise(const MotionEquations::Equation& equation) const;

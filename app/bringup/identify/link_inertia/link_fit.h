@@ -63,9 +63,9 @@ struct LinkFit {
     return {theta[index], kNormal95 * std::sqrt(covariance(index, index))};
   }
 
-  /// Returns the diagonal of the tip's mass matrix m + G^T M G at joint angles q: the force along
-  /// an axis of the base for an acceleration along that axis only, kg. Real-time: never from the
-  /// servo thread.
+  /// Returns the diagonal of the tip's mass matrix m + G^T M G at joint angles q, kg. It is the
+  /// force along an axis of the base for an acceleration along that axis only. Real-time: never
+  /// from the servo thread.
   std::array<Estimate, 3> apparent_mass(const Eigen::Vector3d& q) const;
 };
 

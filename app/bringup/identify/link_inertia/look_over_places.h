@@ -32,9 +32,9 @@ using FreedMotion = std::function<ArmMotion(const ArmMotion&)>;
 /// Leads a bare tip to `places` poses of its workspace and moves it about each by `order`
 /// (`record_places`). Fits these motions, after `freed` has removed the effects of motors and
 /// joints, together with `first`, which was about the middle and already has them removed. The arm
-/// is not moved, and `not_done` gives the reason, if `held` (the fit of that motion with a spring,
-/// of `mass`) shows that something holds the tip, if `stretches`, or if links of this geometry have
-/// no model. An error is a fault or a stop. Real-time: never from the servo thread.
+/// is not moved if something holds the tip (`held`), if cables stretch (`stretches`), or if links
+/// of this geometry have no model; `not_done` then gives the reason. An error is a fault or a stop.
+/// Real-time: never from the servo thread.
 driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFile& file,
                                             const MotionOrder& order, int places,
                                             const ArmMotion& first, const FreedMotion& freed,

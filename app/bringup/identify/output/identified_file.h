@@ -16,11 +16,11 @@ struct IdentifiedMark {
   std::string arm;   ///< The arm's name or serial number; "sim" for the simulated one.
 };
 
-/// Returns an arm file's text with identified constants instead of its own: mass, friction, weight
-/// and delay of its section `simulation`, motors and cables if they were seen to stretch, and the
-/// torque constants. Each is followed by date, arm and interval; all other lines are unchanged.
-/// Fails if the text has no section `simulation`, or a form that cannot be changed. Real-time:
-/// never from the servo thread.
+/// Returns an arm file's text with identified constants instead of its own. They are mass,
+/// friction, weight and delay of its section `simulation`, motors and elastic cables if these were
+/// seen, and the torque constants. Each is followed by date, arm and interval; all other lines are
+/// unchanged. Fails if the text has no section `simulation`, or a form that cannot be changed.
+/// Real-time: never from the servo thread.
 driver::Result<std::string> identified_text(const std::string& text, const ArmConstants& constants,
                                             const IdentifiedMark& mark);
 

@@ -8,8 +8,8 @@
 
 namespace thimble::bringup {
 
-/// Adds further results to the text of `identified_text`, each with its mark: period of the
-/// reports, watchdog of the firmware, saturation of the amplifiers, cogging and ripple of the
+/// Adds further results to the text of `identified_text`, each with its mark. They are period of
+/// the reports, watchdog of the firmware, saturation of the amplifiers, cogging and ripple of the
 /// motors, and the wire's jitter if the file has that key. Comments give friction that differs by
 /// direction, which no key holds, and jitter that the file does not name. Fails like
 /// `identified_text`. Real-time: never from the servo thread.

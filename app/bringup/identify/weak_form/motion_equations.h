@@ -56,7 +56,7 @@ class MotionEquations {
   Row row(std::size_t number, double delay) const;
 
   /// Returns the effect of the joints' torques `torques` (N m, tick by tick) on an equation if they
-  /// are `delay` (s) late; a row has the same for the motion's own torques.
+  /// are `delay` (s) late. A row has the same for the motion's own torques.
   Eigen::Vector3d pushed(std::size_t number, double delay,
                          const std::vector<Eigen::Vector3d>& torques) const;
 
@@ -118,8 +118,9 @@ class MotionEquations {
  private:
   static constexpr std::size_t kLateMost = 24;  // ticks: kDelayMost and the margin of a search
 
-  /// Effect of torques on an equation when they are a number of ticks late: sums over the bump, of
-  /// its value at the beginning of each tick and of its rise over it, joint by joint.
+  /// Effect of torques on an equation when they are a number of ticks late. It consists of sums
+  /// over the bump, of its value at the beginning of each tick and of its rise over it, joint by
+  /// joint.
   struct Pushed {
     Eigen::Vector3d from{0, 0, 0}, rise{0, 0, 0}, inert{0, 0, 0};
     bool summed = false;

@@ -24,8 +24,8 @@ namespace thimble::driver::hd {
 /// scheduler stops, and the device is released.
 ///
 /// Errors in the frame: after an error of forces (warm motors, exceeded force or velocity) the
-/// force is zero, and writes are refused until a tenth of a second has passed without one. After an
-/// error of the device or the communication the arm is lost. After any other error the report is
+/// force is zero. Writes are then refused until a tenth of a second has passed without one. After
+/// an error of the device or the communication the arm is lost. After any other error the report is
 /// rejected. Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
 THIMBLE_EXPORT Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
 

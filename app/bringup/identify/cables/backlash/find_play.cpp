@@ -189,7 +189,7 @@ void look_for_friction(const GapPieces& whole, PlayFit& found) {
 }
 
 /// Returns constants that explain a motion without backlash and friction of motors, with springs
-/// softer than in `start` and with smaller losses: lines mislead if a link oscillates below the
+/// softer than in `start` and with smaller losses. Lines mislead if a link oscillates below the
 /// lowest of them. Empty if there are none: a motor that mostly stands still shows too little for
 /// that.
 std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vector& start) {

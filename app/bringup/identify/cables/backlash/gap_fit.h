@@ -27,7 +27,7 @@ struct GapFit {
   double lost = 0;  ///< Share of the pieces that lost track of the motion and were omitted.
 };
 
-/// Fits GapTheta to the motors' angles (output error) by multiple shooting: the model moves over
+/// Fits GapTheta to the motors' angles (output error) by multiple shooting. The model moves over
 /// each piece from a state of its own, and states and constants together minimize the residual.
 /// Short pieces avoid the chaos of a motor that rattles in its backlash. The search is that of
 /// Levenberg and Marquardt, with the states eliminated piece by piece. Constants that are not in
