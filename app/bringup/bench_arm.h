@@ -80,7 +80,7 @@ class BenchArm {
   const LateTicks& late() const { return late_; }
   /// Returns whether the arm is simulated.
   bool simulated() const { return !real_; }
-  /// Returns the largest force of the motors on the tip in any run, N: the true value of a
+  /// Returns the largest force of the motors on the tip in any run, N. It is the true value of a
   /// simulated arm, whatever its driver assumes; 0 for a real one.
   double true_force_max() const { return true_force_max_; }
   /// Returns the present force of the motors on the tip, N; true value as in `true_force_max`.

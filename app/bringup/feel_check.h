@@ -32,8 +32,8 @@ using Prompt = std::function<bool(const std::string& what)>;
 using Question = std::function<std::optional<bool>(const std::string& what)>;
 
 /// Checks an arm step by step. All encoders count. The directions agree with the world. A force
-/// pushes in the right direction. It is 0.4 N at most along x, y and z, and small enough that even
-/// swapped motors do not exceed kFeelCheckForceMax; up to 0.49 N if dry friction holds the tip. The
+/// pushes in the right direction. It is 0.4 N at most along x, y and z (0.49 N if dry friction
+/// holds the tip), and so small that even swapped motors do not exceed kFeelCheckForceMax. The
 /// motors switch off by themselves when the arm gets no messages. If dry friction hides the last,
 /// `question` is asked; without it that step fails. Wrong wiring is named: an encoder or motor that
 /// is dead, reversed, or swapped with another. The device must be idle; it is idle afterwards, with

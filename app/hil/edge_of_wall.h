@@ -42,11 +42,11 @@ struct EdgeOfWall {
 /// kick of the motors: no hand holds the arm. A start is the speed of the tip and the position of
 /// the wall between two encoder steps. Both determine whether a stiff wall comes to rest, and every
 /// arm is tested with the same starts. A wall grew if the oscillation some periods later is as wide
-/// as at the beginning, or if it gave the tip ten times the energy of the kick (an observer sums
-/// force times motion). It is then removed within that tick. A tip that moves more than 6 mm away
-/// also ends the search. The other axes are held weakly. No force exceeds 0.95 N. The device is
-/// idle before and after. Fails on a fault, if the tip does not stay, or if even the first wall
-/// grows. Real-time: never from the servo thread.
+/// as at the beginning. It also grew if it gave the tip ten times the energy of the kick (an
+/// observer sums force times motion). It is then removed within that tick. A tip that moves more
+/// than 6 mm away also ends the search. The other axes are held weakly. No force exceeds 0.95 N.
+/// The device is idle before and after. Fails on a fault, if the tip does not stay, or if even the
+/// first wall grows. Real-time: never from the servo thread.
 driver::Result<EdgeOfWall> find_edge_of_wall(bringup::BenchArm& bench, const scene::ArmFile& file,
                                              const EdgeSearch& search,
                                              const std::atomic<bool>& stop);

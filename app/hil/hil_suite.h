@@ -24,11 +24,10 @@ std::vector<std::string> hil_checks();
 /// forces also selects the feel check.
 std::vector<std::string> chosen_checks(const HilOptions& options);
 
-/// Runs the checks of an arm: its reports, the feel check, its constants, its watchdog, friction at
-/// rest, the stiffest wall compared with law and simulation, a spring of known stiffness, a soak,
-/// and a pulled cable. A check that applies forces does not run if the arm has not passed its feel
-/// check, or after a fault. Stops when `rig.stop` is set. Returns a result for each selected check,
-/// including those that did not run. Real-time: never from the servo thread.
+/// Runs the selected checks of an arm, in the order of `hil_checks`. A check that applies forces
+/// does not run if the arm has not passed its feel check, or after a fault. Stops when `rig.stop`
+/// is set. Returns a result for each selected check, including those that did not run. Real-time:
+/// never from the servo thread.
 std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& options,
                                      const HilListener& listener);
 

@@ -28,9 +28,9 @@ struct Bounce {
 };
 
 /// Drops the tip and measures its first bounce, by its true motion, through the whole loop on the
-/// virtual clock: arm, wire, device and gate, without an energy stage. Fails if a point is out of
-/// reach, on a fault, or if the tip does not fall or does not leave the wall. Real-time: never from
-/// the servo thread.
+/// virtual clock. The loop is arm, wire, device and gate, without an energy stage. Fails if a point
+/// is out of reach, on a fault, or if the tip does not fall or does not leave the wall. Real-time:
+/// never from the servo thread.
 driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& trial);
 
 }  // namespace thimble::stability

@@ -29,13 +29,14 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene);
 /// reports them.
 std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on = {});
 
-/// Returns a sentence for each rest of a trial with a perceptible oscillation, with its size and
-/// the causes by the laws, and one if a fault ended the trial.
+/// Returns a sentence for each rest of a trial with a perceptible oscillation: its size and the
+/// causes by the laws. Adds one if a fault ended the trial.
 std::vector<std::string> rest_warnings(const scene::Scene& scene,
                                        const stability::RestTrial& trial);
 
 /// Returns the stiffness (N/m) that a texture's waves add along the surface for each newton of
-/// pressing: the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [PHYSICS 1.1].
+/// pressing. It is the largest curvature of its height, 1/m; for sines a (2 pi / L)^2 [PHYSICS
+/// 1.1].
 double curvature_of(const render::EffectPlan& texture);
 
 /// Returns the stiffness (N/m) of a friction in its sticking phase, over a micrometre of path; 0 if

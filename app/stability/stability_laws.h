@@ -5,10 +5,10 @@
 namespace thimble::stability {
 
 // The laws of [PHYSICS 1.1 to 1.5 and 2.3] as pure functions, for one direction of motion;
-// worst_direction.h defines the worst direction. Letters as there: m, b, c mass, viscous and dry
-// friction of the device (with the hand, if a caller adds it); K, B stiffness and damping of the
-// wall; T the period; d the encoder step. SI throughout. Arguments that are not finite give results
-// that are not. Real-time: never from the servo thread.
+// worst_direction.h defines the worst direction. Letters as there. m, b, c: mass, viscous and dry
+// friction of the device (with the hand, if a caller adds it). K, B: stiffness and damping of the
+// wall. T: the period. d: the encoder step. SI throughout. Arguments that are not finite give
+// results that are not. Real-time: never from the servo thread.
 
 /// As `stiffness_limit`, including the effect of latency on the oscillation's period: (b / L) u /
 /// sin u with u tan u = b L / m. From m x'' + b x' + K x(t - L) = 0 at the edge, x = e^{i w t}, u =

@@ -82,7 +82,7 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   if (!wall.own_step && wall.step > 0) {
     const double finer = wall.direction.step / wall.step;
     for (auto& encoder : arm.model.encoders) {
-      // The home pose stays in the middle of a step, as with the arm's own encoders; the position
+      // The home pose stays in the middle of a step, as with the arm's own encoders. The position
       // of a wall between two steps determines whether it can rest.
       const auto own = static_cast<double>(encoder.home_counts);
       const double home = std::round(own * finer);

@@ -11,8 +11,8 @@ namespace thimble::twin {
 
 struct TwinWindow;
 
-/// Fits the start of a window if motors and links move separately: position and velocity of the
-/// tip, and stretch and rate of each cable, twelve numbers, by Gauss-Newton.
+/// Fits the start of a window if motors and links move separately. Twelve numbers are found by
+/// Gauss-Newton: position and velocity of the tip, and stretch and rate of each cable.
 ///
 /// Twins with nearly the same constants respond equally near a start, so the derivatives are
 /// computed once, for the first twin, and reused for later ones. Real-time: never from the servo

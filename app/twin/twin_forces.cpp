@@ -143,7 +143,7 @@ struct CablesInPose {
 };
 
 /// Returns the friction of joints that are rigidly connected to their motors in a piece, N in the
-/// base; not a number if a joint with friction stands still.
+/// base. Not a number if a joint with friction stands still.
 Vector3d rubbed(const device_sim::DriveTrainSettings& train, const std::vector<TwinSample>& stretch,
                 std::size_t middle, const Bump& bump, double dt, double step_error) {
   Vector3d force(0, 0, 0);

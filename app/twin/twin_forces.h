@@ -58,12 +58,12 @@ struct TwinForces {
   static constexpr double kHandExplains = 0.7;  ///< Share of its square [chosen].
 };
 
-/// Computes the forces of a recorded motion: the force that the arm of a file needs for it, m p'' +
-/// b p' + c sgn(p') - w, less that of its motors. With elastic cables, the tip motion is corrected
-/// for the stretch that motors and cables of the file cause. Dry friction of motors, backlash,
-/// cogging and lag are neglected. Both are integrated against smooth bumps of 60 ms ((1 - s^2)^3,
-/// or ^5 with cables), so that positions need no differentiation: shorter effects are smoothed. No
-/// constant is fitted. Real-time: never from the servo thread.
+/// Computes the forces of a recorded motion. The further force is the one that the arm of a file
+/// needs, m p'' + b p' + c sgn(p') - w, less that of its motors. With elastic cables, the tip
+/// motion is corrected for the stretch that motors and cables of the file cause. Dry friction of
+/// motors, backlash, cogging and lag are neglected. Both are integrated against smooth bumps of 60
+/// ms ((1 - s^2)^3, or ^5 with cables), so that positions need no differentiation: shorter effects
+/// are smoothed. No constant is fitted. Real-time: never from the servo thread.
 TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file);
 
 /// Returns the forces as figures.

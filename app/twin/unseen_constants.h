@@ -8,9 +8,9 @@
 namespace thimble::twin {
 
 /// Lists the differences between an arm file and the file of a recording that a comparison of
-/// motions cannot show, a sentence each: counts, ratios, signs, home position, base. A recording
-/// holds joint angles, which are correct or wrong together with these. Real-time: never from the
-/// servo thread.
+/// motions cannot show, a sentence each. They are counts, ratios, signs, home position and base. A
+/// recording holds joint angles, which are correct or wrong together with these. Real-time: never
+/// from the servo thread.
 std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
                                             const scene::ArmFile& file);
 

@@ -13,8 +13,8 @@ namespace {
 // first tick on.
 
 // Force changes within 20 ms, N. Smaller changes do not separate the hand's part from the motors':
-// a hand makes 75 N/s at will. In order: the change that makes an arm doubtful; enough if it is
-// sudden; enough if it is not; and one that no hand can follow, so that it need explain less.
+// a hand makes 75 N/s at will. In order: the change that makes an arm doubtful; the required change
+// if it is sudden, and if it is not; and one that no hand can follow, which need explain less.
 constexpr double kDoubtfulChange = 1.4, kForceChange = 1.6, kLargeChange = 2.5, kJump = 3.5;
 // Share of the acceleration's changes that the force must explain.
 constexpr double kExplained = 0.83, kExplainedSudden = 0.5, kExplainedJump = 0.5;
@@ -57,7 +57,7 @@ constexpr std::uint32_t kStillBlocks = 5;  // in which a light tip answers by se
 
 // Below this force the joint may simply be held, N [chosen: dry friction holds it].
 constexpr double kHeldForce = 0.3;
-// A tip of this speed (m/s) cannot stand still from one block to the next for this time (s): 20 N
+// A tip of this speed (m/s) cannot stand still from one block to the next for this time (s). 20 N
 // would have to stop it, and it would spring back.
 constexpr double kStopSpeed = 0.2, kStopTime = 0.032;
 

@@ -79,7 +79,7 @@ void put_links(Identified& found, const Eigen::Vector3d& down_B) {
 }
 
 /// Replaces a motion, its fit and its lines by a cleaned motion if the removed effect is what made
-/// the fit worse; `left`: the remaining share of the squared residual. Returns whether it did.
+/// the fit worse. `left`: the remaining share of the squared residual. Returns whether it did.
 bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmMotion& motion,
                 PerMass& fit, Identified& found) {
   const LineSpectrum spectrum = line_spectrum(freed);

@@ -42,8 +42,8 @@ struct IdentifyOptions {
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
   /// watchdog by pushes slightly above the friction that was found.
   bool link = false;
-  /// Number of poses of the workspace to which the arm is led after the motion with its bare tip,
-  /// to show the inertia of its links: three to nine; 0: none. They add to the time.
+  /// Number of poses of the workspace to which the arm is led after the motion with its bare tip:
+  /// three to nine; 0: none. They show the inertia of its links. They add to the time.
   int places = 0;
   double place_seconds = 5;  ///< Duration of the motion about each of them, s.
   std::uint64_t seed = 1;    ///< Seed of the excitation's phases.

@@ -7,7 +7,7 @@
 namespace thimble::bringup {
 
 /// Small forces at many single frequencies, each along one axis, that show the resonances of an
-/// arm's cables and links: an odd random-phase multisine [M Pintelon and Schoukens, System
+/// arm's cables and links. They are an odd random-phase multisine [M Pintelon and Schoukens, System
 /// Identification]. All frequencies are different odd multiples of kBase, so that other causes of
 /// motion (dry friction, nonlinear geometry) appear between them. Frame W: world.
 class LineForces {

@@ -16,7 +16,7 @@ constexpr double kBetter = 10;
 constexpr double kMissingLeast = 0.3;
 // Max. half-width of the interval of the missing share for a valid search.
 constexpr double kSearched = 0.3;
-// Max. share of the squared residual with all of them: other causes of a bad fit (cogging, a hand)
+// Max. share of the squared residual with all of them. Other causes of a bad fit (cogging, a hand)
 // look similar to a saturated amplifier, which does not explain them.
 constexpr double kLeftMost = 0.3;
 // Error of a torque found, due to held torques and the friction's signs, as a standard deviation

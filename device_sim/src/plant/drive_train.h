@@ -38,7 +38,8 @@ class THIMBLE_EXPORT DriveTrain {
   Eigen::Vector3d pass(double dt) noexcept;
 
   /// Returns the torque of the motors at the joints (N m) at the joint angles of their rotors
-  /// (rad): torque constant with ripple and at its temperature, and cogging. Real-time: safe.
+  /// (rad). It includes ripple and temperature of the torque constant, and cogging. Real-time:
+  /// safe.
   Eigen::Vector3d torque(const Eigen::Vector3d& amperes,
                          const Eigen::Vector3d& q_rotor) const noexcept;
 

@@ -16,7 +16,7 @@ namespace thimble::device_sim::usb {
 
 /// A simulated Falcon inside the program: the arm of `thimble plug falcon` with a simulated host
 /// bus instead of the kernel. Before the path of the hand begins, the arm is booted, gets its
-/// firmware and is homed by its own hand, with the same bytes as a real one.
+/// firmware and is homed by its own hand. This uses the same bytes as for a real one.
 class THIMBLE_EXPORT SimulatedFalcon {
  public:
   /// Builds the arm, with motors and encoders of `model`, and brings it up. Its hand then rests at

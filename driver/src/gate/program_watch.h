@@ -56,9 +56,9 @@ class ProgramWatch {
   /// Clears all history.
   void restart() noexcept;
 
-  /// Processes a tick. Takes the force that the program requests, its part of the force sent in the
-  /// tick before (N in the world), the tip (m), and the time since then (s). Returns the share of
-  /// the force that may be requested now.
+  /// Processes a tick. Takes the force that the program requests and its part of the force sent in
+  /// the previous tick (N in the world), the tip (m), and the time `dt` of the tick (s). Returns
+  /// the share of the force that may be requested now.
   double share(const Eigen::Vector3d& f_asked_W, const Eigen::Vector3d& f_sent_W,
                const Eigen::Vector3d& p_WT, double dt) noexcept;
 

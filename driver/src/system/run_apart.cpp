@@ -54,7 +54,7 @@ void limit(int what, std::uint64_t value) {
 }
 
 // Ends the child at once. The thread sanitizer turns _exit into a failure if a thread of the parent
-// was running at the fork: it takes the child's copy of that thread for leaked.
+// was running at the fork. It takes the child's copy of that thread for leaked.
 [[noreturn]] void leave(int code) noexcept {
   for (;;) syscall(SYS_exit_group, code);
 }

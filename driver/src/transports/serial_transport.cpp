@@ -23,8 +23,8 @@ class SerialTransport final : public StreamTransport {
   SerialTransport(NodeLock lock, const Framing& framing, const Clock& clock) noexcept
       : StreamTransport(clock, framing), lock_(std::move(lock)), file_(lock_.file()) {}
   ~SerialTransport() override {
-    // The last message is the zero force: let it leave before the port closes, but do not hang on
-    // an arm that accepts nothing (tcdrain would, and so would close).
+    // The last message is the zero force. It must leave before the port closes, but an arm that
+    // accepts nothing must not block (tcdrain would, and so would close).
     int waiting = 0;
     for (int ms = 0; ms < 100 && ioctl(file_, TIOCOUTQ, &waiting) == 0 && waiting > 0; ++ms) {
       timespec time{.tv_sec = 0, .tv_nsec = 1'000'000};

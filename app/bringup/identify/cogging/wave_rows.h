@@ -46,8 +46,8 @@ class WaveRows {
   Eigen::Vector3d span_{0, 0, 0};  // turns
 };
 
-/// Returns the torques that act at a tick of a motion whose torques are `delay` (s) late: the mean
-/// over the tick about it, N m at the joints. Real-time: never from the servo thread.
+/// Returns the torques that act at a tick of a motion whose torques are `delay` (s) late. It is the
+/// mean over the tick about it, N m at the joints. Real-time: never from the servo thread.
 std::vector<Eigen::Vector3d> acting_torques(const ArmMotion& motion, double delay);
 
 }  // namespace thimble::bringup

@@ -11,13 +11,13 @@
 
 namespace thimble::bringup {
 
-/// Factors of the constants of a serial arm's links in the weak form: the equations of motion of
-/// device_sim::LinkSettings, which names their sources, mapped to the tip by G^T. Motion does not
-/// distinguish a mass m at the tip from these constants together: inertia B and yaw_b of m
-/// length_b^2, inertia C and yaw_c of m length_c^2, coupling of m length_b length_c. It also does
-/// not distinguish a weight at the tip from moments along both links. So coupling and moment_c have
-/// no columns: they are part of the tip. The motion must outlive it. Real-time: never from the
-/// servo thread.
+/// Factors of the constants of a serial arm's links in the weak form. The equations of motion are
+/// those of device_sim::LinkSettings, which names their sources, mapped to the tip by G^T. Motion
+/// does not distinguish a mass m at the tip from the sum of three parts. These are inertia B and
+/// yaw_b of m length_b^2, inertia C and yaw_c of m length_c^2, and coupling of m length_b length_c.
+/// It also does not distinguish a weight at the tip from moments along both links. So coupling and
+/// moment_c have no columns: they are part of the tip. The motion must outlive it. Real-time: never
+/// from the servo thread.
 class LinkEquations {
  public:
   /// Index of each constant in a row: inertia A, B, C, yaw_b and yaw_c (kg m^2), moment_b (kg m).

@@ -19,8 +19,8 @@ constexpr int kLinkConstants = LinkRows::kConstants, kLinkColumns = LinkRows::kC
 constexpr int kGainColumn = LinkRows::kGain, kAddedColumn = LinkRows::kAdded,
               kDelayColumn = LinkRows::kDelay;
 // Error of a mass due to the smoothing of rates and signs, beyond the statistics [chosen: that of
-// motion at one pose, kMethodMass of identify.cpp; identify_places_test counts how often intervals
-// hold].
+// motion at one pose, kMethodMass of identify.cpp]. identify_places_test counts how often intervals
+// hold.
 constexpr double kLinkMethodMass = 0.0004;
 
 using LinkColumns = LinkRows::Columns;

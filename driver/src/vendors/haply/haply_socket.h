@@ -37,9 +37,9 @@ class Traffic {
 class Socket {
  public:
   /// Connects and waits for the first message, at most `timeout_ns` in total. Sends nothing but the
-  /// WebSocket handshake. Fails if no program listens, if it is not a WebSocket, if it stays
-  /// silent, or if its process belongs to a user other than this one and root. Real-time: never
-  /// from the servo thread.
+  /// WebSocket handshake. Fails if no program listens, if it is not a WebSocket, or if it stays
+  /// silent. Also fails if its process belongs to a user other than this one and root. Real-time:
+  /// never from the servo thread.
   static Result<std::unique_ptr<Socket>> connect(std::uint16_t port, std::int64_t timeout_ns);
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
