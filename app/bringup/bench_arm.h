@@ -112,8 +112,7 @@ class BenchArm {
   std::unique_ptr<driver::CpuLatencyRequest> latency_;  // for a real arm
   std::function<void(const driver::TickRecord&)> sink_;
   std::uint64_t tick_ = 0;
-  std::unique_ptr<driver::Device>
-      device_;  // holds the wire to the simulation, so it is destroyed first
+  std::unique_ptr<driver::Device> device_;  // holds the wire to the simulation: destroyed first
   std::unique_ptr<scene::HeatKeeper> heat_keeper_;  // for a real arm whose file names its heat
 };
 

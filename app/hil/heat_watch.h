@@ -44,13 +44,11 @@ class HeatWatch {
   Array continuous_{0, 0, 0}, peak_{0, 0, 0}, time_constant_{1, 1, 1};  // A, A, s
   Eigen::Matrix3d J_BT_ = Eigen::Matrix3d::Zero();  // of the previous tick, m/rad
   Array model_;                                     // heat by the file's model
-  Array load_{
-      0, 0,
-      0};  // ratio of squared currents to squared continuous currents, integrated over time, s
-  double time_ = 0;     // s
-  double hottest_ = 0;  // max. heat estimated by the driver
-  double apart_ = 0;    // max. difference between driver and model, beyond rounding
-  double over_ = 0;     // max. ratio of a current to the one that its motor's heat allows
+  Array load_{0, 0, 0};  // squared currents over the continuous ones, integrated, s
+  double time_ = 0;      // s
+  double hottest_ = 0;   // max. heat estimated by the driver
+  double apart_ = 0;     // max. difference between driver and model, beyond rounding
+  double over_ = 0;      // max. ratio of a current to the one that its motor's heat allows
   std::uint64_t lowered_before_;
   double winding_most_ = 0;  // share of the limit
   // Values where a winding was warmer than the driver's estimate by the largest ratio.

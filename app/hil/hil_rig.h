@@ -35,11 +35,10 @@ struct HilOptions {
   /// The arm has passed its feel check in its present state. Without that no force is applied,
   /// unless it passes one now.
   bool checked = false;
-  bool replug = false;  ///< A user pulls the cable and plugs it in again.
-  double spring = 0;    ///< Stiffness of the spring tied to the tip, N/m; 0: none.
-  double soak_minutes =
-      0;                  ///< Duration of the soak; 0: half a minute, or an hour in the full suite.
-  double known_mass = 0;  ///< See IdentifyOptions; a user fixes it to the tip.
+  bool replug = false;      ///< A user pulls the cable and plugs it in again.
+  double spring = 0;        ///< Stiffness of the spring tied to the tip, N/m; 0: none.
+  double soak_minutes = 0;  ///< Of the soak; 0: half a minute, or an hour in the full suite.
+  double known_mass = 0;    ///< See IdentifyOptions; a user fixes it to the tip.
   double known_length = 0;  ///< From mark to mark, m; a user moves the tip by it; 0: none.
   /// Names of the checks to run (`hil_checks`); empty: all. A check that applies forces also
   /// selects the feel check.
@@ -53,10 +52,9 @@ struct HilRig {
   const scene::ArmFile& file;
   Open open;
   const std::atomic<bool>& stop;
-  bringup::Prompt prompt;  ///< Asks the user to act; returns false to skip the check.
-  bringup::Question
-      question{};         ///< Asks the user a yes/no question; empty: the simulated hand answers.
-  bool attended = false;  ///< A user or a simulated hand is present.
+  bringup::Prompt prompt;        ///< Asks the user to act; returns false to skip the check.
+  bringup::Question question{};  ///< Asks the user yes or no; empty: the simulated hand answers.
+  bool attended = false;         ///< A user or a simulated hand is present.
 };
 
 /// Opens the simulated arm of a file as a check needs it: free, tied to a spring (N/m), or held by

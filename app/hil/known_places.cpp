@@ -14,9 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kHold_s = 1.5,
-                 kChange_s = 2;        // time to hold the tip, and to bring it to the next point
-constexpr double kHome = 0.005;        // m [chosen: error of a careful hand]
+constexpr double kHold_s = 1.5, kChange_s = 2;  // to hold the tip, or to bring it to the next point
+constexpr double kHome = 0.005;                 // m [chosen: error of a careful hand]
 constexpr double kSides = 0.003;       // m [chosen: three times the backlash of a good arm]
 constexpr double kLengthShare = 0.03;  // [chosen: 3 mm of 100 mm from mark to mark]
 constexpr double kAngle = 10;          // degrees

@@ -7,8 +7,7 @@ namespace thimble::hil {
 /// The median of measured values, and an interval for the true one.
 struct MedianInterval {
   double median = 0;
-  double low = 0,
-         high = 0;  ///< Contains the true median in 95 % of cases, whatever the distribution.
+  double low = 0, high = 0;  ///< Holds the true median in 95 % of cases, for any distribution.
 };
 
 /// Min. number of values with a known interval: of five, the true median lies outside of all in 6 %

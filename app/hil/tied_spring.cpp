@@ -17,9 +17,8 @@ constexpr double kForceMost = 0.9;  // N
 constexpr int kSteps = 9;           // up, and as many down
 constexpr double kStep_s = 0.7;     // s, of each
 constexpr double kLooked_s = 0.2;   // s, measured part at its end
-constexpr double kDamping =
-    2;  // N s/m: a tip on a spring without damping oscillates for long [chosen]
-constexpr double kFar = 0.04;  // m; a longer elongation means that the spring has come off
+constexpr double kDamping = 2;      // N s/m: an undamped tip oscillates for long [chosen]
+constexpr double kFar = 0.04;       // m; a longer elongation means that the spring has come off
 
 /// Slope and its standard error of y over x, with a separate offset for each of two groups.
 struct Slope {

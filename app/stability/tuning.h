@@ -59,8 +59,7 @@ struct AnswerAges {
 /// Options of a tuning.
 struct TuneOptions {
   double period_spread = 0;  ///< Standard deviation of the loop's period, s.
-  int places_per_side =
-      2;  ///< Number of points per side of the workspace at which walls are tried.
+  int places_per_side = 2;   ///< Walls are tried at this many points per side of the workspace.
   /// Measured over the topics of ROS 2; empty: not reported.
   std::optional<AnswerAges> topics = {};
 };

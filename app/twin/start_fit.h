@@ -31,8 +31,7 @@ class StartFit {
   void differ(TwinMover& mover, const TwinMotion& motion, const TwinWindow& window,
               const Eigen::Matrix3Xd& error);
 
-  Eigen::MatrixXd
-      slopes_;  // derivatives of the errors at ticks with a report, per step of each number
+  Eigen::MatrixXd slopes_;  // of the errors at ticks with a report, per step of each number
   Eigen::LDLT<Eigen::Matrix<double, kNumbers, kNumbers>> normal_;
 };
 

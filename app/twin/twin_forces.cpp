@@ -67,8 +67,7 @@ struct Bump {
 /// One piece of motion, smoothed, in the base.
 struct Piece {
   Vector3d p{0, 0, 0}, v{0, 0, 0}, a{0, 0, 0};
-  Vector3d direction{0, 0,
-                     0};  // mean of the velocity's sign; not a number on an axis that stands still
+  Vector3d direction{0, 0, 0};      // mean sign of the velocity; not a number at rest
   Vector3d motors{0, 0, 0};         // N
   Vector3d fourth{0, 0, 0};         // derivative of the position, m/s^4
   Vector3d motors_second{0, 0, 0};  // derivative of their force, N/s^2

@@ -13,13 +13,11 @@ namespace thimble::twin {
 
 /// Forces of a recorded motion along one axis of the world, RMS over all its pieces.
 struct TwinForceAxis {
-  char name = 'x';        ///< x, y or z.
-  double motors_rms = 0;  ///< Force of the motors, N.
-  double needed_rms =
-      0;  ///< Force that mass, friction and weight of the file need for the motion, N.
-  double other_rms = 0;  ///< Needed less given: a hand's force, or an error of the file, N.
-  std::size_t counted =
-      0;  ///< Number of pieces; a piece in which the axis stands still is omitted.
+  char name = 'x';          ///< x, y or z.
+  double motors_rms = 0;    ///< Force of the motors, N.
+  double needed_rms = 0;    ///< Force needed by mass, friction and weight of the file, N.
+  double other_rms = 0;     ///< Needed less given: a hand's force, or an error of the file, N.
+  std::size_t counted = 0;  ///< Number of pieces; without those in which the axis stands still.
 };
 
 /// A hand that would give the remaining force: a mass on the tip, and a spring and a damper to a

@@ -46,10 +46,8 @@ constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 // alarm in the 160,000 strokes of the long form of tests/unit/device_sim/motion_watch_test.cpp; one
 // less gives the first ones]. Dry friction of 0.26 N, the largest of the arms that we know (Touch),
 // holds 0.52 N from one direction to the other.
-constexpr double kLeg = 0.0015,
-                 kSameWay =
-                     0.9;  // m; cosine of the largest angle that counts as the same direction
-constexpr double kHeldByFriction = 0.55;  // N
+constexpr double kLeg = 0.0015, kSameWay = 0.9;  // m; min. cosine between equal directions
+constexpr double kHeldByFriction = 0.55;         // N
 constexpr int kLegs = 2, kForcesMost = 3, kCoincidences = 5;
 // No person makes a stroke of this length (m) in which one joint under force never counts [chosen].
 constexpr double kLongWay = 0.02;

@@ -36,8 +36,7 @@ struct IdentifyOptions {
   /// Whether backlash and friction of joints are searched for: with elastic cables those of the
   /// motors, else friction only. If not, an arm that has some gives a bad fit.
   bool play = true;
-  double known_mass =
-      0;  ///< Mass that the user fixes to the tip for the second motion, kg; 0: none.
+  double known_mass = 0;  ///< Mass fixed to the tip for the second motion, kg; 0: none.
   double force_most = kIdentifyForceMax;  ///< Max. requested force, N; at most the file's.
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
   /// watchdog by pushes slightly above the friction that was found.

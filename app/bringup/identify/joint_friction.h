@@ -10,9 +10,8 @@ namespace thimble::bringup {
 
 /// Friction of one joint over one piece of motion of 60 ms.
 struct FrictionPoint {
-  double speed = 0;  ///< Speed of the joint in the middle of the piece, rad/s.
-  double torque =
-      0;  ///< Torque that resists positive rotation: the remainder without motors and weight, N m.
+  double speed = 0;   ///< Speed of the joint in the middle of the piece, rad/s.
+  double torque = 0;  ///< Torque that resists positive rotation, without motors and weight, N m.
   double fitted = 0;  ///< The same from the friction constants found, N m.
 };
 

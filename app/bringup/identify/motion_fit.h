@@ -30,14 +30,12 @@ struct PerMass {
 
   Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
   Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
-  Estimate delay;       ///< Delay from the force to the motion that the host sees, s.
-  double residual = 0;  ///< RMS residual of the acceleration, m/s^2.
-  double noise =
-      0;  ///< RMS residual that the encoders' steps would cause without other errors, m/s^2.
-  double explained = 0;     ///< Share of the acceleration's variance that the model explains.
-  std::size_t windows = 0;  ///< Number of fitted pieces of motion.
-  std::size_t left_out =
-      0;  ///< Pieces in which an axis stood still for too long to know its friction.
+  Estimate delay;            ///< Delay from the force to the motion that the host sees, s.
+  double residual = 0;       ///< RMS residual of the acceleration, m/s^2.
+  double noise = 0;          ///< RMS residual due to the encoders' steps only, m/s^2.
+  double explained = 0;      ///< Share of the acceleration's variance that the model explains.
+  std::size_t windows = 0;   ///< Number of fitted pieces of motion.
+  std::size_t left_out = 0;  ///< Pieces in which an axis stood still for too long.
 };
 
 /// Fits a motion in the weak form: both sides are integrated against smooth bumps of 60 ms, so that

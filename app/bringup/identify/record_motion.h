@@ -12,9 +12,8 @@ namespace thimble::bringup {
 
 /// Parameters of a motion.
 struct MotionOrder {
-  double seconds = 60;  ///< Recorded time, s.
-  double lead =
-      1;  ///< Motion before the recording, s: soft start, and a user who releases the tip.
+  double seconds = 60;     ///< Recorded time, s.
+  double lead = 1;         ///< Motion before it, s: soft start, and release of the tip by a user.
   double added_mass = 0;   ///< Mass fixed to the tip, kg.
   double force_most = 1;   ///< Max. requested force, N.
   std::uint64_t seed = 1;  ///< Seed of the excitation's phases.

@@ -14,9 +14,8 @@ using BoardCounters = std::array<std::int32_t, 6>;
 
 /// A report of a board.
 struct BoardBytes {
-  std::size_t size = 0;  ///< Number of valid bytes.
-  std::array<std::byte, driver::kReportCapacity>
-      bytes;  ///< Data; the first `size` bytes are valid.
+  std::size_t size = 0;                                  ///< Number of valid bytes.
+  std::array<std::byte, driver::kReportCapacity> bytes;  ///< The first `size` bytes are valid.
 
   /// Returns the valid bytes. Real-time: safe.
   operator std::span<const std::byte>() const noexcept {  // NOLINT(*-explicit-*)

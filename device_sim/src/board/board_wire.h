@@ -17,8 +17,7 @@ namespace thimble::device_sim {
 
 /// Content of a report, before it is cut to the width of the report's fields.
 struct BoardReport {
-  std::array<std::int64_t, 3>
-      counts{};  ///< Counts of the motor encoders; fine counts if the encoders are ideal.
+  std::array<std::int64_t, 3> counts{};  ///< Counts of the motor encoders; fine if these are ideal.
   std::array<std::int64_t, 3> gimbal{};  ///< Counts of the gimbal encoders.
   std::uint16_t number = 0;              ///< Number of the report.
   bool button = false;                   ///< The calibration button was pressed.

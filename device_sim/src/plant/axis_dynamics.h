@@ -28,8 +28,7 @@ struct AxisDrive {
 struct AxisCounters {
   std::uint64_t reversals = 0;   ///< Velocity reached zero while sliding.
   std::uint64_t breakaways = 0;  ///< A moving anchor broke the axis loose.
-  std::uint64_t unresolved =
-      0;  ///< Steps with more than kMaxEvents events; the axis rested for the remaining time.
+  std::uint64_t unresolved = 0;  ///< Steps with more than kMaxEvents events; the axis then rested.
 };
 
 /// Moves one axis by its exact map:
@@ -59,14 +58,10 @@ class THIMBLE_EXPORT AxisDynamics {
 
   /// Returns the moving mass of arm and hand, kg. Real-time: safe.
   double mass() const noexcept { return mass_; }
-  double viscous() const noexcept {
-    return damping_ * mass_;
-  }  ///< Viscous friction of arm and hand, N s/m.
-  double coulomb() const noexcept { return friction_; }  ///< Dry friction, N.
-  double hand_stiffness() const noexcept {
-    return hand_stiffness_;
-  }                                                               ///< Stiffness of the hand, N/m.
-  double hand_damping() const noexcept { return hand_damping_; }  ///< Damping of the hand, N s/m.
+  double viscous() const noexcept { return damping_ * mass_; }        ///< Of arm and hand, N s/m.
+  double coulomb() const noexcept { return friction_; }               ///< N
+  double hand_stiffness() const noexcept { return hand_stiffness_; }  ///< N/m
+  double hand_damping() const noexcept { return hand_damping_; }      ///< N s/m
   /// Returns the counters of all steps so far. Real-time: safe.
   const AxisCounters& counters() const noexcept { return counters_; }
 

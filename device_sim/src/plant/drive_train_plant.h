@@ -21,13 +21,11 @@ namespace thimble::device_sim {
 
 /// State of motion of an arm with a drive train.
 struct DriveTrainState {
-  Eigen::Vector3d p_BT{0, 0, 0};  ///< Position of the tip, m.
-  Eigen::Vector3d v_BT{0, 0, 0};  ///< Velocity of the tip, m/s.
-  Eigen::Vector3d q_rotor{
-      0, 0, 0};  ///< Angles of the rotors, rad at the joints; ignored without elastic cables.
-  Eigen::Vector3d rate_rotor{0, 0,
-                             0};  ///< Rates of the rotors, rad/s; ignored without elastic cables.
-  Eigen::Vector3d amperes{0, 0, 0};  ///< Currents in the motors, A.
+  Eigen::Vector3d p_BT{0, 0, 0};     ///< Position of the tip, m.
+  Eigen::Vector3d v_BT{0, 0, 0};     ///< Velocity of the tip, m/s.
+  Eigen::Vector3d q_rotor{0, 0, 0};  ///< Rotors, rad at the joints; ignored without elastic cables.
+  Eigen::Vector3d rate_rotor{0, 0, 0};  ///< Their rates, rad/s; ignored without elastic cables.
+  Eigen::Vector3d amperes{0, 0, 0};     ///< Currents in the motors, A.
 };
 
 /// The mechanics of an arm with a simulated drive train, weight or links, with a hand on it. The

@@ -89,8 +89,7 @@ struct Wrong {
 };
 Wrong hold(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum, Lines& lines,
            Eigen::Vector3d& v) noexcept {
-  Eigen::Matrix3d free =
-      Eigen::Matrix3d::Identity();  // projects on the directions that no line holds
+  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();  // projects on the free directions
   Eigen::Vector3d right = momentum;
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> along(3, 0);
   std::array<Line*, 3> held{};

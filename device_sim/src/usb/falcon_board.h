@@ -103,8 +103,7 @@ class THIMBLE_EXPORT FalconBoard final : public SerialBoard {
   driver::falcon::HostPacket asked_;
   driver::falcon::ArmPacket answered_;
   bool motors_on_ = false;
-  std::int64_t watchdog_ns_ =
-      100'000'000;  // a guess: it is unknown whether a real one has a watchdog
+  std::int64_t watchdog_ns_ = 100'000'000;  // a guess: a real one may have none
   std::int64_t now_ns_ = 0, last_packet_ns_ = 0;
   FalconCounters counters_;
 };

@@ -78,8 +78,7 @@ class THIMBLE_EXPORT FalconOnUsb final : public UsbArm {
   HomingHand homing_hand_;
   bool homes_ = false;
   LoadedTip tip_;
-  bool wanted_held_ = true,
-       held_ = true;  // `wanted_held_` as requested; homing takes the tip as well
+  bool wanted_held_ = true, held_ = true;  // as requested; homing takes the tip as well
   WiringSettings wiring_;
   DeltaPlant plant_;
   FalconBoard board_;

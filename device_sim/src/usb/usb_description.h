@@ -19,9 +19,7 @@ struct EndpointDescription {
   std::uint8_t interval = 0;  ///< Frames between two polls of an interrupt endpoint.
 
   bool to_host() const noexcept { return (address & 0x80U) != 0; }  ///< Returns the direction.
-  std::uint8_t number() const noexcept {
-    return address & 0x0fU;
-  }  ///< Returns the endpoint number.
+  std::uint8_t number() const noexcept { return address & 0x0fU; }  ///< Returns the number.
 };
 
 /// One interface of a device: a host binds a driver to each.

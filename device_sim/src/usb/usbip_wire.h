@@ -14,8 +14,8 @@ namespace thimble::device_sim::usb {
 
 // Messages of USB/IP, version 1.1.1, as the kernel documents them [Linux,
 // Documentation/usb/usbip_protocol.rst]; all numbers big endian. Decoders are total: any bytes are
-// one message, the start of one, or rejected, and nothing is read beyond the span. Real-time: never
-// from the servo thread (they are socket code).
+// one message, the start of one, or rejected, and nothing is read beyond the span.
+// Real-time: never from the servo thread (they are socket code).
 
 inline constexpr std::uint16_t kUsbipVersion = 0x0111;
 inline constexpr std::size_t kBusIdSize = 32;          ///< Bytes of a bus id, zero-padded.
@@ -43,8 +43,7 @@ struct UsbipCommand {
   std::uint32_t length = 0;          ///< Bytes to move.
   std::uint32_t unlinked = 0;        ///< For kUnlink: sequence number of the cancelled transfer.
   std::array<std::byte, 8> setup{};  ///< For endpoint 0.
-  std::size_t size =
-      0;  ///< Bytes of the whole message; the last `length` are the data if they go to the device.
+  std::size_t size = 0;  ///< Bytes of the message; data to the device are the last `length`.
 };
 
 /// Result of a decoder.

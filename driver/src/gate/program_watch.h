@@ -47,8 +47,7 @@ class ProgramWatch {
   static constexpr double kForget = 10;   ///< s [chosen]
   static constexpr double kLess = 0.4;  ///< A loop at twice its stable share returns to 0.8 of it.
   static constexpr double kLeastShare = 1.0 / 64;  ///< Min. share of the force [chosen].
-  static constexpr double kShortest = 1.0 / 300,
-                          kLongest = 1.0 / 5;  ///< Min. and max. duration of a cycle, s.
+  static constexpr double kShortest = 1.0 / 300, kLongest = 1.0 / 5;  ///< Limits of a cycle, s.
 
   /// Takes the arm's limit of force, N.
   explicit ProgramWatch(double force_max) noexcept : force_max_(force_max) {}
@@ -89,9 +88,8 @@ class ProgramWatch {
     Extreme turn, farthest;
     double work = 0;
     double direction = 1;
-    double f = 0,
-           since = 0;      // force (N) of the last tick, and the time since which it has had it (s)
-    double stiffness = 0;  // stiffness with which the force answered a touch, N/m; 0: it did not
+    double f = 0, since = 0;  // last force, N, and the time of its last change, s
+    double stiffness = 0;     // stiffness with which the force answered a touch, N/m; 0: it did not
     std::size_t known = 0;
 
     bool oscillates(double force_max) const noexcept;

@@ -36,8 +36,7 @@ struct NearAngle {
   std::uint64_t step = 0;  ///< Modulo 128.
   double hi = 0;           ///< Remainder, rad.
   double lo = 0;           ///< Rounding error of `hi`.
-  bool good =
-      false;  ///< Whether the remainder has 64 good bits: false close to a multiple of pi / 64.
+  bool good = false;       ///< Remainder has 64 good bits: not close to a multiple of pi / 64.
 };
 
 /// Returns the parts of an angle (rad) of at most `kNearAngle`, in the shortest time: `lo` is not

@@ -40,10 +40,9 @@ class WaveRows {
 
  private:
   const FittedMotion& motion_;
-  std::vector<Eigen::Vector3d> angle_;  // of the motors, rad
-  std::vector<Eigen::Vector3d>
-      torque_;                     // torque that acts at a tick, N m at the joints by the arm file
-  Eigen::Vector3d span_{0, 0, 0};  // turns
+  std::vector<Eigen::Vector3d> angle_;   // of the motors, rad
+  std::vector<Eigen::Vector3d> torque_;  // acting at a tick, N m at the joints by the arm file
+  Eigen::Vector3d span_{0, 0, 0};        // turns
 };
 
 /// Returns the torques that act at a tick of a motion whose torques are `delay` (s) late. It is the

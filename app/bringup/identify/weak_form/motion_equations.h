@@ -145,8 +145,7 @@ class MotionEquations {
   std::vector<Eigen::Vector3d> velocity_, sign_;
   double mean_distance_ = 0;  // of a tick from the middle of the smoothing bump, s
   std::vector<Equation> equations_;
-  mutable std::array<std::vector<Pushed>, kLateMost>
-      pushed_;  // by ticks of delay, for each equation
+  mutable std::array<std::vector<Pushed>, kLateMost> pushed_;  // by delay, for each equation
   std::size_t left_out_ = 0;
   std::size_t whole_ = 0, torn_ = 0;  // pieces of motion without and with ticks that have no report
 };

@@ -26,9 +26,8 @@ class Traffic {
   Traffic& operator=(const Traffic&) = delete;
   virtual ~Traffic() = default;
 
-  virtual void received(std::string_view text) = 0;  ///< A message arrived.
-  virtual std::optional<std::string>
-  next_message() = 0;                      ///< Returns the next message to send, if any.
+  virtual void received(std::string_view text) = 0;       ///< A message arrived.
+  virtual std::optional<std::string> next_message() = 0;  ///< Returns a message to send, if any.
   virtual std::string last_message() = 0;  ///< Returns the message to send at the end.
   virtual void lost() = 0;                 ///< The other side is gone.
 };
