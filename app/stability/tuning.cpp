@@ -43,8 +43,7 @@ struct Edges {
   int walls = 0;
 };
 
-/// Removes dry friction, encoder steps and tremor from an arm: the remainder is what the law
-/// describes.
+/// Removes dry friction, encoder steps and tremor from an arm; the law describes the remainder.
 scene::ArmFile without_friction(scene::ArmFile arm) {
   arm.simulated.plant.coulomb = 0;
   arm.simulated.firmware.ideal_encoders = !arm.is<driver::DeltaArm>();

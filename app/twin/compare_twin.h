@@ -89,7 +89,7 @@ struct TwinResult {
 
 /// Replays a recording on the simulated arm of a file, and finds the error and the constant that
 /// explains it. Each constant in turn takes the value of smallest error, found by central
-/// differences and Gauss-Newton steps, each of which is tried. Fails like twin_motion and Relive.
+/// differences and Gauss-Newton steps. Each step is verified. Fails like twin_motion and Relive.
 /// Real-time: never from the servo thread.
 driver::Result<TwinResult> compare_twin(const session::Recording& recording,
                                         const scene::ArmFile& file, const TwinOptions& options);

@@ -80,7 +80,7 @@ class DriveTrainTwin final : public TwinMover {
     return amperes;
   }
 
-  /// Motors are where the encoders say, links behind by the stretch of the cables. The currents
+  /// Motor angles are those of the encoders; links lag by the stretch of the cables. The currents
   /// follow from those sent in all ticks before the window.
   device_sim::DriveTrainState state_at(const std::vector<TwinSample>& samples, std::size_t begin,
                                        const TwinStart& start) {

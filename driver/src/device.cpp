@@ -450,7 +450,7 @@ void Device::book_power() noexcept {
   placed_ = true;
 }
 
-/// Passes a force of which a program requested a part, reduced if that part oscillates.
+/// Passes a force that includes a program's part, which is reduced if it oscillates.
 GatedForce Device::pass_program(const ForceCommand& command, double held) noexcept {
   const double share = gate_.program_share(command.f_program_W, state_.p_WT, state_.dt);
   ForceCommand kept = command;

@@ -78,8 +78,8 @@ void put_links(Identified& found, const Eigen::Vector3d& down_B) {
   constants.absolute = fit.absolute;
 }
 
-/// Replaces a motion, its fit and its lines by a cleaned motion if the removed effect is what made
-/// the fit worse. `left`: the remaining share of the squared residual. Returns whether it did.
+/// Replaces a motion, its fit and its lines by a cleaned motion if the removed effect made the fit
+/// worse. `left`: the remaining share of the squared residual. Returns whether it did.
 bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmMotion& motion,
                 PerMass& fit, Identified& found) {
   const LineSpectrum spectrum = line_spectrum(freed);
@@ -94,8 +94,7 @@ bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmM
 }
 
 /// Searches for cogging and ripple of the motors in the motion of a rigid arm with its bare tip.
-/// Removes them from the motion if they are what made its fit worse, and computes fit and lines
-/// again.
+/// Removes them from the motion if they made its fit worse, and computes fit and lines again.
 driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motion, PerMass& fit,
                                     Identified& found) {
   if (found.lines.stretches) {
@@ -127,7 +126,7 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
 }
 
 /// Searches for friction of the joints of a rigid arm in its motion with the bare tip. Removes it
-/// from the motion if it is what made the fit worse, and computes fit and lines again.
+/// from the motion if it made the fit worse, and computes fit and lines again.
 driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identified& found) {
   if (found.lines.stretches) return {};
   auto rubbing = find_rubbing_joints(motion, fit);

@@ -15,7 +15,7 @@ namespace thimble::bringup {
 namespace {
 
 // Information required to accept a friction, and max. share of the squared residual with it, if it
-// is what makes a fit bad [chosen as for saturation.cpp].
+// is the cause of a bad fit [chosen as for saturation.cpp].
 constexpr double kRubsBetter = 10;
 constexpr double kRubsLeft = 0.5;
 // Ratio of the friction of a joint that sticks to that of the others [chosen: those of one arm that

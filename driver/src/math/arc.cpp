@@ -31,8 +31,8 @@ double rough_arc(double y, double x) noexcept {
   return y < 0 ? -arc : arc;
 }
 
-/// The angle of (x, y), of which the greater is between 2^-30 and 2, and the ratio above 2^-61. It
-/// is a rough angle plus the difference, which is so small that it equals its tangent.
+/// The angle of (x, y); the greater of the two is between 2^-30 and 2, and their ratio above 2^-61.
+/// It is a rough angle plus the difference, which is so small that it equals its tangent.
 double arc_of(DoubleDouble y, DoubleDouble x) noexcept {
   const double rough = rough_arc(y.hi, x.hi);
   const NearAngle near = near_angle(rough);

@@ -11,7 +11,7 @@
 namespace thimble::bringup {
 
 /// Writes the links that were seen into the section `links` of `simulation`, or adds it before
-/// `tip`. If links were searched for and none seen, an existing section says so and names none.
+/// `tip`. If links were searched for and none seen, the values of an existing section become zero.
 /// Fails if its form cannot be changed. Real-time: never from the servo thread.
 driver::Result<void> put_links(const YAML::Node& simulation, const ArmConstants& found,
                                const IdentifiedMark& mark, FileLines& lines);

@@ -29,11 +29,12 @@ namespace thimble::driver::hd {
 /// rejected. Real-time: never from the servo thread. `clock` is the loop's, and outlives the link.
 THIMBLE_EXPORT Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock);
 
-/// Returns what the user must do before `calibrate`, depending on the device's calibration style.
+/// Returns the instruction for the user before `calibrate`, depending on the device's calibration
+/// style.
 THIMBLE_EXPORT Result<std::string> how_to_calibrate(const Library& library);
 
-/// Calibrates the default device, after the user has done what `how_to_calibrate` requires.
-/// Real-time: never from the servo thread; takes seconds.
+/// Calibrates the default device, after the user has followed `how_to_calibrate`. Real-time: never
+/// from the servo thread; takes seconds.
 THIMBLE_EXPORT Result<void> calibrate(const Library& library);
 
 }  // namespace thimble::driver::hd
