@@ -77,8 +77,8 @@ driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& 
     // there.
     const double speed = std::sqrt(2 * trial.pull * trial.height / mass);
     wall.offset = -(trial.height + further * speed / trial.rate);
-    // Two falls and returns and another one, with half of the pull after friction, and half an
-    // oscillation in the wall.
+    // Three falls and returns with half of the pull, which friction leaves, and half an oscillation
+    // in the wall.
     const double fall = std::sqrt(4 * trial.height * mass / trial.pull);
     wall.duration = wall.pull_start + 6 * fall + 4 * std::sqrt(mass / trial.stiffness) + 0.05;
     const auto run = run_wall(arm, wall);
