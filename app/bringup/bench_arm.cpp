@@ -13,15 +13,15 @@ namespace thimble::bringup {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr std::int64_t kWait_ns = 5'000'000;  // for a report, before zero is said again
+constexpr std::int64_t kWait_ns = 5'000'000;  // wait for a report, before zero is sent again
 constexpr std::int64_t kLook_ns = 20'000;
 constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
-constexpr double kAlign_s = 0.25;            // s, of reports that are timed before the first tick
-constexpr double kEven = 1e-6;               // s, below which reports come at the same phase
-constexpr double kAlignedMost = 0.8;         // of a period, for reports whose phases differ by more
-constexpr std::int64_t kFollow_ns = 50'000;  // by which ticks follow reports that drift
+constexpr double kAlign_s = 0.25;            // s, duration of timing reports before the first tick
+constexpr double kEven = 1e-6;               // s, below which reports have the same phase
+constexpr double kAlignedMost = 0.8;         // of a period; above it, phases are not used
+constexpr std::int64_t kFollow_ns = 50'000;  // shift of the ticks to follow reports that drift
 
-/// Returns the mean of phases; 0 of none.
+/// Returns the mean of phases; 0 for none.
 double phases_middle(const std::vector<double>& phases) {
   double sum = 0;
   for (const double phase : phases) sum += phase;
@@ -75,7 +75,7 @@ driver::Result<void> BenchArm::open_device(const scene::ArmFile& file,
                                            std::unique_ptr<driver::ArmLink> link, double force_max,
                                            const std::optional<driver::FoundArm>& real_arm) {
   real_ = real_arm.has_value();
-  // Without the energy stage: what is tried here must be felt as it is sent.
+  // Without the energy stage: forces must act as they are sent.
   driver::DeviceSettings settings =
       scene::device_settings(file, 1e9 / kPeriod_ns, driver::EnergyStage::kNone);
   settings.limits.force_max = std::min(settings.limits.force_max, force_max);
@@ -108,8 +108,8 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
       device_->wake_from_sleep();
     }
     const driver::DeviceState& state = device_->read(now_ns, now_ns);
-    // A report that came just after its tick: the clocks of board and host drift apart. The first
-    // tick may be at the time of the last one of an earlier run, which has taken the report.
+    // A report came just after its tick, because the clocks of board and host drift apart. The
+    // first tick may be at the time of the last one of an earlier run, which has taken the report.
     if (phase_ns_ && !silent && !state.fresh && due_ns != first_ns) {
       due_ns += kFollow_ns;
       end_ns += kFollow_ns;
@@ -125,15 +125,15 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
   return true;
 }
 
-/// Puts the ticks behind the reports of an idle arm, whose phases in the period are spread. Without
-/// that a tick would now and then have none, and the next one two.
+/// Places the ticks after the reports of an idle arm, whose phases in the period vary. Otherwise
+/// some ticks would have no report, and the next ones two.
 void BenchArm::align() {
   const std::atomic<bool> never{false};
-  std::vector<double> phases;  // s after the first, of a period
+  std::vector<double> phases;  // s after the first, modulo the period
   const std::int64_t first_ns = clock_->now_ns();
   constexpr double kPeriod = 1e-9 * kPeriod_ns;
   const auto heard = [&](double time) {
-    // Nearest to those before it, so that phases at the seam of a period stay together.
+    // Nearest to the earlier ones, so that phases around the wrap of a period stay together.
     const double middle = phases_middle(phases);
     const double since = time - 1e-9 * static_cast<double>(first_ns);
     phases.push_back(middle + std::remainder(since - middle, kPeriod));
@@ -142,7 +142,7 @@ void BenchArm::align() {
   if (phases.size() < 50) return;
   const auto [least, most] = std::minmax_element(phases.begin(), phases.end());
   const double spread = *most - *least;
-  // Reports of another period, or of an arm that speaks when it is spoken to, have any phase.
+  // Reports with another period, or of an arm that sends only when asked, have any phase.
   if (spread < kEven || spread > kAlignedMost * kPeriod) return;
   const double behind = *most + 0.1 * spread;
   read_late_ = behind - phases_middle(phases);
@@ -164,7 +164,7 @@ void BenchArm::listen(double duration, const std::function<void(double)>& heard,
   while (clock_->now_ns() < end_ns && !stop.load(std::memory_order_relaxed) && !device_->lost()) {
     const std::int64_t now_ns = clock_->now_ns();
     if (device_->idle(now_ns, std::min(end_ns, now_ns + kWait_ns)).fresh) heard(now());
-    // A link that does not wait for its deadline is asked again later.
+    // A link that does not wait for its deadline is read again later.
     if (clock_->now_ns() == now_ns) clock_->sleep_until_ns(now_ns + kLook_ns);
   }
 }
@@ -188,7 +188,7 @@ void BenchArm::stay_silent(double duration, const std::atomic<bool>& stop) {
   while (clock_->now_ns() < end_ns && !stop.load(std::memory_order_relaxed)) {
     clock_->sleep_until_ns(std::min(end_ns, clock_->now_ns() + kStep_ns));
   }
-  // Nothing else moves a simulated arm meanwhile; what is on its way stays there.
+  // Nothing else moves a simulated arm meanwhile; frames in flight stay there.
   if (simulation_) simulation_->settle(clock_->now_ns() - kStep_ns);
 }
 

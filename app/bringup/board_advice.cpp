@@ -8,7 +8,7 @@ namespace {
 using driver::BoardKind;
 using driver::FoundArm;
 
-/// Keeps a device's own string from ending the quotes it is put into.
+/// Prevents a device's own string from ending the quotes around it.
 std::string unquoted(const std::string& text) {
   std::string safe = text;
   for (char& sign : safe) {

@@ -6,19 +6,18 @@
 
 namespace thimble::bringup {
 
-// What a person is told of a board that may be an arm or anything else. Real-time: never from the
-// servo thread.
+// Advice about a board that may or may not be an arm. Real-time: never from the servo thread.
 
-/// Returns what is known of the board and why it is not used by itself. Precondition: it is of
-/// unknown kind.
+/// Returns the known facts about the board and the reason why it is not used automatically.
+/// Precondition: it is of unknown kind.
 std::string what_it_may_be(const driver::FoundArm& board);
 
-/// Returns what to do if the board is an arm: the rule that gives access, and the words to use it
-/// by.
+/// Returns the steps to take if the board is an arm: the udev rule that gives access, and the
+/// options that select it.
 std::string how_to_use(const driver::FoundArm& board);
 
-/// Returns the line of udev rules that lets the user at the screen open this very board: by its
-/// serial number if that names it, else by its socket.
+/// Returns the udev rule that lets the user at the screen open exactly this board: by its serial
+/// number if that identifies it, else by its socket.
 std::string udev_line(const driver::FoundArm& board);
 
 }  // namespace thimble::bringup

@@ -28,7 +28,7 @@ using driver::read_line;
 
 constexpr const char* kRule = "70-thimble.rules";
 
-// The rule that came with this program: beside app/ of the sources, or below the same prefix.
+// The rule that came with this program: next to app/ in the sources, or below the same prefix.
 fs::path own_rule() {
   const fs::path own = scene::own_folder();
   for (const fs::path& place : {own.parent_path() / "udev" / kRule,
@@ -156,7 +156,7 @@ class Examination {
       case BoardKind::kHaplyService:
       case BoardKind::kDhdLibrary:
       case BoardKind::kHdLibrary:
-        return;  // their vendors' software opens them
+        return;  // opened by their vendors' software
       case BoardKind::kFalconFtdi:
         look_at_falcon(arm, bound, name);
         return;
@@ -184,7 +184,7 @@ class Examination {
   }
 
   void look_at_access(const FoundArm& arm, const std::string& name) {
-    if (arm.node.empty()) return;  // said above
+    if (arm.node.empty()) return;  // reported above
     if (arm.accessible) {
       note(Health::kGood, name + "you may open " + arm.node + ".");
     } else if (!rule_) {
@@ -220,7 +220,7 @@ class Examination {
     }
   }
 
-  /// A full-speed arm behind a full-speed hub shares 12 Mbit/s with all that hang there; behind a
+  /// A full-speed arm behind a full-speed hub shares 12 Mbit/s with all devices there. Behind a
   /// high-speed hub it has a translator that may add a frame.
   void look_at_hub(const FoundArm& arm, const std::string& name) {
     const std::string port = arm.sysfs.filename().string();
@@ -258,7 +258,7 @@ class Examination {
   const SystemInfo& system_;
   std::vector<Finding> findings_;
   bool rule_ = false;
-  bool arm_ = false;  // one that can be driven is plugged in
+  bool arm_ = false;  // an arm that can be driven is plugged in
 };
 
 /// Returns whether the kernel grants a thread of this process the priority of the servo loop.
@@ -282,7 +282,7 @@ SystemInfo this_machine() {
     system.real_time_priority_max =
         limit.rlim_cur == RLIM_INFINITY ? 99 : static_cast<long>(limit.rlim_cur);
   }
-  // An administrator may be without that capability, as in a container.
+  // An administrator may lack that capability, for example in a container.
   if (geteuid() == 0 && may_run_first()) system.real_time_priority_max = 99;
   if (const group* plugdev = getgrnam("plugdev")) {
     std::vector<gid_t> groups(static_cast<std::size_t>(std::max(getgroups(0, nullptr), 0)));
@@ -296,7 +296,7 @@ SystemInfo this_machine() {
 Finding examine_log(const fs::path& file) {
   fs::path place = file;
   std::error_code missing;
-  // The folders that lead there are made when they are needed.
+  // Missing parent folders are created when they are needed.
   while (!fs::exists(place, missing) && place.has_relative_path()) place = place.parent_path();
   if (access(place.c_str(), W_OK) == 0) {
     return {Health::kGood, "What happens is logged to " + file.string() + ".", {}};

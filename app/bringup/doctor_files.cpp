@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scan that says that a folder holds them; the first touch needs it.
+/// The scan that identifies a folder of scans; the first touch needs it.
 constexpr const char* kFirstScan = "elephant.off";
 
 bool is_there(const fs::path& path) {
@@ -17,7 +17,7 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, status);
 }
 
-/// Lists folders in their order, and says which are there.
+/// Lists folders in their order, with those that exist.
 std::string in_order(const std::vector<fs::path>& folders) {
   std::string text;
   for (const fs::path& folder : folders) {

@@ -8,12 +8,12 @@
 
 namespace thimble::bringup {
 
-/// Returns in which folders scenes and arms are looked for by name, in that order; advice if none
-/// of them is there. Changes nothing. Real-time: never from the servo thread.
+/// Lists the folders in which scenes and arms are searched by name, in order; advice if none of
+/// them exists. Changes nothing. Real-time: never from the servo thread.
 Finding examine_names(const std::vector<std::filesystem::path>& folders);
 
-/// Returns whether the scanned meshes are there (`cgal:` in scenes), and in which order they are
-/// looked for. Unpacks nothing. Real-time: never from the servo thread.
+/// Returns whether the scanned meshes are installed (`cgal:` in scenes), and the order in which
+/// they are searched. Unpacks nothing. Real-time: never from the servo thread.
 Finding examine_scans(const scene::ScanPlaces& places);
 
 }  // namespace thimble::bringup

@@ -19,7 +19,7 @@ using driver::BoardKind;
 using driver::Certainty;
 using driver::FoundArm;
 
-/// Returns whether it is the USB side of an arm that its service drives.
+/// Returns whether it is the USB side of an arm that a service drives.
 bool is_haply_on_usb(const FoundArm& arm) {
   return arm.certainty == Certainty::kUnsupported && arm.arm == "Haply Inverse3";
 }
@@ -33,7 +33,7 @@ bool runs(const std::string& program, const std::filesystem::path& root) {
   });
 }
 
-/// Returns whether a shared library lies where Debian or a vendor's installer puts it.
+/// Returns whether a shared library is where Debian or a vendor's installer puts it.
 bool is_installed(const char* library, const std::filesystem::path& root) {
   std::error_code ignored;
   for (const char* folder : {"lib", "lib64", "lib/x86_64-linux-gnu", "usr/lib", "usr/lib64",
@@ -43,7 +43,7 @@ bool is_installed(const char* library, const std::filesystem::path& root) {
   return false;
 }
 
-/// Returns the group of a file; empty if it has none of a name.
+/// Returns the group of a file; empty if the group has no name.
 std::string group_of(const std::filesystem::path& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) return {};
@@ -51,7 +51,7 @@ std::string group_of(const std::filesystem::path& file) {
   return found == nullptr ? std::string() : found->gr_name;
 }
 
-/// Returns a udev rule that gives the person at the screen an arm's node.
+/// Returns a udev rule that gives the user at the screen access to an arm's node.
 std::string rule_for(const FoundArm& arm) {
   char maker[8];
   std::snprintf(maker, sizeof maker, "%04x", arm.vendor_id);

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using driver::read_line;
 
-// Waking up may cost a twentieth of a period of 1 kHz before a hand could feel it. [chosen]
+// Allowed wake-up latency: a twentieth of a period of 1 kHz, which a hand cannot feel. [chosen]
 constexpr long kWakeMost_us = 50;
 
 fs::path below(const SystemInfo& system, const char* path) {
@@ -52,7 +52,7 @@ void look_at_priority(const SystemInfo& system, bool arm, std::vector<Finding>& 
          "again"});
   }
   const std::string runtime = read_line(below(system, "/proc/sys/kernel/sched_rt_runtime_us"));
-  // The default leaves a real-time thread 950 ms of each second, far more than the loop takes.
+  // The default gives a real-time thread 950 ms of each second, far more than the loop needs.
   if (!runtime.empty() && std::atol(runtime.c_str()) >= 0 && std::atol(runtime.c_str()) < 500000) {
     findings.push_back(
         {Health::kAdvice,
@@ -62,8 +62,8 @@ void look_at_priority(const SystemInfo& system, bool arm, std::vector<Finding>& 
 }
 
 void look_at_preemption(const SystemInfo& system, std::vector<Finding>& findings) {
-  // PREEMPT_RT kernels say 1 there [S kernel/ksysfs.c of the RT patches]; all name it in `uname
-  // -v`, which is this file.
+  // PREEMPT_RT kernels have 1 there [S kernel/ksysfs.c of the RT patches]; all name it in the
+  // output of "uname -v", which is this file.
   const std::string version = read_line(below(system, "/proc/sys/kernel/version"));
   if (read_line(below(system, "/sys/kernel/realtime")) == "1" ||
       version.find("PREEMPT_RT") != std::string::npos) {
@@ -99,7 +99,7 @@ void look_at_governor(const SystemInfo& system, std::vector<Finding>& findings) 
                       "/sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"});
 }
 
-/// Returns how long the deepest sleep that is not switched off takes to wake from, us.
+/// Returns the wake-up latency of the deepest enabled sleep state, us.
 long deepest_wake_us(const SystemInfo& system) {
   long most = 0;
   for (const fs::path& cpu : processors(system)) {

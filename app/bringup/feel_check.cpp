@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kEncoders_s = 4, kDirection_s = 2, kSettle_s = 0.5, kPush_s = 1;
 constexpr double kForce = 0.4;       // N, below kFeelCheckForceMax
-constexpr double kStrongest = 0.49;  // N, for a tip that dry friction holds; below the same
-// A push that moves the tip less is raised, m [chosen: four steps of the coarsest encoder].
+constexpr double kStrongest = 0.49;  // N, for a tip that dry friction holds; also below that limit
+// A push that moves the tip less is increased, m [chosen: four steps of the coarsest encoder].
 constexpr double kYields = 0.0003;
-constexpr double kMove = 0.03;  // m, what the hand is asked for
+constexpr double kMove = 0.03;  // m, requested motion of the hand
 constexpr std::array<const char*, 3> kAxes = {"x (towards you)", "y (to your right)", "z (up)"};
 
 const BenchArm::Law kRest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
@@ -33,7 +33,7 @@ class Check {
       : bench_(bench), file_(file), prompt_(prompt), stop_(stop), question_(question) {}
 
   std::vector<CheckResult> run() {
-    // Each part needs the ones before it; the first that fails or is left ends the check.
+    // Each part requires the previous ones; the first that fails or is skipped ends the check.
     const bool all = encoders() && directions() && pushes() && watchdog();
     bench_.device().deactivate();
     const driver::Fault fault = bench_.device().fault();
@@ -76,14 +76,14 @@ class Check {
                     dead);
   }
 
-  /// Asks for one movement along each axis; what they show together tells which wire is wrong.
+  /// Asks for one movement along each axis; together they identify the wrong wire.
   bool directions() {
     bool right = true;
     for (int axis = 0; axis < 3; ++axis) {
       if (!direction(axis, right)) return false;
     }
     if (right) return true;
-    // How far the grip was moved each time is the user's; only the directions count.
+    // The user chooses the size of each movement; only the directions count.
     const Eigen::Matrix3d moves = expected_moves();
     const auto expected = [&](const WiringGuess& guess) -> Eigen::Matrix3d {
       return (guess.matrix(radians_per_count()) * moves).colwise().normalized();
@@ -96,9 +96,8 @@ class Check {
                              : text);
   }
 
-  /// Pushes along each axis in the same way. Motors that are swapped make another force than the
-  /// one that was asked for, up to some times as large: so the pushes are so small that no wiring
-  /// makes one above the limit.
+  /// Pushes along each axis. Swapped motors produce a force different from the requested one, up to
+  /// several times as large. So the pushes are small enough that no wiring exceeds the limit.
   bool pushes() {
     bool right = true;
     constexpr double kMargin = 0.9;  // for a grip that is not in the middle
@@ -128,15 +127,15 @@ class Check {
                     : text);
   }
 
-  /// Returns how far the joints turn when the tip goes from the middle of the workspace by `step`,
-  /// rad.
+  /// Returns the joint rotation when the tip moves from the middle of the workspace by `step`, rad.
   Eigen::Vector3d angles_from_middle(const Eigen::Vector3d& step) const {
     const auto there = scene::joint_angles_at(file_, file_.workspace.middle() + step);
     const auto here = scene::joint_angles_at(file_, file_.workspace.middle());
     return there && here ? *there - *here : Eigen::Vector3d(0, 0, 0);
   }
 
-  /// Returns how the joint angles change when the grip is moved along each axis, a column for each.
+  /// Returns the changes of the joint angles when the grip moves along each axis, a column for
+  /// each.
   Eigen::Matrix3d expected_moves() const {
     Eigen::Matrix3d moves;
     for (int axis = 0; axis < 3; ++axis) {
@@ -153,8 +152,8 @@ class Check {
     return step;
   }
 
-  /// Returns the force that each push of 1 N along an axis makes with a wiring of the motors, N in
-  /// the world, a column for each.
+  /// Returns the forces of pushes of 1 N along each axis with a wiring of the motors, N in the
+  /// world, a column for each.
   Eigen::Matrix3d tip_forces(const WiringGuess& guess) const {
     Eigen::Vector3d torque;  // per ampere, at the joint
     for (std::size_t i = 0; i < 3; ++i) {
@@ -165,7 +164,7 @@ class Check {
     return J.transpose().inverse() * guess.matrix(torque) * J.transpose();
   }
 
-  /// Finds d p_WT / d q in the middle of the workspace, m/rad, by differences.
+  /// Computes d p_WT / d q in the middle of the workspace, m/rad, by differences.
   Eigen::Matrix3d jacobian() const {
     constexpr double kStep = 1e-4;  // m
     Eigen::Matrix3d angles_by_place;
@@ -177,7 +176,7 @@ class Check {
     return angles_by_place.inverse();
   }
 
-  /// Answers false if the check was left; notes whether the movement was right.
+  /// Returns false if the check was ended; records whether the movement was correct.
   bool direction(int axis, bool& all_right) {
     const auto name = kAxes[static_cast<std::size_t>(axis)];
     if (!prompt_(
@@ -189,7 +188,7 @@ class Check {
     const auto watch = [&](const driver::DeviceState& state) {
       const Eigen::Vector3d away = state.p_WT - from;
       if (away.norm() > farthest.norm()) farthest = away;
-      // The angles are there even where wrong ones make no pose.
+      // The angles are valid even if wrong ones give no pose.
       if ((state.q - q_from).norm() > q_farthest.norm()) q_farthest = state.q - q_from;
       return Eigen::Vector3d(0, 0, 0);
     };
@@ -204,9 +203,9 @@ class Check {
     return true;
   }
 
-  /// Pushes along a unit vector of the world for kPush_s, and then harder by small steps for as
-  /// long as the tip has moved less than kYields, up to kStrongest. Sets `force` (N) to the last
-  /// push. Answers false if the check was left or a fault ended it. A tip that goes far is let go.
+  /// Pushes along a unit vector of the world for kPush_s, then harder by small steps while the tip
+  /// has moved less than kYields, up to kStrongest. Sets `force` (N) to the last push. Returns
+  /// false if the check was ended or a fault occurred. A tip that moves far is released.
   bool push_until_it_yields(const Eigen::Vector3d& along, double& force) {
     constexpr double kFar = 0.02, kStep = 0.02, kStep_s = 0.1;  // m, N, s
     const Eigen::Vector3d from = bench_.device().state().p_WT;
@@ -223,8 +222,9 @@ class Check {
     return true;
   }
 
-  /// Answers false if the check was left; notes whether the tip yielded the right way. It pulls
-  /// first and pushes then, so that the dry friction in which the tip rested is in neither end.
+  /// Returns false if the check was ended; records whether the tip yielded in the right direction.
+  /// It pulls first and pushes then, so that neither end contains the dry friction of the initial
+  /// rest.
   bool push(int axis, bool& all_right) {
     const auto name = kAxes[static_cast<std::size_t>(axis)];
     if (!prompt_(fmt::format(
@@ -257,10 +257,10 @@ class Check {
     return true;
   }
 
-  /// Pulls and pushes along x twice. The first push is ended by zero force, which shows how far the
-  /// hand brings the tip back; the second by silence. Dry friction of more than half of the push
-  /// holds the tip where it is, so that the user is asked whether the arm let go. An arm that
-  /// speaks only when spoken to is read once after the silence.
+  /// Pulls and pushes along x twice. The first push ends with zero force, which shows how far the
+  /// hand returns the tip; the second with silence. Dry friction of more than half of the push
+  /// holds the tip where it is, so the user is asked whether the arm released it. An arm that sends
+  /// only when asked is read once after the silence.
   bool watchdog() {
     constexpr double kBack_s = 0.6;
     constexpr int kAsked = 5;  // ticks
@@ -272,8 +272,8 @@ class Check {
     const Eigen::Vector3d along = Eigen::Vector3d::UnitX();
     const auto x = [this] { return bench_.device().state().p_WT.x(); };
     double force = std::max(kForce, std::min(kStrongest, friction_)), start = 0;
-    // Dry friction leaves the tip anywhere between the ends of a pull and of a push: each push
-    // begins at the other end, so that both go the same way.
+    // Dry friction leaves the tip anywhere between the ends of a pull and of a push. Each push
+    // begins at the other end, so that both move in the same direction.
     const auto press = [&] {
       if (!push_until_it_yields(-along, force)) return false;
       start = x();
@@ -303,8 +303,8 @@ class Check {
     };
     const double named = seconds(file_.limits.watchdog_ns), allowed = 2 * named;
     bench_.run(allowed + kBack_s, watch, stop_, true);
-    constexpr int kAnswersMax = 3;  // what was under way to an arm that speaks when spoken to
-    // Its reports have ended with the messages, which the driver takes for a fault.
+    constexpr int kAnswersMax = 3;  // answers in flight from an arm that sends only when asked
+    // Its reports ended with the messages, which the driver treats as a fault.
     const bool answers_only = reports <= kAnswersMax;
     const double left = allowed + kBack_s - (bench_.now() - silent_since);
     answers_only_ = answers_only;
@@ -314,7 +314,7 @@ class Check {
       bench_.run(std::max(0.4, 3 * named), watch, stop_, true);
     }
     if (!comes_back) {
-      // Asked before zero is sent: then it is the watchdog alone that let go.
+      // Asked before zero is sent, so that only the watchdog can have released the tip.
       const auto felt = question_ && !stop_.load() ? question_("Has the arm stopped pushing?")
                                                    : std::optional<bool>();
       bench_.device().deactivate();
@@ -324,8 +324,8 @@ class Check {
     bench_.device().deactivate();
     if (stop_.load()) return false;
     if (answers_only) {
-      // The first answer may have been sampled before the silence. Until the others are here the
-      // tip has hardly moved by the zero that asks for them.
+      // The first answer may have been sampled before the silence. Until the others arrive, the
+      // zero force that requests them has hardly moved the tip.
       bench_.ask(kAsked);
       const bool off = x() < let_go;
       return note("watchdog", off,
@@ -345,7 +345,7 @@ class Check {
                     : std::string("The motors did not go off. Switch the arm off at its switch."));
   }
 
-  /// Notes what the user felt, where dry friction hides what the motors do.
+  /// Records the user's answer if dry friction hides the effect of the motors.
   bool by_feel(const std::optional<bool>& felt, double force) {
     const std::string why = fmt::format(
         "Dry friction of more than {:.2f} N holds the tip where it was pushed, so that its "
@@ -368,8 +368,8 @@ class Check {
   const Question& question_;
   std::vector<CheckResult> results_;
   double push_ = kForce;                              // N
-  bool answers_only_ = false;                         // so that the silence was no fault
-  double friction_ = 0;                               // N, what moved a tip that less did not
+  bool answers_only_ = false;                         // so the silence was not a fault
+  double friction_ = 0;                               // N, min. force that moved the tip
   Eigen::Matrix3d moves_ = Eigen::Matrix3d::Zero();   // joint angles, a column for each movement
   Eigen::Matrix3d pushed_ = Eigen::Matrix3d::Zero();  // of the tip, m, a column for each push
 };

@@ -8,20 +8,20 @@
 
 namespace thimble::bringup {
 
-/// How well an arm's reports arrived while nothing was asked of it.
+/// Statistics of an arm's reports while no force was requested.
 struct Listened {
   double seconds = 0;
   std::uint64_t reports = 0;
   std::uint64_t missing = 0;   ///< Ticks without a report.
-  std::uint64_t skipped = 0;   ///< Reports that a newer one overtook.
-  std::uint64_t rejected = 0;  ///< Reports that could not be understood.
-  std::uint64_t refused = 0;   ///< Messages that the arm did not take.
-  bool whole = false;          ///< No fault and no stop ended it.
+  std::uint64_t skipped = 0;   ///< Reports that a newer one replaced.
+  std::uint64_t rejected = 0;  ///< Reports that could not be decoded.
+  std::uint64_t refused = 0;   ///< Messages that the arm did not accept.
+  bool whole = false;          ///< Not ended by a fault or a stop.
 
-  /// Returns whether a loop can run on it: one tick in twenty without a report is what a loop
-  /// without real-time priority may cost.
+  /// Returns whether a loop can run on the arm: a loop without real-time priority may miss the
+  /// report in one tick of twenty.
   bool good() const { return whole && missing * 20 <= reports && rejected == 0; }
-  /// Returns one sentence with the counts.
+  /// Returns the counts as one sentence.
   std::string text() const;
 };
 

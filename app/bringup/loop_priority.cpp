@@ -8,7 +8,7 @@
 namespace thimble::bringup {
 
 LoopPriority::LoopPriority(bool wanted) noexcept {
-  constexpr int kPriority = 80;  // as driver::enter_real_time
+  constexpr int kPriority = 80;  // as in driver::enter_real_time
   sched_param before{};
   if (!wanted || pthread_getschedparam(pthread_self(), &policy_, &before) != 0) return;
   priority_ = before.sched_priority;

@@ -6,10 +6,10 @@
 namespace thimble::bringup {
 namespace {
 
-// s, of one time: clocks tell nanoseconds.
+// Resolution of a time, s: clocks count nanoseconds.
 constexpr double kClock = 1e-9;
 constexpr std::size_t kReportsLeast = 100;
-// RMS over the period, from which on a report that is late is taken for one that is missing.
+// RMS over the period above which a late report is taken for a missing one.
 constexpr double kBlurred = 0.2;
 
 }  // namespace
@@ -23,7 +23,7 @@ ReportTiming timing_of(const std::vector<double>& times) {
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
   std::nth_element(gaps.begin(), middle, gaps.end());
   const double typical = *middle;
-  // Each report has a number; those that are missing have one too.
+  // Numbers the reports, counting the missing ones.
   std::vector<double> number{0};
   for (std::size_t i = 1; i < times.size(); ++i) {
     number.push_back(number.back() +

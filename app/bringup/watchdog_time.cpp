@@ -10,23 +10,24 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAxis = 1;              // y: nothing weighs along it
+constexpr int kAxis = 1;              // y: no weight acts along it
 constexpr double kExcessMost = 0.12;  // N above dry friction [chosen]
 constexpr double kExcessLeast = 0.02;
-constexpr double kSilent = 0.005;  // s, between two looks at the tip
-constexpr double kBefore = 0.02;   // s, that it is pushed before the silence
+constexpr double kSilent = 0.005;  // s, between two checks of the tip
+constexpr double kBefore = 0.02;   // s, push before the silence
 constexpr double kSecond = 1e-3;   // s, of a tick of BenchArm
 constexpr int kHalfWindow = 12;    // ticks, of the speed
 constexpr double kMoved = 0.0005;  // m
-constexpr int kUnasked = 3;        // that come by themselves
+constexpr int kUnasked = 3;        // reports that come unasked
 constexpr int kPushes = 4;
-// s, of one push beside their spread: firmware looks at its watch now and then, and friction is not
-// quite dry [chosen so that intervals hold 95 % of the truths of hidden arms, identify_link_test].
+// Error of one push in addition to the spread of pushes, s. Firmware checks its watchdog only now
+// and then, and friction is not exactly dry [chosen so that intervals hold 95 % of the truths of
+// hidden arms, identify_link_test].
 constexpr double kKink = 0.3e-3;
-// Of Student's distribution, 95 %, for kPushes less one degrees of freedom [M].
+// Factor of Student's distribution, 95 %, for kPushes - 1 degrees of freedom [M].
 constexpr double kStudent95 = 3.182;
 
-/// Returns the tick in which a way was the fastest, over a window on both sides.
+/// Returns the tick of the highest speed, over a window on both sides.
 std::size_t fastest(const std::vector<double>& way) {
   std::size_t found = 0;
   double most = 0;
@@ -40,9 +41,9 @@ std::size_t fastest(const std::vector<double>& way) {
   return found;
 }
 
-/// Returns when (ticks) a way that was the fastest about a tick began to slow down: a constant
-/// force pushes before, dry friction alone slows down after, so that it is two parabolas with one
-/// tangent, of which the kink that leaves least is sought.
+/// Returns the time (ticks) at which a motion that was fastest about a tick began to slow down. A
+/// constant force pushes before, only dry friction acts after. So the motion is two parabolas with
+/// a common tangent, whose kink is fitted.
 double kink(const std::vector<double>& way, std::size_t about) {
   constexpr int kOver = 60, kAfter = 20, kLook = 10;  // ticks
   constexpr double kStep = 0.1;
@@ -70,12 +71,12 @@ double kink(const std::vector<double>& way, std::size_t about) {
 WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
                           const std::atomic<bool>& stop) {
   WatchdogSeen seen;
-  // Half as much again for a watchdog that is later than the file says.
+  // Half more for a watchdog that is later than in the file.
   const double time = 1.5 * order.named + kBefore;
   const double excess = std::min(kExcessMost, order.mass * 2 * kWatchdogWayMost / (time * time));
   seen.force = order.coulomb + excess;
   const Vector3d p_WT = bench.device().state().p_WT;
-  // What it goes on while it is let go.
+  // Distance of the tip after its release.
   const Vector3d p_WE = p_WT + sign * 1.5 * kWatchdogWayMost * Vector3d::Unit(kAxis);
   const bool room = order.workspace.holds(p_WT) && order.workspace.holds(p_WE);
   const bool allowed = seen.force <= order.force_most;
@@ -93,7 +94,7 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   int reports = 0;
   bool outside = false, faulted = false;
   const auto push = [&](const driver::DeviceState& state) -> Vector3d {
-    // A run begins in the tick in which the one before it ended.
+    // A run begins in the tick in which the previous one ended.
     if (bench.now() - last > 0.5 * kSecond) way.push_back(sign * (state.p_WT[kAxis] - from));
     last = bench.now();
     reports += state.fresh ? 1 : 0;
@@ -106,7 +107,7 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   while (pushed && !outside &&
          way.size() < silent_from + static_cast<std::size_t>(3 * order.named / kSecond) &&
          std::abs(way.back()) < kWatchdogWayMost) {
-    // Whether the driver notices its own silence is not asked here; that no report comes is.
+    // The driver's detection of its own silence is not checked here; missing reports are.
     faulted = !bench.run(kSilent, push, stop, true);
     if (faulted) break;
   }
@@ -122,10 +123,10 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
     seen.end = WatchdogEnd::kHeld;
     return seen;
   }
-  // The report of a tick shows what the delay ago was so.
+  // The report of a tick shows the state one delay earlier.
   const double last_message = static_cast<double>(silent_from) - 1;
   seen.time = kSecond * (kink(way, fastest(way)) - last_message) - order.delay;
-  // It was still gathering speed when it was let go.
+  // The tip was still accelerating when it was released.
   const bool let_go =
       std::abs(seen.way) >= kWatchdogWayMost && fastest(way) + 2 * kHalfWindow >= way.size();
   seen.end = !let_go                   ? WatchdogEnd::kSeen

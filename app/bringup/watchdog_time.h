@@ -8,60 +8,60 @@
 
 namespace thimble::bringup {
 
-/// What is known of an arm whose watchdog is to be seen.
+/// Data about an arm whose watchdog is to be measured.
 struct WatchdogOrder {
-  double named = 0;                 ///< The watchdog's time by the arm file, s.
-  double mass = 0;                  ///< At the tip, kg.
+  double named = 0;                 ///< Watchdog time in the arm file, s.
+  double mass = 0;                  ///< Mass at the tip, kg.
   double coulomb = 0;               ///< Dry friction per axis, N.
-  double delay = 0;                 ///< From a force to the motion that the host sees, s.
-  scene::WorkspaceBox workspace{};  ///< Outside of it nothing is pushed.
-  double force_most = 1;            ///< The most that may be asked for, N.
+  double delay = 0;                 ///< Delay from a force to the motion that the host sees, s.
+  scene::WorkspaceBox workspace{};  ///< Region in which the arm may be pushed.
+  double force_most = 1;            ///< Max. requested force, N.
 };
 
-/// How a search for the watchdog's time ended.
+/// End of a search for the watchdog's time.
 enum class WatchdogEnd {
-  kSeen,         ///< The motors went off by themselves.
-  kTooLong,      ///< A free tip would go too far in that time, so nothing was pushed.
-  kNoRoom,       ///< The workspace ends within that way, so nothing was pushed.
-  kTooMuch,      ///< Its dry friction needs more force than is allowed, so nothing was pushed.
-  kAnswersOnly,  ///< The arm speaks only when spoken to, so nobody sees what it does in silence.
-  kHeld,         ///< The tip did not move under the push.
-  kLetGo,        ///< The tip went so far that it was let go before the file's time was over.
-  kStillOn,      ///< The tip went so far that it was let go, later than the file's time.
-  kStopped,      ///< A fault, a stop or a tip that left the workspace ended it.
+  kSeen,         ///< The motors switched off by themselves.
+  kTooLong,      ///< A free tip would move too far in that time, so no force was applied.
+  kNoRoom,       ///< The workspace ends within that distance, so no force was applied.
+  kTooMuch,      ///< Dry friction needs more force than is allowed, so no force was applied.
+  kAnswersOnly,  ///< The arm sends only when asked, so its motion in silence is not visible.
+  kHeld,         ///< The tip did not move under the force.
+  kLetGo,        ///< The tip moved so far that it was released before the file's time was over.
+  kStillOn,      ///< The tip moved so far that it was released, later than the file's time.
+  kStopped,      ///< A fault, a stop, or a tip outside of the workspace ended it.
 };
 
-/// What was seen of a watchdog.
+/// Result of one push.
 struct WatchdogSeen {
   WatchdogEnd end = WatchdogEnd::kStopped;
-  double time = 0;   ///< From the last message to the end of the force, s.
-  double way = 0;    ///< That the tip went, m.
-  double force = 0;  ///< That pushed it, N.
+  double time = 0;   ///< Time from the last message to the end of the force, s.
+  double way = 0;    ///< Distance that the tip moved, m.
+  double force = 0;  ///< Force on the tip, N.
 };
 
-/// How far a free tip may go while its watchdog is waited for, m.
+/// Max. distance of a free tip while the watchdog is awaited, m.
 inline constexpr double kWatchdogWayMost = 0.015;
 
-/// Pushes a free tip a little above its dry friction along y of the world (nothing weighs there),
-/// `sign` 1 or -1, then sends nothing any more: its speed is greatest when the force goes off. A
-/// tip that has gone 15 mm, or left the workspace, is let go by a message of zero force before
-/// that. The device must be active, its soft start over; it is idle afterwards. Real-time: never
+/// Pushes a free tip with slightly more than its dry friction along y of the world (no weight acts
+/// there), `sign` 1 or -1, then stops sending. The tip's speed is greatest when the force ends. A
+/// tip that has moved 15 mm, or left the workspace, is released before that by a message of zero
+/// force. The device must be active, its soft start over; it is idle afterwards. Real-time: never
 /// from the servo thread.
 WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
                           const std::atomic<bool>& stop);
 
-/// The watchdog's time as several pushes show it.
+/// The watchdog's time from several pushes.
 struct WatchdogTime {
-  WatchdogSeen last;  ///< The last push; if it was not kSeen, there is no time.
+  WatchdogSeen last;  ///< Last push; if its end is not kSeen, there is no time.
   Estimate time;      ///< s
-  int pushes = 0;     ///< That showed it.
+  int pushes = 0;     ///< Number of pushes that showed it.
 
   /// Returns whether the time is known.
   bool known() const { return last.end == WatchdogEnd::kSeen && pushes > 1; }
 };
 
-/// Measures the watchdog's time of an idle arm by a few pushes to and fro. The interval is that of
-/// Student's distribution. Real-time: never from the servo thread.
+/// Measures the watchdog's time of an idle arm by a few pushes in both directions. The interval is
+/// that of Student's distribution. Real-time: never from the servo thread.
 WatchdogTime watchdog_time(BenchArm& bench, const WatchdogOrder& order, double soft_start,
                            const std::atomic<bool>& stop);
 

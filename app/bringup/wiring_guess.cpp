@@ -39,7 +39,7 @@ void for_each_wiring(const std::function<void(const WiringGuess&)>& visit) {
 
 WiringGuess guess_wiring(const Eigen::Matrix3d& seen,
                          const std::function<Eigen::Matrix3d(const WiringGuess&)>& expected) {
-  // Chosen: a mistake more must explain a fiftieth of what was seen.
+  // Chosen: one more fault must explain a fiftieth of the measurement.
   constexpr double kPrice = 0.02;
   WiringGuess best;
   double best_score = -2;

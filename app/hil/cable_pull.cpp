@@ -11,10 +11,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr const char* kName = "cable_pull";
-constexpr double kForce = 0.2;     // N, that stands while the cable is pulled [chosen]
-constexpr double kPulled_s = 30;   // s, that a person gets for it
+constexpr double kForce = 0.2;     // N, acts while the cable is pulled [chosen]
+constexpr double kPulled_s = 30;   // s, time for the user
 constexpr double kPlugged_s = 60;  // s
-constexpr double kFar = 0.03;      // m; a tip that is let go goes no further
+constexpr double kFar = 0.03;      // m; max. motion of a released tip
 
 }  // namespace
 

@@ -16,14 +16,14 @@ namespace thimble::hil {
 namespace {
 
 constexpr const char* kName = "constants";
-// What an arm may differ by from its file before it is another arm [chosen: a rope that slackened
-// or a motor that lost a tenth of its magnet is felt; friction hangs on the weather].
+// Allowed differences between an arm and its file [chosen: a slack cable or a motor that lost a
+// tenth of its magnet is perceptible; friction depends on the weather].
 constexpr double kTenth = 0.1, kThird = 1.0 / 3, kDelay = 0.2e-3;
 constexpr double kViscous = 0.01;  // N s/m, which dry friction hides at hand speeds [chosen]
 constexpr double kWeight = 0.005;  // N [chosen: half a gram]
-constexpr double kTilt = 3;        // degrees [chosen: a table that stands level by eye]
+constexpr double kTilt = 3;        // degrees [chosen: a table levelled by eye]
 
-/// How far a constant is from the file, in units of what is allowed; its interval is forgiven.
+/// Difference between a constant and the file, in units of the allowed one, less its interval.
 session::Figure difference(const char* name, const bringup::Estimate& found, double named,
                            double allowed) {
   const double beyond = std::max(0.0, std::abs(found.value - named) - found.plus_minus);
@@ -31,8 +31,8 @@ session::Figure difference(const char* name, const bringup::Estimate& found, dou
           fmt::format("found {:.5g} +- {:.2g}, file {:.5g}", found.value, found.plus_minus, named)};
 }
 
-/// Puts in by how much gravity pulls aslant on the tip, where something hangs on it: the known
-/// mass, or a weight of its own of at least kWeightSeen. Returns a sentence, or nothing.
+/// Adds the tilt of gravity, if there is a load on the tip: the known mass, or a weight of its own
+/// of at least kWeightSeen. Returns a sentence, or an empty string.
 std::string add_tilt(const bringup::Identified& found, double known_mass,
                      const Eigen::Vector3d& down_B, std::vector<session::Figure>& figures) {
   constexpr double kWeightSeen = 0.02;  // N
@@ -51,8 +51,9 @@ std::string add_tilt(const bringup::Identified& found, double known_mass,
       tilt > kTilt ? ": the base stands otherwise than the arm file says (base)" : "");
 }
 
-/// Puts in how far the mass along each axis of the base is from the file's, in the middle of the
-/// workspace, and says it: that of an arm whose file names links hangs on the pose.
+/// Adds the difference between the mass along each axis of the base and the file's, in the middle
+/// of the workspace, and returns a sentence. With links in its file, the mass of an arm depends on
+/// the pose.
 std::string add_masses(const bringup::LinkFit& found, const scene::ArmFile& file,
                        std::vector<session::Figure>& figures) {
   const auto q = found.arm.inverse(file.R_WB.transpose() * (file.workspace.middle() - file.p_WB))
@@ -91,14 +92,14 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   bringup::IdentifyOptions options;
   options.seconds = suite.full ? 60 : 15;
   options.known_mass = suite.known_mass;
-  // A person needs time to let go of the mass.
+  // A user needs time to release the mass.
   if (suite.known_mass > 0 && suite.attended) options.lead = 4;
-  // Links that the file names show over the workspace alone.
+  // Links of the file are visible only over the workspace.
   if (rig.file.simulated.links.named()) options.places = 5, options.place_seconds = 2;
   driver::Fault fault = driver::Fault::kNone;
   options.watch = [&fault](const driver::TickRecord& tick) { fault = tick.fault; };
   const auto found = bringup::identify(open, rig.file, options, rig.stop);
-  // What moves otherwise than it is asked to is not pushed further.
+  // An arm that does not move as requested gets no further force.
   if (!found) {
     HilResult result = broken_off(kName, found.error().message, nullptr);
     result.fault = fault != driver::Fault::kNone;
@@ -108,7 +109,7 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   const auto& plant = rig.file.simulated.plant;
   const auto& wire = rig.file.simulated.wire;
   const Eigen::Vector3d down_B = rig.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
-  // In the mean: a report and a message wait for half of the jitter each.
+  // Mean value: a report and a message wait for half of the jitter each.
   const double delay =
       static_cast<double>(wire.delay_in_ns + wire.delay_out_ns + wire.jitter_ns) * 1e-9;
   std::vector<session::Figure> figures;

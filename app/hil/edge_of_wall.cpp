@@ -22,11 +22,11 @@ constexpr double kWatchedLeast = 0.6;  // s
 constexpr double kWindowLeast = 0.1;   // s, at the beginning and at the end
 constexpr double kFar = 0.006;         // m
 constexpr double kEnergyTimes = 10;    // of the kick's
-constexpr double kCountsAtRest = 3;    // that flicker at rest
-constexpr double kMassUnknown = 0.1;   // kg, where the file names none [chosen]
+constexpr double kCountsAtRest = 3;    // counts of flicker at rest
+constexpr double kMassUnknown = 0.1;   // kg, if the file names none [chosen]
 
-/// How far something went to and fro: a tip that dry friction holds away from the wall's place has
-/// no width.
+/// Width of an oscillation: a tip that dry friction holds away from the wall's position has no
+/// width.
 struct Oscillation {
   double least = HUGE_VAL, most = -HUGE_VAL;
 
@@ -37,12 +37,12 @@ struct Oscillation {
   double width() const { return std::max(0.0, most - least); }
 };
 
-/// One of the starts: they are spread evenly however many there are, by multiples of the golden
-/// section and of roots.
+/// One of the starts. Any number of them is spread evenly, by multiples of the golden section and
+/// of roots.
 struct Start {
   double speed;   // m/s
-  double beside;  // of the tip's place the wall stands, m
-  double dither;  // of a fine step, that its search begins higher, -0.5 to 0.5
+  double beside;  // of the wall from the tip, m
+  double dither;  // of the first stiffness of its search, as a share of a fine step, -0.5 to 0.5
 
   Start(int number, const EdgeSearch& search, double step) {
     const auto spread = [number](double by) {
@@ -55,12 +55,12 @@ struct Start {
   }
 };
 
-/// One wall in front of a free tip: settle, kick, spring, and what became of it.
+/// One wall in front of a free tip: settle, kick, spring, and the result.
 class Trial {
  public:
   Trial(int axis, const Start& start, double mass, double stiffness, const Vector3d& p_WT)
       : axis_(axis), start_(start), mass_(mass), stiffness_(stiffness), hold_(p_WT) {
-    // Whole ticks, and the force that gives the speed within them.
+    // Whole ticks, and the force that reaches the speed within them.
     kick_ = kTick * std::max(1.0, std::ceil(mass * start.speed / kKickForce / kTick));
     kick_force_ = mass * start.speed / kick_;
     const double period = 2 * std::numbers::pi * std::sqrt(mass / stiffness);
@@ -90,7 +90,7 @@ class Trial {
     if (since < window_) first_.add(away);
     if (since > watched_ - window_) last_.add(away);
     given_most_ = std::max(given_most_, given_);
-    // Written so that NaN grows.
+    // Written so that NaN counts as growing.
     const bool tame =
         given_ < kEnergyTimes * 0.5 * mass_ * start_.speed * start_.speed && std::abs(away) < kFar;
     if (!tame) {
@@ -134,7 +134,7 @@ driver::Error ended(const bringup::BenchArm& bench) {
   return {std::string(driver::describe(fault)) + " The motors are off."};
 }
 
-/// Tries walls one after the other, each from the place where the first began.
+/// Tries walls one after the other, each from the tip position of the first.
 class Search {
  public:
   Search(bringup::BenchArm& bench, const scene::ArmFile& file, const EdgeSearch& search,
@@ -179,8 +179,8 @@ class Search {
         "later than the arm file says."};
   }
 
-  /// Returns where the outcome changes, by fine steps from a stiffness on; one that rests at the
-  /// last is the last, and one that still grows at the first is the first.
+  /// Returns the stiffness at which the outcome changes, by fine steps from `stiffness`. The result
+  /// is the last stiffness if that one rests, and the first if that one still grows.
   driver::Result<double> from(const Start& start, double stiffness) {
     auto grows = grew(start, stiffness);
     if (!grows) return grows.error();

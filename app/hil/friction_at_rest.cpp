@@ -25,7 +25,7 @@ constexpr double kCorner = 50;        // Hz [PHYSICS 2.5]
 constexpr double kLoad = 0.5;         // N, of the surface; not sent
 constexpr double kDepth = 0.001;      // m, below a friction's fade [chosen]
 constexpr double kCoefficient = 0.5;  // [PHYSICS 2.2]
-constexpr double kWay = 0.02;         // m, that the leading spring's end goes
+constexpr double kWay = 0.02;         // m, motion of the leading spring's end
 constexpr double kRubbed = 1.0;       // s
 constexpr double kSettled = 1.0;      // s after the stop
 constexpr double kListened = 1.0;     // s
@@ -58,7 +58,7 @@ HilResult check_friction_at_rest(const HilRig& rig) {
     slid = std::max(slid, (state.p_WT - p_start_W).norm());
     sent.push_back(bench.device().f_sent_W().x());
     x.push_back(state.p_WT.x());
-    // The hand holds the surface's force, so that only friction is asked for.
+    // The hand holds the surface's force, so that only friction is requested.
     Vector3d f_W = surface(state).f_T_W;
     f_W += lead.force(1 / kRate, state.p_WT, state.v_WT);
     const double length = f_W.norm();

@@ -10,14 +10,14 @@ namespace {
 
 using driver::HeatGuard;
 
-// Both accounts take the same whole mA over the same times: what is left are rounding errors.
+// Both sources use the same integer mA over the same times: only rounding errors differ.
 constexpr double kApartMost = 1e-4;       // of the limit
-constexpr double kHeatSlack = 1e-3;       // of the limit: by how much less hot a motor may count
-constexpr double kCurrentSlack = 0.0005;  // A: a message holds whole mA
-// A winding must be so warm before it is compared: colder ones show delays, not constants.
+constexpr double kHeatSlack = 1e-3;       // of the limit: how much colder a motor may be counted
+constexpr double kCurrentSlack = 0.0005;  // A: a message holds integer mA
+// Min. heat for a comparison: colder windings show delays, not constants.
 constexpr double kComparedFrom = 0.002;  // of the limit
-// A winding is never warmer than the driver thinks if the file is right (motor_heat.h); a message
-// that comes late makes it so for a moment.
+// A winding is never warmer than the driver's estimate if the file is correct (motor_heat.h); a
+// late message makes it so for a moment.
 constexpr double kRatioMost = 1.02;
 
 }  // namespace
@@ -43,7 +43,7 @@ HeatWatch::Array HeatWatch::driver_heat() const {
   return {heat[0], heat[1], heat[2]};
 }
 
-/// Returns the currents of the force that stands, as the message held them, A without sign.
+/// Returns the currents of the acting force, as in its message, A, unsigned.
 HeatWatch::Array HeatWatch::currents() const {
   const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();
   Array amperes = (J_BT_.transpose() * f_T_B).array().abs();
@@ -54,8 +54,8 @@ HeatWatch::Array HeatWatch::currents() const {
   return 1e-3 * (1e3 * amperes).round();
 }
 
-/// Returns the largest currents for motors so hot, as HeatGuard promises them, A: whatever is held
-/// until the arm's watchdog fires must not bring a motor past its limit.
+/// Returns the max. currents for motors of this heat, as HeatGuard guarantees them, A. A current
+/// that is held until the arm's watchdog fires must not bring a motor beyond its limit.
 HeatWatch::Array HeatWatch::allowed(const Array& heat) const {
   constexpr double kFrom = HeatGuard::kWarning;
   const double hold = 1e-9 * static_cast<double>(file_.limits.watchdog_ns);  // s
@@ -67,7 +67,7 @@ HeatWatch::Array HeatWatch::allowed(const Array& heat) const {
 
 void HeatWatch::tick(const driver::DeviceState& state) {
   if (!named_) return;
-  // What was sent in the tick before stands until now, and the driver counts its heat up to then.
+  // The force of the previous tick acts until now, and the driver updates its heat up to then.
   const Array thought = driver_heat();
   hottest_ = std::max(hottest_, thought.maxCoeff());
   apart_ = std::max(apart_, (thought - model_).abs().maxCoeff());

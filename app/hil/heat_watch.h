@@ -12,27 +12,26 @@
 
 namespace thimble::hil {
 
-/// What the heat of an arm's motors did during a check, by up to three accounts: what the driver
-/// thinks (driver::HeatGuard), the arm file's model of first order fed by the forces that were
-/// sent, and what is true of a simulated arm whose motors warm. Heat is a share of the winding's
-/// limit, 1 being what the continuous current reaches in the end. Real-time: never from the servo
-/// thread.
+/// Heat of an arm's motors during a check, from up to three sources. These are the driver's
+/// estimate (driver::HeatGuard), the arm file's first-order model with the forces that were sent,
+/// and the true value of a simulated arm whose motors warm. Heat is a share of the winding's limit;
+/// 1 is the steady state at the continuous current. Real-time: never from the servo thread.
 class HeatWatch {
  public:
-  /// Begins with the heat that the driver has now. Both must outlive it.
+  /// Begins with the driver's present heat. Both must outlive it.
   HeatWatch(const scene::ArmFile& file, const bringup::BenchArm& bench);
 
-  /// Takes a tick: once in each, between its read and its write.
+  /// Processes a tick; call it once per tick, between its read and its write.
   void tick(const driver::DeviceState& state);
 
-  /// Returns what is judged, and what is worth to know beside it; empty if the arm file does not
-  /// say what its motors carry.
+  /// Returns the judged figures and further ones; empty if the arm file does not name the motors'
+  /// currents.
   std::vector<session::Figure> figures() const;
-  /// Returns what was found, and what cannot be known here. Sentences that follow another.
+  /// Returns the result, and what cannot be determined here, as sentences that follow another.
   std::string text() const;
 
  private:
-  using Array = Eigen::Array3d;  // motor by motor
+  using Array = Eigen::Array3d;  // one entry per motor
 
   Array driver_heat() const;
   Array currents() const;
@@ -43,16 +42,16 @@ class HeatWatch {
   const bringup::BenchArm& bench_;
   bool named_;
   Array continuous_{0, 0, 0}, peak_{0, 0, 0}, time_constant_{1, 1, 1};  // A, A, s
-  Eigen::Matrix3d J_BT_ = Eigen::Matrix3d::Zero();                      // of the tick before, m/rad
-  Array model_;                                                         // heat by the file's model
-  Array load_{0, 0, 0};  // squared currents over the continuous ones, summed over time, s
+  Eigen::Matrix3d J_BT_ = Eigen::Matrix3d::Zero();  // of the previous tick, m/rad
+  Array model_;                                     // heat by the file's model
+  Array load_{0, 0, 0};  // squared currents over the continuous ones, integrated, s
   double time_ = 0;      // s
-  double hottest_ = 0;   // the most that the driver thought
-  double apart_ = 0;     // the most that driver and model differed by, beyond what rounding does
-  double over_ = 0;      // the most that a current was of what its motor's heat allows
+  double hottest_ = 0;   // max. heat estimated by the driver
+  double apart_ = 0;     // max. difference between driver and model, beyond rounding
+  double over_ = 0;      // max. ratio of a current to the one that its motor's heat allows
   std::uint64_t lowered_before_;
-  double winding_most_ = 0;  // of the limit
-  // Where a winding was warmer than the driver thought, by the largest ratio.
+  double winding_most_ = 0;  // share of the limit
+  // Values where a winding was warmer than the driver's estimate by the largest ratio.
   double winding_ratio_ = 0, winding_there_ = 0, thought_there_ = 0;
   int winding_motor_ = 0;
 };

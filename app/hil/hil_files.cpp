@@ -16,14 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns whether XML 1.0 can carry a character of UTF-8 that is not ASCII: all but U+FFFE and
-/// U+FFFF.
+/// Returns whether XML 1.0 allows a non-ASCII character of UTF-8: all but U+FFFE and U+FFFF.
 bool fits_xml(std::string_view character) {
   return character != "\xEF\xBF\xBE" && character != "\xEF\xBF\xBF";
 }
 
-/// Returns a text as XML carries it. What it cannot carry (control characters, U+FFFE and U+FFFF)
-/// is a question mark, and a byte that is not UTF-8 is U+FFFD.
+/// Escapes a text for XML. Invalid characters (control characters, U+FFFE and U+FFFF) become a
+/// question mark, and a byte that is not UTF-8 becomes U+FFFD.
 std::string in_xml(std::string_view text) {
   const std::string whole = scene::as_utf8(text);
   std::string safe;

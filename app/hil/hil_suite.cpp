@@ -22,7 +22,7 @@ namespace thimble::hil {
 namespace {
 
 constexpr double kHourOfFull = 60, kMinutesOfQuick = 0.5;
-constexpr int kOpened = 3;  // a wire that is not closed properly shows when it is opened again
+constexpr int kOpened = 3;  // a wire that is not closed properly shows when it is reopened
 
 HilResult check_reports(const HilRig& rig, double seconds) {
   constexpr const char* kName = "reports";
@@ -75,7 +75,7 @@ constexpr const char* kFeelCheck = "feel_check";
 /// A check of the suite.
 struct Check {
   const char* name;
-  bool pushes;  ///< Only an arm that has passed its feel check is pushed.
+  bool pushes;  ///< It applies forces, so the arm must have passed its feel check.
   std::function<HilResult(const HilRig&, const HilOptions&)> run;
 };
 
@@ -145,7 +145,7 @@ std::vector<HilResult> with_not_run(std::vector<HilResult> results, const HilOpt
 std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& options,
                                      const HilListener& listener) {
   std::vector<HilResult> results;
-  std::string no_push;  // why nothing may push
+  std::string no_push;  // reason why no force may be applied
   const std::vector<Check> checks = chosen(options);
   for (const Check& check : checks) {
     if (rig.stop.load()) break;
@@ -153,7 +153,7 @@ std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& option
     const auto begin = std::chrono::steady_clock::now();
     HilResult result =
         check.pushes && !no_push.empty() ? not_run(check.name, no_push) : check.run(rig, options);
-    if (rig.stop.load()) break;  // what was interrupted says nothing
+    if (rig.stop.load()) break;  // the result of an interrupted check is not used
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const bool by_name =

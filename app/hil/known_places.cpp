@@ -14,14 +14,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kHold_s = 1.5, kChange_s = 2;  // the tip is held, or brought to the next place
-constexpr double kHome = 0.005;                 // m [chosen: what a careful hand misses a pose by]
-constexpr double kSides = 0.003;                // m [chosen: three times the play of a good arm]
-constexpr double kLengthShare = 0.03;           // [chosen: 3 mm of 100 mm from mark to mark]
-constexpr double kAngle = 10;                   // degrees
-constexpr double kBeside = 0.02;                // m, from where a simulated hand comes home
+constexpr double kHold_s = 1.5, kChange_s = 2;  // to hold the tip, or to bring it to the next point
+constexpr double kHome = 0.005;                 // m [chosen: error of a careful hand]
+constexpr double kSides = 0.003;       // m [chosen: three times the backlash of a good arm]
+constexpr double kLengthShare = 0.03;  // [chosen: 3 mm of 100 mm from mark to mark]
+constexpr double kAngle = 10;          // degrees
+constexpr double kBeside = 0.02;       // m, distance from which a simulated hand comes home
 
-/// Where the arm of a file stands when its counters are zero, m in the world.
+/// Tip of an arm file when its counters are zero, m in the world.
 Vector3d home_of(const scene::ArmFile& file) {
   const Vector3d q = file.model.joint_angles({});
   Vector3d p_BT;
@@ -30,7 +30,7 @@ Vector3d home_of(const scene::ArmFile& file) {
   return file.p_WB + file.R_WB * p_BT;
 }
 
-/// Reads the tip with zero force after a while in which it is held; nothing if that was left.
+/// Reads the tip with zero force after a time in which it is held; empty if stopped.
 std::optional<Vector3d> tip_after(bringup::BenchArm& bench, double seconds,
                                   const std::atomic<bool>& stop) {
   constexpr int kMeans = 100;  // ticks

@@ -7,24 +7,23 @@
 
 namespace thimble::hil {
 
-/// Checks by zero force that the arm counts where its file says: a person brings it into its home
-/// pose from two sides. An arm that got power elsewhere is seen by that, and so are cables that
-/// slip.
+/// Checks with zero force that the arm's zero is that of its file: a user brings it to its home
+/// pose from two sides. This detects an arm that was switched on in another pose, and slipping
+/// cables.
 HilResult check_home_pose(const HilRig& rig);
 
-/// Checks by zero force that a movement is as long as it is: a person moves the tip by `length` (m)
-/// along each axis of the world, from mark to mark. Motion and a known mass alone cannot tell the
-/// scale of encoders and links.
+/// Checks with zero force the scale of a movement: a user moves the tip by `length` (m) along each
+/// axis of the world, from mark to mark. Motion and a known mass do not determine the scale of
+/// encoders and links.
 HilResult check_known_length(const HilRig& rig, double length);
 
-/// Returns a simulated hand that holds the tip firmly to a mark.
+/// Returns a simulated hand that holds the tip firmly at a mark.
 device_sim::HandSettings firm_hand();
 
-/// Returns the way of a simulated hand that does what `check_home_pose` asks (seconds and points in
-/// the world, m).
+/// Returns the path of a simulated hand for `check_home_pose` (seconds and points in the world, m).
 std::vector<std::pair<double, Eigen::Vector3d>> home_pose_hand(const scene::ArmFile& file);
 
-/// Returns the way of a simulated hand that does what `check_known_length` asks.
+/// Returns the path of a simulated hand for `check_known_length`.
 std::vector<std::pair<double, Eigen::Vector3d>> known_length_hand(const scene::ArmFile& file,
                                                                   double length);
 

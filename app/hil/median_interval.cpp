@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kOutside = 0.025;  // on either side
 
-/// Returns which value from either end bounds the median of `count`, from 0 on.
+/// Returns the index from either end, from 0 on, of the values that bound the median of `count`.
 std::size_t rank_from_end(std::size_t count) {
   const double n = static_cast<double>(count);
   double chance = std::exp2(-n);  // that exactly `rank` values lie on one side

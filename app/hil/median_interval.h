@@ -4,21 +4,21 @@
 
 namespace thimble::hil {
 
-/// The median of what was measured, and where the true one lies.
+/// The median of measured values, and an interval for the true one.
 struct MedianInterval {
   double median = 0;
-  double low = 0, high = 0;  ///< Holds the true median in 95 % of cases, whatever the distribution.
+  double low = 0, high = 0;  ///< Holds the true median in 95 % of cases, for any distribution.
 };
 
-/// Fewest values of which an interval is known: of five, the true median lies outside of all in
-/// 6 % of cases.
+/// Min. number of values with a known interval: of five, the true median lies outside of all in 6 %
+/// of cases.
 inline constexpr int kMedianLeast = 6;
 
-/// Returns the median of independent values and its interval by order statistics: a value lies
-/// below the true median with a chance of one half, so the k-th least and the k-th greatest hold
-/// it between them unless fewer than k fall on one side, which is binomial [Conover]. Takes
-/// `kMedianLeast` values or more for 95 %; of fewer the interval is from the least to the greatest.
-/// Of no values all are 0.
+/// Returns the median of independent values and its interval by order statistics. A value lies
+/// below the true median with probability one half. So the k-th smallest and the k-th largest
+/// enclose it unless fewer than k values are on one side, which is binomial [Conover]. 95 % need
+/// `kMedianLeast` values or more; for fewer the interval is from the smallest to the largest. For
+/// no values all are 0.
 MedianInterval median_interval(std::vector<double> values);
 
 }  // namespace thimble::hil

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr const char* kName = "soak";
 constexpr double kTick = 1e-3;         // s, of BenchArm
-constexpr double kMissingMost = 0.05;  // of the ticks: what a loop without priority may cost
+constexpr double kMissingMost = 0.05;  // of the ticks: possible without real-time priority
 
 }  // namespace
 

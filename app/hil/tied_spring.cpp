@@ -16,11 +16,11 @@ constexpr int kAxis = 1;
 constexpr double kForceMost = 0.9;  // N
 constexpr int kSteps = 9;           // up, and as many down
 constexpr double kStep_s = 0.7;     // s, of each
-constexpr double kLooked_s = 0.2;   // s, the last of it
-constexpr double kDamping = 2;      // N s/m: a tip on a bare spring swings for long [chosen]
-constexpr double kFar = 0.04;       // m; a spring that gives more has come off
+constexpr double kLooked_s = 0.2;   // s, measured part at its end
+constexpr double kDamping = 2;      // N s/m: an undamped tip oscillates for long [chosen]
+constexpr double kFar = 0.04;       // m; a longer elongation means that the spring has come off
 
-/// Slope and its standard error of y over x, with an own offset for each of two groups.
+/// Slope and its standard error of y over x, with a separate offset for each of two groups.
 struct Slope {
   double value = 0, error = 0;
 };
@@ -52,7 +52,7 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;
   const double from = bench.device().state().p_WT[kAxis];
-  std::vector<Vector3d> rows;  // asked force, and whether it was on the way up or down
+  std::vector<Vector3d> rows;  // requested force, and whether it was on the way up or down
   std::vector<double> way;     // m
   for (int i = 1; i < 2 * kSteps; ++i) {
     const bool up = i <= kSteps;
@@ -80,9 +80,8 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
                         "softer than it was said to be.",
                         &bench);
     }
-    // A tip follows only once dry friction points the other way: by its size after the beginning,
-    // by twice that after the turn; half as much again for an arm that rubs more than its file
-    // says.
+    // A tip follows only after dry friction has reversed: by its size after the beginning, by twice
+    // that after the turn. Half more is allowed for an arm with more friction than in its file.
     const double rubs = 1.5 * rig.file.simulated.plant.coulomb;
     if (i == kSteps || (up ? asked < rubs : asked > kForceMost - 2 * rubs)) continue;
     rows.emplace_back(sent / seen, up ? 1 : 0, up ? 0 : 1);

@@ -15,12 +15,12 @@ namespace {
 constexpr const char* kName = "stiffest_wall";
 // A wall takes a second, a start two to three walls: some 100 s, and 200.
 constexpr int kStartsOfQuick = 33, kStartsOfFull = 65;
-// Of the twin's, below and above. From one start edges differ by a tenth, the median of 33 by 2 to
-// 3 % (Hil.JudgesTheStiffestWallToATenth).
+// Relative to the twin's, below and above. Edges of one start differ by a tenth, the median of 33
+// by 2 to 3 % (Hil.JudgesTheStiffestWallToATenth).
 constexpr double kAllowed = 0.1;
 
-/// Returns the edges of an arm by those of its twin, start by start: what a start does to both is
-/// no difference between them.
+/// Returns the ratio of the edges of an arm to those of its twin, start by start: effects of the
+/// start on both cancel.
 MedianInterval over_twin(const EdgeOfWall& found, const EdgeOfWall& twin) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < found.at_start.size(); ++i) {

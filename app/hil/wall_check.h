@@ -4,10 +4,10 @@
 
 namespace thimble::hil {
 
-/// Looks for the stiffest wall that the free arm carries, and for that of the simulated arm of the
-/// file by the same search from the same starts. It differs where the median over the starts of
-/// one by the other is further than a tenth from 1; `full` takes 65 starts rather than 33.
-/// Real-time: never from the servo thread.
+/// Searches for the stiffest wall of the free arm, and for that of the simulated arm of the file by
+/// the same search from the same starts. They differ if the median over the starts of their ratio
+/// is more than a tenth from 1; `full` uses 65 starts instead of 33. Real-time: never from the
+/// servo thread.
 HilResult check_stiffest_wall(const HilRig& rig, bool full);
 
 }  // namespace thimble::hil

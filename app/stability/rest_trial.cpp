@@ -16,22 +16,22 @@
 namespace thimble::stability {
 namespace {
 
-constexpr double kHeld = 0.3;      // s; a shorter hold of the path is a stroke's turn [chosen]
-constexpr double kSettling = 1.6;  // s; the softest hand creeps on for so long (random_scene.cpp)
-constexpr double kWatched = 0.25;  // s, the last of it
+constexpr double kHeld = 0.3;      // s; a shorter hold of the path is the turn of a stroke [chosen]
+constexpr double kSettling = 1.6;  // s; creep time of the softest hand (random_scene.cpp)
+constexpr double kWatched = 0.25;  // s, measured part at its end
 constexpr double kCorner = 50;     // Hz [PHYSICS 2.5]
 
 /// A stretch of a run in which the hand rests, s.
 struct Stretch {
-  double told = 0;   // when it begins by the scene's own time
-  double until = 0;  // when it ends in the run
+  double told = 0;   // beginning in the scene's own time
+  double until = 0;  // end in the run
 };
 
 bool same_place(const scene::HandWaypoint& a, const scene::HandWaypoint& b) {
   return a.on == b.on && a.p_W == b.p_W && a.press == b.press;
 }
 
-/// Makes every hold of the hand's path last until what settles has settled; lists them.
+/// Extends every hold of the hand's path until the hand has settled; lists the holds.
 std::vector<Stretch> prolong_rests(scene::Scene& scene) {
   std::vector<Stretch> rests;
   std::vector<scene::HandWaypoint>& path = scene.arms.front().hand;
@@ -64,7 +64,7 @@ std::vector<Stretch> prolong_rests(scene::Scene& scene) {
 /// One run of a scene, tick by tick.
 class Run {
  public:
-  /// Runs the scene; the hand is held still for kSettling at each of `stops` (ticks, growing).
+  /// Runs the scene; the hand is held still for kSettling at each of `stops` (ticks, increasing).
   static driver::Result<Run> make(const scene::Scene& scene, const std::vector<std::size_t>& stops,
                                   const std::shared_ptr<scene::SharedMeshes>& meshes) {
     session::SessionOptions options{.adjust = [&](scene::Scene& read) { read = scene; },
@@ -107,7 +107,7 @@ class Run {
   driver::Fault fault() const { return fault_; }
   std::span<const driver::TickRecord> rows() const { return rows_; }
 
-  /// Returns what the force did in the last kWatched before tick `end`.
+  /// Returns the statistics of the force in the last kWatched before tick `end`.
   Rest watch(double told, std::size_t end) const {
     const auto count = static_cast<std::size_t>(kWatched * scene_->rate);
     const std::size_t begin = end - std::min(end, count);
@@ -191,7 +191,7 @@ driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim:
   }
   trial.fault = run->fault();
   if (touches || trial.fault != driver::Fault::kNone) return trial;
-  // Nowhere does the path rest on anything: stop the hand in what it touches.
+  // The path rests nowhere on an object: stop the hand inside of the objects it touches.
   const auto stops = deepest_ticks(scene, run->rows());
   if (stops.empty()) return trial;
   auto again = Run::make(stopped, stops, meshes);

@@ -22,13 +22,13 @@ using Eigen::Vector3d;
 
 constexpr double kFelt = 0.02;  // N RMS [PHYSICS 6]
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kPressed = 1;   // N, with which a hand rests on something [chosen]
-constexpr double kCreep = 1e-3;  // m/s: slower, a count takes 30 ms and more
+constexpr double kPressed = 1;   // N, force of a resting hand [chosen]
+constexpr double kCreep = 1e-3;  // m/s: at lower speeds, a count takes 30 ms and more
 constexpr double kStroke = 0.1;  // m/s; slower oscillations are always there [chosen]
 constexpr double kProbe = 1e-6;  // m
-constexpr int kTries = 4000;     // places of a texture; finds a sine's curvature within 2 %
+constexpr int kTries = 4000;     // points of a texture; finds a sine's curvature within 2 %
 
-/// What a field does, found by trying it.
+/// Effect of a field, found by evaluation.
 struct FieldTried {
   double push = 0;     // N, on a tip at rest
   double damping = 0;  // N s/m
@@ -63,7 +63,7 @@ bool is_flat(const scene::SceneObject& object) {
 
 void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& warnings) {
   if (object.mesh_file.empty() || object.paged) return;
-  // Facets that the body bends are hollow wherever it gives way, whatever the tracker.
+  // Facets that the body bends are concave wherever it yields, with any tracker.
   const bool god_object = object.contact.tracker == render::TrackerChoice::kGodObject;
   const bool flat = is_flat(object);
   if (bends(object) && (flat || god_object)) {
@@ -74,13 +74,13 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
                     object.name));
     return;
   }
-  // All other trackers are held by both faces of a hollow edge at once.
+  // With all other trackers, both faces of a concave edge hold the tip at once.
   if (object.contact.tracker != render::TrackerChoice::kNormalProjection) return;
   const auto file = scene::load_object_mesh(object);
   if (!file) return;
   const auto mesh = render::ContactMesh::build(file->mesh_W);
   if (!mesh) return;
-  // A jump of 2 F sin(angle / 2), to and fro, has half of it as its RMS.
+  // A jump of 2 F sin(angle / 2), back and forth, has half of it as its RMS.
   const double felt = 2 * math::asin(kFelt / kPressed);
   const double smooth_up_to = object.contact.crease_angle.value_or(render::kCreaseAngle);
   const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
@@ -92,7 +92,7 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
       object.name, hollow / kDegree, 2 * math::sin(hollow / 2)));
 }
 
-/// What a loop carries with the hand of the scene.
+/// Limits of a loop with the hand of the scene.
 struct Loop {
   const scene::Scene& scene;
   scene::LoopTimes times;
@@ -117,7 +117,7 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
           object.name, curvature, from, bare_edge));
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
-      // The arm's own dry friction holds slow oscillations [PHYSICS 1.4].
+      // The arm's own dry friction stops slow oscillations [PHYSICS 1.4].
       const Carried carried = carried_by(loop.scene.arms.front().arm, loop.times, 0, 0);
       const double held_speed = oscillation_speed_limit(
           hold, carried.damping, loop.scene.arms.front().arm.simulated.plant.coulomb,
@@ -132,11 +132,11 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
   }
 }
 
-/// Warns of a light body that a friction holds: tip and body oscillate against each other, and of
-/// the hand's damping that mode gets only the tip's share in it.
+/// Warns of a light body that a friction holds. Tip and body oscillate against each other, and the
+/// hand damps that mode only by the tip's share in it.
 ///
-/// With s = m / (m + m_tip) the tip's share, K L <= b_tip s^2 + b (1 - s)^2. A friction turns a
-/// free body too; at its rim a ball counts 1 / (1 + 5 / 2) of its mass.
+/// With s = m / (m + m_tip) the tip's share, K L <= b_tip s^2 + b (1 - s)^2. A friction also turns
+/// a free body; at its rim a ball counts as 1 / (1 + 5 / 2) of its mass.
 void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
                         std::vector<std::string>& warnings) {
   if (!object.body.motion) return;
@@ -159,7 +159,8 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
       object.name, motion.mass, hold, damping / carried.latency));
 }
 
-/// Warns of springs that add up where a tip is on all of them: each may be carried by itself.
+/// Warns of springs that add up where a tip touches all of them, although each of them is stable by
+/// itself.
 void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
   double sum = 0, damping = 0;
   int count = 0;
@@ -208,7 +209,7 @@ double curvature_of(const render::EffectPlan& texture) {
   const auto stage = texture.build();
   Draw draw(1);
   double most = 0;
-  // Pressed by so much that the height itself counts for nothing: the force for each newton.
+  // Pressed so deep that the height itself is negligible: the force for each newton.
   const auto force = [&stage](const Vector3d& p_W, const Vector3d& n_W) -> Vector3d {
     driver::DeviceState state;
     state.p_WT = p_W;
@@ -270,7 +271,8 @@ double quantisation_noise_of(double damping, double step, double speed, double c
 
 std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
-  // The account of the passivity stage knows fields, weights and what the motors carry.
+  // The account of the passivity stage includes fields, weights and the energy that the motors
+  // give.
   const driver::EnergyStage stage = scene.energy.value_or(scene.arms.front().arm.energy.stage);
   if (stage != driver::EnergyStage::kBounding) return warnings;
   constexpr double kPushFelt = 0.02;  // N [PHYSICS 6]
@@ -287,8 +289,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field) {
       warn(object.name + " pushes a hand", try_field(object, scene.arms.front().arm).push);
-    } else if (object.body.motion &&
-               object.body.motion->grip) {  // on the floor it pulls at nothing
+    } else if (object.body.motion && object.body.motion->grip) {  // on the floor it does not pull
       warn(object.name + " pulls by its weight",
            object.body.motion->mass * object.body.motion->gravity_W.norm());
     }
@@ -298,7 +299,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
 
 std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on) {
   std::vector<std::string> causes;
-  if (!scene.arms.front().arm.can_simulate) return causes;  // nothing is known of its tip
+  if (!scene.arms.front().arm.can_simulate) return causes;  // its tip is unknown
   const Loop loop{scene, loop_times(scene.arms.front().arm, scene.rate)};
   const double bare_edge = loop.edge(0);
   for (const scene::SceneObject& object : scene.objects) {

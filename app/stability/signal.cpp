@@ -30,7 +30,7 @@ void high_pass_section(std::vector<double>& signal, double warped, double q) {
 std::vector<double> high_passed(std::span<const double> signal, double rate, double corner) {
   std::vector<double> out(signal.begin(), signal.end());
   if (out.empty()) return out;
-  // From rest at the first value, so that an offset rings nothing.
+  // Starts at rest at the first value, so that an offset does not excite the filter.
   for (double& value : out) value -= signal.front();
   const double warped = math::tan(std::numbers::pi * corner / rate);
   for (const double angle : {std::numbers::pi / 8, 3 * std::numbers::pi / 8}) {

@@ -18,19 +18,18 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// What a report can carry [DEVICES 1]: no limit is felt below it.
+// Range of a report [DEVICES 1]: no limit acts below it.
 constexpr double kCurrentMost = 32;  // A
 
-constexpr int kKickTicks = 4;  // so that no kick needs more than the motors' current
+constexpr int kKickTicks = 4;  // so that no kick exceeds the motors' current
 
 constexpr double kCurrentStep = 1e-3;  // A, of the messages [DEVICES 1]
 
-/// The tip at home and what one count of each encoder and one step of each current make of it.
+/// The tip at home, and the effect of one count of each encoder and of one step of each current.
 struct HomeSteps {
   Vector3d p_WT;
-  Matrix3d ways_W;  // columns: jumps by one count of each joint, m in the world
-  Matrix3d
-      currents_W;  // columns: currents that a force of 1 N along each axis of the world asks, A
+  Matrix3d ways_W;      // columns: jumps by one count of each joint, m in the world
+  Matrix3d currents_W;  // columns: currents for a force of 1 N along each axis of the world, A
   Matrix3d R_WB;
 };
 
@@ -69,7 +68,7 @@ ArmDirection along(const Vector3d& way_W, const HomeSteps& home) {
           .force_step = kCurrentStep / (home.currents_W * n_W).cwiseAbs().maxCoeff()};
 }
 
-/// Makes the arm that the case asks for out of that of the file.
+/// Makes the arm of the case from that of the file.
 scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   scene::ArmFile arm = file;
   arm.velocity_corner_frequency = wall.velocity_corner;
@@ -83,8 +82,8 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   if (!wall.own_step && wall.step > 0) {
     const double finer = wall.direction.step / wall.step;
     for (auto& encoder : arm.model.encoders) {
-      // The home pose stays in the middle of a step, as it is with the arm's own encoders; where a
-      // wall stands between two steps decides whether it can rest.
+      // The home pose stays in the middle of a step, as with the arm's own encoders. The position
+      // of a wall between two steps determines whether it can rest.
       const auto own = static_cast<double>(encoder.home_counts);
       const double home = std::round(own * finer);
       encoder.counts_per_motor_turn *= home != 0 ? home / own : finer;
@@ -93,7 +92,7 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   }
   if (!wall.own_step && !(wall.step > 0)) arm.simulated.firmware.ideal_encoders = true;
   if (!wall.own_limits) {
-    // No limit is felt: the soft start lets 20 N through in a microsecond.
+    // No limit acts: the soft start allows 20 N after a microsecond.
     arm.limits = {.force_max = 1e6,
                   .speed_max = 1e4,
                   .rise_max = 1e9,
@@ -110,7 +109,7 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
 }  // namespace
 
 bool ArmDirection::is_one_dimensional() const {
-  constexpr double kWithin = 0.01;  // the laws themselves are met to some percent
+  constexpr double kWithin = 0.01;  // the laws themselves hold to some percent
   return largest_step >= (1 - kWithin) * step && friction_share <= 1 + kWithin;
 }
 
@@ -179,7 +178,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,
                                       .energy = wall.energy,
-                                      // A wall at rest is what it looks at.
+                                      // Disabled, because trials contain walls at rest.
                                       .motion = {.hold_most = 1e9},
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000,
@@ -209,7 +208,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
     // A wall pushes outwards, along the direction, and never pulls.
     if (wall.one_sided) force = depth < 0 ? std::max(force, 0.0) : 0;
     if (wall.kick != 0 && kick_ticks < kKickTicks) {
-      // The gate opens within the first tick, so that the kick begins with the second.
+      // The gate opens within the first tick, so the kick begins with the second.
       const bool kicks = tick > 0 && tick_ns >= kick_ns;
       force = kicks ? -wall.kick * mass / (kKickTicks * period) : 0;
       if (kicks) ++kick_ticks;

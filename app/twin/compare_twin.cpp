@@ -14,7 +14,7 @@
 namespace thimble::twin {
 namespace {
 
-/// How an error hangs together with another: sums over all ticks that had a report.
+/// Correlation of two errors: sums over all ticks with a report.
 double dot(const std::vector<TwinWindow>& windows, const Relived& a, const Relived& b) {
   double sum = 0;
   for (std::size_t w = 0; w < windows.size(); ++w) {
@@ -27,7 +27,7 @@ double dot(const std::vector<TwinWindow>& windows, const Relived& a, const Reliv
   return sum;
 }
 
-/// Finds the value of one constant with which the error is least.
+/// Finds the value of one constant with the smallest error.
 class Remedy {
  public:
   Remedy(Relive& relive, const scene::ArmFile& file, const TwinConstant& constant, Relived& now)
@@ -63,7 +63,7 @@ class Remedy {
       if (!nearer) break;
     }
     remedy.error_rms = at_best.rms();
-    // A better start of some window, found on the way, is not the constant's merit.
+    // An improved start of some window, found on the way, must not count for the constant.
     auto again = at(value);
     if (!again) return again.error();
     if (again->square < now_.square) now_ = std::move(again).value();
@@ -80,8 +80,7 @@ class Remedy {
     return relive_(other);
   }
 
-  /// Returns the Gauss-Newton step from a value, and the share of the squared error that it should
-  /// take away.
+  /// Returns the Gauss-Newton step from a value, and its predicted share of the squared error.
   driver::Result<std::pair<double, double>> step_from(double value, const Relived& here) {
     const double low = std::max(constant_.least, value - constant_.step);
     const double high = value + constant_.step;
@@ -126,7 +125,7 @@ void find_axes(const Relive& relive, const Relived& relived, TwinComparison& fou
   }
 }
 
-/// Means the power of all windows, each under a bell, as Welch has it; ticks without a report hold
+/// Averages the power of all windows, each under a bell, like Welch; ticks without a report hold
 /// the last.
 void find_spectrum(const Relive& relive, const Relived& relived, TwinComparison& found) {
   const std::size_t n = relive.ticks() - 1;
@@ -183,15 +182,15 @@ double TwinComparison::missed() const {
 
 namespace {
 
-// A twin this near is as near as the encoders' steps let it be [twin_test].
+// Such a twin is as good as the encoders' steps allow [twin_test].
 constexpr double kNearSteps = 1.15;
-// Each further constant must take away this share of the error.
+// Min. share of the error that each further constant must remove.
 constexpr double kFurther = 0.1;
 constexpr int kTogetherMost = 4;
 
-/// Lets constants take other values one after the other, always the one that mends most, starting
+/// Changes constants one after the other, always the one with the largest improvement, starting
 /// with the best single one, until the twin is near. Sets `file` to the arm with all of them.
-/// Returns each constant with its last value.
+/// Returns each constant with its final value.
 std::vector<TwinRemedy> mend_together(Relive& relive, double step_error, const TwinRemedy& first,
                                       scene::ArmFile& file) {
   const std::vector<TwinConstant> constants = twin_constants(file);
@@ -210,7 +209,7 @@ std::vector<TwinRemedy> mend_together(Relive& relive, double step_error, const T
     TwinRemedy best;
     best.error_rms = before;
     for (const TwinConstant& constant : constants) {
-      // Beside constants that are not its own an arm may be none that can be simulated.
+      // With wrong values of other constants, the arm may be impossible to simulate.
       auto remedy = Remedy(relive, file, constant, *now).find();
       if (remedy && remedy->error_rms < best.error_rms) best = std::move(remedy).value();
     }

@@ -12,30 +12,30 @@
 
 namespace thimble::twin {
 
-/// How a recording is compared.
+/// Options of a comparison.
 struct TwinOptions {
-  double window = 0.2;  ///< Length of the pieces that the twin relives, s; 0.05 to 2.
-  TwinSpan span;        ///< What of the recording.
+  double window = 0.2;  ///< Length of the windows, s; 0.05 to 2.
+  TwinSpan span;        ///< Compared part of the recording.
 };
 
-/// How near a twin comes along one axis of the world.
+/// Agreement of a twin along one axis of the world.
 struct TwinAxis {
   char name = 'x';        ///< x, y or z.
-  double error_rms = 0;   ///< Of where the tip is, m.
-  double motion_rms = 0;  ///< Of the recorded motion less a straight line in each window, m.
-  /// The figure of merit: 100 (1 - error / motion), percent. 100: the same; 0: no nearer than a
-  /// straight line. Not a number where the axis moved by less than the encoders' steps.
+  double error_rms = 0;   ///< Error of the tip position, m.
+  double motion_rms = 0;  ///< Recorded motion less a straight line in each window, m.
+  /// The figure of merit: 100 (1 - error / motion), percent. 100: identical; 0: no better than a
+  /// straight line. Not a number if the axis moved by less than the encoders' steps.
   double fit = 0;
 };
 
-/// A constant of the arm file, and what another value of it alone would mend.
+/// A constant of the arm file, and the effect of another value of only this constant.
 struct TwinRemedy {
-  std::string key;       ///< As the file names it.
+  std::string key;       ///< Key in the file.
   std::string unit;      ///< SI
-  double value = 0;      ///< Of the file.
-  double best = 0;       ///< With which the error is least.
-  double expected = 0;   ///< Error by the differences about the file's value, RMS, m.
-  double error_rms = 0;  ///< Error that the twin has with it, m.
+  double value = 0;      ///< Value in the file.
+  double best = 0;       ///< Value with the smallest error.
+  double expected = 0;   ///< Error predicted from derivatives at the file's value, RMS, m.
+  double error_rms = 0;  ///< Error of the twin with the best value, m.
 };
 
 /// Error and motion at a frequency, along each axis of the world, as amplitudes.
@@ -45,34 +45,34 @@ struct TwinSpectrum {
   std::array<double, 3> motion{};  ///< m
 };
 
-/// How far a twin and its arm are apart.
+/// Difference between a twin and its arm.
 struct TwinComparison {
   std::array<TwinAxis, 3> axes{};
   double error_rms = 0;              ///< Over all axes, m.
-  double step_error = 0;             ///< What the encoders' steps leave of it, m.
-  double seconds = 0;                ///< That were compared.
-  std::vector<TwinRemedy> remedies;  ///< The best first.
-  /// Constants that together bring the twin nearer than any of them alone, each with its last
-  /// value; empty where one is enough, or where others add nothing. Their `error_rms` is that of
+  double step_error = 0;             ///< Part of it that is due to the encoders' steps, m.
+  double seconds = 0;                ///< Compared time.
+  std::vector<TwinRemedy> remedies;  ///< Best first.
+  /// Constants that together improve the twin more than any of them does by itself, each with its
+  /// final value. Empty if one is enough, or if others add nothing. Their `error_rms` is that of
   /// all.
   std::vector<TwinRemedy> together;
   std::vector<TwinSpectrum> spectrum;
-  std::vector<std::string> told;  ///< Of the recording, a sentence each.
+  std::vector<std::string> told;  ///< Messages about the recording, a sentence each.
 
   /// Returns the share of the motion that is missed even with the best constant, 0 to 1 or more.
   double missed() const;
-  /// Where more is missed, the arm is not that of the file with one constant changed. [chosen]
+  /// If more is missed, the arm is not that of the file with one constant changed. [chosen]
   static constexpr double kMissed = 0.05;
 
-  /// A remedy that mends less of the error than this names nothing. [chosen]
+  /// A constant that removes a smaller share of the error is not named. [chosen]
   static constexpr double kWorth = 0.01;
-  /// Returns whether there is a constant worth another value: the first remedy then.
+  /// Returns whether another value of a constant is worthwhile; it is the first remedy.
   bool has_remedy() const {
     return !remedies.empty() && remedies.front().error_rms < (1 - kWorth) * error_rms;
   }
 };
 
-/// What the pictures are drawn of.
+/// Data for the pictures.
 struct TwinTrace {
   std::vector<TwinWindow> windows;
   Relived relived;
@@ -80,16 +80,16 @@ struct TwinTrace {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
 };
 
-/// A comparison with what it rests on.
+/// A comparison with its data.
 struct TwinResult {
   TwinComparison comparison;
   TwinForces forces;
   TwinTrace trace;
 };
 
-/// Lets the simulated arm of a file relive a recording, and finds how far both are apart and which
-/// constant keeps them so: each in turn takes the value of least error, found by central
-/// differences and Gauss-Newton steps, each of which is tried. Errors: as twin_motion and Relive.
+/// Replays a recording on the simulated arm of a file, and finds the error and the constant that
+/// explains it. Each constant in turn takes the value of smallest error, found by central
+/// differences and Gauss-Newton steps. Each step is verified. Fails like twin_motion and Relive.
 /// Real-time: never from the servo thread.
 driver::Result<TwinResult> compare_twin(const session::Recording& recording,
                                         const scene::ArmFile& file, const TwinOptions& options);

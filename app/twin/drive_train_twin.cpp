@@ -14,10 +14,10 @@ namespace thimble::twin {
 namespace {
 
 constexpr std::int64_t kSubStep_ns = 100'000;
-constexpr double kLagsKept = 20;  // after which a current is forgotten to 2e-9
+constexpr double kLagsKept = 20;  // after which a current has decayed to 2e-9
 
-/// An arm with a drive train: the encoders see the motors, and the tip is behind cables that
-/// stretch or joints that rub.
+/// An arm with a drive train: the encoders are on the motors, and the tip is behind elastic cables
+/// or joints with friction.
 template <class Geometry, class Tip>
 class DriveTrainTwin final : public TwinMover {
  public:
@@ -46,7 +46,7 @@ class DriveTrainTwin final : public TwinMover {
   }
 
  private:
-  /// Returns what the motors were sent `late` ticks before, A.
+  /// Returns the currents sent to the motors `late` ticks before, A.
   Eigen::Vector3d sent(const std::vector<TwinSample>& samples, std::size_t k,
                        std::size_t late) const {
     return wiring_.motors(samples[k - late].amperes);
@@ -59,7 +59,7 @@ class DriveTrainTwin final : public TwinMover {
     plant_.step(plant_.p_BH(), delay_.rest_ns);
   }
 
-  /// Returns the currents that flow when the tick `begin` comes, A.
+  /// Returns the actual currents at the beginning of tick `begin`, A.
   Eigen::Vector3d currents_at(const std::vector<TwinSample>& samples, std::size_t begin) const {
     const double lag = train_.current_lag;
     const Eigen::Vector3d most = Eigen::Vector3d::Constant(current_max_);
@@ -80,13 +80,13 @@ class DriveTrainTwin final : public TwinMover {
     return amperes;
   }
 
-  /// Motors turn as the encoders say, links as far behind as the cables are stretched; the currents
-  /// come from what was sent in all the ticks that lead to the window.
+  /// Motor angles are those of the encoders; links lag by the stretch of the cables. The currents
+  /// follow from those sent in all ticks before the window.
   device_sim::DriveTrainState state_at(const std::vector<TwinSample>& samples, std::size_t begin,
                                        const TwinStart& start) {
     device_sim::DriveTrainState state{.p_BT = start.p_BT, .v_BT = start.v_BT};
     const auto q = geometry_.inverse(start.p_BT);
-    if (!q) return state;  // out of reach: it stays at the end of it
+    if (!q) return state;  // out of reach: stays at its limit
     Eigen::Vector3d p_BT;
     Eigen::Matrix3d J;
     geometry_.forward(*q, p_BT, J);
@@ -113,8 +113,8 @@ template <class Geometry, class Tip>
 driver::Result<std::unique_ptr<TwinMover>> make_with(const TwinMotion& motion,
                                                      const scene::ArmFile& file) {
   device_sim::SimulatedArmSettings settings = file.simulated;
-  settings.hand = {};              // nobody's
-  settings.drive_train.heat = {};  // a window warms nothing, and each is moved many times
+  settings.hand = {};              // no hand
+  settings.drive_train.heat = {};  // a window is too short for heat, and each runs many times
   const Eigen::Vector3d& p_BT = motion.stretches.front().front().p_BT;
   auto plant = device_sim::DriveTrainPlant<Geometry, Tip>::make(
       driver::model_as<Geometry>(file.model), settings, p_BT, p_BT, kSubStep_ns);

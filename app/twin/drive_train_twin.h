@@ -9,8 +9,8 @@
 
 namespace thimble::twin {
 
-/// Makes the arm of a file that names a drive train: the plant itself (device_sim,
-/// drive_train_plant.h), in sub-steps of 0.1 ms, so that a resonance w (rad/s) is too high by (w
+/// Makes the arm of a file that names a drive train. It is the plant itself (device_sim,
+/// drive_train_plant.h), in sub-steps of 0.1 ms. A resonance w (rad/s) is too high by (w
 /// 0.1 ms)^2 / 24, 0.07 % at 200 Hz. Fails if a constant is out of range. `motion` must outlive it.
 driver::Result<std::unique_ptr<TwinMover>> make_drive_train_twin(const TwinMotion& motion,
                                                                  const scene::ArmFile& file);

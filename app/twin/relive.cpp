@@ -9,12 +9,12 @@ namespace thimble::twin {
 namespace {
 
 constexpr int kStartsMost = 12;         // fits of a start
-constexpr double kNear = 3e-7;          // m; a start that moves less is found
-constexpr std::size_t kSlope = 10;      // ticks to either side that tell a first velocity
-constexpr std::size_t kSeenLeast = 16;  // reports that a window needs
+constexpr double kNear = 3e-7;          // m; a start that changes by less is final
+constexpr std::size_t kSlope = 10;      // ticks to either side for a first velocity
+constexpr std::size_t kSeenLeast = 16;  // min. reports per window
 
-/// What stands before 1 and before `slope` when both together come nearest to `value`, by least
-/// squares over the ticks that were seen; for a slope of the time in ticks it is a straight line.
+/// Factors of 1 and of `slope` whose sum is closest to `value`, by least squares over the ticks
+/// with a report. If `slope` is the time in ticks, it is a straight line.
 struct Line {
   double at_begin = 0, along = 0;
 
@@ -28,7 +28,7 @@ struct Line {
     }
     const double det = n * t2 - t1 * t1;
     if (!(det > 1e-9 * n * t2)) {
-      at_begin = n > 0 ? y1 / n : 0;  // an axis that its friction holds at once
+      at_begin = n > 0 ? y1 / n : 0;  // an axis that its friction stops at once
       return;
     }
     at_begin = (t2 * y1 - t1 * ty) / det;
@@ -100,7 +100,7 @@ Eigen::Matrix3Xd Relive::relive(TwinMover& mover, TwinWindow& window, Eigen::Vec
   Eigen::Matrix3Xd best(3, static_cast<Eigen::Index>(ticks_));
   least.setConstant(HUGE_VAL);
   TwinStart start = window.start, to;
-  Eigen::Vector3d share(1, 1, 1);  // of what is tried
+  Eigen::Vector3d share(1, 1, 1);  // of the step tried
   for (int fit = 0; fit < kStartsMost; ++fit) {
     mover.move(window.stretch, window.begin, start, seen_);
     bool nearer = true;
@@ -123,7 +123,7 @@ Eigen::Matrix3Xd Relive::relive(TwinMover& mover, TwinWindow& window, Eigen::Vec
       for (std::size_t j = 0; j < ticks_; ++j) {
         best(axis, static_cast<Eigen::Index>(j)) = seen_[j][axis];
       }
-      // A free tip goes on as it began.
+      // A free tip keeps its initial motion.
       const auto time = [&](std::size_t j) { return static_cast<double>(j) * motion_->dt; };
       const Line line(window.seen, time, [&](std::size_t j) { return seen_[j][axis]; });
       to.p_BT[axis] = -line.at_begin;
@@ -141,8 +141,8 @@ Eigen::Matrix3Xd Relive::relive(TwinMover& mover, TwinWindow& window, Eigen::Vec
   return best;
 }
 
-/// Where friction holds an axis for a while, what follows of its first velocity is found by a
-/// difference, once for each time that a straight line led nowhere.
+/// If friction holds an axis for a while, the effect of its first velocity is found by a
+/// difference, once for each time that a straight line gave no improvement.
 void Relive::find_direction(TwinMover& mover, const TwinWindow& window,
                             const Eigen::Matrix3Xd& best, Eigen::Vector3d& share, TwinStart& to) {
   constexpr double kFaster = 1e-4;  // m/s

@@ -11,43 +11,43 @@
 
 namespace thimble::twin {
 
-/// A piece of a recording that a twin relives from the recording's own state.
+/// A piece of a recording that a twin replays from the recording's own state.
 struct TwinWindow {
-  std::size_t stretch = 0;      ///< Which.
-  std::size_t begin = 0;        ///< Its first tick, in the stretch.
-  double time = 0;              ///< Of its first tick since that of the first window, s.
-  TwinStart start{};            ///< With which the twin was last nearest.
-  Eigen::Matrix3Xd motion_B{};  ///< What was recorded less a straight line, m, tick by tick.
-  std::vector<bool> seen{};     ///< The ticks that had a report.
+  std::size_t stretch = 0;      ///< Index of the stretch.
+  std::size_t begin = 0;        ///< First tick, in the stretch.
+  double time = 0;              ///< Time of the first tick since that of the first window, s.
+  TwinStart start{};            ///< Best start of the last twin.
+  Eigen::Matrix3Xd motion_B{};  ///< Recorded motion less a straight line, m, tick by tick.
+  std::vector<bool> seen{};     ///< Ticks with a report.
 };
 
-/// How far a twin was from a recording.
+/// Error of a twin.
 struct Relived {
   std::vector<Eigen::Matrix3Xd> error_B;  ///< Twin less recorded, m, tick by tick of each window.
-  double square = 0;      ///< Of the errors at ticks that had a report, summed, m^2.
-  std::size_t count = 0;  ///< Such ticks.
+  double square = 0;                      ///< Sum of squared errors over ticks with a report, m^2.
+  std::size_t count = 0;                  ///< Number of such ticks.
 
   /// Returns the error of an axis, RMS over all axes, m.
   double rms() const;
 };
 
-/// Lets twins relive one recording in windows, so that what drifts does not hide the constants.
+/// Replays one recording on twins in windows, so that drift does not hide the constants.
 ///
-/// Where and how fast the tip was when a window began is known from encoders' steps alone, so each
-/// twin begins where it comes nearest: place and velocity of each axis are fitted by Gauss-Newton,
-/// and with them how cables are stretched (start_fit.h); every other difference is the constants'.
-/// Real-time: never from the servo thread.
+/// Position and velocity of the tip at the start of a window are known only from encoder steps. So
+/// the start of each twin is fitted: position and velocity of each axis by Gauss-Newton, and with
+/// them the stretch of the cables (start_fit.h). All remaining differences are due to the
+/// constants. Real-time: never from the servo thread.
 class Relive {
  public:
-  /// Cuts a recording into windows of `length` (s), one behind the other. Fails if there are none.
+  /// Cuts a recording into consecutive windows of `length` (s). Fails if there are none.
   static driver::Result<Relive> make(const TwinMotion& motion, double length);
 
-  /// Lets the arm of a file relive all windows. Fails if it cannot be simulated.
+  /// Replays all windows on the arm of a file. Fails if it cannot be simulated.
   driver::Result<Relived> operator()(const scene::ArmFile& file);
 
   const std::vector<TwinWindow>& windows() const { return windows_; }
   const TwinMotion& motion() const { return *motion_; }
-  /// Returns the ticks of a window.
+  /// Returns the number of ticks of a window.
   std::size_t ticks() const { return ticks_; }
 
  private:
@@ -61,9 +61,9 @@ class Relive {
   const TwinMotion* motion_;
   std::size_t ticks_;
   std::vector<TwinWindow> windows_;
-  std::vector<StartFit> soft_;  // of each window, where cables stretch
+  std::vector<StartFit> soft_;  // for each window, with elastic cables
   std::vector<Eigen::Vector3d> seen_;
-  bool settled_ = false;  // the starts were sought widely
+  bool settled_ = false;  // the starts were searched over a wide range
 };
 
 }  // namespace thimble::twin

@@ -10,14 +10,14 @@ namespace {
 
 using Numbers = Eigen::Matrix<double, StartFit::kNumbers, 1>;
 
-constexpr int kRounds = 6;         // of Gauss-Newton, at the most
-constexpr int kAnew = 3;           // so often the first fit takes its differences
-constexpr int kHalves = 2;         // of a step that leads nowhere
-constexpr double kSettled = 1e-4;  // of the square: less is no gain
-constexpr double kRidge = 1e-9;    // of a number's own: where a cable is too stiff to show its rate
+constexpr int kRounds = 6;  // max. rounds of Gauss-Newton
+constexpr int kAnew = 3;    // max. number of times that the first fit computes its differences
+constexpr int kHalves = 2;  // halvings of a step without improvement
+constexpr double kSettled = 1e-4;  // of the square: a smaller gain is none
+constexpr double kRidge = 1e-9;    // of a number's own: for cables too stiff to show their rate
 
-/// Steps of the differences: a fraction of what the encoders resolve of each, so that friction
-/// turns round at the same tick. [chosen]
+/// Steps of the differences: a fraction of the encoders' resolution of each, so that friction
+/// reverses at the same tick. [chosen]
 const Numbers& steps() {
   static const Numbers all = [] {
     Numbers step;
@@ -37,7 +37,7 @@ TwinStart moved(const TwinStart& start, const Numbers& by) {
           .stretch_rate = start.stretch_rate + by.segment<3>(9)};
 }
 
-/// Returns where a twin was beside the recording, m, tick by tick.
+/// Returns the difference between a twin and the recording, m, tick by tick.
 Eigen::Matrix3Xd error_of(TwinMover& mover, const TwinMotion& motion, const TwinWindow& window,
                           const TwinStart& start) {
   std::vector<Eigen::Vector3d> seen(window.seen.size());
@@ -50,7 +50,7 @@ Eigen::Matrix3Xd error_of(TwinMover& mover, const TwinMotion& motion, const Twin
   return error;
 }
 
-/// Returns the errors at the ticks that had a report, one below the other.
+/// Returns the errors at the ticks with a report as one vector.
 Eigen::VectorXd of_reports(const Eigen::Matrix3Xd& error, const std::vector<bool>& seen) {
   const auto count = std::count(seen.begin(), seen.end(), true);
   Eigen::VectorXd column(3 * count);
@@ -107,7 +107,7 @@ Eigen::Matrix3Xd StartFit::operator()(TwinMover& mover, const TwinMotion& motion
       reports = std::move(there);
     }
     if (gained < kSettled && anew == 0) break;
-    // What the differences foresaw well serves on.
+    // Differences whose prediction was good are kept.
     old = gained < 0.5;
   }
   least.setZero();

@@ -11,17 +11,18 @@ namespace thimble::twin {
 
 struct TwinWindow;
 
-/// Fits how a window began where motors and links move apart: place and velocity of the tip, and
-/// stretch and rate of each cable, twelve numbers, by Gauss-Newton.
+/// Fits the start of a window if motors and links move separately. Twelve numbers are found by
+/// Gauss-Newton: position and velocity of the tip, and stretch and rate of each cable.
 ///
-/// Twins of nearly the same constants move alike about a start, so that the differences are taken
-/// once, by the first, and serve all that come later. Real-time: never from the servo thread.
+/// Twins with nearly the same constants respond equally near a start, so the derivatives are
+/// computed once, for the first twin, and reused for later ones. Real-time: never from the servo
+/// thread.
 class StartFit {
  public:
   static constexpr int kNumbers = 12;
 
-  /// Moves `window.start` to where the mover comes nearest. Returns the errors in the base, m, tick
-  /// by tick; `least`: their squares, summed over the ticks that had a report, m^2.
+  /// Moves `window.start` to the best start of the mover. Returns the errors in the base, m, tick
+  /// by tick; `least`: their squares, summed over the ticks with a report, m^2.
   Eigen::Matrix3Xd operator()(TwinMover& mover, const TwinMotion& motion, TwinWindow& window,
                               Eigen::Vector3d& least);
 
@@ -30,7 +31,7 @@ class StartFit {
   void differ(TwinMover& mover, const TwinMotion& motion, const TwinWindow& window,
               const Eigen::Matrix3Xd& error);
 
-  Eigen::MatrixXd slopes_;  // of the errors at ticks that had a report, over each number's step
+  Eigen::MatrixXd slopes_;  // of the errors at ticks with a report, per step of each number
   Eigen::LDLT<Eigen::Matrix<double, kNumbers, kNumbers>> normal_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPart = 0.02;  // of a constant: the step of a difference
 
-/// Where the world's down is in the base.
+/// Downward direction of the world in the base.
 Eigen::Vector3d down_B(const scene::ArmFile& file) {
   return file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
 }
@@ -23,7 +23,7 @@ struct JointConstant {
   Eigen::Vector3d device_sim::DriveTrainSettings::*member;
 };
 
-/// Adds motors and cables, which the motion shows where the cables stretch, else the friction of
+/// Adds motors and cables, which motion shows if the cables are elastic, else the friction of
 /// joints; and the currents' lag.
 void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all) {
   using device_sim::DriveTrainSettings;
@@ -106,7 +106,7 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
          .get = [i](const scene::ArmFile& arm) { return arm.model.drives[i].torque_constant; },
          .set = [i](scene::ArmFile& arm, double to) { arm.model.drives[i].torque_constant = to; }});
   }
-  // Motion shows the sum of both ways alone.
+  // Motion only shows the sum of both delays.
   all.push_back({.key = "simulation.wire.delay_in + delay_out",
                  .unit = "s",
                  .step = 5e-5,

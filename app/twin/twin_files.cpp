@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMicro = 1e6;
 
-/// Returns by how many percent an error changes; what rounds to nothing is 0, not -0.
+/// Returns the change of an error in percent; -0 becomes 0.
 double changed(double before, double after) {
   const double percent = before > 0 ? 100 * (after / before - 1) : 0;
   return std::abs(percent) < 0.05 ? 0 : percent;
@@ -53,7 +53,7 @@ std::string spectrum_table(const TwinComparison& comparison) {
   return text.str();
 }
 
-/// The window in which the twin was farthest off.
+/// The window with the largest error.
 std::size_t worst_window(const TwinTrace& trace) {
   std::size_t worst = 0;
   double most = -1;
@@ -90,7 +90,7 @@ std::string heading(const std::string& title) {
          report::kInk + "'\n";
 }
 
-// Three colours apart for colour-blind eyes too [M Okabe and Ito].
+// Three colours that are distinct for colour-blind users [M Okabe and Ito].
 constexpr const char* kAxisInk[] = {"#0072b2", "#d55e00", "#009e73"};
 
 std::string plots(const char* file, const char* style, int first, const std::string& titles,

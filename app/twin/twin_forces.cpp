@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kHalf = 0.03;            // s, half of a bump [as identify has it]
+constexpr double kHalf = 0.03;            // s, half of a bump [as in identify]
 constexpr double kBetween = 0.01;         // s from one piece to the next
-constexpr double kDirectionSpan = 0.005;  // s to each side, over which the direction is taken
-constexpr double kStands = 3;             // times the encoders' error: a way that is none
+constexpr double kDirectionSpan = 0.005;  // s to each side, for the direction of motion
+constexpr double kStands = 3;             // times the encoders' error: a smaller motion is none
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// A bump (1 - s^2)^n with its derivatives at each tick of a piece, and between two. Four of them
@@ -31,7 +31,7 @@ struct Bump {
 
   Bump(double dt, int n) : half(std::lround(kHalf / dt)) {
     const double width = static_cast<double>(half) * dt;
-    // So that its integral is 1: those of (1 - s^2)^3 and (1 - s^2)^5 from -1 to 1.
+    // Scaled so that its integral is 1: those of (1 - s^2)^3 and (1 - s^2)^5 from -1 to 1.
     const double scale = (n == 3 ? 35.0 / 32 : 693.0 / 512) / width;
     const auto power = [](double u, int times) {
       double product = 1;
@@ -67,9 +67,9 @@ struct Bump {
 /// One piece of motion, smoothed, in the base.
 struct Piece {
   Vector3d p{0, 0, 0}, v{0, 0, 0}, a{0, 0, 0};
-  Vector3d direction{0, 0, 0};  // mean of the velocity's sign; not a number on an axis that stands
-  Vector3d motors{0, 0, 0};     // N
-  Vector3d fourth{0, 0, 0};     // derivative of the place, m/s^4
+  Vector3d direction{0, 0, 0};      // mean sign of the velocity; not a number at rest
+  Vector3d motors{0, 0, 0};         // N
+  Vector3d fourth{0, 0, 0};         // derivative of the position, m/s^4
   Vector3d motors_second{0, 0, 0};  // derivative of their force, N/s^2
 };
 
@@ -90,7 +90,7 @@ Piece piece_at(const std::vector<TwinSample>& stretch, const std::vector<Vector3
     if (!bump.fourth.empty()) piece.fourth += bump.fourth[k] * p;
     const Vector3d way = at(j + slope).p_BT - at(j - slope).p_BT;
     for (int i = 0; i < 3; ++i) {
-      // Written so that an axis that once stood stays out.
+      // Written so that an axis that once stood still remains excluded.
       piece.direction[i] +=
           std::abs(way[i]) > stands ? bump.value[k] * (way[i] > 0 ? 1 : -1) : kNone;
     }
@@ -105,7 +105,7 @@ Piece piece_at(const std::vector<TwinSample>& stretch, const std::vector<Vector3
   return piece;
 }
 
-/// Returns what the motors pulled a tip with in each tick of a stretch, N in the base.
+/// Returns the force of the motors on a tip in each tick of a stretch, N in the base.
 std::vector<Vector3d> pulls_of(const std::vector<TwinSample>& stretch, const TwinMotors& motors,
                                const TwinDelay& delay, double dt) {
   std::vector<Vector3d> pulls(stretch.size(), Vector3d::Zero());
@@ -119,11 +119,11 @@ std::vector<Vector3d> pulls_of(const std::vector<TwinSample>& stretch, const Twi
   return pulls;
 }
 
-/// What cables that stretch do to forces on the tip in one pose. Motors move as the encoders say,
-/// x, and pull the tip by what is left of their force f, c = f - M_r x'' - b_r x'; the tip is
+/// Effect of elastic cables on forces at the tip in one pose. Motors move as the encoders report,
+/// x, and pull the tip by the remainder of their force f, c = f - M_r x'' - b_r x'. The tip is
 /// behind them by C c, with M_r = G^T I G, b_r = G^T b G and C = G^-1 K^-1 G^-T. So m times its
-/// acceleration is m (x'' - C c''), in which damping of cables and derivatives of friction are left
-/// out: below 20 Hz they are a hundredth.
+/// acceleration is m (x'' - C c''), in which damping of cables and derivatives of friction are
+/// neglected: below 20 Hz they are a hundredth.
 struct CablesInPose {
   Eigen::Matrix3d rotors, rubbing, give;
 
@@ -134,15 +134,15 @@ struct CablesInPose {
     give = J * train.stiffness.cwiseInverse().asDiagonal() * J.transpose();
   }
 
-  /// Returns what motion needs beyond a rigid arm's, N in the base.
+  /// Returns the force that motion needs in addition to that of a rigid arm, N in the base.
   Vector3d needed(const Piece& piece, double mass) const {
     return rotors * piece.a + rubbing * piece.v -
            mass * (give * (piece.motors_second - rotors * piece.fourth));
   }
 };
 
-/// Returns what joints that are one with their motors take of a piece, N in the base; not a number
-/// where one of them stands that rubs.
+/// Returns the friction of joints that are rigidly connected to their motors in a piece, N in the
+/// base. Not a number if a joint with friction stands still.
 Vector3d rubbed(const device_sim::DriveTrainSettings& train, const std::vector<TwinSample>& stretch,
                 std::size_t middle, const Bump& bump, double dt, double step_error) {
   Vector3d force(0, 0, 0);
@@ -164,7 +164,8 @@ Vector3d rubbed(const device_sim::DriveTrainSettings& train, const std::vector<T
   return force;
 }
 
-/// Turns a force into the world: an axis that stands spoils those alone that it has a part in.
+/// Transforms a force into the world: an axis that stands still invalidates only the components
+/// that contain it.
 Vector3d turned(const Eigen::Matrix3d& R_WB, const Vector3d& f_B) {
   constexpr double kNoPart = 1e-9;
   Vector3d f_W(0, 0, 0);
@@ -176,7 +177,7 @@ Vector3d turned(const Eigen::Matrix3d& R_WB, const Vector3d& f_B) {
   return f_W;
 }
 
-/// The normal equations of a hand: other = -mass a - damping v - stiffness p + what holds it there.
+/// The normal equations of a hand: other = -mass a - damping v - stiffness p + constant force.
 class HandFit {
  public:
   void add(const Piece& piece, const Vector3d& other) {
@@ -208,7 +209,7 @@ class HandFit {
   double square_ = 0;
 };
 
-/// Returns what a piece makes of noise of 1 m at each tick, N RMS of an axis.
+/// Returns the effect of noise of 1 m at each tick on a piece, N RMS of an axis.
 double noise_of(const Bump& bump, double mass, const device_sim::DriveTrainSettings& train,
                 const TwinMotion& motion) {
   double of_second = mass, of_fourth = 0;  // kg, kg s^2

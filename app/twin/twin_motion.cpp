@@ -15,7 +15,7 @@
 namespace thimble::twin {
 namespace {
 
-constexpr double kSameTip = 0.5e-3;  // m, that a tip may lie beside where its joint angles put it
+constexpr double kSameTip = 0.5e-3;  // m, allowed difference between a tip and its joint angles
 constexpr double kShortest = 2;      // s of motion under forces that a comparison needs
 constexpr double kForceSeen = 0.05;  // N (rms), below which a recording holds no force
 
@@ -23,8 +23,8 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// The arm's description that the recording was made with: its torque constants say what currents
-/// went out.
+/// The arm's description in the recording: its torque constants convert forces to the sent
+/// currents.
 driver::Result<scene::ArmFile> arm_of(const session::RecordingInfo& info) {
   auto yaml = scene::YamlFile::parse(info.arm_text, "arm file in the recording");
   if (!yaml) return yaml.error();
@@ -75,7 +75,7 @@ class Reader {
   }
 
  private:
-  /// The time between two ticks, by most of them; missed ticks are gaps in their numbers.
+  /// The usual time between two ticks; missed ticks are gaps in their numbers.
   driver::Result<void> find_rate() {
     const auto& ticks = recording_.ticks;
     std::vector<std::int64_t> steps;
@@ -105,13 +105,13 @@ class Reader {
         kShortest)};
   }
 
-  /// Returns whether nothing was missed between two ticks, and neither was late.
+  /// Returns whether no tick between two ticks was missed, and neither was late.
   bool follows(const driver::TickRecord& before, const driver::TickRecord& tick) const {
     const double step = 1e-9 * static_cast<double>(tick.time_ns - before.time_ns);
     return tick.tick == before.tick + 1 && std::abs(step - motion_.dt) < 0.5 * motion_.dt;
   }
 
-  /// Takes a tick into the present stretch; false if it has no pose.
+  /// Adds a tick to the present stretch; false if it has no pose.
   bool take(const driver::TickRecord& tick) {
     const Eigen::Vector3d q = vector_of(tick.q);
     const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * vector_of(tick.f_sent_W);

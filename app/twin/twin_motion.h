@@ -10,38 +10,37 @@
 
 namespace thimble::twin {
 
-/// What a recording tells of one tick. Frames: B base, T tip.
+/// Recorded data of one tick. Frames: B base, T tip.
 struct TwinSample {
-  Eigen::Vector3d p_BT{0, 0, 0};  ///< Where the encoders said the tip was, m.
-  /// d q / d p_BT there, rad/m: torques pull on the tip by `G^T tau`.
+  Eigen::Vector3d p_BT{0, 0, 0};  ///< Tip position from the encoders, m.
+  /// d q / d p_BT there, rad/m: torques exert the force `G^T tau` on the tip.
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d amperes{0, 0, 0};  ///< That were sent to the motors, and stand to the next tick.
-  bool fresh = false;                ///< A new report told the position.
+  Eigen::Vector3d amperes{0, 0, 0};  ///< Currents sent to the motors, held to the next tick.
+  bool fresh = false;                ///< The position is from a new report.
 };
 
-/// The motion of an arm that was recorded, with what its motors were sent.
+/// The recorded motion of an arm, with the currents of its motors.
 struct TwinMotion {
   double dt = 0;                                       ///< s between ticks
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
-  /// Stretches without a missing tick, in which forces went out; none is shorter than kLead.
+  /// Stretches without a missing tick, in which forces were sent; none is shorter than kLead.
   std::vector<std::vector<TwinSample>> stretches;
-  double step_error = 0;          ///< RMS that the encoders' steps leave of an axis, m.
-  std::vector<std::string> told;  ///< What a person should know of the recording, a sentence each.
+  double step_error = 0;          ///< RMS error of an axis that the encoders' steps cause, m.
+  std::vector<std::string> told;  ///< Messages about the recording for the user, a sentence each.
 
-  /// What a twin's forces may be late by at the most, s: so much of a stretch comes before its
-  /// first window.
+  /// Max. delay of a twin's forces, s: this part of a stretch precedes its first window.
   static constexpr double kLead = 0.025;
 };
 
-/// What of a recording is compared.
+/// Compared part of a recording.
 struct TwinSpan {
   double from = 0;      ///< s after its first tick.
   double until = 1e12;  ///< s
 };
 
-/// Finds the motion in a recording of the arm that a file describes. Fails if the recording is of
-/// another arm, holds no force, is too short, or if the arm cannot be simulated.
-/// Real-time: never from the servo thread.
+/// Extracts the motion from a recording of the arm that a file describes. Fails if the recording is
+/// of another arm, holds no force or is too short, or if the arm cannot be simulated. Real-time:
+/// never from the servo thread.
 driver::Result<TwinMotion> twin_motion(const session::Recording& recording,
                                        const scene::ArmFile& file, const TwinSpan& span = {});
 

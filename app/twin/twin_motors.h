@@ -10,8 +10,8 @@
 
 namespace thimble::twin {
 
-/// How recorded ticks reach the motors: within a tick the older currents last for the delay's
-/// fraction.
+/// Delay from recorded ticks to the motors: within a tick the previous currents last for the
+/// delay's fraction.
 struct TwinDelay {
   std::size_t whole = 0;  // ticks
   std::int64_t part_ns = 0, rest_ns = 0;
@@ -26,7 +26,7 @@ struct TwinDelay {
   }
 };
 
-/// What an arm's motors make of recorded currents.
+/// Converts recorded currents to torques.
 struct TwinMotors {
   Eigen::Vector3d torque_per_ampere;  // N m/A at the joints
   double current_max;                 // A

@@ -12,8 +12,8 @@ namespace thimble::twin {
 namespace {
 
 /// A rigid arm: the tip is a mass with friction, which each axis of the simulated arm moves exactly
-/// (plant/axis_dynamics.h). The joints' pull is taken where the recorded tip was, from which a
-/// twin is some micrometres away at the most.
+/// (plant/axis_dynamics.h). The joints' force is evaluated at the recorded tip, from which a twin
+/// differs by some micrometres at most.
 class RigidTwin final : public TwinMover {
  public:
   RigidTwin(const TwinMotion& motion, const scene::ArmFile& file,
@@ -23,7 +23,7 @@ class RigidTwin final : public TwinMover {
     for (const auto& stretch : motion.stretches) {
       std::vector<Pull> pulls(stretch.size());
       for (std::size_t k = delay_.whole + 1; k + 1 < stretch.size(); ++k) {
-        // Half-way, as the plant has it.
+        // Half-way, as in the plant.
         const Eigen::Matrix3d G = 0.5 * (stretch[k].G + stretch[k + 1].G);
         const auto pull = [&](std::size_t late) -> Eigen::Vector3d {
           return G.transpose() * motors.torque(stretch[k - late].amperes) + file.simulated.weight_B;
@@ -50,14 +50,14 @@ class RigidTwin final : public TwinMover {
   }
 
  private:
-  /// On the tip during a tick, weight and all, N.
+  /// Force on the tip during a tick, including weight, N.
   struct Pull {
     Eigen::Vector3d older{0, 0, 0}, newer{0, 0, 0};
   };
 
   TwinDelay delay_;
   device_sim::AxisDynamics dynamics_;
-  std::vector<std::vector<Pull>> pulls_;  // of each stretch, tick by tick
+  std::vector<std::vector<Pull>> pulls_;  // for each stretch, tick by tick
 };
 
 }  // namespace

@@ -11,27 +11,27 @@
 
 namespace thimble::twin {
 
-/// How an arm moves at a moment.
+/// State of motion of an arm.
 struct TwinStart {
-  Eigen::Vector3d p_BT{0, 0, 0};     ///< Where the encoders say the tip is, in the base, m.
-  Eigen::Vector3d v_BT{0, 0, 0};     ///< m/s
-  Eigen::Vector3d stretch{0, 0, 0};  ///< By which motors are ahead of links, rad at the joints.
+  Eigen::Vector3d p_BT{0, 0, 0};          ///< Tip position from the encoders, in the base, m.
+  Eigen::Vector3d v_BT{0, 0, 0};          ///< m/s
+  Eigen::Vector3d stretch{0, 0, 0};       ///< Lead of the motors over the links, rad at the joints.
   Eigen::Vector3d stretch_rate{0, 0, 0};  ///< rad/s
 };
 
-/// The simulated arm of a file with nobody's hand on it, moved by recorded currents from any state.
+/// The simulated arm of a file without a hand, driven by recorded currents from any state.
 /// Real-time: never from the servo thread.
 class TwinMover {
  public:
   virtual ~TwinMover() = default;
 
-  /// Moves the arm from `start` at the tick `begin` of a stretch, and tells where its encoders say
-  /// the tip is at each tick of `seen`, the first of which is the start. Precondition: kLead comes
-  /// before `begin`, and the stretch goes on for as long as `seen`.
+  /// Moves the arm from `start` at the tick `begin` of a stretch. Writes the tip position from its
+  /// encoders at each tick to `seen`; the first is the start. Precondition: kLead precedes `begin`,
+  /// and the stretch covers all of `seen`.
   virtual void move(std::size_t stretch, std::size_t begin, const TwinStart& start,
                     std::span<Eigen::Vector3d> seen) = 0;
 
-  /// Returns whether motors and links move apart. If not, a start's stretch is not looked at.
+  /// Returns whether motors and links move separately. If not, a start's stretch is ignored.
   virtual bool stretches() const noexcept { return false; }
 
  protected:

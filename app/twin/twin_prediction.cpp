@@ -14,11 +14,11 @@
 namespace thimble::twin {
 namespace {
 
-constexpr double kRate = 1000;  // Hz, at which arms are identified and recorded
-constexpr int kTriesMost = 64;  // that a stiffness is tried from [chosen]: half of them is known
-                                // to a sixteenth, which is one deviation
-constexpr int kClear = 8;       // more of one kind than of the other, and no further one is tried
-constexpr double kSpeed = 0.2, kSpeedSpan = 0.1;  // m/s of the hand, and how far starts differ
+constexpr double kRate = 1000;  // Hz, rate of identification and recording
+constexpr int kTriesMost = 64;  // max. number of tries of a stiffness [chosen]: half of them is
+                                // known to a sixteenth, which is one deviation
+constexpr int kClear = 8;       // majority after which no further one is tried
+constexpr double kSpeed = 0.2, kSpeedSpan = 0.1;  // m/s, mean speed of the hand and range of starts
 
 /// Tries walls at home, each from many starts.
 class WallStarts {
@@ -32,10 +32,10 @@ class WallStarts {
   /// Returns the stiffness by the law, N/m.
   double by_law() const { return carried_.stiffness_exact; }
 
-  /// Returns whether the hand comes to rest from more than half of the starts, on walls about as
-  /// stiff as this (N/m).
+  /// Returns whether the hand comes to rest from more than half of the starts, on walls of about
+  /// this stiffness (N/m).
   driver::Result<bool> mostly_rest(double stiffness) const {
-    int more = 0;  // that rest than that do not
+    int more = 0;  // excess of rests over others
     for (int i = 0; i < kTriesMost && std::abs(more) < kClear; ++i) {
       const auto touch = from(i, stiffness);
       if (!touch) return touch.error();
@@ -45,9 +45,9 @@ class WallStarts {
   }
 
  private:
-  /// Starts are spread evenly however many there are, by multiples of the golden section and of the
-  /// roots of 2 and 3: where within a step of the encoders the wall stands, how fast the hand
-  /// comes, and how stiff the wall is, within a step of raising it.
+  /// Any number of starts is spread evenly, by multiples of the golden section and of the roots of
+  /// 2 and 3. They vary the position of the wall within an encoder step, the speed of the hand, and
+  /// the stiffness of the wall, within one step of raising it.
   driver::Result<stability::WallTouch> from(int start, double stiffness) const {
     const auto spread = [start](double by) {
       const double at = by * (start + 0.5);
@@ -69,10 +69,10 @@ class WallStarts {
   double quiet_;  // m
 };
 
-/// Finds the stiffest wall at home to 1 %. Whether a stiff one rests hangs on where it stands
-/// between two steps of the encoders and on how it is met, so that it is the median over these.
-/// Some walls beyond it rest from half of the starts again, and some below it hardly from half: so
-/// walls about as stiff count as well.
+/// Returns the stiffest wall at home to 1 %. Whether a stiff one rests depends on its position
+/// between two encoder steps and on the approach, so the result is the median over these. Some
+/// stiffer walls rest from half of the starts again, and some softer ones hardly from half, so
+/// walls of similar stiffness are included.
 driver::Result<double> stiffest_wall(const scene::ArmFile& arm,
                                      const stability::ArmDirection& direction) {
   const WallStarts starts(arm, direction);
@@ -85,7 +85,7 @@ driver::Result<double> stiffest_wall(const scene::ArmFile& arm,
 
 driver::Result<TwinPrediction> twin_prediction(const scene::ArmFile& file) {
   scene::ArmFile arm = file;
-  // Tremor is drawn anew in each run, and no constant of the arm.
+  // Tremor is random in each run, and not a constant of the arm.
   arm.simulated.hand.tremor_amplitude = 0;
   const auto direction = stability::worst_direction_at_home(arm);
   if (!direction) return direction.error();

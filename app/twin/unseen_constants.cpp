@@ -37,7 +37,7 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
     const auto key = [i](const char* name) { return fmt::format("joints.{}[{}]", name, i + 1); };
     const auto& was = recorded.model.encoders[i];
     const auto& is = file.model.encoders[i];
-    // What a count is worth at the joint.
+    // Value of a count at the joint.
     if (differs(recorded.model.step(i), file.model.step(i))) {
       constexpr double kTurn = 2 * std::numbers::pi;
       differ(fmt::format("Counts per turn of joint {}", i + 1), kTurn / recorded.model.step(i),

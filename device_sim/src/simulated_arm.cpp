@@ -7,7 +7,7 @@ namespace thimble::device_sim {
 
 namespace {
 
-/// Finds where the hand wants the tip at the beginning.
+/// Returns the point where the hand wants the tip at the beginning.
 Eigen::Vector3d wanted_first(const HandPath& path, const Tremor& tremor) {
   HandPath way = path;
   Tremor first = tremor;
@@ -48,7 +48,7 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   if (!plant) return plant.error();
   const auto firmware = Firmware::make(board, settings.firmware);
   if (!firmware) return firmware.error();
-  // The plant was made of the same constants.
+  // The plant was made from the same constants.
   const auto tip = LoadedTip::make(settings.plant, settings.hand, settings.weight_B);
   if (!tip) return tip.error();
   return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *tip,
@@ -156,7 +156,7 @@ BoardBytes SimulatedArm::sample_now() noexcept {
   return report;
 }
 
-// The exact angles are asked for only where a count hangs on their last digits.
+// The exact angles are computed only if a count depends on their last digits.
 void SimulatedArm::sample_into(BoardBytes& report) noexcept {
   const std::uint16_t number = number_++;
   const Eigen::Vector3d turned = gimbal();
@@ -169,7 +169,7 @@ void SimulatedArm::sample_into(BoardBytes& report) noexcept {
 void SimulatedArm::restart_board() noexcept {
   firmware_.restart(plant().q(), gimbal());
   mechanics().set_currents(firmware_.currents());
-  // What is on its way meets a board that does not run.
+  // Frames in flight are lost, because the board is not running.
   while (!messages_.empty()) messages_.pop();
   while (!reports_.empty()) reports_.pop();
   readable_ = 0;
@@ -226,7 +226,7 @@ void SimulatedArm::send(WireQueue& queue, std::span<const std::byte> bytes,
     due_ns +=
         static_cast<std::int64_t>(wire_chance_.uniform() * static_cast<double>(wire_.jitter_ns));
   }
-  // Nothing overtakes: what is due before the frame ahead of it arrives with that one.
+  // Frames keep their order: one that is due before the previous frame arrives with it.
   queue.push(bytes, due_ns);
 }
 

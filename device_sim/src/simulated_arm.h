@@ -24,94 +24,93 @@
 
 namespace thimble::device_sim {
 
-/// A whole arm on the far side of the wire: plant, encoders, motors, firmware and a hand, driven
-/// by time alone. It speaks the bytes of the real arm and shares no state with the driver.
+/// A complete arm at the other end of the wire: plant, encoders, motors, firmware and a hand,
+/// driven by time only. It exchanges the bytes of the real arm and shares no state with the driver.
 ///
-/// Events in time order: at each report period (the first at time 0) the firmware samples the
-/// encoders; `delay_in` later the host can read that report; a message of the host reaches the
-/// motors `delay_out` after its write; the watchdog fires when no message came for its time. At
-/// equal times the encoders are sampled first, then messages arrive, then the watchdog looks: a
-/// report shows the state before a message of the same moment, and a message just in time keeps the
-/// motors on. Without delay that makes an ideal zero-order hold: a host that reads at k periods and
-/// writes at once sees the sample of that very moment, and its force acts from there on.
+/// Events in time order. At each report period (the first at time 0) the firmware samples the
+/// encoders; `delay_in` later the host can read that report. A message of the host reaches the
+/// motors `delay_out` after its write. The watchdog fires when no message came within its time. At
+/// equal times the encoders are sampled first, then messages arrive, then the watchdog is checked.
+/// So a report shows the state before a message of the same moment, and a message just in time
+/// keeps the motors on. Without delay this is an ideal zero-order hold. A host that reads at k
+/// periods and writes at once sees the sample of that very moment, and its force acts from then on.
 ///
-/// Between events the plant moves by its exact map, in sub-steps of at most 1 ms during which the
-/// point that the hand wants moves evenly; a corner of the path inside a sub-step is cut.
-/// Once it is made nothing allocates. All functions but `make` are Real-time: safe; how long
-/// advance_to takes grows with the time that passes.
+/// Between events the plant moves by its exact map, in sub-steps of at most 1 ms. The hand's point
+/// moves at constant velocity in each; a corner of the path inside a sub-step is cut. Nothing
+/// allocates after `make`. All functions but `make` are Real-time: safe; the duration of advance_to
+/// grows with the time that passes.
 class THIMBLE_EXPORT SimulatedArm {
  public:
-  /// Makes the arm at rest at the path's first point, with time 0. `seed` sets the tremor's phases,
-  /// and which frames are late or lost and which edges are missed.
-  /// Fails if a constant is out of range or the path's start is out of reach. Real-time: never from
-  /// the servo thread.
+  /// Makes the arm at rest at the path's first point, with time 0. `seed` determines the tremor's
+  /// phases, late and lost frames, and missed edges. Fails if a constant is out of range or the
+  /// path's start is out of reach. Real-time: never from the servo thread.
   static driver::Result<SimulatedArm> make(const driver::JointModel<driver::SerialArm>& model,
                                            const SimulatedArmSettings& settings, HandPath path,
                                            std::uint64_t seed = 0);
-  /// Makes an arm with a linkage (Polhem) in the same way.
+  /// As above, for an arm with a linkage (Polhem).
   static driver::Result<SimulatedArm> make(const driver::JointModel<driver::LinkageArm>& model,
                                            const SimulatedArmSettings& settings, HandPath path,
                                            std::uint64_t seed = 0);
 
-  /// Lets time pass up to `time_ns`; a time in the past does nothing.
+  /// Advances to `time_ns`; a time in the past does nothing.
   void advance_to(std::int64_t time_ns) noexcept;
 
-  /// Copies the newest report that the host can read at the present time; returns its size, or 0 if
-  /// none came since the last call. `skipped` tells how many older ones were dropped. A report
+  /// Copies the newest report that the host can read at the present time. Returns its size, or 0 if
+  /// none came since the last call. `skipped` is set to the number of older ones dropped. A report
   /// longer than the buffer is cut.
   std::size_t take_report(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
 
-  /// Returns when the next report can be read, ns; never earlier than the present time.
+  /// Returns the time when the next report can be read, ns; not before the present time.
   std::int64_t next_report_ns() const noexcept;
 
-  /// Samples the encoders at the present time, for a board that speaks when it is spoken to; the
-  /// report does not go over the wire.
+  /// Samples the encoders at the present time, for a board that sends only when asked; the report
+  /// does not pass through the wire.
   BoardBytes sample_now() noexcept;
 
-  /// Hands the host's bytes to the wire at the present time.
+  /// Passes the host's bytes to the wire at the present time.
   void put_message(std::span<const std::byte> bytes) noexcept;
 
-  /// Returns the hand, to be led or held by whoever lets time pass.
+  /// Returns the hand. The caller that advances time may lead or hold it.
   Hand& hand() noexcept { return hand_; }
 
-  /// Lets the hand take the tip (which it does from the beginning) or let go of it: then nothing
-  /// but the arm's own mass and friction is there.
+  /// Makes the hand take the tip (as at the beginning) or let go of it; without the hand only the
+  /// arm's own mass and friction remain.
   void hold_tip(bool held) noexcept {
     held_ = held;
     mechanics().take_tip(tip_.dynamics(held));
   }
 
-  /// Fixes a mass (kg, 0: none) to the tip, in place of one that was fixed to it before;
-  /// gravity_B (m/s^2) pulls on it. Fails if it is negative or not finite. Real-time: never from
-  /// the servo thread.
+  /// Fixes a mass (kg, 0: none) to the tip and replaces an earlier one; gravity_B (m/s^2) acts on
+  /// it. Fails if it is negative or not finite. Real-time: never from the servo thread.
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B);
 
-  /// Restarts the board, as a reset of its microcontroller does while it is plugged in: motors off
-  /// until the next message, counters from zero where the arm is now, and what is on its way lost.
+  /// Restarts the board, like a reset of its microcontroller while it is plugged in. The motors are
+  /// off until the next message, the counters restart from zero at the present pose, and frames in
+  /// flight are lost.
   void restart_board() noexcept;
 
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
 
-  // What is true in the simulation, for tests and studies; a driver cannot see it.
+  // True state of the simulation, for tests and studies; a driver has no access to it.
 
   /// Returns the present time, ns.
   std::int64_t time_ns() const noexcept { return time_ns_; }
-  /// Shows the mechanics.
+  /// Returns the mechanics.
   const Plant& plant() const noexcept {
     return std::visit([](const auto& plant) -> const Plant& { return plant; }, plant_);
   }
-  /// Shows the board.
+  /// Returns the board.
   const Firmware& firmware() const noexcept { return firmware_; }
-  /// Returns how the gimbal is turned, rad; whether one is mounted or not.
+  /// Returns the gimbal angles, rad, whether or not a gimbal is mounted.
   Eigen::Vector3d gimbal() const noexcept {
     return gimbal_.at(1e-9 * static_cast<double>(time_ns_));
   }
-  /// Returns where the hand wants to be, m.
+  /// Returns the point where the hand wants to be, m.
   const Eigen::Vector3d& p_BH() const noexcept { return plant().p_BH(); }
-  /// Returns how many reports and messages the wire has lost (WireSettings::loss).
+  /// Returns the number of reports and messages that the wire has lost (WireSettings::loss).
   std::uint64_t wire_losses() const noexcept { return losses_; }
-  /// Returns how many reports or messages were lost because more than WireQueue::kFrames were in
+  /// Returns the number of reports or messages lost because more than WireQueue::kFrames were in
   /// flight.
   std::uint64_t wire_overflows() const noexcept { return reports_.dropped() + messages_.dropped(); }
 
@@ -149,8 +148,8 @@ class THIMBLE_EXPORT SimulatedArm {
   std::uint16_t number_ = 0;  // of the next report
   std::uint64_t losses_ = 0;
   WireQueue reports_, messages_;
-  BoardBytes newest_{};         // the newest report the host can read
-  std::uint32_t readable_ = 0;  // reports that became readable since the last was taken
+  BoardBytes newest_{};         // newest report that the host can read
+  std::uint32_t readable_ = 0;  // reports that became readable since one was last taken
 };
 
 }  // namespace thimble::device_sim

@@ -4,14 +4,14 @@
 
 namespace thimble::device_sim {
 
-/// Random numbers by SplitMix64 (Steele, Lea, Flood 2014): the same bits on every platform, which
+/// Random numbers by SplitMix64 (Steele, Lea, Flood 2014): bit-identical on every platform, which
 /// the distributions of the standard library do not promise. Real-time: safe.
 class SplitMix {
  public:
-  /// Begins the sequence of a seed.
+  /// Starts the sequence of a seed.
   explicit SplitMix(std::uint64_t seed) noexcept : state_(seed) {}
 
-  /// Returns the next number, evenly spread from 0 to below 1.
+  /// Returns the next number, uniform from 0 to below 1.
   double uniform() noexcept {
     state_ += 0x9e3779b97f4a7c15ULL;
     std::uint64_t z = state_;

@@ -18,7 +18,7 @@ std::unique_ptr<const Arm> make(const ArmModel& model) {
   return std::visit(
       [&]<class Geometry>(const Geometry& geometry) -> std::unique_ptr<const Arm> {
         if constexpr (std::is_same_v<Geometry, ToldArm>) {
-          return nullptr;  // no wire carries it
+          return nullptr;  // no wire has it
         } else {
           return std::make_unique<WireArm<Wire, Geometry>>(
               JointModel<Geometry>{geometry, model.drives, model.encoders, model.gimbal});
@@ -27,9 +27,9 @@ std::unique_ptr<const Arm> make(const ArmModel& model) {
       model.geometry);
 }
 
-/// Returns the model of an arm that tells where its tip is: a motor of a newton per ampere and an
-/// encoder along each axis of the base. Their steps stand for what such an arm can resolve, which
-/// nobody tells: 0.02 mm, as the arms do whose steps are known [DEVICES 2].
+/// Returns the model of an arm that reports its tip position: a motor of 1 N/A and an encoder along
+/// each axis of the base. The encoder step represents the resolution of such an arm, which the
+/// vendors do not state: 0.02 mm, as for arms with known steps [DEVICES 2].
 ArmModel told_model() noexcept {
   ArmModel model;
   model.geometry = ToldArm{};
@@ -39,7 +39,7 @@ ArmModel told_model() noexcept {
   return model;
 }
 
-// One line per language. The text lines carry all that the 14-byte reports do.
+// One line per protocol. The text lines carry all data of the 14-byte reports.
 constexpr std::array kArms{
     ArmRow{ArmKind::kPolhem,
            "hfab_14_byte",
@@ -74,7 +74,7 @@ constexpr std::array kArms{
     ArmRow{ArmKind::kHd, "hd_library", {BoardKind::kHdLibrary}, 1, false, ""},
 };
 
-// One line per build.
+// One line per geometry.
 constexpr std::array<ShapeRow, std::variant_size_v<ArmGeometry>> kShapes{{
     {"serial", nullptr},
     {"polhem", []() noexcept { return arm_model(hfab::polhem_model()); }},
@@ -99,8 +99,9 @@ std::span<const ShapeRow, std::variant_size_v<ArmGeometry>> arm_shapes() noexcep
 }
 
 ArmKind kind_of(BoardKind board) noexcept {
-  // What speaks text lines is asked for its model, so its own row comes before that of an arm that
-  // may also have such a board: the row whose usual board it is, else the first that has it.
+  // Select the row whose usual board it is, else the first that has it. A board with text lines
+  // reports its model when asked, so the row of that protocol is preferred to that of an arm that
+  // may also have such a board.
   const ArmRow* any = nullptr;
   for (const ArmRow& row : kArms) {
     const std::span<const BoardKind> boards(row.boards.data(), row.board_count);

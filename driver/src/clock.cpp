@@ -12,7 +12,7 @@ std::int64_t time_of(clockid_t id) noexcept {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
-/// Returns the clock that a loop goes by: one that the kernel can sleep by as well.
+/// Returns the clock of the loop: one that the kernel can also sleep by.
 clockid_t clock_of_loop() noexcept {
   const timespec past{};
   timespec now{};
@@ -21,8 +21,9 @@ clockid_t clock_of_loop() noexcept {
   return works ? CLOCK_BOOTTIME : CLOCK_MONOTONIC;
 }
 
-/// Returns how long the computer has been suspended since it was started, ns. The two clocks are
-/// not read at once: the mean of the times around it stands for CLOCK_MONOTONIC.
+/// Returns the time for which the computer has been suspended since boot, ns. The two clocks are
+/// not read at the same instant, so CLOCK_MONOTONIC is taken as the mean of its readings before and
+/// after.
 std::int64_t asleep_since_boot_ns() noexcept {
   const std::int64_t before = time_of(CLOCK_MONOTONIC);
   const std::int64_t boot = time_of(CLOCK_BOOTTIME);

@@ -10,7 +10,7 @@
 namespace thimble::driver {
 namespace {
 
-/// One leg's end in the leg's own frame, m.
+/// The end of one leg in the leg's own frame, m.
 struct LegEnd {
   double u, v, w;
 };
@@ -21,7 +21,7 @@ LegEnd leg_end(const DeltaArm& arm, std::size_t leg, const Eigen::Vector3d& p_BT
           -sin_a * p_BT.x() + cos_a * p_BT.y() - arm.s + arm.f, p_BT.z()};
 }
 
-/// How far each leg is from closing (m^2), and how that changes with tip and leg angles.
+/// Closure error of each leg (m^2), and its derivatives by tip and leg angles.
 struct Closure {
   Eigen::Vector3d error;
   Eigen::Matrix3d by_p;
@@ -54,9 +54,9 @@ Closure closure_at(const DeltaArm& arm, const Eigen::Vector3d& q,
 
 int DeltaArm::forward_from(const Eigen::Vector3d& p_begin, const Eigen::Vector3d& q,
                            Eigen::Vector3d& p_BT, Eigen::Matrix3d& J_BT) const noexcept {
-  // Newton's steps double the number of right digits each time; a step below 1 nm therefore leaves
-  // an error far below it. A long step is shortened, so that the search does not leave through the
-  // plane of the legs to the mirrored solution behind it.
+  // Newton's steps double the number of correct digits each time, so a step below 1 nm leaves a far
+  // smaller error. A long step is shortened, so that the search does not cross the plane of the
+  // legs to the mirrored solution behind it.
   constexpr double kClose = 1e-10;   // m
   constexpr double kStepMax = 0.03;  // m, a third of the workspace
   p_BT = p_begin;
@@ -90,7 +90,7 @@ std::optional<Eigen::Vector3d> DeltaArm::inverse(const Eigen::Vector3d& p_BT) co
     const LegEnd end = leg_end(*this, i, p_BT);
     const double side_squared = b * b - end.v * end.v;
     if (!(side_squared > 0)) return std::nullopt;
-    // In the leg's plane a triangle remains: upper link a, the rest rho, and the leg's end.
+    // In the leg's plane a triangle remains: upper link a, the remainder rho, and the leg's end.
     const double rho = std::sqrt(side_squared) + d + e;
     const double distance = math::hypot(end.u, end.w);
     const double cos_inner = (a * a + distance * distance - rho * rho) / (2 * a * distance);

@@ -16,30 +16,30 @@
 namespace thimble::driver {
 namespace {
 
-/// Time between two tries to have the zero force taken, ns: a frame of a full-speed bus.
+/// Time between two attempts to send the zero force, ns: a frame of a full-speed bus.
 constexpr std::int64_t kZeroAgain_ns = 1'000'000;
 
-/// Of an arm without encoder counts, a step of its position that counts as one, m: less than any
-/// arm here can resolve.
+/// For an arm without encoder counts: a change of position that counts as a step, m; less than the
+/// resolution of any arm here.
 constexpr double kPositionStep = 1e-6;
 
-/// A step of the tip while no report came that no motion of a hand explains, m: as far from where
-/// its velocity would have taken it as a tip may be from its home pose when forces are asked for
-/// (session/start_pose.h, which says why less does no harm). [chosen: within a silence that is no
-/// fault yet it takes a change of the velocity of 1 m/s]
+/// A step of the tip during a gap in the reports that no hand motion explains, m. It is measured
+/// from the position that the velocity predicts, and equals the max. distance from the home pose
+/// when forces are requested (session/start_pose.h explains why a smaller step is harmless).
+/// [chosen: within a silence that is no fault yet, it takes a change of the velocity of 1 m/s]
 constexpr double kUnseenStep = 0.02;
 
-/// Pole of the slowest velocity that the gate goes by, Hz, whatever filter a law asks for [chosen:
-/// that of the arms that ship, 1.6 ms behind the tip].
+/// Pole of the slowest velocity that the gate uses, Hz, whatever filter a law requests [chosen:
+/// that of the shipped arms, 1.6 ms behind the tip].
 constexpr double kGateCorner = 100;
 
-/// Returns the gate's own estimate; null where the one that laws get is as quick.
+/// Returns the gate's own estimator; null if the one for laws is as fast.
 std::unique_ptr<VelocityEstimator> own_estimate(double corner_frequency) {
   if (!(corner_frequency > 0 && corner_frequency < kGateCorner)) return nullptr;
   return std::make_unique<VelocityEstimator>(kGateCorner);
 }
 
-/// Returns the joint torques of currents as the message holds them, N m.
+/// Returns the joint torques of the currents in a message, N m.
 Eigen::Vector3d torque_of(const std::array<std::int16_t, 3>& mA,
                           const std::array<MotorDrive, 3>& motors) noexcept {
   Eigen::Vector3d tau;
@@ -93,10 +93,10 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<ArmLink> link,
         "continuous_current out of its file."};
   }
   std::unique_ptr<Device> device(new Device(std::move(link), settings));
-  // Whatever was in flight before, the motors start from zero. An arm that speaks only when spoken
-  // to may miss the first message while it starts up, so zero is said again with each wait.
+  // The motors start from zero, whatever message was in flight before. An arm that sends only when
+  // asked may miss the first message while it starts up, so zero is sent again with each wait.
   constexpr int kGreetings = 10;
-  constexpr int kAttempts = 100;  // reports of a form nobody knows, before giving up
+  constexpr int kAttempts = 100;  // reports that cannot be decoded, before giving up
   int attempt = 0;
   for (int greeting = 1; greeting <= kGreetings && !device->lost_; ++greeting) {
     device->send_zero();
@@ -141,7 +141,7 @@ void Device::begin_activity() noexcept {
   placed_ = programs_ = explained_ = false;
   active_ = true;
   insisted_ = false;
-  // The next tick begins with dt = 0 as the first one does, but no number comes twice.
+  // The next tick begins with dt = 0 like the first, but no tick number is repeated.
   if (started_) ++state_.tick;
   started_ = false;
 }
@@ -162,8 +162,8 @@ Result<void> Device::offer(std::unique_ptr<ArmLink> link) {
   return {};
 }
 
-/// Hands the lost link to the thread that closes it: its end may free memory and wait. Returns
-/// whether the place of the link is free.
+/// Passes the lost link to the thread that closes it, because its destructor may free memory and
+/// wait. Returns whether the slot of the link is free.
 bool Device::retire_link() noexcept {
   if (link_ == nullptr) return true;
   if (retired_.load(std::memory_order_acquire) != nullptr) return false;
@@ -172,7 +172,7 @@ bool Device::retire_link() noexcept {
 }
 
 void Device::take_offer(std::int64_t now_ns) noexcept {
-  // Without a place for the old link the offer is left for a later tick.
+  // If there is no room for the old link, the offer waits for a later tick.
   if (!retire_link()) return;
   ArmLink* const fresh = offered_.exchange(nullptr, std::memory_order_acq_rel);
   if (fresh == nullptr) return;
@@ -183,7 +183,7 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
   last_report_ns_ = quiet_since_ns_ = now_ns;
   forget_velocity();
   doubt_counts();
-  known_to_stand_ = insisted_ = false;  // of this link nothing is known
+  known_to_stand_ = insisted_ = false;  // nothing is known about this link
   send_zero();
 }
 
@@ -197,7 +197,7 @@ void Device::take_request() noexcept {
 void Device::deactivate() noexcept {
   active_ = false;
   send_zero();
-  // A converter reports on the message before, so that the next one may well go through.
+  // A converter reports on the previous message, so the next one may succeed.
   if (!zero_taken()) send_zero();
 }
 
@@ -208,12 +208,12 @@ bool Device::zero_assured() const noexcept {
 bool Device::insist_on_zero(Clock& clock) noexcept {
   insisted_ = true;
   const std::int64_t begin_ns = clock.now_ns();
-  // Counted, so that it ends with any clock.
+  // Counted, so that the loop ends with any clock.
   const std::int64_t tries = settings_.limits.watchdog_ns / kZeroAgain_ns + 1;
   for (std::int64_t i = 0; i < tries && !zero_assured() && !lost_; ++i) {
     if (clock.now_ns() - begin_ns > settings_.limits.watchdog_ns) break;
     clock.sleep_until_ns(clock.now_ns() + kZeroAgain_ns);
-    // A zero that is still on its way is waited for; one that failed on its way is sent again.
+    // Wait for a zero force in flight; send it again if it failed in flight.
     if (zero_taken() && link_->settled() == LinkStatus::kNothing) continue;
     if (!zero_assured()) send_zero();
   }
@@ -237,7 +237,7 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
   take_request();
   const bool first = !started_;
   if (!first) {
-    // What would follow is a force that grows the wrong way, and a silence that nobody notices.
+    // Otherwise forces would grow with the wrong sign, and a silence would go unnoticed.
     if (now_ns < state_.time_ns) gate_.trip(Fault::kTimeNotMonotonic);
     state_.dt = static_cast<double>(now_ns - state_.time_ns) * 1e-9;
     ++state_.tick;
@@ -257,9 +257,9 @@ const DeviceState& Device::read(std::int64_t now_ns, std::int64_t deadline_ns) n
   return state_;
 }
 
-/// Returns whether the arm has been silent for too long while it was listened to. Its counts are
-/// doubted then, unless the caller sent nothing: an arm that speaks only when spoken to is silent
-/// because the caller is.
+/// Returns whether the arm has been silent for too long while reads were made. Its counts are then
+/// doubtful, unless the caller sent nothing: an arm that sends only when asked is silent because of
+/// the caller.
 bool Device::follow_silence(std::int64_t now_ns) noexcept {
   listened_ns_ = now_ns;
   if (state_.fresh) {
@@ -279,7 +279,7 @@ const DeviceState& Device::idle(std::int64_t now_ns, std::int64_t deadline_ns) n
   if (started_) ++state_.tick;
   started_ = false;  // the next tick is the first one again
   if (now_ns - listened_ns_ > settings_.silence_limit_ns) {
-    quiet_since_ns_ = now_ns;  // the caller was away
+    quiet_since_ns_ = now_ns;  // the caller made no reads
     missed_in_a_row_ = 0;
   }
   state_.time_ns = now_ns;
@@ -327,13 +327,13 @@ void Device::take_extras(const ArmSample& sample) noexcept {
   if (!traits_.has_counts) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double steps = sample.pose.p_BT[static_cast<Eigen::Index>(i)] / kPositionStep;
-      // Written so that NaN counts as nothing.
+      // Written so that NaN counts as zero.
       state_.counts[i] =
           std::abs(steps) < INT32_MAX ? static_cast<std::int32_t>(std::lround(steps)) : 0;
     }
   }
   if (traits_.has_velocity) {
-    // A law gets the arm's own; the limit of speed holds for what the tip really did as well.
+    // A law gets the velocity of the arm; the speed limit also applies to the gate's own estimate.
     if (active_ && !(v_gate_W().norm() <= settings_.limits.speed_max)) {
       gate_.trip(Fault::kOverSpeed);
     }
@@ -357,9 +357,10 @@ void Device::take_extras(const ArmSample& sample) noexcept {
 }
 
 bool Device::jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept {
-  // 100 times gravity; impacts of a hand-held tip on a surface stay below 10 of them (5 N on 50 g).
+  // 100 times gravity. Impacts of a hand-held tip on a surface stay below 10 times gravity (5 N on
+  // 50 g).
   constexpr double kAcceleration = 1000;  // m/s^2
-  // Reports come in frames of 1 ms; a loop that is late sees them closer together than they are.
+  // Reports come in frames of 1 ms; a late loop reads them at shorter intervals.
   constexpr double kLeast = 1e-3, kMost = 5e-3;  // s
   const bool known = active_ && velocity_->primed() && !jumped_ && since_last < kMost;
   const double time = since_last > kLeast ? since_last : kLeast;
@@ -380,7 +381,7 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
   return off.squaredNorm() > kUnseenStep * kUnseenStep;
 }
 
-/// Passes a command through the gate; `held`: energy that the walls hold, J. Inlined by force:
+/// Passes a command through the gate; `held`: energy that the walls store, J. Always inlined:
 /// `write` calls it in every tick.
 [[gnu::always_inline]] inline void Device::pass_on(const ForceCommand& command,
                                                    double held) noexcept {
@@ -394,7 +395,7 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
   const LinkWrite sent = send(force);
   if (guarded || programs_) book(sent, force);
   if (sent.status != LinkStatus::kOk) {
-    // The arm may hold it all the same.
+    // The arm may have taken the force nevertheless.
     if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
     return keep_standing();
   }
@@ -414,7 +415,7 @@ void Device::hold_until(std::int64_t time_ns) noexcept {
   if (enabling_ != nullptr) enabling_->hold_until(time_ns);
 }
 
-/// Returns whether the enabling input is open, and sends zero force then.
+/// Returns whether the enabling input is open; if so, sends zero force.
 bool Device::wait_for_hold() noexcept {
   const bool waited = waiting_;
   waiting_ = !enabling_->held(state_);
@@ -438,18 +439,18 @@ void Device::stop_at_walls(const ForceCommand& command) noexcept {
   if (wall_counters_.f_W.squaredNorm() > wall_counters_.f_strongest_W.squaredNorm()) {
     wall_counters_.f_strongest_W = wall_counters_.f_W;
   }
-  stopped.f_program_W.setZero();  // what is left of it is not known, and is the gate's to fade
+  stopped.f_program_W.setZero();  // the part that remains of it is unknown, so the gate fades it
   pass_on(stopped, walls_->held(state_.p_WT));
 }
 
-/// Books the power where no stage keeps an account of work.
+/// Accounts the power if no stage keeps an account of work.
 void Device::book_power() noexcept {
   if (placed_) gate_.book_power(f_sent_W_.dot(state_.p_WT - p_power_WT_), state_.dt);
   p_power_WT_ = state_.p_WT;
   placed_ = true;
 }
 
-/// Passes a force of which a program asked for a part, less what an oscillation of it costs.
+/// Passes a force that includes a program's part, which is reduced if it oscillates.
 GatedForce Device::pass_program(const ForceCommand& command, double held) noexcept {
   const double share = gate_.program_share(command.f_program_W, state_.p_WT, state_.dt);
   ForceCommand kept = command;
@@ -482,7 +483,7 @@ void Device::send_zero() noexcept {
 
 void Device::keep_standing() noexcept {
   if (lost_ && !f_sent_W_.isZero(0)) {
-    // An arm that is gone is the business of its own watchdog, and gets nothing from us any more.
+    // A lost arm is stopped by its own watchdog and gets no more messages.
     f_sent_W_.setZero();
     known_to_stand_ = false;
     if (heat_.named()) heat_.sent({}, false);
@@ -492,7 +493,7 @@ void Device::keep_standing() noexcept {
 
 GatedForce Device::pass_guarded(const ForceCommand& command, double held) noexcept {
   const ArmPose& pose = sample().pose;
-  // Of a linear spring; what the gate cuts off a force holds no more than this.
+  // Energy of a linear spring; a force cut by the gate stores no more than this.
   held += 0.5 * command.f_T_W.norm() * command.touch.depth;
   EnergyFlow flow = work_->flow(traits_.motors ? pose.q : pose.p_BT, state_.p_WT, f_sent_W_, held);
   gate_.book_power(flow.work, state_.dt);
@@ -540,7 +541,7 @@ void Device::count_refusal(LinkStatus status) noexcept {
 void Device::lose() noexcept {
   lost_ = true;
   gate_.trip(Fault::kTransportLost);
-  // A message that had not left yet never will.
+  // A message that has not left yet never will.
   if (link_ != nullptr && link_->settled() != LinkStatus::kOk) known_to_stand_ = false;
   retire_link();
 }

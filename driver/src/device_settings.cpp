@@ -9,7 +9,7 @@
 namespace thimble::driver {
 namespace {
 
-/// How far from the world's origin an arm may stand, m [chosen: a room].
+/// Max. distance of an arm from the world's origin, m [chosen: a room].
 constexpr double kBaseMost = 10;
 
 bool is_limit(double value) noexcept {
@@ -17,9 +17,9 @@ bool is_limit(double value) noexcept {
 }
 
 bool is_rotation(const Eigen::Matrix3d& R) {
-  constexpr double kError = 1e-6;  // [chosen: what is left of digits in a file]
+  constexpr double kError = 1e-6;  // [chosen: the precision of numbers in a file]
   const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  // Written so that NaN is none; Eigen's maximum does not tell one.
+  // Written so that NaN is rejected; Eigen's maximum does not detect it.
   return R.allFinite() && off <= kError && R.determinant() > 0;
 }
 

@@ -27,7 +27,7 @@ Number number_in(const fs::path& file, int base) {
   return number;
 }
 
-/// Reads a string that a device tells of itself; signs that a terminal would obey become '?'.
+/// Reads a string of a device; control characters of a terminal become '?'.
 std::string device_string(const fs::path& file) {
   std::string text = read_line(file);
   std::replace_if(
@@ -35,7 +35,7 @@ std::string device_string(const fs::path& file) {
   return text;
 }
 
-/// Lists a folder in the order of names; nothing if it is none.
+/// Lists a folder, sorted by name; empty if it is not a folder.
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code ignored;
@@ -44,10 +44,10 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return found;
 }
 
-/// Lists what is named after a bus, a colon and more: of a device's folder its interfaces
-/// ("1-1:1.0"), of an interface's its HID devices ("0003:1234:0006.0001") [S
-/// linux/drivers/usb/core, drivers/hid/hid-core.c]. All else there is attributes, and links through
-/// which half of /sys would be read.
+/// Lists the entries whose name is that of a bus, a colon and more. In a device's folder these are
+/// its interfaces ("1-1:1.0"), in an interface's folder its HID devices ("0003:1234:0006.0001") [S
+/// linux/drivers/usb/core, drivers/hid/hid-core.c]. All other entries are attributes, and links
+/// that lead to half of /sys.
 std::vector<fs::path> bus_entries(const fs::path& folder) {
   std::vector<fs::path> found = entries(folder);
   std::erase_if(found, [](const fs::path& entry) {
@@ -66,15 +66,15 @@ HidReports descriptor_of(const fs::path& hid) {
       std::as_bytes(std::span(bytes).first(static_cast<std::size_t>(stream.gcount()))));
 }
 
-/// A hidraw node with what its device says of its reports.
+/// A hidraw node with its report descriptor.
 struct HidNode {
   std::string node;
   HidReports reports;
 };
 
 /// Finds a device's raw HID node: interface/bus:vendor:product.n/hidraw/hidrawN. A Teensy has a
-/// second one, its debug output, and nobody promises their order; so the usage page chooses, and
-/// the first stands in where none has it.
+/// second one, its debug output, and their order is not defined. So the node is selected by usage
+/// page; if none has it, the first node is used.
 HidNode hidraw_node(const fs::path& device) {
   HidNode found;
   for (const fs::path& interface : bus_entries(device)) {
@@ -119,8 +119,8 @@ std::string read_line(const fs::path& file) {
 }
 
 bool is_placeholder(std::string_view serial) noexcept {
-  // What boards carry whose makers gave them none: mbed's USB library has 0123456789 [S mbed
-  // USBDevice.cpp, stringIserialDesc]; the others are what such libraries and examples do alike.
+  // Serial numbers of boards whose makers set none: mbed's USB library has 0123456789 [S mbed
+  // USBDevice.cpp, stringIserialDesc]; the others are usual in such libraries and examples.
   constexpr std::string_view kCounted = "0123456789ABCDEF";
   const auto same = [&serial](char sign) { return sign == serial.front(); };
   return serial.empty() || std::all_of(serial.begin(), serial.end(), same) ||

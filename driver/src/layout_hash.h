@@ -13,13 +13,13 @@
 namespace thimble::driver {
 
 // A hash of the layout of a struct that processes of different builds share: names, types, offsets
-// and sizes of its fields, and of theirs in turn. Two builds with one hash read the same bytes
-// alike. A struct is described once, at global scope, by
+// and sizes of its fields, recursively. Two builds with the same hash read the same bytes in the
+// same way. A struct is described once, at global scope, by
 //
 //   THIMBLE_LAYOUT(thimble::some::Struct, first_field, second_field)
 //
 // and an enumeration by THIMBLE_LAYOUT_ENUM with its enumerators. A field or an enumerator that is
-// missing from the description is an error of the compiler. All of it is computed by the compiler.
+// missing from the description is a compile-time error. The hash is computed at compile time.
 
 /// Fields of a struct or enumerators of an enumeration; specialised by THIMBLE_LAYOUT and
 /// THIMBLE_LAYOUT_ENUM.
@@ -50,7 +50,7 @@ struct Layout {
   static constexpr std::uint64_t hash() noexcept {
     std::uint64_t hash = mix(kBegin, sizeof(T));
     if constexpr (std::is_same_v<T, char>) {
-      return mix(hash, "text");  // signed on one processor and not on another
+      return mix(hash, "text");  // signedness depends on the processor
     } else if constexpr (std::is_arithmetic_v<T>) {
       hash = mix(hash, std::is_floating_point_v<T> ? "float" : "integer");
       return mix(hash, std::is_same_v<T, bool> ? 2 : std::is_signed_v<T> ? 1 : 0);
@@ -85,7 +85,7 @@ struct Layout<Snapshot<T>> {
   }
 };
 
-/// What any field can be made from.
+/// A value that converts to the type of any field.
 struct AnyValue {
   template <class T>
   constexpr operator T() const noexcept;  // NOLINT(google-explicit-constructor)
@@ -98,7 +98,8 @@ constexpr bool takes_values(std::index_sequence<I...>) {
   };
 }
 
-/// Returns whether an aggregate has exactly `Count` fields: it takes as many values, and no more.
+/// Returns whether an aggregate has exactly `Count` fields: it can be initialised from `Count`
+/// values, but not from one more.
 template <class T, std::size_t Count>
 constexpr bool has_fields() {
   static_assert(std::is_aggregate_v<T>);
@@ -116,7 +117,7 @@ constexpr std::uint64_t layout_hash() noexcept {
 
 }  // namespace thimble::driver
 
-// Does something with each of up to 256 arguments [C++20, __VA_OPT__].
+// Applies a macro to each of up to 256 arguments [C++20, __VA_OPT__].
 #define THIMBLE_LAYOUT_PARENTHESES ()
 #define THIMBLE_LAYOUT_SCAN4(...) __VA_ARGS__
 #define THIMBLE_LAYOUT_SCAN3(...) \

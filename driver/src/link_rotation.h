@@ -5,8 +5,8 @@
 namespace thimble::driver {
 
 /// Returns the rotation R_BL of a link in the plane that a yaw turns round z: x along the link, y
-/// level. Takes cosine and sine of the yaw, and of the angle by which the link climbs from the
-/// level. Real-time: safe.
+/// level. Takes cosine and sine of the yaw, and of the link's angle above the horizontal.
+/// Real-time: safe.
 inline Eigen::Matrix3d link_rotation(double cos_yaw, double sin_yaw, double cos_climb,
                                      double sin_climb) noexcept {
   Eigen::Matrix3d R_BL;

@@ -8,7 +8,7 @@
 namespace thimble::driver {
 namespace {
 
-/// Finds the angle at the base of a triangle, between `base` and `side`, whose third side is
+/// Returns the angle at the base of a triangle, between `base` and `side`, whose third side is
 /// `across` (m); NaN if there is no such triangle.
 double angle_between(double base, double side, double across) noexcept {
   return math::acos((base * base + side * side - across * across) / (2 * base * side));
@@ -24,7 +24,7 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                          Eigen::Matrix3d& J_BT) const noexcept {
   const auto [sin_1, cos_1] = math::sin_cos(q[1]);
   const auto [sin_2, cos_2] = math::sin_cos(q[2]);
-  // From the crank's end to the elbow, and how that turns with q1 and q2.
+  // Vector from the crank's end to the elbow, and its derivatives by q1 and q2.
   const Eigen::Vector2d D(length_0 + length_1 * cos_1 - length_2 * cos_2,
                           length_1 * sin_1 - length_2 * sin_2);
   const Eigen::Vector2d D_by_1(-length_1 * sin_1, length_1 * cos_1);
@@ -32,7 +32,7 @@ void LinkageArm::forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
   // Bar 3 closes when |D - length_4 u| = length_3, u along the forearm: D.u = along.
   const double along =
       (D.squaredNorm() + length_4 * length_4 - length_3 * length_3) / (2 * length_4);
-  // acos of more than one is NaN, and stays NaN in all that follows.
+  // acos of more than one is NaN, and so are all later results.
   const double lambda = math::atan2(D.y(), D.x()) - math::acos(along / D.norm());
   const auto [sin_lambda, cos_lambda] = math::sin_cos(lambda);
   const Eigen::Vector2d u(cos_lambda, sin_lambda);
@@ -71,12 +71,12 @@ std::optional<Eigen::Vector3d> LinkageArm::inverse(const Eigen::Vector3d& p_BT) 
   const double q1 = math::atan2(tip.y(), tip.x()) + angle_between(tip.norm(), length_1, length_5);
   const Eigen::Vector2d elbow = length_1 * Eigen::Vector2d(math::cos(q1), math::sin(q1));
   const Eigen::Vector2d u = (tip - elbow) / length_5;
-  // From the back motor to where bar 3 meets the forearm's other end.
+  // From the back motor to the joint of bar 3 with the other end of the forearm.
   const Eigen::Vector2d joint = elbow - length_4 * u + Eigen::Vector2d(length_0, 0);
   const double middle = math::atan2(joint.y(), joint.x());
   const double aside = angle_between(joint.norm(), length_2, length_3);
   for (const double q2 : {middle + aside, middle - aside}) {
-    // `forward` turns clockwise from the crank's end to the forearm; so must this.
+    // `forward` turns clockwise from the crank's end to the forearm; so must this solution.
     const Eigen::Vector2d bar_3 = joint - length_2 * Eigen::Vector2d(math::cos(q2), math::sin(q2));
     if (!(cross(u, bar_3) > 0)) continue;
     return Eigen::Vector3d(math::atan2(p_BT.y(), p_BT.x()), q1, q2);

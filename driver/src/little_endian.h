@@ -25,8 +25,8 @@ inline void put_word(std::span<std::byte> bytes, std::size_t word, std::int16_t 
   std::memcpy(bytes.data() + 2 * word, &value, sizeof(value));
 }
 
-/// Writes four words from word number `word` on, as one of 64 bits: whoever reads several of them
-/// at once does not wait for each. Precondition: as put_word. Real-time: safe.
+/// Writes four words from word number `word` on, as one store of 64 bits: a later load of several
+/// of them does not wait for each store. Precondition: as put_word. Real-time: safe.
 inline void put_four_words(std::span<std::byte> bytes, std::size_t word,
                            const std::array<std::int16_t, 4>& values) noexcept {
   std::uint64_t all = 0;

@@ -12,47 +12,50 @@ namespace {
 // does not. Of 6000 such hands, 3.3 hours, one did not stay below: a stroke at 1.4 m/s from its
 // first tick on.
 
-// Forces that change by less in 20 ms do not tell the hand's part from the motors', N: a hand
-// makes 75 N/s at will. Then: what makes it doubtful, what is enough if it is sudden, what is
-// enough if it is not, and what no hand can follow, so that less has to be explained by it.
+// Force changes within 20 ms, N. Smaller changes do not separate the hand's part from the motors':
+// a hand makes 75 N/s at will. In order: the change that makes an arm doubtful; the required change
+// if it is sudden, and if it is not; and one that no hand can follow, which need explain less.
 constexpr double kDoubtfulChange = 1.4, kForceChange = 1.6, kLargeChange = 2.5, kJump = 3.5;
 // Share of the acceleration's changes that the force must explain.
 constexpr double kExplained = 0.83, kExplainedSudden = 0.5, kExplainedJump = 0.5;
-// The answer of the tip's acceleration to the force, as a share of that of the arm alone: a hand
-// that holds on makes it smaller, and its spring may hide most of it; nothing makes it much larger.
+// Response of the tip's acceleration to the force, as a share of that of the arm without a hand. A
+// hand that holds on makes it smaller, and its spring may hide most of it; nothing makes it much
+// larger.
 constexpr double kAnswerLeast = 0.15, kAnswerMost = 1.4;
-// Mass of a hand beyond that of the arm, kg, and of what its spring hides.
+// Mass of a hand in addition to that of the arm, kg, including the part hidden by its spring.
 constexpr double kHeaviest = 0.3;
-// Speed gained against the force, as a share of what the force would give to the arm alone.
+// Speed gained against the force, as a share of the speed that the force would give to the arm
+// without a hand.
 constexpr double kGainLeast = 0.2, kGainClear = 0.3, kGainMost = 3;
-// Of what is left when a steady trend is taken away (a hand that pulls harder and harder): the
-// force's change, N, and the answer.
+// Limits after removal of a steady trend (a hand that pulls harder and harder): the force's change,
+// N, and the response.
 constexpr double kSudden = 0.05, kSuddenLeast = 0.3, kSuddenMost = 2.5;
-// The right answer: less is asked of it, for it switches nothing off.
+// Thresholds of a correct response. They are lower, because it switches nothing off.
 constexpr double kProofChange = 0.7, kProofAnswer = 0.4;
-// What each window counts, and where it ends: one that is clear, or three that are doubtful.
+// Weights of a window for and against the motors, and the max. of their sum. From zero, one clear
+// window or three doubtful ones are a fault.
 constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 
-// A joint that does not count may be held by dry friction, or not be moved at all: a straight
+// A joint that does not count may be held by dry friction, or may not move at all. A straight
 // stroke may lie in the surface in which the other two joints move the tip, with a hand that takes
-// up any force along this one. 1 in some 5000 strokes into a wall does. Therefore coincidences are
-// counted: each leg of the tip's path, straight for kLeg, whose direction differs from that of the
-// leg counted before; and each multiple of kHeldByFriction by which the force along the joint has
-// changed, since a hand must take that up with a motion of its own. A fault needs a changed force,
-// kLegs legs, and kCoincidences of both together [chosen: no false alarm in the 160,000 strokes of
-// the long form of tests/unit/device_sim/motion_watch_test.cpp; one less gives the first ones]. Dry
-// friction of 0.26 N, the most of the arms that we know (Touch), holds 0.52 N from one direction to
-// the other.
-constexpr double kLeg = 0.0015, kSameWay = 0.9;  // m; cosine of the largest angle that is the same
+// up any force along this one. 1 in some 5000 strokes into a wall does. So coincidences are
+// counted. The first kind is each leg of the tip's path, straight for kLeg, whose direction differs
+// from that of the leg counted before. The second is each multiple of kHeldByFriction by which the
+// force along the joint has changed, since a hand must take that up with a motion of its own. A
+// fault needs a changed force, kLegs legs, and kCoincidences of both together [chosen: no false
+// alarm in the 160,000 strokes of the long form of tests/unit/device_sim/motion_watch_test.cpp; one
+// less gives the first ones]. Dry friction of 0.26 N, the largest of the arms that we know (Touch),
+// holds 0.52 N from one direction to the other.
+constexpr double kLeg = 0.0015, kSameWay = 0.9;  // m; min. cosine between equal directions
 constexpr double kHeldByFriction = 0.55;         // N
 constexpr int kLegs = 2, kForcesMost = 3, kCoincidences = 5;
-// A stroke so long (m) in which one joint under force never counts is no person's [chosen].
+// No person makes a stroke of this length (m) in which one joint under force never counts [chosen].
 constexpr double kLongWay = 0.02;
 constexpr std::uint32_t kStillBlocks = 5;  // in which a light tip answers by several counts
 
-// Below this force nothing is held, N [chosen: dry friction holds it].
+// Below this force the joint may simply be held, N [chosen: dry friction holds it].
 constexpr double kHeldForce = 0.3;
-// A tip of this speed (m/s) does not stand still from one block to the next for so long (s): 20 N
+// A tip of this speed (m/s) cannot stand still from one block to the next for this time (s). 20 N
 // would have to stop it, and it would spring back.
 constexpr double kStopSpeed = 0.2, kStopTime = 0.032;
 
@@ -91,7 +94,7 @@ Fault MotionWatch::judge(const DeviceState& state, const Eigen::Matrix3d& R_WB,
     block.time =
         1e-9 * (static_cast<double>(begin_ns_) + static_cast<double>(time_sum_ns_) / reports_);
     block.f_squared = block.f.squaredNorm();
-    // A force that was sent in the tick before acts from half a tick before this one on.
+    // A force sent in the previous tick acts from half a tick before this one.
     late_blocks_ = std::max(0.0, (settings_.delay_ticks - 0.5) / ticks_);
     full_ = std::min(full_ + 1, kBlocks);
   }
@@ -124,8 +127,8 @@ bool MotionWatch::force_changes() const noexcept {
   return most > kProofChange * kProofChange / 4;
 }
 
-// The second difference of block means sees the force through a window of three blocks, with the
-// weights 1, 4, 1 (a quadratic B-spline).
+// The second difference of block means contains the force through a window of three blocks, with
+// the weights 1, 4, 1 (a quadratic B-spline).
 bool MotionWatch::reversed(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT) noexcept {
   if (!(settings_.mass > 0) || !force_changes()) return false;
   const auto needed = static_cast<std::uint32_t>(kAccelerations + 4 + late_blocks_);
@@ -181,7 +184,7 @@ bool MotionWatch::believed(const Pairs& pairs, int& proof) const noexcept {
   }
   const double explained = change >= kJump ? kExplainedJump : kExplained;
   if (!(sums.fa * sums.fa >= explained * sums.ff * sums.aa)) return true;
-  // What is left without a steady trend.
+  // Sums without the steady trend.
   const Sums sudden{.ff = sums.ff - tf * tf / kTimes,
                     .fa = sums.fa - tf * ta / kTimes,
                     .aa = sums.aa - ta * ta / kTimes};
@@ -216,15 +219,15 @@ bool MotionWatch::frozen_joint(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3
     }
     if (++still.blocks <= static_cast<int>(kStillBlocks)) continue;
     if (!known) {
-      // The mean force of some blocks ago, since the joint needs time to answer it.
+      // The mean force of earlier blocks, since the joint needs time to respond.
       const Eigen::Vector3d f_W = (block(2).f + block(3).f + block(4).f + block(5).f) / 4;
       f_B = R_WB.transpose() * f_W;
       known = true;
     }
     const auto k = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d along_B = J_BT.col(k);
-    // Across what the other joints can do: a tip without links of its own is moved by this part,
-    // one whose links are heavy by the torque. Either has to change.
+    // Direction that the other joints cannot move. This part of the force moves a tip without links
+    // of its own; for heavy links, the torque does. Either must change.
     const Eigen::Vector3d across_B = J_BT.col((k + 1) % 3).cross(J_BT.col((k + 2) % 3));
     const double f_along = along_B.dot(f_B) / along_B.norm();
     const double f_across = across_B.dot(f_B) / across_B.norm();

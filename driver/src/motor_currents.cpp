@@ -17,7 +17,7 @@ MotorCurrents::MotorCurrents(const GatedForce& force, const Eigen::Matrix3d& R_W
     const double wanted = std::abs(amperes[i]);
     if (wanted * scale > drive.current_max) scale = drive.current_max / wanted;
   }
-  // A comparison with NaN is false, so anything that is not finite ends as zero.
+  // A comparison with NaN is false, so anything that is not finite becomes zero.
   if (amperes.squaredNorm() < HUGE_VAL) {
     amperes_ = scale * amperes;
     scale_ = scale;

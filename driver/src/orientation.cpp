@@ -27,7 +27,7 @@ Eigen::Matrix3d rotation_about(FrameAxis axis, double angle) noexcept {
 TipQuaternion quaternion_of(const Eigen::Matrix3d& R) noexcept {
   const Eigen::Quaterniond q(R);
   const double length = q.norm();
-  // Written so that NaN is none.
+  // Written so that NaN is rejected.
   if (!(length > 0 && length < HUGE_VAL)) return {};
   const double scale = (q.w() < 0 ? -1 : 1) / length;
   return {static_cast<float>(scale * q.w()), static_cast<float>(scale * q.x()),

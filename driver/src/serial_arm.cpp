@@ -38,7 +38,7 @@ Eigen::Matrix3d SerialArm::jacobian(const Eigen::Vector3d& q) const noexcept {
 
 Eigen::Matrix3d SerialArm::last_link(const Eigen::Vector3d& q,
                                      const Eigen::Vector3d&) const noexcept {
-  // Link C climbs by C - 90 degrees.
+  // Link C points C - 90 degrees above the horizontal.
   const auto [sin_a, cos_a] = math::sin_cos(q[0]);
   const auto [sin_c, cos_c] = math::sin_cos(q[2]);
   return link_rotation(cos_a, sin_a, sin_c, -cos_c);

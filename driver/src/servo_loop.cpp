@@ -3,10 +3,11 @@
 namespace thimble::driver {
 namespace {
 
-/// A sleep of the computer that is none, ns: what two clocks that are not read at once disagree by.
+/// A measured suspension up to this is none, ns: the difference of two clocks that are not read at
+/// the same instant.
 constexpr std::int64_t kAwake_ns = 1'000'000;
-/// How late a tick is that may have been slept through, ns [chosen: less than any board waits for a
-/// message; a computer takes longer to fall asleep].
+/// A tick this late may have been missed in a suspension, ns [chosen: less than any board waits for
+/// a message; a computer takes longer to suspend].
 constexpr std::int64_t kLate_ns = 10'000'000;
 
 std::array<double, 3> plain(const Eigen::Vector3d& v) noexcept {
@@ -104,7 +105,7 @@ void ServoLoop::look_for_sleep() noexcept {
   asleep_ns_ = asleep_ns;
 }
 
-// The tip is expected to go on as it goes.
+// The tip is extrapolated with its present velocity.
 void ServoLoop::prepare() noexcept {
   clock_.sleep_until_ns(due_ns_ - settings_.prepare_ns);
   if (clock_.now_ns() >= due_ns_) return;

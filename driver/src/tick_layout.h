@@ -4,7 +4,7 @@
 #include "thimble/driver/fault.h"
 #include "thimble/driver/tick_record.h"
 
-// Layout of what a tick is shown as to other processes.
+// Layout of the tick record that other processes read.
 
 THIMBLE_LAYOUT_ENUM(thimble::driver::DeviceStage, kIdle, kActive, kFault, kWaiting)
 THIMBLE_LAYOUT_ENUM(thimble::driver::Fault, kNone, kTransportLost, kNoReports, kForceNotFinite,

@@ -55,7 +55,7 @@ LinkRead WireLink::read(ArmSample& sample, std::int64_t deadline_ns) noexcept {
 bool WireLink::came_before(const ArmReading& reading) noexcept {
   if (!reading.number) return false;
   const bool same = number_ == reading.number;
-  // A board that leaves the number alone says nothing by it.
+  // The number of a board that does not change it means nothing.
   if (number_ && !same) numbered_ = true;
   number_ = reading.number;
   return same && numbered_;

@@ -30,7 +30,8 @@ void WorkAccount::explain(EnergyFlow& flow, double stored, const Eigen::Vector3d
                           double damping, double dt) noexcept {
   flow.f_program_W = f_program_W;
   program_ = program_ || (f_program_W.array() != 0).any();
-  // Where nothing was stored, or nothing is, storages have come or gone: that is no change of them.
+  // If the stored energy was or is zero, storages have appeared or vanished; that is not a change
+  // of them.
   const bool kept = stored != 0 && stored_ != 0;
   if (kept) flow.stored_change = stored - stored_;
   stored_ = stored;

@@ -6,8 +6,8 @@
 
 namespace thimble::bringup {
 
-/// When a torque that was asked for at a tick acts: the middle of its tick at the motors, so many
-/// whole ticks and a part of one later.
+/// Tick in which a torque requested at another tick acts. It is the middle of the tick at the
+/// motors: a number of whole ticks and a fraction later.
 struct ActingTick {
   std::size_t whole = 0;
   double part = 0;
@@ -19,7 +19,8 @@ struct ActingTick {
     part = ticks - static_cast<double>(whole);
   }
 
-  /// Returns what a quantity of ticks is then, for the torque asked for at tick `k`, `of(tick)`.
+  /// Returns a quantity of ticks, `of(tick)`, at the time when the torque requested at tick `k`
+  /// acts.
   template <class Of>
   Eigen::Vector3d then(std::size_t k, const Of& of) const {
     return (1 - part) * of(k + whole) + part * of(k + whole + 1);

@@ -16,7 +16,7 @@ using Seen = Eigen::Matrix<double, kSeen, 1>;
 using Wanted = Eigen::Matrix<double, kWanted, 1>;
 using Slope = Eigen::Matrix<double, kSeen, kWanted>;
 
-/// What a motion shows per mass of an arm with these constants, and how that follows them.
+/// Constants per mass of the motion of an arm with these constants, and their derivatives.
 Seen shown(const Wanted& x, double added, const Eigen::Vector3d& down_B, Slope& slope) {
   const double over = 1 / (x[0] + added);
   Seen z = x.tail<kSeen>();
@@ -41,7 +41,7 @@ ArmConstants constants_of(const Wanted& x, const Eigen::Matrix<double, kWanted, 
   return found;
 }
 
-/// With the gains' geometric mean 1, mass is what the accelerations say.
+/// With the gains' geometric mean assumed to be 1, the accelerations give the mass.
 ArmConstants by_declared_torque(const PerMass& bare, const Eigen::Vector3d& down_B) {
   const Seen z = bare.theta.head<kSeen>();
   double log_gain = 0;
@@ -82,7 +82,7 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
   found.delay = bare.delay;
   if (!loaded) return found;
   Wanted x;
-  double ratio = 0;  // of accelerations, bare to loaded
+  double ratio = 0;  // of accelerations, bare over loaded
   for (int i = 0; i < 3; ++i) ratio += bare.theta[i] / loaded->theta[i] / 3;
   if (!(ratio > 1.02)) {
     return driver::Error{
@@ -116,7 +116,7 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
   found = constants_of(x, cov, down_B);
   found.absolute = true;
   found.misfit = square / (2 * kSeen - kWanted);
-  // Both saw the same delay.
+  // Both measured the same delay.
   const double first = 1 / (bare.delay.plus_minus * bare.delay.plus_minus);
   const double second = 1 / (loaded->delay.plus_minus * loaded->delay.plus_minus);
   found.delay = {(first * bare.delay.value + second * loaded->delay.value) / (first + second),

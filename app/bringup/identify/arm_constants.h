@@ -8,64 +8,65 @@
 
 namespace thimble::bringup {
 
-/// One joint's motor and cable as they are written into an arm file, with their intervals.
+/// Constants of one joint's motor and cable for an arm file, with their intervals.
 struct CableConstants {
-  Estimate inertia;        ///< Of motor and pulley, kg m^2 at the joint.
-  Estimate stiffness;      ///< Of the cable, N m/rad at the joint.
-  Estimate damping;        ///< N m s/rad
-  Estimate play;           ///< Whole width, rad at the joint; 0 where none was seen.
-  Estimate viscous;        ///< Friction of the motor's side, N m s/rad at the joint; 0 likewise.
-  Estimate coulomb;        ///< Its dry friction, N m at the joint; 0 likewise.
-  Estimate antiresonance;  ///< At which the link oscillates on its cable, the motor held, Hz.
-  Estimate resonance;      ///< At which motor and link oscillate against each other, Hz.
+  Estimate inertia;    ///< Inertia of motor and pulley, kg m^2 at the joint.
+  Estimate stiffness;  ///< Stiffness of the cable, N m/rad at the joint.
+  Estimate damping;    ///< N m s/rad
+  Estimate play;       ///< Whole width of the backlash, rad at the joint; 0 if none was seen.
+  Estimate viscous;  ///< Viscous friction of the motor's side, N m s/rad at the joint; 0 likewise.
+  Estimate coulomb;  ///< Dry friction of the motor's side, N m at the joint; 0 likewise.
+  Estimate antiresonance;  ///< Frequency of the link on its cable with the motor held, Hz.
+  Estimate resonance;      ///< Frequency of motor and link against each other, Hz.
 
-  /// Returns whether one of the two is seen: below the highest line, and to 5 %. What is above is
-  /// concluded from inertia and stiffness.
+  /// Returns whether a frequency was measured: below the highest line, and to 5 %. Higher
+  /// frequencies are computed from inertia and stiffness.
   static bool sees(const Estimate& frequency) {
     return frequency.value < LineForces::kHighest && frequency.plus_minus < 0.05 * frequency.value;
   }
 };
 
-/// Links of a serial arm as they are written into an arm file (device_sim::LinkSettings), kg m^2
-/// and kg m, with their intervals.
+/// Constants of a serial arm's links for an arm file (device_sim::LinkSettings), kg m^2 and kg m,
+/// with their intervals.
 struct LinkConstants {
-  std::array<Estimate, 3> inertia;  ///< About A, B and C.
+  std::array<Estimate, 3> inertia;  ///< Inertia about A, B and C.
   Estimate yaw_b, yaw_c, coupling;
   Estimate moment_b, moment_c;
 };
 
-/// Constants of an arm as they are written into its file, with their intervals.
+/// Constants of an arm for its file, with their intervals.
 struct ArmConstants {
-  Estimate mass;                 ///< At the tip, kg.
+  Estimate mass;                 ///< Mass at the tip, kg.
   Estimate viscous;              ///< N s/m
-  Estimate coulomb;              ///< N per axis
-  Estimate weight;               ///< What gravity pulls on the tip with, N.
+  Estimate coulomb;              ///< Dry friction, N per axis.
+  Estimate weight;               ///< Weight at the tip, N.
   std::array<Estimate, 3> gain;  ///< True torque over that of the arm file, joint by joint.
-  Estimate delay;                ///< From force to seen motion, s.
+  Estimate delay;                ///< Delay from force to seen motion, s.
   /// The scale of masses and forces was measured with a known mass. If not, the gains' geometric
-  /// mean was taken to be 1, and all but the delay are as wrong as that.
+  /// mean was assumed to be 1, and all constants but the delay are relative to that.
   bool absolute = false;
-  /// Of motors and cables, where these were seen to stretch. Mass, friction and weight are those of
-  /// the links then.
+  /// Motors and cables, if the cables were seen to stretch. Mass, friction and weight are then
+  /// those of the links.
   std::optional<std::array<CableConstants, 3>> cables;
-  /// Whether motion at several places was looked at for links, and those that were seen. Mass,
-  /// friction and weight are those of the tip beside them then.
+  /// Whether links were searched for in motion at several poses, and the links found. Mass,
+  /// friction and weight are then those of the tip without links.
   bool links_sought = false;
   std::optional<LinkConstants> links;
   double misfit = 0;  ///< With a known mass: chi^2 per degree of freedom of both motions together.
 };
 
-/// Widens an interval by what a method costs beyond its statistics, one standard deviation of it.
+/// Widens an interval by the error of a method beyond its statistics, given as one standard
+/// deviation.
 void widen(Estimate& estimate, double method);
 
-/// Returns a torque by the arm file's constants (or one over something) as the true one.
+/// Converts a torque in the arm file's constants (or the reciprocal of a torque) to the true one.
 /// Real-time: never from the servo thread.
 Estimate by_gain(const Estimate& torque, const Estimate& gain);
 
-/// Returns the constants that the motion of a bare tip means, or those of two motions together, the
-/// second with a known mass on the tip: it moves as much slower as its mass is more, whatever the
-/// motors' constants. The error says why there is no such arm.
-/// Real-time: never from the servo thread.
+/// Returns the constants that follow from the motion of a bare tip, or from two motions, the second
+/// with a known mass on the tip. The added mass slows the tip by its share of the mass, whatever
+/// the motors' constants are. The error explains why no such arm exists. Real-time: never from the
+/// servo thread.
 driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
                                            const std::optional<PerMass>& loaded, double added_mass);
 

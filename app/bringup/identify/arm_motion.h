@@ -6,32 +6,31 @@
 
 namespace thimble::bringup {
 
-/// What was seen of an arm at one tick, and what its motors were asked for. Frames: B base, T tip.
+/// Measured state of an arm at one tick, and the torques sent. Frames: B base, T tip.
 struct MotionSample {
-  Eigen::Vector3d p_BT{0, 0, 0};  ///< Where the encoders say the tip is, m.
-  Eigen::Vector3d q{0, 0, 0};     ///< What the encoders say of the joints, rad.
-  /// d q / d p_BT there, rad/m: torques pull on the tip by `G^T tau`.
+  Eigen::Vector3d p_BT{0, 0, 0};  ///< Tip from the encoders, m.
+  Eigen::Vector3d q{0, 0, 0};     ///< Joint angles from the encoders, rad.
+  /// d q / d p_BT there, rad/m: torques exert the force `G^T tau` on the tip.
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
-  /// Torques that were sent and stand until the next tick, by the arm file's constants, N m at the
-  /// joints.
+  /// Torques sent and held until the next tick, with the arm file's constants, N m at the joints.
   Eigen::Vector3d tau{0, 0, 0};
-  /// Angular accelerations of the motors, as late as torques are, rad/s^2 at the joints; zero where
-  /// they are not known.
+  /// Angular accelerations of the motors, with the delay of torques, rad/s^2 at the joints; zero if
+  /// unknown.
   Eigen::Vector3d ddq{0, 0, 0};
-  bool fresh = false;  ///< A new report told the position.
+  bool fresh = false;  ///< The position is from a new report.
 };
 
-/// A stretch of an arm's motion under known torques, tick by tick.
+/// A recorded motion of an arm under known torques, tick by tick.
 struct ArmMotion {
   double dt = 0.001;                 ///< s between ticks
-  double added_mass = 0;             ///< That the user fixed to the tip, kg.
-  Eigen::Vector3d down_B{0, 0, -1};  ///< Where the world's down is in the base.
-  Eigen::Vector3d share{1, 1, 1};    ///< Of the torque that was asked for, joint by joint.
-  Eigen::Vector3d step{0, 0, 0};     ///< Of the encoders, rad at the joints.
-  /// Constants of links that are known (LinkEquations) over the mass at the tip, m^2 and m; zero:
-  /// none are. What they take counts as acceleration of the tip.
+  double added_mass = 0;             ///< Mass that the user fixed to the tip, kg.
+  Eigen::Vector3d down_B{0, 0, -1};  ///< Downward direction of the world in the base.
+  Eigen::Vector3d share{1, 1, 1};  ///< Share of the requested torque that was sent, joint by joint.
+  Eigen::Vector3d step{0, 0, 0};   ///< Encoder step, rad at the joints.
+  /// Known constants of links (LinkEquations) over the mass at the tip, m^2 and m; zero: none. The
+  /// forces that links take count as acceleration of the tip.
   Eigen::Matrix<double, 6, 1> links = Eigen::Matrix<double, 6, 1>::Zero();
-  std::size_t jumped = 0;  ///< Reports that the driver dropped for a jump (WireCounters).
+  std::size_t jumped = 0;  ///< Reports that the driver dropped because of a jump (WireCounters).
   std::vector<MotionSample> samples;  ///< One for each tick.
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 class Rows {
  public:
-  /// Adds a constant of SI, `scale` of whose `unit` are one.
+  /// Adds an SI constant; `scale` converts it to `unit`.
   void add(std::string name, const Estimate& found, double scale, std::string unit,
            std::optional<double> named = {}) {
     if (named) named = scale * *named;
@@ -47,8 +47,8 @@ void add_friction(const FrictionDirections& friction, Rows& rows) {
   }
 }
 
-/// Adds the friction of a rigid arm's joints, and of their two directions where these differ: what
-/// is more along an axis of the base in one direction is so about the joints that turn with it.
+/// Adds the friction of a rigid arm's joints, and of their two directions if these differ. An
+/// excess in one direction along an axis of the base also applies to the joints that turn with it.
 void add_joints(const Identified& identified, const scene::ArmFile& file, Rows& rows) {
   if (!identified.rubbing.seen) return;
   const auto& train = file.simulated.drive_train;
@@ -167,7 +167,7 @@ void add_links(const LinkConstants& found, const scene::ArmFile& file, Rows& row
   add("inertia of links, C", found.inertia[2], "g m^2", links.inertia[2]);
   add("about the yaw, sin^2 B", found.yaw_b, "g m^2", links.yaw_b);
   add("about the yaw, sin^2 C", found.yaw_c, "g m^2", links.yaw_c);
-  // What is zero because it was taken to be is no finding.
+  // A value that was assumed to be zero is not a result.
   if (found.coupling.value != 0)
     add("coupling of B and C", found.coupling, "g m^2", links.coupling);
   add("first moment along B", found.moment_b, "g m", links.moment_b);
@@ -176,7 +176,7 @@ void add_links(const LinkConstants& found, const scene::ArmFile& file, Rows& row
   }
 }
 
-/// Names a joint whose friction stands out; empty if none does.
+/// Names a joint whose friction stands out; empty if there is none.
 std::string rubs_most_text(const Identified& identified) {
   constexpr double kFarAbove = 3;  // [chosen: shipped arms' joints differ by less]
   if (!identified.constants.cables) return "";
@@ -215,7 +215,7 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   }
   const double delay =
       1e-9 * static_cast<double>(simulated.wire.delay_in_ns + simulated.wire.delay_out_ns);
-  // Of an arm whose converter and bus are code the file names none.
+  // For an arm whose converter and bus are code, the file names no delay.
   const bool names_delay = !file.is<driver::DeltaArm>();
   rows.add("delay, force to motion", found.delay, 1e3, "ms",
            names_delay ? named(delay) : std::nullopt);

@@ -8,23 +8,23 @@
 
 namespace thimble::bringup {
 
-/// One constant as people read it.
+/// A constant in a form for users.
 struct ConstantRow {
   std::string name;
-  Estimate found;               ///< In its unit.
-  std::string unit;             ///< With what it counts, behind the numbers.
-  std::optional<double> named;  ///< What the arm file says, in the same unit, if it says anything.
+  Estimate found;               ///< Value in `unit`.
+  std::string unit;             ///< Unit, printed after the numbers.
+  std::optional<double> named;  ///< Value in the arm file, in the same unit, if any.
 };
 
-/// Returns all constants that were found, those of link and firmware too. `file`: what the arm was
-/// identified with.
+/// Returns all constants that were found, including those of link and firmware. `file`: the file
+/// with which the arm was identified.
 std::vector<ConstantRow> constant_rows(const Identified& identified, const scene::ArmFile& file);
 
-/// Returns what a fit rests on: how many pieces, and what it explains.
+/// Returns the basis of a fit: its number of pieces, and the share that it explains.
 std::string fit_text(const Identified& identified);
 
-/// Returns the table of the constants with their intervals, what they rest on, and what was not
-/// identified.
+/// Returns the table of the constants with their intervals, their basis, and the constants that
+/// were not identified.
 std::string constants_table(const Identified& identified, const scene::ArmFile& file);
 
 }  // namespace thimble::bringup

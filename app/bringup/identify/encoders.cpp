@@ -7,17 +7,17 @@
 namespace thimble::bringup {
 namespace {
 
-constexpr int kSeenLeast = 3;  // differences of one size: fewer are taken for misread counts
+constexpr int kSeenLeast = 3;  // differences of one size: fewer may be misread counts
 constexpr std::size_t kReportsLeast = 100;
-// Of n reports that never change, each changes with a chance of below 3/n in 19 of 20 rests: the
+// If none of n reports changes, the probability of a change is below 3/n in 19 of 20 rests: the
 // rule of three [M Hanley and Lippman-Hand 1983].
 constexpr double kRuleOfThree = 3;
-// Counts that the second half of a rest may lie beside the first one, times their noise's error,
-// and beyond that [chosen: half a step is what rounding does].
+// Allowed difference between the two halves of a rest in counts. A multiple of the standard error
+// of their noise, and a constant part [chosen: half a step is the effect of rounding].
 constexpr double kDriftMost = 4, kDriftFree = 0.5;
 
 EncoderStep step_of(const ArmMotion& motion, Eigen::Index joint) {
-  std::map<int, int> differences;  // by size, how many
+  std::map<int, int> differences;  // number of differences, by size
   const MotionSample* before = nullptr;
   for (const MotionSample& sample : motion.samples) {
     if (!sample.fresh) continue;
@@ -55,8 +55,8 @@ EncoderRest noise_at_rest(const std::vector<std::array<std::int32_t, 3>>& counts
       fourth += d * d * d * d / n;
     }
     Estimate& noise = rest.noise[joint];
-    // Two reports differ by twice the square of what one is off; a difference shares its reports
-    // with its neighbours, which widens the mean of the squares by the factor 3/2.
+    // The squared difference of two reports is twice the squared error of one. Adjacent differences
+    // share a report, which widens the mean of the squares by the factor 3/2.
     noise.value = std::sqrt(second / 2);
     const double spread = std::sqrt(std::max(0.0, 1.5 * (fourth - second * second)) / n);
     noise.plus_minus =

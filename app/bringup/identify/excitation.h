@@ -10,31 +10,31 @@
 namespace thimble::bringup {
 
 /// A force that moves a free arm in all directions at once, so that mass, friction and gains show
-/// in its motion: sines of many frequencies per axis, and a weak spring and damper that keep the
-/// tip where it began. Never longer than `kShareMost` of what is allowed. Frame W: world.
+/// in its motion. It consists of sines of many frequencies per axis, and a weak spring and damper
+/// that keep the tip near its start. At most `kShareMost` of the allowed force. Frame W: world.
 class Excitation {
  public:
-  static constexpr double kShareMost = 0.95;  ///< Of what is allowed.
-  static constexpr double kFar = 0.04;        ///< How far the tip may go from the middle, m.
-  static constexpr int kSines = 8;            ///< Per axis.
-  /// Whether LineForces come on top, which show what the arm does at high frequencies.
+  static constexpr double kShareMost = 0.95;  ///< Share of the allowed force.
+  static constexpr double kFar = 0.04;        ///< Max. distance of the tip from the middle, m.
+  static constexpr int kSines = 8;            ///< Number per axis.
+  /// Whether LineForces are added, which show the arm's response at high frequencies.
   enum class Lines { kWithout, kWith };
 
-  /// Takes where the tip shall stay (m), what the phases are drawn by, and the largest force that
-  /// is allowed (N): all sines grow and shrink with it.
+  /// Takes the middle of the motion (m), the seed of the phases, and the max. allowed force (N), to
+  /// which all sines scale.
   Excitation(const Eigen::Vector3d& p_WM, std::uint64_t seed, Lines lines = Lines::kWithout,
              double allowed = 1);
 
-  /// Returns the force (N) at a time since the beginning (s), `dt` (s) after the last, for a tip at
-  /// p_WT (m) with v_WT (m/s); zero for a tip that has left the space it may move in. Real-time:
-  /// safe.
+  /// Returns the force (N) at a time since the beginning (s), for a tip at p_WT (m) with v_WT
+  /// (m/s). Zero for a tip outside of its allowed space. `dt`: time since the last call, s.
+  /// Real-time: safe.
   Eigen::Vector3d force(double time, double dt, const Eigen::Vector3d& p_WT,
                         const Eigen::Vector3d& v_WT) noexcept;
 
-  /// Returns how long a force may be at the most, N.
+  /// Returns the max. force, N.
   double force_most() const noexcept { return kShareMost * allowed_; }
 
-  /// Returns whether a tip is where it may be. Real-time: safe.
+  /// Returns whether a tip is inside of its allowed space. Real-time: safe.
   bool near(const Eigen::Vector3d& p_WT) const noexcept {
     return (p_WT - hold_.place()).norm() < kFar;
   }

@@ -9,9 +9,8 @@
 namespace thimble::bringup {
 namespace {
 
-// Information by which a difference must be better before it is believed, and its share of the
-// friction below which it is what smoothing leaves [chosen: no even hidden arm of identify_test is
-// told to be uneven].
+// Information required to accept a difference, and its min. share of the friction, below which it
+// is an effect of smoothing [chosen: no even hidden arm of identify_test is reported as uneven].
 constexpr double kBetter = 10;
 constexpr double kShareLeast = 0.03;
 
@@ -26,7 +25,7 @@ FrictionDirections friction_directions(const FittedMotion& motion, const Estimat
   FrictionDirections found;
   const auto& equations = motion.equations.equations();
   const double coulomb = motion.fit.theta[PerMass::kCoulomb];
-  // Each axis has its own in place of the common one.
+  // Each axis has its own friction instead of the common one.
   Eigen::MatrixXd rows = motion.residual.rows;
   rows.col(PerMass::kCoulomb).setZero();
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(rows.rows(), 3);
@@ -41,7 +40,7 @@ FrictionDirections friction_directions(const FittedMotion& motion, const Estimat
         force_of(coulomb + axes.factor[i], axes.covariance(i, i), mass);
   }
   const auto logarithm = math::log(static_cast<double>(rows.rows()));
-  // What the three differ by, two numbers.
+  // Differences between the three, two numbers.
   Eigen::Matrix<double, 2, 3> apart;
   apart << 1, -1, 0, 0.5, 0.5, -1;
   const Eigen::Vector2d differ = apart * axes.factor;
@@ -58,7 +57,7 @@ FrictionDirections friction_directions(const FittedMotion& motion, const Estimat
   for (int i = 0; i < 3; ++i) {
     found.uneven[static_cast<std::size_t>(i)] = force_of(uneven[i], covariance(i, i), mass);
   }
-  // Two directions of three tell; along the third there is nothing.
+  // Two of three directions have information; the third has none.
   const Eigen::Matrix3d filled = covariance + found.down_B * found.down_B.transpose();
   found.directions_differ = uneven.dot(filled.ldlt().solve(uneven)) - 2 * logarithm > kBetter &&
                             uneven.norm() > kShareLeast * coulomb;

@@ -18,20 +18,21 @@
 namespace thimble::bringup {
 namespace {
 
-// What the smoothing of velocities' signs and torques that are held for a tick cost beyond the
-// statistics [chosen: so that intervals hold 95 % of the truths of hidden arms, identify_test].
+// Errors due to the smoothing of velocities' signs and to held torques, beyond the statistics
+// [chosen: so that intervals hold 95 % of the truths of hidden arms, identify_test].
 constexpr double kMethodMass = 0.0004;     // of mass
 constexpr double kMethodCoulomb = 0.0012;  // of Coulomb friction
 constexpr double kMethodViscous = 0.006;   // N s/m for each N of Coulomb friction
 constexpr double kMethodGain = 0.0002;     // of a gain
 constexpr double kMethodDelay = 2e-6;      // s
-constexpr double kPlaceLead = 0.5;         // s, that it moves about a place before it is recorded
-// Half-width of an interval over the value, of mass and gains; what is known worse is not written.
+constexpr double kPlaceLead = 0.5;         // s, motion about a pose before it is recorded
+// Max. half-width of an interval over the value, of mass and gains; less precise constants are not
+// written.
 constexpr double kUnknownMost = 0.03;
-// Share of the residual's square that waves or joints may leave where the fit stays bad with them
-// [chosen as for saturation.cpp].
+// Max. share of the squared residual with waves or joints removed, if the fit stays bad [chosen as
+// for saturation.cpp].
 constexpr double kFreedLeft = 0.3;
-// By how much the Bayesian information must prefer cables before they are blamed.
+// Gain of the Bayesian information criterion required to name cables as the cause.
 constexpr double kCablesBlamed = 20;
 
 void widen(ArmConstants& constants) {
@@ -42,12 +43,12 @@ void widen(ArmConstants& constants) {
   widen(constants.delay, kMethodDelay);
 }
 
-/// Says which constants are not known well enough to be written.
+/// Lists the constants whose intervals are too wide to be written.
 void look_at_intervals(Identified& found) {
   const ArmConstants& constants = found.constants;
   double most = constants.mass.plus_minus / constants.mass.value;
   for (const Estimate& gain : constants.gain) most = std::max(most, gain.plus_minus / gain.value);
-  // Written so that NaN is too much.
+  // Written so that NaN is too wide.
   if (most < kUnknownMost) return;
   found.against.push_back(fmt::format(
       "The tip moved too little beside its dry friction to tell masses and forces better than to "
@@ -55,8 +56,8 @@ void look_at_intervals(Identified& found) {
       100 * most));
 }
 
-/// Puts in what motion over the workspace says of the tip beside its links: what `bare` says too,
-/// and with which links.
+/// Adds the result of motion over the workspace for the tip without its links: `bare` then has
+/// these links removed.
 void put_links(Identified& found, const Eigen::Vector3d& down_B) {
   const LinkFit& fit = *found.over.fit;
   const auto is = tip_and_links(fit, down_B);
@@ -77,9 +78,8 @@ void put_links(Identified& found, const Eigen::Vector3d& down_B) {
   constants.absolute = fit.absolute;
 }
 
-/// Takes a freed motion, its fit and its lines in place of a motion if what it was freed of is what
-/// made the fit worse; `left`: the share of the residual's square that is left. Returns whether it
-/// did.
+/// Replaces a motion, its fit and its lines by a cleaned motion if the removed effect made the fit
+/// worse. `left`: the remaining share of the squared residual. Returns whether it did.
 bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmMotion& motion,
                 PerMass& fit, Identified& found) {
   const LineSpectrum spectrum = line_spectrum(freed);
@@ -93,8 +93,8 @@ bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmM
   return true;
 }
 
-/// Looks for cogging and ripple of the motors in the motion of a rigid arm with its bare tip, and
-/// frees the motion of them if they are what made its fit worse: then fit and lines are anew.
+/// Searches for cogging and ripple of the motors in the motion of a rigid arm with its bare tip.
+/// Removes them from the motion if they made its fit worse, and computes fit and lines again.
 driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motion, PerMass& fit,
                                     Identified& found) {
   if (found.lines.stretches) {
@@ -125,8 +125,8 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
   return {};
 }
 
-/// Looks for friction of the joints of a rigid arm in its motion with the bare tip, and frees the
-/// motion of it if it is what made the fit worse: then fit and lines are anew.
+/// Searches for friction of the joints of a rigid arm in its motion with the bare tip. Removes it
+/// from the motion if it made the fit worse, and computes fit and lines again.
 driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identified& found) {
   if (found.lines.stretches) return {};
   auto rubbing = find_rubbing_joints(motion, fit);
@@ -138,7 +138,7 @@ driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identifie
   if (!better) return better.error();
   if (!held) return held.error();
   const auto mass = arm_constants(*better, motion.down_B, {}, 0);
-  // A hand looks a little like joints that stick.
+  // A hand looks similar to joints that stick.
   const bool is_held_then = !mass || is_held(*held, mass->mass.value);
   if (is_held_then || !take_freed(freed, *better, found.rubbing.left, motion, fit, found)) {
     found.rubbing = {};
@@ -146,7 +146,8 @@ driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identifie
   return {};
 }
 
-/// Frees the motion with the known mass of what motors and joints of the same arm were seen to do.
+/// Removes the effects of motors and joints found for the same arm from the motion with the known
+/// mass.
 driver::Result<void> free_loaded(ArmMotion& motion, const Identified& found) {
   motion = freed_of_waves(motion, found.waves);
   if (!found.rubbing.seen) return {};
@@ -156,7 +157,8 @@ driver::Result<void> free_loaded(ArmMotion& motion, const Identified& found) {
   return {};
 }
 
-/// Puts the friction at the tip as it was found beside that of joints; none where none was needed.
+/// Sets the friction at the tip to the one found in addition to that of joints; none if none was
+/// needed.
 void put_rubbing(Identified& found) {
   const RubbingJoints& rubbing = found.rubbing;
   if (!rubbing.seen) return;
@@ -171,17 +173,17 @@ void put_rubbing(Identified& found) {
   put(found.constants.viscous, rubbing.tip_viscous);
 }
 
-/// Measures what does not hang on the motion: how reports come, and the firmware's watchdog.
+/// Measures properties independent of the motion: timing of reports, and the firmware's watchdog.
 void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstants& bare,
                   double force_most, const std::atomic<bool>& stop, Identified& found) {
   constexpr double kListened = 2, kRested = 1;  // s
   bench.watch({});
   found.reports = time_reports(bench, kListened, stop);
   found.encoders.rest = encoders_at_rest(bench, kRested, stop);
-  // What moves otherwise than it is understood is not pushed further; behind a cable that stretches
-  // the oscillation of the link hides when the force goes off.
+  // An arm whose motion is not understood gets no further force. Behind an elastic cable the
+  // oscillation of the link hides the end of the force.
   if (!found.against.empty() || found.lines.stretches) return;
-  // Of a force along y, what these motors make of it.
+  // Effect of these motors for a force along y.
   const Eigen::Matrix3d J_T = found.moved.samples.back().G.inverse().transpose();
   const Eigen::Vector3d y_B = file.R_WB.transpose() * Eigen::Vector3d::UnitY();
   const Eigen::Matrix3d masses =
@@ -191,7 +193,7 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
   for (std::size_t i = 0; i < 3; ++i) tau[static_cast<Eigen::Index>(i)] *= bare.gain[i].value;
   const double share = y_B.dot(J_T.inverse() * tau);
   if (!(share > 0.2)) return;
-  // What joints rub along y.
+  // Friction of the joints along y.
   double rubs = 0;
   const Eigen::Vector3d turned = found.moved.samples.back().G * y_B;
   for (std::size_t i = 0; found.rubbing.seen && i < 3; ++i) {
@@ -216,10 +218,11 @@ void say_sticks(Identified& found, int joint, const Estimate& coulomb) {
                   joint + 1, coulomb.value, coulomb.plus_minus));
 }
 
-/// Looks in what the fit leaves for what it does not know of. A hand, which `held` tells of, looks
-/// like joints that stick, and those are not looked for then.
+/// Searches the residual of the fit for unmodelled effects. A hand (`held`) looks like joints that
+/// stick, so these are not searched for then.
 void look_closer(Identified& found, bool held) {
-  // Where the links were in their play is not known, and behind motors that rub only nearly.
+  // The position of the links in their backlash is unknown, and behind motors with friction it is
+  // only approximate.
   if (found.play.told()) return;
   const FittedMotion motion = found.fitted();
   const Estimate mass = found.moved_mass();
@@ -259,7 +262,7 @@ std::string like_play_text(const PlayFit& play) {
       play.with.misfit, play.without.misfit);
 }
 
-/// Adds how late the ticks of a bench were to a sum when it is destroyed, whatever ended it.
+/// Adds the lateness of a bench's ticks to a sum when it is destroyed, whatever ended the run.
 class LateCounter {
  public:
   LateCounter(const BenchArm& bench, LateTicks& sum) : bench_(bench), sum_(sum) {}
@@ -272,7 +275,7 @@ class LateCounter {
   LateTicks& sum_;
 };
 
-/// Returns why an arm cannot be identified with these options, if so.
+/// Returns an error if an arm cannot be identified with these options.
 driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptions& options) {
   if (file.is<driver::ToldArm>()) {
     return driver::Error{
@@ -287,8 +290,8 @@ driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptio
 }
 
 /// The steps of an identification, for the motion with the bare tip and then for the one with the
-/// known mass: record it, clean it of what motors, joints and cables add, fit it, keep it; last of
-/// all judge both and write the constants.
+/// known mass. For each: record it, remove the effects of motors, joints and cables, fit it, store
+/// it. Finally judge both and write the constants.
 class Identification {
  public:
   Identification(const OpenBench& open, const scene::ArmFile& file, const IdentifyOptions& options,
@@ -305,12 +308,12 @@ class Identification {
   }
 
  private:
-  /// A motion on its way to the constants. `links`: of the links, where cables stretch.
+  /// A motion during its processing. `links`: that of the links, with elastic cables.
   struct Motion {
     ArmMotion recorded;
     ArmMotion links;
     PerMass fit;
-    std::optional<PerMass> held;  ///< The fit with a hand on the tip.
+    std::optional<PerMass> held;  ///< Fit with a hand on the tip.
   };
 
   driver::Result<void> move(bool loaded) {
@@ -370,7 +373,7 @@ class Identification {
   }
 
   driver::Result<void> clean_loaded(Motion& motion) {
-    // The same motors, which all torques come through.
+    // All torques come through the same motors.
     if (auto done = free_loaded(motion.recorded, found_); !done) return done;
     auto fit = fit_motion(motion.recorded, false);
     if (!fit) return fit.error();
@@ -378,7 +381,7 @@ class Identification {
     return {};
   }
 
-  /// Finds what the links did, where cables stretch or have play between them and the motors.
+  /// Computes the motion of the links, if cables stretch or have backlash.
   driver::Result<void> look_behind_cables(bool loaded, Motion& motion) {
     motion.links = motion.recorded;
     if (!loaded && options_.play && found_.lines.stretches) {
@@ -417,7 +420,7 @@ class Identification {
     return {};
   }
 
-  /// Moves the bare tip about other places of the workspace, which tells the links apart.
+  /// Moves the bare tip about other poses of the workspace, which separates the links' effects.
   driver::Result<void> look_over(BenchArm& bench, const Motion& motion) {
     const auto mass = arm_constants(motion.fit, down_B_, {}, 0);
     auto over = look_over_places(
@@ -442,7 +445,7 @@ class Identification {
     return add_loaded(found_.over, motion.links, file_);
   }
 
-  /// Takes the links out of the motion, if they were told apart: what is left is the tip's.
+  /// Removes the links from the motion, if they were identified: the remainder is the tip's.
   driver::Result<void> free_of_links(Motion& motion) {
     if (!found_.over.links()) return {};
     motion.links = freed_of_links(motion.links, *found_.over.fit);
@@ -468,7 +471,7 @@ class Identification {
     }
   }
 
-  /// Notes what speaks against a fit.
+  /// Records reasons to distrust a fit.
   void judge(bool loaded, const Motion& motion, const ArmConstants& alone) {
     held_tip_ = held_tip_ || is_held(*motion.held, alone.mass.value);
     for (std::string& sentence :
@@ -483,7 +486,7 @@ class Identification {
                     LineForces::kLowest, cables_blamed_));
   }
 
-  /// Finds the constants of both motions, and what speaks against them.
+  /// Computes the constants from both motions, and the reasons to distrust them.
   driver::Result<Identified> write() {
     auto constants = arm_constants(found_.bare, down_B_, found_.loaded, options_.known_mass);
     if (!constants) return constants.error();
@@ -502,8 +505,7 @@ class Identification {
     }
     found_.constants.links_sought = found_.over.fit.has_value();
     if (found_.over.links()) put_links(found_, down_B_);
-    // Reports waited for their tick; the delay of the arm is the mean of a distribution without
-    // that.
+    // Reports waited for their tick; the delay of the arm is the mean without that wait.
     found_.constants.delay.value -= read_late_;
     widen(found_.constants);
     put_rubbing(found_);
@@ -523,7 +525,7 @@ class Identification {
   Eigen::Vector3d down_B_{0, 0, -1}, share_{1, 1, 1};
   bool held_tip_ = false;
   PerMass rigid_;             // fit of the motion with the bare tip
-  double cables_blamed_ = 0;  // Bayesian information for cables that were not asked for
+  double cables_blamed_ = 0;  // gain by cables that were not requested
   double read_late_ = 0;      // s
 };
 

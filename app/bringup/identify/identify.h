@@ -24,64 +24,64 @@
 
 namespace thimble::bringup {
 
-/// The most that identifying asks an arm for unless the user says another, N.
+/// Default max. force of an identification, N.
 inline constexpr double kIdentifyForceMax = 1.0;
 
-/// How an arm is identified.
+/// Options of an identification.
 struct IdentifyOptions {
-  double seconds = 60;  ///< Of each motion; 10 at the least.
-  double lead = 1;      ///< That it moves before each, s.
-  /// Whether cables that stretch are looked for; if not, an arm that has some is a bad fit.
+  double seconds = 60;  ///< Duration of each motion, s; at least 10.
+  double lead = 1;      ///< Motion before each recording, s.
+  /// Whether elastic cables are searched for; if not, an arm that has some gives a bad fit.
   bool cables = true;
-  /// Whether play and friction of joints are looked for: beside cables that stretch those of the
-  /// motors, else friction alone. If not, an arm that has some is a bad fit.
+  /// Whether backlash and friction of joints are searched for: with elastic cables those of the
+  /// motors, else friction only. If not, an arm that has some gives a bad fit.
   bool play = true;
-  double known_mass = 0;  ///< That the user fixes to the tip for the second motion, kg; 0: none.
-  double force_most = kIdentifyForceMax;  ///< The most that is asked for, N; the file's at most.
+  double known_mass = 0;  ///< Mass fixed to the tip for the second motion, kg; 0: none.
+  double force_most = kIdentifyForceMax;  ///< Max. requested force, N; at most the file's.
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
-  /// watchdog by pushes of a little more than the friction that was found.
+  /// watchdog by pushes slightly above the friction that was found.
   bool link = false;
-  /// To how many places of its workspace an arm is led after the motion with its bare tip, so that
-  /// the inertia of its links shows: three at least, nine at most; 0: none. They add to the time.
+  /// Number of poses of the workspace to which the arm is led after the motion with its bare tip:
+  /// three to nine; 0: none. They show the inertia of its links. They add to the time.
   int places = 0;
-  double place_seconds = 5;  ///< Of the motion about each of them.
-  std::uint64_t seed = 1;    ///< Of the excitation's phases.
-  /// Handed each tick of the motion with the bare tip, for a recording; may be empty.
+  double place_seconds = 5;  ///< Duration of the motion about each of them, s.
+  std::uint64_t seed = 1;    ///< Seed of the excitation's phases.
+  /// Called with each tick of the motion with the bare tip, for a recording; may be empty.
   std::function<void(const driver::TickRecord&)> watch{};
 };
 
-/// What was found, and what speaks against it.
+/// Result of an identification, and reasons to distrust it.
 struct Identified {
   ArmConstants constants;
-  PerMass bare;                   ///< The fit of the motion without the known mass.
-  std::optional<PerMass> loaded;  ///< Of that with it, if there was one.
-  CableFit lines;                 ///< What the lines of the motion without it say of its cables.
+  PerMass bare;                   ///< Fit of the motion without the known mass.
+  std::optional<PerMass> loaded;  ///< Fit of the motion with it, if there was one.
+  CableFit lines;                 ///< Result of the lines of the motion without it about cables.
   LineSpectrum spectrum;          ///< These lines.
-  /// Play of cables that stretch and friction of their motors. Where some is seen, `lines` and
-  /// `bare` are this fit's.
+  /// Backlash of elastic cables and friction of their motors. If some is seen, `lines` and `bare`
+  /// come from this fit.
   PlayFit play;
-  /// Cogging and ripple of the motors, which all motions here are freed of.
+  /// Cogging and ripple of the motors, removed from all motions here.
   MotorWaves waves;
-  /// Friction of the joints of a rigid arm, which all motions here are freed of as well.
+  /// Friction of the joints of a rigid arm, also removed from all motions here.
   RubbingJoints rubbing;
-  /// The motion without the known mass, of the links where cables stretch: what `bare` fits.
+  /// The motion without the known mass, which `bare` fits; with elastic cables, that of the links.
   ArmMotion moved;
-  double moved_ahead = 0;  ///< Of the delay, what that motion was freed from already, s.
-  /// What motion over the workspace says of links. Where it saw some, `moved` knows them, so that
-  /// `bare` fits the tip beside them, and `constants` are those of this fit.
+  double moved_ahead = 0;  ///< Part of the delay already removed from that motion, s.
+  /// Links found from motion over the workspace. If some are seen, `moved` contains them, so that
+  /// `bare` fits the tip without links, and `constants` come from this fit.
   OverPlaces over;
   FrictionDirections friction;
-  Encoders encoders;  ///< At rest only if the reports' timing was asked for.
-  /// Joint by joint; nothing is searched for behind cables that stretch.
+  Encoders encoders;  ///< At rest only if the reports' timing was requested.
+  /// Joint by joint; not searched for behind elastic cables.
   std::array<Saturation, 3> saturation;
-  LateTicks late;                        ///< Of the loop in all motions.
-  std::optional<ReportTiming> reports;   ///< If they were asked for.
-  std::optional<WatchdogTime> watchdog;  ///< If it was asked for, and the fit is good.
-  /// Why the model of a rigid arm does not fit, a sentence each; empty: it does. Nothing may be
-  /// written then.
+  LateTicks late;                        ///< Loop timing in all motions.
+  std::optional<ReportTiming> reports;   ///< If requested.
+  std::optional<WatchdogTime> watchdog;  ///< If requested, and the fit is good.
+  /// Reasons why the model of a rigid arm does not fit, a sentence each; empty: it fits. Otherwise
+  /// nothing may be written.
   std::vector<std::string> against;
 
-  /// Returns the mass that the constants of `bare` are per.
+  /// Returns the mass to which the constants of `bare` are relative.
   Estimate moved_mass() const {
     return constants.links ? over.fit->constant(LinkFit::kMass) : constants.mass;
   }
@@ -94,7 +94,7 @@ struct Identified {
     return by_gain(rubbing.viscous[joint], constants.gain[joint]);
   }
 
-  /// Returns the motion with what its fit leaves. It must not outlive this.
+  /// Returns the motion with the residual of its fit. It must not outlive this object.
   FittedMotion fitted() const {
     PerMass fit = bare;
     fit.delay.value -= moved_ahead;
@@ -102,28 +102,29 @@ struct Identified {
   }
 };
 
-/// Returns whether a spring to a place holds the tip, found in a fit with one.
+/// Returns whether a spring to a point holds the tip, according to a fit with one.
 bool is_held(const PerMass& held, double mass);
 
-/// Returns why fits do not mean what they say, a sentence each: a hand or a spring at the tip, a
-/// motion that mass, friction and weight do not explain, frames that are missing. `held` is the
-/// same motion with a spring to be found in it; `stretches`: it is that of links behind cables.
+/// Returns reasons to distrust fits, a sentence each: a hand or a spring at the tip, a motion that
+/// mass, friction and weight do not explain, missing frames. `held` is the fit of the same motion
+/// with a spring; `stretches`: the motion is that of links behind cables.
 std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass,
                                         bool stretches = false);
 
-/// Returns the sentence about a motion in which many ticks came late. It stands instead of other
-/// reasons: a force that stood for longer looks like cables, play or a hand.
+/// Returns the sentence about a motion in which many ticks were late. It replaces other reasons: a
+/// force that was held for longer looks like cables, backlash or a hand.
 std::string late_ticks_text(const LateTicks& late);
 
-/// Opens the bench for one motion: with the known mass on the tip, or without it.
+/// Opens the bench for one motion, with or without the known mass on the tip.
 using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool loaded)>;
 
-/// Returns why a largest force and a known mass do not go together, or not with the file's limits.
+/// Returns an error if the max. force and the known mass are incompatible with each other or with
+/// the file's limits.
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options);
 
-/// Moves a free arm, with and without a known mass, and finds its constants. No force beyond
-/// `force_most`, which the bench was opened with too, all of it through the gate. The error says
-/// why there is nothing to tell. Real-time: never from the servo thread.
+/// Moves a free arm, with and without a known mass, and finds its constants. No force exceeds
+/// `force_most`, with which the bench was also opened; all forces pass the gate. The error explains
+/// why there is no result. Real-time: never from the servo thread.
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop);
 

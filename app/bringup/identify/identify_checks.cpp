@@ -9,20 +9,20 @@
 namespace thimble::bringup {
 namespace {
 
-// A right arm leaves 1 to 4 times what its encoders' steps do, or below 1 % of its acceleration
-// where it is light; one that is another leaves more of both.
+// The residual of a correct model is 1 to 4 times that of its encoders' steps, or below 1 % of its
+// acceleration for a light arm. That of a wrong model exceeds both.
 constexpr double kResidualMost = 4;
 constexpr double kUnexplainedMost = 0.02;
-// Behind cables what the links did is known through them alone: right soft arms leave up to 4 %, 8
-// times the encoders' steps [measured: soft arms 6000 to 6012].
+// Behind cables the motion of the links is known only through them. The residual of correct soft
+// arms is up to 4 %, 8 times the encoders' steps [measured: soft arms 6000 to 6012].
 constexpr double kCableResidualMost = 8;
 constexpr double kCableUnexplainedMost = 0.05;
-// Springs below this are not told from an axis that sticks now and then.
+// Springs softer than this cannot be distinguished from an axis that sticks now and then.
 constexpr double kSpringLeast = 10;  // N/m
-// Of the pieces of motion, how many may be left out because an axis stood.
+// Max. share of the pieces of motion that may be omitted because an axis stood still.
 constexpr double kLeftOutMost = 0.75;
 constexpr double kForceLeast = 0.2;   // N [chosen: twice the dry friction of the arms that we know]
-constexpr double kCarriedMost = 0.6;  // of the largest force, to carry a known mass
+constexpr double kCarriedMost = 0.6;  // of the max. force, to carry a known mass
 constexpr double kKnownMassMost = 0.06;  // kg [chosen: no grip should be heavier than its arm]
 
 }  // namespace
@@ -82,7 +82,7 @@ driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOpti
                     "(gate.force_max).",
                     options.force_most, file.limits.force_max)};
   }
-  // Beside what carries the mass something must be left that moves it.
+  // After carrying the mass, some force must remain to move it.
   const double carried = kCarriedMost * options.force_most / scene::kGravity;
   const double most = std::min(kKnownMassMost, carried);
   if (!(options.known_mass >= 0 && options.known_mass <= most)) {

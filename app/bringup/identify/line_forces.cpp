@@ -9,7 +9,7 @@
 namespace thimble::bringup {
 namespace {
 
-// N; inertia takes motion away as the square of the frequency, so the force's power grows with it.
+// N; inertia reduces the motion with the square of the frequency, so the force grows accordingly.
 constexpr double kLineAmplitude = 0.025;  // of the lowest line
 
 }  // namespace
@@ -24,7 +24,7 @@ LineForces::LineForces(std::uint64_t seed) {
 }
 
 double LineForces::frequency(int axis, int line) noexcept {
-  // Evenly in their logarithm, the axes by turns, each on the next odd multiple.
+  // Evenly spaced in their logarithm, the axes in turn, each at the next odd multiple.
   const double share = static_cast<double>(3 * line + axis) / (3 * kLines - 1);
   const double wanted = kLowest * math::pow(kHighest / kLowest, share);
   return kBase * (2 * std::floor(wanted / (2 * kBase)) + 1);

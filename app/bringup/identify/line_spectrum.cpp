@@ -15,7 +15,7 @@ using Series = std::vector<double>;
 using Spectrum = std::vector<std::complex<double>>;
 
 /// The spectrum of one channel without its straight line, under Hann's window; the amplitude of a
-/// sine on a frequency of its own is right.
+/// sine exactly at a frequency is correct.
 Spectrum spectrum(Series series) {
   const auto count = static_cast<double>(series.size());
   double sum = 0, moment = 0, square = 0;
@@ -76,7 +76,7 @@ LineSpectrum line_spectrum(const ArmMotion& motion) {
       const auto bin =
           static_cast<std::size_t>(std::llround(hz * static_cast<double>(count) * motion.dt));
       found.lines.push_back(at(bin));
-      // A window widens a line by one bin to either side; the next line is five away at least.
+      // A window widens a line by one bin to either side; the next line is at least five bins away.
       for (std::size_t away = 2; away <= 5; ++away) {
         found.beside.push_back(at(bin - away));
         found.beside.push_back(at(bin + away));

@@ -28,9 +28,9 @@ class Fit {
           "The motion is too short or the tip stood still for most of it, so nothing can be "
           "fitted; let it move freely for some ten seconds."};
     }
-    constexpr std::size_t kSome = 8;  // enough for a first look
+    constexpr std::size_t kSome = 8;  // enough for a first search
     double best = coarse_delay([this](double delay) { return residual_at(delay, kSome); });
-    // Where friction turns its sign hangs on how strong it is.
+    // The point at which friction reverses depends on its size.
     for (int round = 0; round < 3; ++round) {
       Row theta;
       solve(best, theta);
@@ -41,8 +41,8 @@ class Fit {
   }
 
  private:
-  /// The constants that fit best at a delay, with the sum of the residuals' squares. Takes each
-  /// equation, or one in `stride`.
+  /// Best constants at a delay, and the sum of squared residuals. Uses every equation, or one in
+  /// `stride`.
   double solve(double delay, Row& theta, std::size_t stride = 1) const {
     Eigen::Matrix<double, PerMass::kCount + 1, PerMass::kCount + 1> normal;
     normal.setZero();
@@ -66,7 +66,7 @@ class Fit {
            (k == PerMass::kStiffness ? with_stiffness_ : with_inertia_);
   }
 
-  /// Makes equations that say nothing of what is not asked.
+  /// Makes the equations of constants that were not requested trivial.
   void leave_out(Eigen::Matrix<double, PerMass::kCount + 1, PerMass::kCount + 1>& normal) const {
     for (int k = 0; k < PerMass::kCount; ++k) {
       if (is_asked(k)) continue;

@@ -9,13 +9,13 @@
 
 namespace thimble::bringup {
 
-/// Constants of a motion, per moved mass: what motion alone can tell.
+/// Constants of a motion, per moved mass, which is all that motion can determine.
 ///
 ///     p'' = sum_i g_i G_i^T tau_i(t - delay) - b p' - c sgn(p') + w - k (p - p_0)
 ///           - sum_i j_i G_i^T q_i'',
 ///
-/// row i of G for joint i, j_i the inertia of a motor that is not in its torque yet. Torques and
-/// mass scale together, so that only the ratios are seen.
+/// row i of G for joint i, j_i the inertia of a motor that is not included in its torque yet.
+/// Torques and mass scale together, so only the ratios are seen.
 struct PerMass {
   /// Index of each constant in `theta`.
   enum Index {
@@ -30,20 +30,20 @@ struct PerMass {
 
   Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
   Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
-  Estimate delay;            ///< From the force to the motion that the host sees, s.
-  double residual = 0;       ///< RMS of what the model leaves of the acceleration, m/s^2.
-  double noise = 0;          ///< RMS that the encoders' steps alone would leave, m/s^2.
+  Estimate delay;            ///< Delay from the force to the motion that the host sees, s.
+  double residual = 0;       ///< RMS residual of the acceleration, m/s^2.
+  double noise = 0;          ///< RMS residual due to the encoders' steps only, m/s^2.
   double explained = 0;      ///< Share of the acceleration's variance that the model explains.
-  std::size_t windows = 0;   ///< Pieces of motion that it was fitted to.
-  std::size_t left_out = 0;  ///< Pieces in which an axis stood too long to know its friction.
+  std::size_t windows = 0;   ///< Number of fitted pieces of motion.
+  std::size_t left_out = 0;  ///< Pieces in which an axis stood still for too long.
 };
 
 /// Fits a motion in the weak form: both sides are integrated against smooth bumps of 60 ms, so that
-/// positions need no differentiation; linear least squares for all constants but the delay, which a
-/// line search finds to a fraction of a tick. The covariance is that of clusters of half a second,
+/// positions need no differentiation. Linear least squares gives all constants but the delay, which
+/// a line search finds to a fraction of a tick. The covariance uses clusters of half a second,
 /// whatever their residuals' correlation. `with_stiffness`: a spring holds the tip (a hand).
-/// `with_inertia`: motors have an inertia, whose accelerations the samples know. Fails if the
-/// motion is too short or its windows too few. Real-time: never from the servo thread.
+/// `with_inertia`: motors have an inertia, and the samples contain their accelerations. Fails if
+/// the motion is too short or has too few windows. Real-time: never from the servo thread.
 driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
                                    bool with_inertia = false);
 

@@ -12,20 +12,20 @@ namespace thimble::bringup {
 namespace {
 
 constexpr double kWeakest = 0.05;  // N, of the first push
-constexpr double kPulse = 0.04;    // s, the longest
-constexpr double kReach = 0.002;   // m, where a push turns round [chosen: a twentieth of the space]
-constexpr double kStill = 0.02;    // s without a count in which it rests
+constexpr double kPulse = 0.04;    // s, max. duration
+constexpr double kReach = 0.002;   // m, at which a push reverses [chosen: a twentieth of the space]
+constexpr double kStill = 0.02;    // s without a count, after which it is at rest
 constexpr double kRestMost = 2;    // s, after which it moves by itself [chosen]
 constexpr double kNoticed = 3, kClear = 10;  // counts
-// Tip accelerations for each N asked for, 1/kg, up to which HoldPlace is stable behind a delay of
-// 5 ms: at the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w),
-// is then as large as what 5.5 ms turn.
+// Max. tip acceleration per requested N, 1/kg, for which HoldPlace is stable with a delay of 5 ms.
+// At the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w), equals
+// the phase lag of 5.5 ms.
 constexpr double kLivelyMost = 30;
 
-/// What one push did.
+/// Result of one push.
 struct Pushed {
-  double counts = 0;        ///< Farthest that the joint went, in the direction of the torque.
-  double acceleration = 0;  ///< Of the tip along the push, m/s^2.
+  double counts = 0;        ///< Max. motion of the joint, in the direction of the torque.
+  double acceleration = 0;  ///< Acceleration of the tip along the push, m/s^2.
 };
 
 class Probe {
@@ -34,7 +34,8 @@ class Probe {
         const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop)
       : bench_(bench), file_(file), force_most_(force_most), within_(within), stop_(stop) {}
 
-  /// Returns the share of one motor, or why it has none; nothing where the run has ended.
+  /// Returns the share of one motor, or the reason why there is none; an empty error if the run has
+  /// ended.
   driver::Result<double> share_of(int joint) {
     Pushed before, now;
     double force = 0, force_before = 0;
@@ -48,21 +49,22 @@ class Probe {
       if (moved) break;
     }
     if (now.counts < -kNoticed) {
-      // Something else may have moved the tip just then; it does not move to both sides.
+      // Another cause may have moved the tip at that time, but would not move it in both
+      // directions.
       const auto again = push(joint, -force);
       if (!again) return ended(joint, now.counts, force);
       if (again->counts < -kNoticed) return against(joint, now.counts);
       return moves_by_itself(joint);
     }
     if (now.counts < kNoticed) return unmoved(joint, now.counts, force);
-    // Dry friction takes the same off both.
+    // Dry friction reduces both equally.
     const double lively = (now.acceleration - before.acceleration) / (force - force_before);
     return std::min(1.0, kLivelyMost / std::max(lively, 1e-9));
   }
 
  private:
-  /// Lets the tip come to rest after a push, for as long as kRestMost: an arm whose friction hardly
-  /// carries its weight slides on for long. Returns whether the run goes on.
+  /// Lets the tip come to rest after a push, for up to kRestMost: an arm whose friction hardly
+  /// carries its weight slides for long. Returns whether the run continues.
   bool rest() {
     const auto nothing = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
     for (double waited = 0; waited < kRestMost; waited += kStill) {
@@ -78,9 +80,9 @@ class Probe {
     if (!rest()) return {};
     const Eigen::Vector3d begin_W = bench_.device().state().p_WT;
     const double q0 = bench_.device().state().q[joint], begin = bench_.now();
-    double turn = -1;  // when the push turned round, s
+    double turn = -1;  // time at which the push reversed, s
     Pushed seen;
-    std::vector<std::pair<double, double>> way;  // s, m along the push, up to there
+    std::vector<std::pair<double, double>> way;  // s, m along the push, up to that time
     bool left = false;
     Phases phases;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
@@ -91,7 +93,7 @@ class Probe {
       const double gone = std::copysign(1.0, force) * push_W.dot(state.p_WT - begin_W);
       if (turn < 0) way.emplace_back(t, gone);
       if (turn < 0 && (t >= kPulse || std::abs(gone) >= kReach)) turn = t;
-      // Before a hand's spring, or what comes next, can have turned it round.
+      // Before a hand's spring, or the next phase, can have reversed it.
       const double away = std::copysign(1.0, force) * (state.q[joint] - q0);
       if (turn < 0 || t < 1.1 * turn) {
         seen.counts = std::abs(away) > std::abs(seen.counts) ? away : seen.counts;
@@ -105,16 +107,16 @@ class Probe {
     return seen;
   }
 
-  /// How far a push is: there, back, and stopped, each with the other sign.
+  /// Phases of a push: there, back, and stop, with alternating signs.
   struct Phases {
     enum { kThere, kBack, kStop, kOver } now = kThere;
-    double until = 0;  ///< s, when the one before ended
-    double peak = 0;   ///< m, farthest along the push, with its sign
+    double until = 0;  ///< s, end of the previous phase
+    double peak = 0;   ///< m, max. distance along the push, with its sign
   };
 
-  /// Returns the sign of the force at a time (s) in a push that turned round at `turn` (s, negative
-  /// before it has), with the tip `gone` (m) along it at `rate` (m/s). A weight makes the ways
-  /// there and back differ, so each ends where the tip is; at the latest after twice the time of
+  /// Returns the sign of the force at time `t` (s) in a push that reversed at `turn` (s, negative
+  /// before that). The tip has moved `gone` (m) along it, with `rate` (m/s). With a weight the
+  /// motions there and back differ, so each ends by position, at the latest after twice the time of
   /// the push.
   static double sign_of(Phases& phases, double t, double turn, double gone, double rate) {
     if (turn < 0) return 1;
@@ -131,14 +133,14 @@ class Probe {
                side * rate < 0) {
       next(Phases::kStop);
     } else if (phases.now == Phases::kBack && late) {
-      next(Phases::kOver);  // it does not come back
+      next(Phases::kOver);  // it does not return
     } else if (phases.now == Phases::kStop && (late || side * rate >= 0)) {
       next(Phases::kOver);
     }
     return phases.now == Phases::kBack ? -1 : phases.now == Phases::kStop ? 1 : 0;
   }
 
-  /// Returns the unit force that one motor alone makes at the tip (W).
+  /// Returns the unit force at the tip (W) of a single motor.
   Eigen::Vector3d direction(int joint, const Eigen::Vector3d& q) const {
     Eigen::Vector3d p_BT;
     Eigen::Matrix3d J;
@@ -146,8 +148,8 @@ class Probe {
     return file_.R_WB * J.inverse().row(joint).transpose().normalized();
   }
 
-  /// Returns the acceleration of a way from rest that began at an unknown time: x = a (t - t0)^2 /
-  /// 2 goes from a quarter of its end to its end in half of its time.
+  /// Returns the acceleration of a motion from rest that began at an unknown time. x = a (t - t0)^2
+  /// / 2 moves from a quarter of its end to its end in half of its time.
   static double acceleration_of(const std::vector<std::pair<double, double>>& way) {
     if (way.empty() || way.back().second <= 0) return 0;
     const auto [end, far] = way.back();
@@ -158,8 +160,8 @@ class Probe {
     return 0.5 * far / ((end - quarter) * (end - quarter));
   }
 
-  /// Says what ended a push: the gate sees a motor that moves nothing, or the wrong way, as well.
-  /// Empty if it was something else.
+  /// Returns the reason for the end of a push: the gate also detects a motor that moves nothing or
+  /// in the wrong direction. Empty if there was another reason.
   driver::Error ended(int joint, double counts, double force) const {
     switch (bench_.device().fault()) {
       case driver::Fault::kEncoderFrozen:

@@ -9,15 +9,13 @@
 
 namespace thimble::bringup {
 
-/// Pushes each joint to and fro for an instant, before any force follows the motion: one whose
-/// motor is turned round would drive the tip away. A push begins weak and doubles until the joint
-/// is seen to move, and turns round before the tip has gone far. Returns which share of the torque
-/// that is asked for each motor shall be given, 1 at the most, so that a motor which is stronger
-/// than the arm file says makes no limit cycle of a force that follows the motion. No push is above
-/// `force_most` (N). `within` says
-/// whether a tip (W, m) is where it may be pushed; where it is not, no force is asked for any more.
-/// The error names a motor that pulls the wrong way, or that moves nothing. Real-time: never from
-/// the servo thread.
+/// Pushes each joint briefly in both directions before any force follows the motion: a reversed
+/// motor would drive the tip away. A push starts weak, doubles until the joint is seen to move, and
+/// reverses before the tip has moved far. Returns the share of the requested torque for each motor,
+/// at most 1. It prevents that a motor stronger than in the arm file causes a limit cycle under a
+/// force that follows the motion. No push exceeds `force_most` (N). `within` returns whether a tip
+/// (W, m) may be pushed there; otherwise no more force is requested. The error names a motor that
+/// pulls in the wrong direction, or that moves nothing. Real-time: never from the servo thread.
 driver::Result<Eigen::Vector3d> probe_motors(
     BenchArm& bench, const scene::ArmFile& file, double force_most,
     const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop);

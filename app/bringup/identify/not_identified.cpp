@@ -78,7 +78,7 @@ void of_play(const Identified& identified, Sentences& all) {
   if (!none.empty()) all.push_back("Play: none seen above " + none + ", whole width.");
 }
 
-/// What would have been seen of one friction of the motors' side, joint by joint.
+/// Detection limits of one friction of the motors' side, joint by joint.
 std::string unseen_friction(const Identified& identified, const std::array<Estimate, 3>& friction,
                             const std::array<bool, 3>& shows, const char* unit) {
   std::string none;
@@ -91,7 +91,7 @@ std::string unseen_friction(const Identified& identified, const std::array<Estim
   return none;
 }
 
-/// What would have been seen of one friction of a rigid arm's joints.
+/// Detection limits of one friction of a rigid arm's joints.
 std::string unseen_friction(const Identified& identified, const std::array<double, 3>& below,
                             const char* unit) {
   std::string none;
@@ -212,7 +212,7 @@ void of_encoders(const Encoders& encoders, Sentences& all) {
   }
 }
 
-/// What would have been seen of the waves that were not, motor by motor.
+/// Detection limits of the waves that were not seen, motor by motor.
 std::string unseen_waves(const Identified& identified, bool cogging, double MotorWave::*below) {
   const MotorWaves& waves = identified.waves;
   std::string text;

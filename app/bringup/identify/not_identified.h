@@ -7,8 +7,8 @@
 
 namespace thimble::bringup {
 
-/// Returns what was not seen of an arm, or not told from something else, and why, a sentence or two
-/// each: with the size above which it would have been seen, where there is one. Real-time: never
+/// Returns the properties of an arm that were not seen, or not distinguished from others, and the
+/// reasons, a sentence or two each. Includes the detection limit, if there is one. Real-time: never
 /// from the servo thread.
 std::vector<std::string> not_identified(const Identified& identified);
 

@@ -16,14 +16,15 @@ namespace thimble::bringup {
 namespace {
 
 constexpr double kTick = 1e-3;       // s, of BenchArm
-constexpr double kProbeShare = 0.4;  // of the most that is allowed, while motors are tried
-// How fast a force that carries a known mass is found, N/s for each m that it hangs too low: the
-// spring of HoldPlace over 0.4 s, long against its oscillation; and for how long, five times that.
+constexpr double kProbeShare = 0.4;  // of the max. allowed force, while motors are tested
+// Integral gain of the force that carries a known mass, N/s for each m that it is too low. It is
+// the spring of HoldPlace over 0.4 s, long compared with its oscillation. Its duration is five
+// times that.
 constexpr double kCarry = 150, kCarried = 2;
-constexpr double kLeadSpeed = 0.06;  // m/s, between places [chosen: slower than a hand's reach]
-constexpr double kSettled = 0.3;     // s, at a new place
+constexpr double kLeadSpeed = 0.06;  // m/s, between points [chosen: slower than a hand's reach]
+constexpr double kSettled = 0.3;     // s, at a new point
 
-/// Fills in what a tick showed: the tip, and how it hangs together with the joints.
+/// Fills in the data of a tick: the tip, and its relation to the joints.
 MotionSample sample_of(const scene::ArmFile& file, const driver::DeviceState& state) {
   MotionSample sample;
   Eigen::Matrix3d J;
@@ -49,7 +50,7 @@ class Recorder {
   driver::Result<void> begin(bool bare) {
     const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
     if (auto active = bench_.device().activate(); !active) return active.error();
-    // Until the soft start is over; an arm with its bare tip stays where it is put.
+    // Until the soft start is over; an arm with its bare tip stays in place.
     if (bare && !bench_.run(file_.limits.soft_start + 0.05, rest, stop_)) return why();
     p_WM_ = bench_.device().state().p_WT;
     if (file_.workspace.holds(p_WM_)) return {};
@@ -73,7 +74,7 @@ class Recorder {
     return driver::Error{said};
   }
 
-  /// Finds how strong the motors are, and that none pulls the wrong way.
+  /// Measures the strength of the motors, and checks that none pulls in the wrong direction.
   driver::Result<void> probe() {
     const auto share = probe_motors(
         bench_, file_, kProbeShare * force_most_,
@@ -89,7 +90,7 @@ class Recorder {
     return {};
   }
 
-  /// Leads the tip to a place (m), about which it moves from then on.
+  /// Leads the tip to a point (m), about which it moves from then on.
   driver::Result<void> lead_to(const Eigen::Vector3d& p_W) {
     const Eigen::Vector3d from = p_WM_, path = p_W - p_WM_;
     const double lasts = path.norm() / kLeadSpeed, begin = bench_.now();
@@ -108,8 +109,8 @@ class Recorder {
     return {};
   }
 
-  /// Finds the force that carries a mass (kg): motors that are not as strong as the file says do
-  /// not carry what they are asked to.
+  /// Finds the force that carries a mass (kg): motors weaker than in the file do not give the
+  /// requested force.
   driver::Result<void> carry(double mass) {
     carried_W_ = {0, 0, scene::kGravity * mass};
     HoldPlace hold(p_WM_);
@@ -143,7 +144,7 @@ class Recorder {
     std::uint64_t jumped = bench_.device().wire_counters().jumped;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
       const double t = bench_.now() - begin;
-      // What was sent in the tick before stands until now.
+      // The torque of the previous tick acts until now.
       if (!motion.samples.empty()) motion.samples.back().tau = sent_torque(motion.samples.back());
       if (t < lead_) jumped = bench_.device().wire_counters().jumped;
       if (t >= lead_) motion.samples.push_back(sample_of(file_, state));
@@ -160,7 +161,7 @@ class Recorder {
   }
 
  private:
-  /// Returns whether the tip is where it may be pushed: near where it began, in the workspace.
+  /// Returns whether the tip may be pushed there: near its start, in the workspace.
   bool within(const Eigen::Vector3d& p_WT) const {
     return (p_WT - p_WM_).norm() < Excitation::kFar && file_.workspace.holds(p_WT);
   }
@@ -180,15 +181,15 @@ class Recorder {
     return driver::Error{said};
   }
 
-  /// Returns a force (W, N) of which each motor gives its share, with what it carries on top; G as
-  /// in MotionSample.
+  /// Returns a force (W, N) of which each motor gives its share, plus the carrying force; G as in
+  /// MotionSample.
   Eigen::Vector3d shared(const Eigen::Vector3d& f_W, const Eigen::Matrix3d& G) const {
     Eigen::Vector3d f = f_W;
     if (share_ != Eigen::Vector3d::Ones()) {
       const Eigen::Vector3d tau = G.transpose().inverse() * (file_.R_WB.transpose() * f_W);
       f = file_.R_WB * (G.transpose() * share_.cwiseProduct(tau));
     }
-    // What carries stays whole, and the rest becomes as short as it must.
+    // The carrying force is unchanged, and the rest is shortened as necessary.
     const double most = Excitation::kShareMost * force_most_;
     const double left = most * most - carried_W_.squaredNorm();
     if (left <= 0) return carried_W_ * (most / carried_W_.norm());
@@ -197,7 +198,7 @@ class Recorder {
     return carried_W_ + f * ((std::sqrt(along * along + square * left) - along) / square);
   }
 
-  /// Returns the torques of the force that stands, in the pose that it was sent for.
+  /// Returns the torques of the acting force, in the pose for which it was sent.
   Eigen::Vector3d sent_torque(const MotionSample& then) const {
     const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();
     return then.G.transpose().inverse() * f_T_B;
@@ -207,10 +208,10 @@ class Recorder {
   const scene::ArmFile& file_;
   double lead_;                         // s
   double force_most_;                   // N
-  Eigen::Vector3d share_;               // of the torques that are asked for, joint by joint
-  Eigen::Vector3d p_WM_{0, 0, 0};       // where it began, m
+  Eigen::Vector3d share_;               // of the requested torques, joint by joint
+  Eigen::Vector3d p_WM_{0, 0, 0};       // start, m
   Eigen::Vector3d carried_W_{0, 0, 0};  // N
-  bool left_ = false;                   // that space, for good
+  bool left_ = false;                   // left the allowed space, permanently
   const std::atomic<bool>& stop_;
 };
 
@@ -231,8 +232,8 @@ driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& f
 }
 
 bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W) {
-  // Of the sine of B + C, which is 1 where the arm is isotropic [chosen: masses along an axis are
-  // no more than some three times those there].
+  // Min. sine of B + C; it is 1 where the arm is isotropic [chosen: masses along an axis are at
+  // most some three times those there].
   constexpr double kSineLeast = 0.5;
   const auto* const arm = std::get_if<driver::SerialArm>(&file.model.geometry);
   const Eigen::Vector3d p_BT = file.R_WB.transpose() * (p_W - file.p_WB);
@@ -241,8 +242,8 @@ bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W) {
 }
 
 std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
-  constexpr double kRoom = 0.02;                // m about a place, in which the arm moves easily
-  constexpr double kLeast = 0.3, kStep = 0.05;  // of the way to a corner
+  constexpr double kRoom = 0.02;                // m about a point, in which the arm moves easily
+  constexpr double kLeast = 0.3, kStep = 0.05;  // of the distance to a corner
   const auto has_room = [&](const Eigen::Vector3d& p_W) {
     for (const double x : {-kRoom, kRoom}) {
       for (const double z : {-kRoom, kRoom}) {
@@ -256,7 +257,7 @@ std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
       ((file.workspace.max_W - file.workspace.min_W) / 2).array() - Excitation::kFar;
   std::vector<Eigen::Vector3d> places{middle};
   for (int k = 0; k < 8 && static_cast<int>(places.size()) < count; ++k) {
-    // Opposite corners follow each other.
+    // Opposite corners in turn.
     const int corner = k % 2 == 0 ? k / 2 : 7 - k / 2;
     const Eigen::Vector3d side((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
                                (corner & 4) != 0 ? 1 : -1);

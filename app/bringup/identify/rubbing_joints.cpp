@@ -14,37 +14,37 @@
 namespace thimble::bringup {
 namespace {
 
-// Information by which a friction must be better before it is believed, and share of the residual's
-// square that may be left with it, where it is what makes a fit bad [chosen as for saturation.cpp].
+// Information required to accept a friction, and max. share of the squared residual with it, if it
+// is the cause of a bad fit [chosen as for saturation.cpp].
 constexpr double kRubsBetter = 10;
 constexpr double kRubsLeft = 0.5;
-// How many times more than the others a joint rubs that sticks [chosen: those of one arm that are
-// 1/3 to 3 times what is published differ by nine times].
+// Ratio of the friction of a joint that sticks to that of the others [chosen: those of one arm that
+// are 1/3 to 3 times the published values differ by nine times].
 constexpr double kSticks = 10;
-// Pieces in which no joint stands, to measure friction [as fit_motion's], and to blame a joint that
-// stands for most of the time [chosen].
+// Pieces in which no joint stands still, to measure friction [as in fit_motion], and to name a
+// joint that mostly stands still as the cause [chosen].
 constexpr Eigen::Index kPiecesLeast = 300, kPiecesToBlame = 50;
-constexpr int kRubRounds = 4;  // of finding friction and where it turns the joints
-// What the smoothing of signs costs beyond the statistics, of dry friction, and N m s/rad for each
-// N m of it of the viscous [chosen: so that intervals hold 95 % of the truths,
-// identify_rubbing_test].
+constexpr int kRubRounds = 4;  // of the search for friction and the reversals of the joints
+// Errors due to the smoothing of signs beyond the statistics: of dry friction, as a share; of
+// viscous friction, N m s/rad per N m of dry friction [chosen: so that intervals hold 95 % of the
+// truths, identify_rubbing_test].
 constexpr double kMethodDry = 0.004;
-constexpr double kMethodBeside = 0.008;  // likewise, of the tip's dry friction beside it
+constexpr double kMethodBeside = 0.008;  // likewise, per dry friction of the tip
 constexpr double kMethodViscous = 0.003;
 
 using Vector8 = Eigen::Matrix<double, 8, 1>;
 
-/// Columns beside those of a rigid arm without friction: of the tip dry and viscous, of each joint
-/// dry, of each joint viscous.
+/// Columns in addition to those of a rigid arm without friction: dry and viscous of the tip, dry of
+/// each joint, viscous of each joint.
 enum Column { kTipDry = 0, kTipViscous = 1, kJointDry = 2, kJointViscous = 5, kColumns = 8 };
 
-/// Frictions that are believed or not as one: those of a tip, or of joints.
+/// Frictions that are accepted or rejected together: those of a tip, or of joints.
 struct Group {
   int first, count;
 };
 constexpr Group kOfTip{kTipDry, 2}, kOfJoints{kJointDry, 6}, kOfBoth{kTipDry, kColumns};
 
-/// How the joints turn, tick by tick.
+/// Rotation of the joints, tick by tick.
 struct Turning {
   std::vector<Eigen::Vector3d> rate, sign;  // rad/s; the rate's mean sign over the tick
 };
@@ -68,13 +68,13 @@ Turning turning_of(const MotionEquations& equations, const Eigen::Vector3d& dry)
   return turning;
 }
 
-/// The equations of a motion in which no joint stands, with the friction of tip and joints in
-/// columns of its own.
+/// The equations of a motion in which no joint stands still, with separate columns for the friction
+/// of tip and joints.
 struct RubbingRows {
   Eigen::MatrixXd rows, further;
   Eigen::VectorXd rest;
   std::vector<int> clusters;
-  double square = 0;  // of what the fit left of them
+  double square = 0;  // of their residual of the fit
 };
 
 RubbingRows rows_of(const FittedMotion& motion, const Turning& turning) {
@@ -115,11 +115,11 @@ RubbingRows rows_of(const FittedMotion& motion, const Turning& turning) {
   return found;
 }
 
-/// Frictions by a fit, per mass; zero of what is not believed.
+/// Frictions by a fit, per mass; zero if not accepted.
 struct RubbingFit {
   Vector8 factor = Vector8::Zero();
   Eigen::Matrix<double, 8, 8> covariance = Eigen::Matrix<double, 8, 8>::Zero();
-  double square = 0;  // of what it leaves
+  double square = 0;  // of its residual
 };
 
 RubbingFit fit_of(const RubbingRows& rows, const Group& group) {
@@ -132,7 +132,7 @@ RubbingFit fit_of(const RubbingRows& rows, const Group& group) {
   return fit;
 }
 
-/// By how much the Bayesian information prefers to have a group.
+/// Gain of the Bayesian information criterion by a group.
 double better_with(const Group& group, const RubbingFit& fit, Eigen::Index rows) {
   const Eigen::VectorXd factor = fit.factor.segment(group.first, group.count);
   const Eigen::MatrixXd covariance =
@@ -141,12 +141,12 @@ double better_with(const Group& group, const RubbingFit& fit, Eigen::Index rows)
          group.count * math::log(static_cast<double>(rows));
 }
 
-/// Whose friction is believed.
+/// Accepted groups.
 struct Believed {
   bool joints = false, tip = true;
 };
 
-/// Leaves out what is not needed: of tip and joints the one that tells less first.
+/// Removes unnecessary groups: of tip and joints, the one with less information first.
 RubbingFit believe(const RubbingRows& rows, Believed& believed) {
   const RubbingFit both = fit_of(rows, kOfBoth);
   const double joints = better_with(kOfJoints, both, rows.rest.size());
@@ -159,7 +159,7 @@ RubbingFit believe(const RubbingRows& rows, Believed& believed) {
   return alone;
 }
 
-/// Puts what was found beside gains per mass, in the pose of `G`.
+/// Stores the result relative to gains per mass, in the pose of `G`.
 void put(RubbingJoints& found, const RubbingFit& fit, const Eigen::Vector3d& gain,
          const Eigen::Matrix3d& G) {
   const auto of = [&](int column, double per) {
@@ -168,7 +168,7 @@ void put(RubbingJoints& found, const RubbingFit& fit, const Eigen::Vector3d& gai
   };
   found.tip_coulomb = of(kTipDry, 1);
   found.tip_viscous = of(kTipViscous, 1);
-  // What turns its sign at about the same time is told apart by the little that it differs in.
+  // Frictions that reverse at about the same time are distinguished only by small differences.
   double dry = std::abs(found.tip_coulomb.value);  // at the tip
   for (int joint = 0; joint < 3; ++joint) {
     const auto k = static_cast<std::size_t>(joint);
@@ -184,7 +184,7 @@ void put(RubbingJoints& found, const RubbingFit& fit, const Eigen::Vector3d& gai
   widen(found.tip_coulomb, kMethodDry * dry);
 }
 
-/// Notes what would have been seen of each joint beside the tip's friction.
+/// Computes the detection limits of each joint in addition to the tip's friction.
 void put_bounds(RubbingJoints& found, const RubbingRows& rows, const Eigen::Vector3d& gain) {
   const RubbingFit fit = fit_of(rows, kOfBoth);
   const double seen =
@@ -233,7 +233,7 @@ int RubbingJoints::stuck(double tip, const Eigen::Vector3d& levers) const {
 
 driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const PerMass& fit) {
   RubbingJoints none;
-  // What a motor with the wrong sign does is no friction.
+  // The effect of a motor with the wrong sign is not friction.
   if ((gains(fit).array() <= 0).any()) return none;
   const FittedMotion first(motion, fit);
   Believed believed;
@@ -247,7 +247,7 @@ driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const
   found.delay = fit.delay.value;
   found.seen = true;
   const double square = first.residual.rest.squaredNorm();
-  // What was found bends the joints where they turn, and that changes what is found.
+  // The friction found changes the joint motion at reversals, and so the result itself.
   PerMass last = fit;
   for (int round = 0; round < kRubRounds; ++round) {
     put(found, seen, gains(last), motion.samples.back().G);
@@ -259,7 +259,7 @@ driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const
     found.delay = last.delay.value;
     const FittedMotion left(freed, last);
     found.left = left.residual.rest.squaredNorm() / square;
-    // All of the friction once more, now that it is known where the joints turn.
+    // All of the friction once more, with the known reversals of the joints.
     RubbingRows all = rows_of(left, turning_of(left.equations, seen.factor.segment<3>(kJointDry)));
     for (int joint = 0; joint < 3; ++joint) {
       const auto k = static_cast<std::size_t>(joint);
@@ -272,7 +272,7 @@ driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const
   }
   found.tip_rubs = believed.tip;
   put(found, seen, gains(last), motion.samples.back().G);
-  // What pushes a joint on is something else that looks like friction.
+  // An effect that drives a joint is not friction, although it looks similar.
   const bool pushes =
       std::any_of(found.coulomb.begin(), found.coulomb.end(),
                   [](const Estimate& one) { return one.value + one.plus_minus < 0; });

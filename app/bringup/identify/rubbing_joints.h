@@ -11,41 +11,41 @@
 
 namespace thimble::bringup {
 
-/// Friction of the joints of a rigid arm, which turns its sign with them rather than with the axes
-/// of the base (device_sim::DriveTrainSettings). Torques by the arm file's constants.
+/// Friction of the joints of a rigid arm, whose sign follows the joints and not the axes of the
+/// base (device_sim::DriveTrainSettings). Torques use the arm file's constants.
 struct RubbingJoints {
-  bool searched = false;              ///< It was looked for.
-  bool seen = false;                  ///< The data show it.
-  bool tip_rubs = true;               ///< Friction along the axes of the base is seen beside it.
-  Estimate tip_coulomb, tip_viscous;  ///< That, per mass at the tip, N/kg and N s/(m kg).
-  std::array<Estimate, 3> coulomb;    ///< Of each joint, N m.
-  std::array<Estimate, 3> viscous;    ///< N m s/rad
-  /// What would have been seen, N m and N m s/rad; zero: nothing was looked for.
+  bool searched = false;              ///< A search was made.
+  bool seen = false;                  ///< It is significant.
+  bool tip_rubs = true;               ///< Friction along the axes of the base is seen in addition.
+  Estimate tip_coulomb, tip_viscous;  ///< That friction, per mass at the tip, N/kg and N s/(m kg).
+  std::array<Estimate, 3> coulomb;    ///< Dry friction of each joint, N m.
+  std::array<Estimate, 3> viscous;    ///< Viscous friction of each joint, N m s/rad.
+  /// Detection limits, N m and N m s/rad; zero: not searched for.
   std::array<double, 3> coulomb_below{}, viscous_below{};
-  double left = 1;   ///< Share of the residual's square that is left with it.
-  double delay = 0;  ///< With which torques come, s.
+  double left = 1;   ///< Remaining share of the squared residual.
+  double delay = 0;  ///< Delay of torques, s.
 
-  /// Returns the joint that rubs most for its interval, from 0 on.
+  /// Returns the joint whose friction is largest relative to its interval, from 0 on.
   int most() const;
-  /// Returns the joint that sticks: it rubs ten times as much as either of the others, and more
-  /// than the tip, whose dry friction is `tip` (N), at a lever of 1 / |G_row| (`levers`, m); else
-  /// -1.
+  /// Returns the joint that sticks, else -1. Its friction is ten times that of either of the
+  /// others, and more than that of the tip, whose dry friction is `tip` (N), at a lever of 1 /
+  /// |G_row| (`levers`, m).
   int stuck(double tip, const Eigen::Vector3d& levers) const;
 };
 
-/// Looks for friction of joints in a fit of a rigid arm's motion, and believes it where the
-/// Bayesian information does. Friction of tip and joints that the motion cannot tell apart is the
-/// tip's. Fails as `fit_motion` does. Real-time: never from the servo thread.
+/// Searches for friction of joints in a fit of a rigid arm's motion, and accepts it by the Bayesian
+/// information criterion. Friction of tip and joints that the motion does not distinguish is
+/// assigned to the tip. Fails like `fit_motion`. Real-time: never from the servo thread.
 driver::Result<RubbingJoints> find_rubbing_joints(const ArmMotion& motion, const PerMass& fit);
 
-/// Returns a motion with the torques that are left beside such friction, by the arm file's
-/// constants. `fit`: of this motion, for how friction bends it where joints turn. Real-time: never
-/// from the servo thread.
+/// Returns a motion with the torques that remain without such friction, in the arm file's
+/// constants. `fit` of this motion gives the deceleration by friction where joints reverse.
+/// Real-time: never from the servo thread.
 ArmMotion freed_of_rubbing(const ArmMotion& motion, const RubbingJoints& rubbing,
                            const PerMass& fit);
 
-/// Looks once in what a fit leaves of a motion, which is bad, for dry friction of joints: torques
-/// by the arm file's constants. Real-time: never from the servo thread.
+/// Searches once for dry friction of joints in the residual of a bad fit; torques use the arm
+/// file's constants. Real-time: never from the servo thread.
 RubbingJoints rubbing_left(const FittedMotion& motion);
 
 }  // namespace thimble::bringup

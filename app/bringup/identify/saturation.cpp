@@ -10,17 +10,17 @@
 namespace thimble::bringup {
 namespace {
 
-// Information by which it must be better before it is believed, and how much of the torque beyond
-// must be missing [chosen: no hidden arm of identify_test is told to have one].
+// Information required for acceptance, and min. missing share of the torque beyond the limit
+// [chosen: no hidden arm of identify_test is reported to saturate].
 constexpr double kBetter = 10;
 constexpr double kMissingLeast = 0.3;
-// Half-width of the interval of the share that is missing, up to which a search is one.
+// Max. half-width of the interval of the missing share for a valid search.
 constexpr double kSearched = 0.3;
-// Share of the residual's square that may be left with all of them: what else makes a fit bad
-// (cogging, a hand) looks a little like an amplifier that saturates, and is not explained by one.
+// Max. share of the squared residual with all of them. Other causes of a bad fit (cogging, a hand)
+// look similar to a saturated amplifier, which does not explain them.
 constexpr double kLeftMost = 0.3;
-// Of a torque that was found, what the held torques and the friction's signs cost, as a standard
-// deviation [chosen so that intervals hold 95 % of the truths, identify_further_test].
+// Error of a torque found, due to held torques and the friction's signs, as a standard deviation
+// [chosen so that intervals hold 95 % of the truths, identify_further_test].
 constexpr double kMethod = 0.02;
 constexpr int kRounds = 6;  // of Newton's search for the torque
 
@@ -32,7 +32,7 @@ std::vector<Eigen::Vector3d> torques_of(const ArmMotion& motion, int joint, cons
   return all;
 }
 
-/// What torques of a joint do to all equations, per mass.
+/// Effect of torques of a joint on all equations, per mass.
 Eigen::VectorXd pushed(const FittedMotion& motion, int joint,
                        const std::vector<Eigen::Vector3d>& torques) {
   Eigen::VectorXd column(motion.residual.rows.rows());
@@ -47,7 +47,7 @@ double beyond(double torque, double most) {
   return torque - std::clamp(torque, -most, most);
 }
 
-/// The joints whose motors seem to saturate.
+/// Joints whose motors seem to saturate.
 std::vector<int> seen_of(const std::array<Saturation, 3>& all) {
   std::vector<int> joints;
   for (int joint = 0; joint < 3; ++joint) {
@@ -56,8 +56,8 @@ std::vector<int> seen_of(const std::array<Saturation, 3>& all) {
   return joints;
 }
 
-/// Of motors that were found to give no more than about `most`: finds all of these together, by
-/// Newton's rule. What is missing is taken off, and what a little more would give is looked for.
+/// For motors that give at most about `most`: finds all of these limits together, by Newton's rule.
+/// The missing torque is removed, and the effect of a slightly higher limit is fitted.
 void refine(const FittedMotion& motion, std::array<Saturation, 3>& all) {
   const std::vector<int> joints = seen_of(all);
   Eigen::Vector3d gain = motion.fit.theta.segment<3>(PerMass::kGain);
@@ -88,7 +88,7 @@ void refine(const FittedMotion& motion, std::array<Saturation, 3>& all) {
   }
 }
 
-/// Returns whether the amplifiers that seem to saturate are what makes the fit bad.
+/// Returns whether the amplifiers that seem to saturate are the cause of the bad fit.
 bool explain(const FittedMotion& motion, const std::array<Saturation, 3>& all) {
   std::vector<Eigen::VectorXd> columns;
   for (const int joint : seen_of(all)) {

@@ -6,16 +6,16 @@
 
 namespace thimble::bringup {
 
-/// Whether a motor gives all of the torque that it is asked for.
+/// Whether a motor delivers all of the requested torque.
 struct Saturation {
-  bool seen = false;      ///< It gives no more than `most`: the data show it.
-  Estimate most;          ///< The torque beyond which it gives no more, N m at the joint by the arm
-                          ///< file's constants; where none was seen nothing.
-  double asked = 0;       ///< The largest torque that it was asked for, N m at the joint.
-  bool searched = false;  ///< So much was asked for that it would have been seen.
+  bool seen = false;  ///< It delivers at most `most`: significant.
+  Estimate most;     ///< Max. torque, N m at the joint with the arm file's constants; empty if none
+                     ///< was seen.
+  double asked = 0;  ///< Largest requested torque, N m at the joint.
+  bool searched = false;  ///< The requested torque was large enough to show saturation.
 };
 
-/// Looks for amplifiers that saturate, joint by joint: what was asked for beyond some torque then
+/// Searches for amplifiers that saturate, joint by joint: torque requested beyond some value then
 /// moves nothing. Real-time: never from the servo thread.
 std::array<Saturation, 3> saturations(const FittedMotion& motion);
 

@@ -13,7 +13,7 @@ driver::Result<std::unique_ptr<BenchArm>> simulated_bench(const scene::ArmFile& 
   bench.simulated.hand.mass += added_mass;
   bench.simulated.weight_B +=
       file.R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity * added_mass);
-  // Nobody holds the mass from below until it is carried.
+  // No hand supports the mass until it is carried.
   if (added_mass > 0) bench.limits.soft_start = driver::GateLimits::kSoftStartLeast;
   const Eigen::Vector3d middle = file.workspace.middle();
   return BenchArm::open(bench, {}, {}, {{0, middle}}, force_most);

@@ -24,12 +24,13 @@ struct SmoothBump {
   }
 };
 
-/// Weights that make velocities (1/s) of places, by a bump times 1 - b x^2, whose second moment is
-/// zero: where a velocity turns, neither its slope nor how that changes moves the place.
+/// Weights that compute velocities (1/s) from positions, by a bump times 1 - b x^2, whose second
+/// moment is zero. Where a velocity reverses, neither its slope nor the change of its slope shifts
+/// the result.
 template <int half>
 struct TurnSmoothing {
   std::array<double, 2 * half + 1> slope{};
-  double mean_distance = 0;  ///< Of a tick from the middle, s.
+  double mean_distance = 0;  ///< Mean distance of a tick from the middle, s.
 
   explicit TurnSmoothing(double dt) {
     const SmoothBump<half> smooth(dt);

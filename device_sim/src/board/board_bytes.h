@@ -12,12 +12,12 @@ namespace thimble::device_sim {
 /// Values for the counters of a board: motor encoders, then gimbal encoders.
 using BoardCounters = std::array<std::int32_t, 6>;
 
-/// A report as a board sends it.
+/// A report of a board.
 struct BoardBytes {
-  std::size_t size = 0;                                  ///< Bytes that count.
-  std::array<std::byte, driver::kReportCapacity> bytes;  ///< The first `size` count.
+  std::size_t size = 0;                                  ///< Number of valid bytes.
+  std::array<std::byte, driver::kReportCapacity> bytes;  ///< The first `size` bytes are valid.
 
-  /// Returns the bytes that count. Real-time: safe.
+  /// Returns the valid bytes. Real-time: safe.
   operator std::span<const std::byte>() const noexcept {  // NOLINT(*-explicit-*)
     return std::span<const std::byte>(bytes).first(size);
   }

@@ -13,7 +13,7 @@ namespace hfab = driver::hfab;
 namespace woody = driver::woody;
 using driver::ArmKind;
 
-// Counters wrap as those of the boards do.
+// Counters wrap like those of the boards.
 std::int16_t low_word(std::int64_t value) noexcept {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(value & 0xffff));
 }

@@ -12,29 +12,29 @@
 
 namespace thimble::device_sim {
 
-// The languages of boards that report by themselves, from the boards' side: each speaks by the file
-// of the driver that describes it. Everything here is Real-time: safe.
+// Protocols of boards that send reports unasked, from the board's side. Each uses the driver's file
+// that describes it. Everything here is Real-time: safe.
 
-/// What a board has to say, before it is cut to what its reports have room for.
+/// Content of a report, before it is cut to the width of the report's fields.
 struct BoardReport {
-  std::array<std::int64_t, 3> counts{};  ///< Of the motors' encoders; fine ones if they are ideal.
-  std::array<std::int64_t, 3> gimbal{};  ///< Of the gimbal's encoders.
-  std::uint16_t number = 0;              ///< Of the report.
+  std::array<std::int64_t, 3> counts{};  ///< Counts of the motor encoders; fine if these are ideal.
+  std::array<std::int64_t, 3> gimbal{};  ///< Counts of the gimbal encoders.
+  std::uint16_t number = 0;              ///< Number of the report.
   bool button = false;                   ///< The calibration button was pressed.
 };
 
-/// What a board was told.
+/// Content of a message to a board.
 struct BoardMessage {
-  std::array<std::int32_t, 3> current_mA{};  ///< Currents of its outputs.
-  std::optional<BoardCounters> counters{};   ///< A preset of its counters.
+  std::array<std::int32_t, 3> current_mA{};  ///< Currents of the outputs, mA.
+  std::optional<BoardCounters> counters{};   ///< Preset of the counters.
 };
 
 /// Encodes a report; returns its size.
 std::size_t encode_report(const BoardReport& report, const FirmwareSettings& settings,
                           std::span<std::byte, driver::kReportCapacity> bytes) noexcept;
 
-/// Writes to `message`, which says nothing yet, what a board was told; false, and the message left
-/// alone, where the bytes have a form that the board does not know.
+/// Decodes a message into `message`, which must be empty. Returns false, and leaves `message`
+/// unchanged, if the form of the bytes is unknown to the board.
 bool decode_message(std::span<const std::byte> bytes, const FirmwareSettings& settings,
                     BoardMessage& message) noexcept;
 

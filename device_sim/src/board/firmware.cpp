@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kFine = 65536;  // ideal encoders: parts of a count
 
-// Counters far beyond their 16 bits wrap as the real ones do; beyond this they are cut, so that the
+// Counters beyond 16 bits wrap like the real ones. Beyond this bound they are clamped, so that the
 // conversion to an integer is defined for any number.
 constexpr double kCounterMax = 1e15;
 
@@ -22,8 +22,8 @@ std::int64_t rounded(double counts) noexcept {
   return whole - (static_cast<double>(whole) > above ? 1 : 0);
 }
 
-// Counts below kCountable are exact to 2^-20 after a few operations: where one is farther than
-// kCountRounding from the next half, only the angle's own error can make it another.
+// Counts below kCountable are exact to 2^-20 after a few operations. If one is farther than
+// kCountRounding from the next half, only the error of the angle can change it.
 constexpr double kCountable = 0x1p31, kCountRounding = 0x1p-10;
 
 bool rounds_surely(double counts, double error) noexcept {
@@ -126,7 +126,7 @@ void Firmware::report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimb
                       std::uint16_t number, BoardBytes& bytes) const noexcept {
   BoardReport report{.counts = {}, .gimbal = {}, .number = number, .button = button_};
   for (std::size_t i = 0; i < 3; ++i) report.counts[i] = rounded(counts[static_cast<int>(i)]);
-  // Where none is mounted, its counters stay at what the last preset made them.
+  // Without a gimbal, its counters keep the values of the last preset.
   if (gimbal_ || counters_.presets > 0) {
     const Eigen::Vector3d turns = gimbal_counts_at(gimbal) + preset_gimbal_;
     for (std::size_t i = 0; i < 3; ++i) report.gimbal[i] = rounded(turns[static_cast<int>(i)]);
@@ -177,8 +177,8 @@ void Firmware::set_counters(const BoardCounters& counters, const Eigen::Vector3d
   const Eigen::Vector3d counts = counts_at(q), turns = gimbal_counts_at(gimbal);
   const double parts = settings_.ideal_encoders ? kFine : 1;
   for (int i = 0; i < 3; ++i) {
-    // A preset moves the counter by whole counts: where the edges of the encoder's slots lie is
-    // given by its disc.
+    // A preset changes the counter by an integer, because the disc of the encoder determines the
+    // positions of the edges.
     const auto k = static_cast<std::size_t>(i);
     preset_counts_[i] = parts * counters[k] - std::floor(counts[i] + 0.5);
     preset_gimbal_[i] = counters[3 + k] - std::floor(turns[i] + 0.5);

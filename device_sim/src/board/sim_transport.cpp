@@ -13,7 +13,7 @@ driver::TransportRead SimTransport::read_latest(std::span<std::byte> buffer,
     return read;
   }
   read.size = arm_.take_report(buffer, read.skipped);
-  // A wire with jitter shows only when a report is sent when it will be there.
+  // With jitter, the arrival time of a report is known only once it is sent.
   while (read.size == 0) {
     const std::int64_t until_ns = std::min(arm_.next_report_ns(), deadline_ns);
     if (!(until_ns > clock_.now_ns())) break;

@@ -7,8 +7,8 @@
 
 namespace thimble::device_sim {
 
-/// The wire to a simulated arm: moves the arm's time to the clock's time at each exchange. Keeps
-/// neither the clock nor the arm alive.
+/// The wire to a simulated arm. Each exchange advances the arm's time to the clock's time. Does not
+/// own the clock or the arm.
 class THIMBLE_EXPORT SimTransport final : public driver::Transport {
  public:
   SimTransport(driver::Clock& clock, SimulatedArm& arm) noexcept : clock_(clock), arm_(arm) {}
@@ -17,7 +17,7 @@ class THIMBLE_EXPORT SimTransport final : public driver::Transport {
                                     std::int64_t deadline_ns) noexcept override;
   driver::TransportStatus write(std::span<const std::byte> report) noexcept override;
 
-  /// Pulls the cable: every later exchange says kLost, and the firmware is on its own.
+  /// Unplugs the cable: every later exchange returns kLost, and the firmware gets no more messages.
   void unplug() noexcept { plugged_ = false; }
 
  private:

@@ -10,36 +10,36 @@
 
 namespace thimble::device_sim {
 
-/// One report or message on its way.
+/// A report or message in flight.
 struct WireFrame {
-  /// One byte more than any report has, so that what was too long stays recognisable as such.
+  /// One byte more than any report has, so that an overlong message is still recognized as
+  /// overlong.
   static constexpr std::size_t kCapacity = driver::kReportCapacity + 1;
 
-  std::int64_t due_ns = 0;                   ///< When it arrives.
-  std::size_t size = 0;                      ///< Bytes that count.
-  std::array<std::byte, kCapacity> bytes{};  ///< The first `size` count.
+  std::int64_t due_ns = 0;                   ///< Time of arrival, ns.
+  std::size_t size = 0;                      ///< Number of valid bytes.
+  std::array<std::byte, kCapacity> bytes{};  ///< Data; the first `size` bytes are valid.
 
-  /// Returns the bytes that count.
+  /// Returns the valid bytes.
   std::span<const std::byte> content() const noexcept {
     return std::span<const std::byte>(bytes).first(size);
   }
 };
 
-/// Holds the frames in flight in one direction, in order of arrival. When it is full the oldest is
-/// dropped and counted. All functions are Real-time: safe.
+/// Frames in flight in one direction, in order of arrival. If the queue is full, the oldest frame
+/// is dropped and counted. All functions are Real-time: safe.
 class WireQueue {
  public:
-  /// How many frames may be in flight.
+  /// Max. number of frames in flight.
   static constexpr std::size_t kFrames = 256;
 
-  bool empty() const noexcept { return count_ == 0; }  ///< Returns whether nothing waits.
+  bool empty() const noexcept { return count_ == 0; }  ///< Returns whether no frame is in flight.
 
-  /// Returns the next frame to arrive. Precondition: not empty (the caller's duty; otherwise it is
-  /// a frame of the past).
+  /// Returns the next frame to arrive. Precondition: not empty (not checked; otherwise returns an
+  /// old frame).
   const WireFrame& front() const noexcept { return frames_[first_]; }
 
-  /// Sends bytes that will arrive at `due_ns`; if that lies before the time of the frame sent last,
-  /// they arrive with that one.
+  /// Sends bytes that will arrive at `due_ns`, but not before the frame sent last.
   void push(std::span<const std::byte> bytes, std::int64_t due_ns) noexcept {
     if (count_ == room_) make_room();
     WireFrame& frame = frames_[(first_ + count_) & (room_ - 1)];
@@ -49,16 +49,16 @@ class WireQueue {
     ++count_;
   }
 
-  /// Takes the next frame away; does nothing if there is none.
+  /// Removes the next frame; does nothing if there is none.
   void pop() noexcept {
     if (count_ == 0) return;
     --count_;
-    // An empty queue begins anew: a wire without delay writes to one frame, which stays in the
-    // cache.
+    // An empty queue restarts at slot 0: a wire without delay always uses one frame, which stays in
+    // the cache.
     first_ = count_ == 0 ? 0 : (first_ + 1) & (room_ - 1);
   }
 
-  /// Returns how many frames were lost because too many were in flight.
+  /// Returns the number of frames lost because too many were in flight.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
@@ -77,8 +77,8 @@ class WireQueue {
 
   std::size_t first_ = 0;
   std::size_t count_ = 0;
-  // Frames that are gone round: no more than were ever in flight, so that a wire with delay stays
-  // in the cache too. A power of two.
+  // Ring size, a power of two. It grows only to the number of frames ever in flight, so that a wire
+  // with delay also stays in the cache.
   std::size_t room_ = 4;
   std::uint64_t dropped_ = 0;
   std::array<WireFrame, kFrames> frames_{};

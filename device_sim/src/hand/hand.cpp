@@ -36,9 +36,9 @@ void Hand::hold(bool still) noexcept {
   held_ = still;
 }
 
-/// Follows as a critically damped spring, by its exact map. The spring is drawn no longer than
-/// 2 kSpeedMax / kQuickness; so its pull, per mass, is at most 2 kQuickness kSpeedMax, which the
-/// damper (2 kQuickness) balances at kSpeedMax: no speed from rest goes beyond.
+/// Critically damped spring, by its exact map. Its stretch is limited to 2 kSpeedMax / kQuickness.
+/// So its pull, per mass, is at most 2 kQuickness kSpeedMax, which the damper (2 kQuickness)
+/// balances at kSpeedMax: from rest, no speed exceeds it.
 void Hand::approach(double dt) noexcept {
   Eigen::Vector3d x = p_BH_ - p_BG_;
   const double far = x.norm();

@@ -35,7 +35,7 @@ Tremor::Tremor(const HandSettings& hand, std::uint64_t seed)
   for (int axis = 0; axis < 3; ++axis) {
     for (int wave = 0; wave < 3; ++wave) {
       const double phase = 2 * std::numbers::pi * random.uniform();
-      // sin(w t + phase), so that one sine and cosine per frequency serve all axes.
+      // sin(w t + phase), so that all axes share one sine and cosine per frequency.
       sines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * math::cos(phase);
       cosines_(axis, wave) = hand.tremor_amplitude * kShares[wave] * math::sin(phase);
     }
@@ -63,7 +63,7 @@ void Tremor::turn() noexcept {
   --turns_left_;
 }
 
-// The angle of a step is worth computing where the step comes again.
+// The angle of a step is only computed if the step repeats.
 void Tremor::compute(std::int64_t step_ns) noexcept {
   const bool again = step_ns == step_ns_;
   step_ns_ = step_ns;

@@ -15,18 +15,17 @@
 
 namespace thimble::device_sim {
 
-/// The mechanics of the arm with the hand on it: motors pull on the joints, the tip moves as a
-/// mass with friction, the same in x, y and z of the base. Frames: B base, T tip, H where the hand
-/// wants to be.
+/// The mechanics of the arm with the hand on it. Motors exert torques on the joints; the tip moves
+/// as a mass with friction, the same in x, y and z of the base. Frames: B base, T tip, H where the
+/// hand wants to be.
 ///
-/// A motor holds its torque over a sub-step, and the force at the tip is J_BT^-T tau of the true
-/// pose, taken once per sub-step at the place where the tip would be half-way at its present
-/// velocity. That is the plant's one error of integration: second order in the sub-step, relative
-/// to the force about (v dt / length)^2, i.e. 1e-6 at 0.1 m/s and 1 ms. Each axis then moves
-/// exactly.
+/// A motor holds its torque over a sub-step. The force at the tip is J_BT^-T tau of the true pose,
+/// evaluated once per sub-step, at the point that the tip reaches half-way through at its present
+/// velocity. This is the plant's only integration error: second order in the sub-step, relative to
+/// the force about (v dt / length)^2, i.e. 1e-6 at 0.1 m/s and 1 ms. Each axis then moves exactly.
 class THIMBLE_EXPORT ArmPlant final : public Plant {
  public:
-  /// The longest sub-step, ns.
+  /// Max. sub-step, ns.
   static constexpr std::int64_t kStepMax_ns = 1'000'000;
 
   /// Makes the arm at rest at p_BT (m), with the hand wanting to be at p_BH (m). Fails if a
@@ -51,7 +50,7 @@ class THIMBLE_EXPORT ArmPlant final : public Plant {
   Eigen::Vector3d f_T_B() const noexcept override { return f_T_B_; }
   std::uint64_t stops() const noexcept override { return stops_; }
 
-  /// Shows the true pose of the links. Real-time: safe.
+  /// Returns the true pose of the links. Real-time: safe.
   const SerialPose& pose() const noexcept { return pose_; }
 
  private:
@@ -66,14 +65,14 @@ class THIMBLE_EXPORT ArmPlant final : public Plant {
   AxisDynamics dynamics_;
   std::array<AxisState, 3> axes_;
   SerialPose pose_;
-  SerialPose pose_near_;  // not far back, with its angles
+  SerialPose pose_near_;  // a recent pose whose angles are `q_near_`
   Eigen::Vector3d q_near_;
   Eigen::Vector3d p_BH_;
   Eigen::Vector3d amperes_{0, 0, 0};
   Eigen::Vector3d tau_{0, 0, 0};  // N m
   Eigen::Vector3d f_T_B_{0, 0, 0};
   Eigen::Vector3d pull_B_{0, 0, 0};  // N
-  bool driven_ = false;              // any torque at all
+  bool driven_ = false;              // any torque is not zero
   std::uint64_t stops_ = 0;
 };
 

@@ -7,11 +7,12 @@
 namespace thimble::device_sim {
 namespace {
 
-// Acceleration obeys the unforced equation, so its zeros lie half a period apart; a piece is kept
-// below a quarter (pi / 2), where the bound in `may_dip` holds too.
+// Acceleration obeys the unforced equation, so its zeros are half a period apart. A piece is kept
+// below a quarter period (pi / 2), where the bound in `may_dip` also holds.
 constexpr double kPieceAngleMax = 1.5;
 
-// Bisection alone halves a bracket down to rounding in so many steps; Newton needs about four.
+// Bisection without Newton's steps reduces a bracket to rounding within this number; Newton needs
+// about four.
 constexpr int kMaxIterations = 64;
 
 bool is_amount(double value) {
@@ -63,23 +64,23 @@ double zero_of_velocity(const AxisMotion& m, double low, double high, double gue
   });
 }
 
-// Returns whether a velocity that keeps its sign at both ends of a piece might leave it in between.
-// Inside a piece an acceleration that rises from a < 0 through zero stays above a (the boundary
-// value problem's influence functions are at most 1 within a quarter period), so the velocity
-// stays above v + a t.
+// Returns whether a velocity with the same sign at both ends of a piece might lose it in between.
+// Inside a piece an acceleration that rises from a < 0 through zero stays above a, so the velocity
+// stays above v + a t. (The boundary value problem's influence functions are at most 1 within a
+// quarter period.)
 bool may_dip(const AxisMotion& m, double direction, double t, double a_end) noexcept {
   return m.a * direction < 0 && a_end * direction > 0 && (m.v + m.a * t) * direction <= 0;
 }
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Finds when a sliding axis comes to rest within t, or kNever.
+// Returns the time at which a sliding axis comes to rest within t, or kNever.
 double time_of_rest(const AxisMotion& m, double direction, double t) noexcept {
   const AxisResponse end = respond(m, t);
   const double v_end = m.velocity(end), a_end = m.acceleration(end);
   if (v_end * direction < 0) {
     if (m.v != 0) return zero_of_velocity(m, 0, t, t * m.v / (m.v - v_end), direction);
-    // Starting from rest, zero itself is a root too: look behind the fastest moment.
+    // Starting from rest, time zero is also a root: search after the maximum of speed.
     if (!(a_end * direction < 0)) return t;
     return zero_of_velocity(m, zero_of_acceleration(m, t, a_end), t, t, direction);
   }
@@ -138,7 +139,7 @@ const AxisDynamics::Map& AxisDynamics::other_map_for(std::int64_t dt_ns) noexcep
   Map& map = maps_[last_map_];
   const double dt = static_cast<double>(dt_ns) * 1e-9;
   map.dt_ns = dt_ns;
-  // Without dry friction there are no events to look for.
+  // Without dry friction there are no events.
   map.pieces =
       friction_ > 0 ? 1 + static_cast<int>(dt * std::sqrt(stiffness_) / kPieceAngleMax) : 1;
   map.t = dt / map.pieces;
@@ -163,7 +164,8 @@ void AxisDynamics::step(AxisState& state, const AxisDrive& drive, std::int64_t d
     now.anchor = drive.anchor + drive.anchor_speed * (map.t * piece);
     const double force = force_at_rest(state.x, now.anchor, now);
     if (state.v == 0 && friction_ > 0) {
-      // The force on an axis at rest is linear in time: inside at both ends is inside all the time.
+      // The force on an axis at rest is linear in time: inside at both ends means inside all the
+      // time.
       const double force_end = force + hand_stiffness_ * drive.anchor_speed * map.t;
       if (std::abs(force) <= friction_ && std::abs(force_end) <= friction_) continue;
       step_with_events(state, now, map.t);
@@ -196,7 +198,7 @@ void AxisDynamics::step_with_events(AxisState& state, AxisDrive drive, double t)
         drive.anchor += drive.anchor_speed * wait;
         t -= wait;
         ++counters_.breakaways;
-        // Exactly at the edge of the cone: what rounding leaves there must not push backwards.
+        // Exactly at the edge of the friction cone: the rounding error must not push backwards.
         net = direction * friction_;
       }
     }

@@ -11,65 +11,65 @@
 
 namespace thimble::device_sim {
 
-/// Holds where one axis of the tip is and how it moves.
+/// Position and velocity of one axis of the tip.
 struct AxisState {
   double x = 0;  ///< m
   double v = 0;  ///< m/s; exactly 0 while dry friction holds the axis.
 };
 
-/// Holds what acts on one axis during a step.
+/// Inputs of one axis during a step.
 struct AxisDrive {
   double force = 0;         ///< Held over the step (zero-order hold), N.
-  double anchor = 0;        ///< Where the hand wants to be when the step begins, m.
-  double anchor_speed = 0;  ///< How fast that point moves, constant over the step, m/s.
+  double anchor = 0;        ///< Wanted position of the hand when the step begins, m.
+  double anchor_speed = 0;  ///< Velocity of that position, constant over the step, m/s.
 };
 
-/// Counts what happened inside the steps.
+/// Counters of events inside the steps.
 struct AxisCounters {
-  std::uint64_t reversals = 0;   ///< Velocity came to zero while sliding.
+  std::uint64_t reversals = 0;   ///< Velocity reached zero while sliding.
   std::uint64_t breakaways = 0;  ///< A moving anchor broke the axis loose.
-  std::uint64_t unresolved = 0;  ///< Steps with more than kMaxEvents events; the rest was at rest.
+  std::uint64_t unresolved = 0;  ///< Steps with more than kMaxEvents events; the axis then rested.
 };
 
 /// Moves one axis by its exact map:
 ///
 ///     m x'' = f - b v - c sgn(v) - k (x - a) - B (v - a'),    a(t) = a_0 + a' t,
 ///
-/// with set-valued dry friction: at v = 0 it takes any value up to c that keeps the axis at rest.
-/// m is the mass of arm and hand together, b and c the arm's friction, k and B the hand's spring
-/// and damper. Between two events (velocity reaches zero, a held axis breaks loose) the motion is
-/// the closed form of AxisMotion; the events are found to rounding. The only approximations are the
-/// drive's: a force that is held and an anchor that moves evenly.
+/// with set-valued dry friction: at v = 0 it takes any value up to c that keeps the axis at rest. m
+/// is the mass of arm and hand together, b and c the arm's friction, k and B the hand's spring and
+/// damper. Between two events (velocity reaches zero, a held axis breaks loose) the motion is the
+/// closed form of AxisMotion. Events are located to rounding error. The only approximations are
+/// those of the drive: a held force and an anchor with constant velocity.
 ///
-/// One object serves any number of axes with the same constants; it keeps the maps of the last few
+/// One object serves any number of axes with the same constants; it caches the maps of the last few
 /// step lengths. Used by one thread.
 class THIMBLE_EXPORT AxisDynamics {
  public:
-  /// The most events that one piece of a step may hold. A smooth drive has at most a few.
+  /// Max. number of events in one piece of a step. A smooth drive has at most a few.
   static constexpr int kMaxEvents = 16;
 
   /// Makes the dynamics. Fails if mass is not > 0 or anything else is negative or not finite.
   /// Real-time: never from the servo thread.
   static driver::Result<AxisDynamics> make(const PlantSettings& plant, const HandSettings& hand);
 
-  /// Moves `state` by `dt_ns`; a time that is not > 0 does nothing. A drive that is not finite
-  /// gives a state that is not finite. Real-time: safe; bounded by 1 + dt sqrt(k/m) / 1.5 pieces.
+  /// Moves `state` by `dt_ns`; does nothing if dt_ns is not > 0. A drive that is not finite gives a
+  /// state that is not finite. Real-time: safe; bounded by 1 + dt sqrt(k/m) / 1.5 pieces.
   void step(AxisState& state, const AxisDrive& drive, std::int64_t dt_ns) noexcept;
 
   /// Returns the moving mass of arm and hand, kg. Real-time: safe.
   double mass() const noexcept { return mass_; }
-  double viscous() const noexcept { return damping_ * mass_; }        ///< Of both, N s/m.
+  double viscous() const noexcept { return damping_ * mass_; }        ///< Of arm and hand, N s/m.
   double coulomb() const noexcept { return friction_; }               ///< N
   double hand_stiffness() const noexcept { return hand_stiffness_; }  ///< N/m
   double hand_damping() const noexcept { return hand_damping_; }      ///< N s/m
-  /// Returns what happened in all steps so far. Real-time: safe.
+  /// Returns the counters of all steps so far. Real-time: safe.
   const AxisCounters& counters() const noexcept { return counters_; }
 
  private:
   AxisDynamics(const PlantSettings& plant, const HandSettings& hand) noexcept;
 
-  // One step length: so many equal pieces, each so short that the acceleration changes its sign at
-  // most once in it.
+  // Map of one step length. The step is divided into `pieces` equal pieces, each so short that the
+  // acceleration changes its sign at most once in it.
   struct Map {
     std::int64_t dt_ns = 0;
     int pieces = 1;
@@ -88,7 +88,7 @@ class THIMBLE_EXPORT AxisDynamics {
   double friction_;        // Coulomb, N
   double hand_stiffness_;  // N/m
   double hand_damping_;    // N s/m
-  double damping_;         // all of it per mass, 1/s
+  double damping_;         // total damping per mass, 1/s
   double stiffness_;       // per mass, 1/s^2
   AxisCounters counters_;
   std::array<Map, 4> maps_;

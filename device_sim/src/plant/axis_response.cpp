@@ -19,14 +19,14 @@ constexpr std::array<double, kMaxTerms + 3> inverse_factorials() {
 }
 constexpr auto kInverseFactorial = inverse_factorials();
 
-// The series is used where damping t and (stiffness t^2) stay below these; the characteristic roots
-// are then below 0.41 / t, and the 18th term is below 2^-56 of the sum.
+// Bounds of damping t and (stiffness t^2) for the series; the characteristic roots are then below
+// 0.41 / t, and the 18th term is below 2^-56 of the sum.
 constexpr double kDampingMax = 0.25, kStiffnessMax = 0.0625;
-// Below these the roots are under 0.081 / t and twelve terms do.
+// Below these the roots are under 0.081 / t and twelve terms suffice.
 constexpr double kSmallDamping = 0.03125, kSmallStiffness = 0.00390625;
 constexpr int kSmallTerms = 12;
 
-// Halvings that bring any finite pair of doubles below the bounds.
+// Number of halvings that brings any finite pair of doubles below the bounds.
 constexpr int kMaxHalvings = 1100;
 
 AxisResponse series(double damping, double stiffness, double t) noexcept {
@@ -57,7 +57,7 @@ AxisResponse AxisResponse::at(double damping, double stiffness, double t) noexce
     ++halvings;
   }
   AxisResponse now = series(damping, stiffness, t);
-  // The state that the impulse leaves at t is carried through t once more.
+  // The state that the impulse leaves at t is propagated through t once more.
   for (; halvings > 0; --halvings) {
     const AxisResponse half = now;
     const double way = half.impulse + damping * half.integral;

@@ -21,7 +21,7 @@ driver::Result<DriveTrainPlant<Geometry, Tip>> DriveTrainPlant<Geometry, Tip>::m
     return driver::Error{
         "The simulated arm cannot reach its starting point; start the hand's path within reach."};
   }
-  const auto unused = AxisDynamics::make(settings.plant, {});  // where no cable stretches
+  const auto unused = AxisDynamics::make(settings.plant, {});  // without elastic cables
   if (!unused) return unused.error();
   std::array<AxisDynamics, 3> rotors{*unused, *unused, *unused};
   for (std::size_t i = 0; wanted.compliant() && i < 3; ++i) {
@@ -66,8 +66,8 @@ void DriveTrainPlant<Geometry, Tip>::put(const DriveTrainState& state) noexcept 
   train_.put(state.amperes);
 }
 
-/// Finds the torques in the cables half-way (N m at the joints). Half-way, rates have changed as
-/// much again as in half of the sub-step before.
+/// Returns the torques in the cables half-way (N m at the joints). Rates are extrapolated to
+/// half-way from the present and the previous sub-step.
 template <class Geometry, class Tip>
 Eigen::Vector3d DriveTrainPlant<Geometry, Tip>::cable_pull(const TipPose& half_way,
                                                            const Eigen::Vector3d& rotor) noexcept {

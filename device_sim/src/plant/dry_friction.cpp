@@ -10,8 +10,8 @@
 namespace thimble::device_sim {
 namespace {
 
-/// Solves for the axes that slide as in `guess` with the others at rest, to rounding; the guess
-/// itself if they would slide the other way then.
+/// Solves for the axes that slide as in `guess` with the others at rest, to rounding. Returns the
+/// guess itself if they would then slide the other way.
 Eigen::Vector3d sliding_with(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum,
                              double most, const Eigen::Vector3d& guess) noexcept {
   Eigen::Matrix3d of_sliding = inertia;
@@ -39,8 +39,8 @@ Eigen::Vector3d velocity_beside_axes(const Eigen::Matrix3d& inertia,
     const Eigen::Vector3d sliding = inertia.inverse() * (momentum - most * v_before.cwiseSign());
     if ((sliding.array() * v_before.array() > 0).all()) return sliding;
   }
-  // It ends at once where the tip stays at rest, and soon where masses differ by less than ten
-  // times between directions.
+  // It ends at once if the tip stays at rest, and soon if masses differ by less than ten times
+  // between directions.
   constexpr int kRounds = 60;
   constexpr double kEnough = 1e-12;
   Eigen::Vector3d v = v_before;
@@ -62,14 +62,14 @@ Eigen::Vector3d velocity_beside_axes(const Eigen::Matrix3d& inertia,
 /// One line along which friction acts.
 struct Line {
   Eigen::Vector3d along{0, 0, 0};
-  Eigen::Vector3d yields{0, 0, 0};  // the velocity that an impulse along it makes
+  Eigen::Vector3d yields{0, 0, 0};  // velocity change by a unit impulse along the line
   double most = 0, impulse = 0;
   bool holds() const { return std::abs(impulse) < most; }
   bool slides() const { return most > 0 && !holds(); }
 };
 using Lines = std::array<Line, 6>;
 
-/// Lets each line by turns take what it can of the motion `v` along it.
+/// Lets each line in turn take as much of the motion `v` along it as it can.
 void take_turns(Lines& lines, Eigen::Vector3d& v) noexcept {
   for (Line& line : lines) {
     if (!(line.most > 0)) continue;
@@ -80,16 +80,16 @@ void take_turns(Lines& lines, Eigen::Vector3d& v) noexcept {
   }
 }
 
-/// Solves for the velocity with the lines that hold now held exactly; one that holds what others
-/// hold already keeps its share. Returns the line that cannot be as it is taken to be, the one that
-/// is most wrong, as it should be then; none: it is the solution.
+/// Solves for the velocity with the lines that hold now held exactly; a line that is already held
+/// by others keeps its impulse. Returns the line whose assumed state is most wrong, with its
+/// corrected state; none if this is the solution.
 struct Wrong {
   Line* line = nullptr;
   double impulse = 0, by = 0;
 };
 Wrong hold(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum, Lines& lines,
            Eigen::Vector3d& v) noexcept {
-  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();  // projects on what no line holds
+  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();  // projects on the free directions
   Eigen::Vector3d right = momentum;
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> along(3, 0);
   std::array<Line*, 3> held{};
@@ -111,7 +111,7 @@ Wrong hold(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum, Line
   Wrong worst;
   for (Line& line : lines) {
     if (!line.slides()) continue;
-    // As an impulse that would hold it, so that both kinds of wrong compare.
+    // As the impulse that would hold the line, so that both kinds of violation are comparable.
     const double back = -std::copysign(1.0, line.impulse) * line.along.dot(v) /
                         line.along.dot(line.yields) / line.most;
     if (back > worst.by) worst = {.line = &line, .impulse = 0, .by = back};
@@ -128,8 +128,8 @@ Wrong hold(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum, Line
   return worst;
 }
 
-/// Finds the solution from lines that are nearly as they are in it, by exchanging the one that is
-/// most wrong; returns whether it did.
+/// Finds the solution from lines that are nearly in their final states, by repeatedly correcting
+/// the most wrong one. Returns whether it succeeded.
 bool hold_exactly(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum, Lines lines,
                   Eigen::Vector3d& v) noexcept {
   constexpr int kExchanges = 12;

@@ -4,20 +4,20 @@
 
 namespace thimble::device_sim {
 
-/// Dry friction at the tip and in the joints over one step. All that is along its axes holds while
-/// it stands and is the most against it while it moves.
+/// Dry friction at the tip and in the joints over one step. Along each axis it holds the axis at
+/// rest, up to its maximum; on a moving axis the maximum acts against the motion.
 struct DryFriction {
-  double tip = 0;                               ///< Most along each axis of the base, N s.
-  Eigen::Vector3d joints{0, 0, 0};              ///< Most about each joint, N m s.
-  Eigen::Matrix3d G = Eigen::Matrix3d::Zero();  ///< d q / d p_BT, rad/m; looked at with `joints`.
+  double tip = 0;                               ///< Max. along each axis of the base, N s.
+  Eigen::Vector3d joints{0, 0, 0};              ///< Max. about each joint, N m s.
+  Eigen::Matrix3d G = Eigen::Matrix3d::Zero();  ///< d q / d p_BT, rad/m; used with `joints` only.
 };
 
-/// Finds the velocity v (m/s) after a step: inertia v + sum of d_k s_k = momentum, d_k an axis of
-/// the base or a row of G, where friction takes any s_k up to its most while d_k v is zero, and the
-/// most against it else. It is the one least point of a convex function. Friction of the tip alone
-/// is found directly where no axis turns or rests, else by descending along each axis by turns;
-/// that of joints by turns among the impulses until it is known which of them hold. `inertia` is
-/// symmetric and positive. Real-time: safe.
+/// Returns the velocity v (m/s) after a step: inertia v + sum of d_k s_k = momentum, where d_k is
+/// an axis of the base or a row of G. While d_k v is zero, s_k takes any value up to its maximum;
+/// else it is the maximum, against the motion. The velocity is the unique minimum of a convex
+/// function. Friction at the tip only is solved directly if no axis reverses or rests, else by
+/// descent along each axis in turn. Friction of the joints is solved by iterating over the impulses
+/// until it is known which of them hold. `inertia` is symmetric and positive. Real-time: safe.
 Eigen::Vector3d velocity_after_friction(const Eigen::Matrix3d& inertia,
                                         const Eigen::Vector3d& momentum,
                                         const DryFriction& friction,

@@ -67,7 +67,7 @@ Eigen::Vector3d InversePlant<Geometry>::f_T_B() const noexcept {
     const Eigen::Vector3d step = kDifference * Eigen::Vector3d::Unit(axis);
     const auto ahead = model_.geometry.inverse(p_BT() + step);
     const auto behind = model_.geometry.inverse(p_BT() - step);
-    if (!ahead || !behind) return {0, 0, 0};  // at the end of reach the stop carries everything
+    if (!ahead || !behind) return {0, 0, 0};  // at the end of reach the stop carries the whole load
     force[axis] = (*ahead - *behind).dot(tau) / (2 * kDifference);
   }
   return force;

@@ -15,16 +15,16 @@
 
 namespace thimble::device_sim {
 
-/// The mechanics of an arm whose inverse kinematics are known (`inverse(p_BT)`), with a hand on
-/// it: as ArmPlant, for any geometry. Its force comes from the inverse kinematics alone: by virtual
-/// work f = (dq/dp)^T tau, and dq/dp is a central difference over 1 um (error about 1e-9 of
-/// itself). So it shares nothing with the Jacobian by which a driver turns forces into torques.
-/// Defined for DeltaArm and LinkageArm. All functions but the constructor are Real-time: safe.
+/// The mechanics of an arm whose inverse kinematics are known (`inverse(p_BT)`), with a hand on it:
+/// like ArmPlant, for any geometry. Its force uses only the inverse kinematics: by virtual work f =
+/// (dq/dp)^T tau, and dq/dp is a central difference over 1 um (relative error about 1e-9). So it is
+/// independent of the Jacobian with which a driver turns forces into torques. Defined for DeltaArm
+/// and LinkageArm. All functions but the constructor are Real-time: safe.
 template <class Geometry>
 class THIMBLE_EXPORT InversePlant final : public Plant {
  public:
-  /// Makes the arm at rest at p_BT (m), with the hand wanting to be at p_BH (m). Fails if a
-  /// constant is out of range or p_BT out of reach. Real-time: never from the servo thread.
+  /// Makes the arm at rest at p_BT (m). The hand wants to be at p_BH (m). Fails if a constant is
+  /// out of range or p_BT out of reach. Real-time: never from the servo thread.
   static driver::Result<InversePlant> make(const driver::JointModel<Geometry>& model,
                                            const PlantSettings& plant, const HandSettings& hand,
                                            const MotorSettings& motors, const Eigen::Vector3d& p_BT,

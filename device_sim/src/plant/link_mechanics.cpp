@@ -8,8 +8,8 @@
 namespace thimble::device_sim {
 namespace {
 
-/// The least inertia about the yaw axis over all sines of B and C: on an edge of their square, or
-/// in its middle.
+/// The min. inertia about the yaw axis over all sines of B and C: on an edge of their square, or in
+/// its middle.
 double least_about_yaw(const LinkSettings& links) {
   const auto about = [&](double x, double y) {
     return links.inertia[0] + links.yaw_b * x * x + links.yaw_c * y * y +
@@ -30,7 +30,7 @@ driver::Result<void> check_links(const LinkSettings& links) {
                       std::isfinite(links.coupling) && std::isfinite(links.moment_b) &&
                       std::isfinite(links.moment_c);
   if (!finite) return driver::Error{"The simulated arm's links must have finite constants."};
-  // Rounding of constants that were written with six digits.
+  // Rounding of constants that are written with six digits.
   constexpr double kRounding = 1e-5;
   const double square = links.coupling * links.coupling;
   if (!((links.inertia.array() >= 0).all() &&
@@ -62,10 +62,10 @@ LinkMotion LinkMechanics::at(const Eigen::Vector3d& q, const Eigen::Vector3d& ra
   M(1, 1) = links_.inertia[1];
   M(2, 2) = links_.inertia[2];
   M(1, 2) = M(2, 1) = K * cos_sum;
-  // Half of what M_AA changes by with B and C.
+  // Half of the derivatives of M_AA by B and C.
   const double by_b = (links_.yaw_b * sin_b + K * sin_c) * cos_b;
   const double by_c = (links_.yaw_c * sin_c + K * sin_b) * cos_c;
-  // The first moments hang on the links as the tip does, which is at both lengths.
+  // The first moments act like a tip with the lengths moment_b and moment_c.
   const driver::SerialArm moments{
       .height = 0, .length_b = links_.moment_b, .length_c = links_.moment_c};
   found.torque = moments.jacobian(q).transpose() * links_.gravity_B -

@@ -9,22 +9,22 @@
 
 namespace thimble::device_sim {
 
-/// What the links of a serial arm do at a pose that is passed at some rate.
+/// Dynamics of the links of a serial arm at a pose and joint rates.
 struct LinkMotion {
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< M(q) of the links alone, kg m^2.
-  /// What gravity and turning pull on the joints with, g(q) - C(q, q') q', N m.
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< M(q) of the links only, kg m^2.
+  /// Torque of gravity and joint rates on the joints, g(q) - C(q, q') q', N m.
   Eigen::Vector3d torque{0, 0, 0};
-  /// Acceleration of the tip while the joints turn evenly, J' q', m/s^2 in the base.
+  /// Acceleration of the tip at constant joint rates, J' q', m/s^2 in the base.
   Eigen::Vector3d turning{0, 0, 0};
 };
 
-/// The equations of motion of the links of a serial arm, by LinkSettings: Lagrange's of its kinetic
-/// energy and potential,
+/// The equations of motion of the links of a serial arm with the constants of LinkSettings:
+/// Lagrange's equations of its kinetic energy and potential,
 ///
 ///     M(q) q'' + C(q, q') q' - g(q) = tau.
 ///
-/// It is the form that [Cavusoglu] gives for the PHANTOM with its sums of
-/// masses and lengths drawn together: 2 T = q'^T M q' with
+/// This is the form that [Cavusoglu] gives for the PHANTOM, with its sums of masses and lengths
+/// combined: 2 T = q'^T M q' with
 ///
 ///     M_AA = I_A + Y_B sin^2 B + Y_C sin^2 C + 2 K sin B sin C,
 ///     M_BB = I_B,  M_CC = I_C,  M_BC = K cos(B + C).
@@ -34,7 +34,7 @@ class THIMBLE_EXPORT LinkMechanics {
   LinkMechanics(const driver::SerialArm& arm, const LinkSettings& links) noexcept
       : arm_(arm), links_(links) {}
 
-  /// Finds what they do at joint angles q (rad) passed at `rate` (rad/s). Real-time: safe.
+  /// Returns the dynamics at joint angles q (rad) with joint rates `rate` (rad/s). Real-time: safe.
   LinkMotion at(const Eigen::Vector3d& q, const Eigen::Vector3d& rate) const noexcept;
 
  private:
@@ -42,8 +42,8 @@ class THIMBLE_EXPORT LinkMechanics {
   LinkSettings links_;
 };
 
-/// Returns an error if links cannot be: a constant is not finite, or kinetic energy would be below
-/// zero in some pose. Real-time: never from the servo thread.
+/// Returns an error if the constants are impossible: one is not finite, or kinetic energy would be
+/// below zero in some pose. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<void> check_links(const LinkSettings& links);
 
 }  // namespace thimble::device_sim

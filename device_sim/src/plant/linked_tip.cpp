@@ -38,7 +38,7 @@ LinkedTip::LinkedTip(std::optional<LinkMechanics> links, const SimulatedArmSetti
       viscous_(settings.plant.viscous + settings.hand.damping),
       hand_(settings.hand),
       state_{.p = p_BT} {
-  // Behind a cable that stretches, a joint's friction is its motor's.
+  // Behind an elastic cable, a joint's friction is its motor's.
   if (settings.drive_train.compliant()) return;
   joint_coulomb_ = settings.drive_train.coulomb;
   joint_viscous_ = settings.drive_train.viscous;
@@ -68,7 +68,7 @@ void LinkedTip::step(const std::optional<TipPose>& half_way, const Eigen::Vector
     f = force + G.transpose() * links.torque + inertia * links.turning;
   }
   f = f + hand_.stiffness * (p_BH + 0.5 * dt * v_BH - p) + hand_.damping * v_BH;
-  // Viscous friction and the hand's damper are those of the mean velocity.
+  // Viscous friction and the hand's damper use the mean velocity.
   inertia.diagonal().array() += mass_ + 0.5 * dt * viscous_;
   Eigen::Vector3d drag = viscous_ * before;
   if (!joint_viscous_.isZero(0)) {

@@ -15,15 +15,15 @@
 
 namespace thimble::device_sim {
 
-/// A tip that links hang on, or whose joints rub: its mass is the matrix m + G^T M(q) G, which
-/// changes with the pose, and its dry friction, along x, y and z of the base and about each joint,
-/// is set-valued as AxisDynamics has it (DryFriction).
+/// A tip with links, or with friction in the joints. Its mass is the matrix m + G^T M(q) G, which
+/// changes with the pose. Its dry friction, along x, y and z of the base and about each joint, is
+/// set-valued as in AxisDynamics (DryFriction).
 ///
-/// A step of dt moves the tip half-way, changes its velocity there, and moves it on
-/// (drift, kick, drift): second order in dt. What hangs on the velocity is taken at that half-way
-/// through the step, as the acceleration before says. Where an axis comes to rest or breaks loose
-/// within a step, friction acts as it does at its end (Moreau's rule), which is of first order: off
-/// by at most its momentum c dt. All functions but `make` are Real-time: safe.
+/// A step of dt moves the tip half-way, changes its velocity there, and moves it on (drift, kick,
+/// drift): second order in dt. Velocity-dependent terms use the velocity half-way through the step,
+/// extrapolated with the previous acceleration. If an axis comes to rest or breaks loose within a
+/// step, friction acts as at the end of the step (Moreau's rule). That is of first order: the error
+/// is at most its momentum c dt. All functions but `make` are Real-time: safe.
 class THIMBLE_EXPORT LinkedTip {
  public:
   struct State {
@@ -31,8 +31,8 @@ class THIMBLE_EXPORT LinkedTip {
     Eigen::Vector3d v{0, 0, 0};  ///< m/s; exactly 0 in an axis that friction holds.
   };
 
-  /// Makes it at rest at p_BT (m). Fails if a constant is out of range. Links are those of serial
-  /// arms; of others none are looked at. Real-time: never from the servo thread.
+  /// Makes the tip at rest at p_BT (m). Fails if a constant is out of range. Links are those of
+  /// serial arms; for other arms they are ignored. Real-time: never from the servo thread.
   static driver::Result<LinkedTip> make(const driver::SerialArm& arm,
                                         const SimulatedArmSettings& settings,
                                         const Eigen::Vector3d& p_BT);
@@ -40,23 +40,23 @@ class THIMBLE_EXPORT LinkedTip {
                                         const SimulatedArmSettings& settings,
                                         const Eigen::Vector3d& p_BT);
 
-  /// Lets dt_ns pass under a held force (N), the hand's point moving evenly from p_BH (m);
-  /// `half_way` is the pose where the tip would be then at its velocity.
+  /// Advances by dt_ns under a held force (N), while the hand's point moves from p_BH (m) at
+  /// constant velocity. `half_way` is the pose that the tip would reach half-way at its velocity.
   void step(const std::optional<TipPose>& half_way, const Eigen::Vector3d& force,
             const Eigen::Vector3d& p_BH, const Eigen::Vector3d& v_BH, std::int64_t dt_ns) noexcept;
 
-  /// Takes other constants of mass, friction and hand; how it moves stays as it is.
+  /// Sets other constants of mass, friction and hand; the motion continues unchanged.
   void take(const AxisDynamics& tip) noexcept;
 
   const Eigen::Vector3d& p_BT() const noexcept { return state_.p; }
   const Eigen::Vector3d& v_BT() const noexcept { return state_.v; }
   const State& state() const noexcept { return state_; }
-  /// Puts it elsewhere (m), moving (m/s).
+  /// Sets position (m) and velocity (m/s).
   void put(const Eigen::Vector3d& p_BT, const Eigen::Vector3d& v_BT) noexcept {
     state_ = {.p = p_BT, .v = v_BT};
     acceleration_.setZero();
   }
-  /// Puts it back to where it was, at rest.
+  /// Returns to an earlier position, at rest.
   void stop_at(const State& before) noexcept {
     state_ = {.p = before.p, .v = {0, 0, 0}};
     acceleration_.setZero();

@@ -8,25 +8,26 @@
 
 namespace thimble::device_sim {
 
-/// A tip as a hand holds it and as it is when the hand has let go, with a mass fixed to it or none.
+/// Dynamics of a tip that a hand holds, and of the same tip after the hand has let go, with or
+/// without a mass fixed to it.
 class LoadedTip {
  public:
-  /// Makes one without a mass; `weight_B` pulls on it (N). Fails as AxisDynamics::make does.
+  /// Makes a tip without a mass; `weight_B` acts on it (N). Fails like AxisDynamics::make.
   static driver::Result<LoadedTip> make(const PlantSettings& bare, const HandSettings& hand,
                                         const Eigen::Vector3d& weight_B);
 
-  /// Fixes a mass (kg, 0: none) to it, in place of one that was there; gravity_B (m/s^2) pulls on
-  /// that. Fails, and changes nothing, if the mass is negative or one of them not finite.
-  /// Real-time: never from the servo thread.
+  /// Fixes a mass (kg, 0: none) to the tip and replaces an earlier one; gravity_B (m/s^2) acts on
+  /// it. Fails, and changes nothing, if the mass is negative or a number is not finite. Real-time:
+  /// never from the servo thread.
   driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B);
 
-  /// Gives it to another hand. Fails, and changes nothing, as `make` does. Real-time: never from
-  /// the servo thread.
+  /// Replaces the hand. Fails, and changes nothing, like `make`. Real-time: never from the servo
+  /// thread.
   driver::Result<void> take_hand(const HandSettings& hand);
 
-  /// Returns how it moves. Real-time: safe.
+  /// Returns the dynamics of the tip. Real-time: safe.
   const AxisDynamics& dynamics(bool held) const noexcept { return held ? held_ : free_; }
-  /// Returns what pulls on it, its own weight and the mass', N. Real-time: safe.
+  /// Returns the weight of tip and mass, N. Real-time: safe.
   const Eigen::Vector3d& pull_B() const noexcept { return pull_B_; }
 
  private:

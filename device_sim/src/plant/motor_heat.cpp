@@ -59,7 +59,7 @@ void MotorHeat::warm() noexcept {
     const double load = squares_[i] / (time_ * most * most);
     const double tau = settings_.time_constant[i];
     const double rate = (1 - load * settings_.resistance * share) / tau;
-    // The integral of exp(-rate t), by a function that is as precise near a rate of zero.
+    // The integral of exp(-rate t), by a function that is precise also near a rate of zero.
     const double x = -rate * time_;
     const double held = x != 0 ? time_ * math::expm1(x) / x : time_;
     rise_[i] += (load * share / tau - rate * rise_[i]) * held;

@@ -14,14 +14,14 @@
 
 namespace thimble::device_sim {
 
-/// A tip without links: a mass with friction, each axis of which moves by its exact map. Frame B:
-/// base. All functions but `make` are Real-time: safe.
+/// A tip without links: a mass with friction. Each axis moves by its exact map. Frame B: base. All
+/// functions but `make` are Real-time: safe.
 class THIMBLE_EXPORT PointTip {
  public:
   using State = std::array<AxisState, 3>;
 
-  /// Makes it at rest at p_BT (m). Fails if a constant is out of range, or if joints rub, of which
-  /// it knows nothing. Real-time: never from the servo thread.
+  /// Makes the tip at rest at p_BT (m). Fails if a constant is out of range, or if the joints have
+  /// friction, which it does not model. Real-time: never from the servo thread.
   template <class Geometry>
   static driver::Result<PointTip> make(const Geometry&, const SimulatedArmSettings& settings,
                                        const Eigen::Vector3d& p_BT) {
@@ -33,7 +33,8 @@ class THIMBLE_EXPORT PointTip {
     return PointTip(*dynamics, p_BT);
   }
 
-  /// Lets dt_ns pass under a held force (N), the hand's point moving evenly from p_BH (m).
+  /// Advances by dt_ns under a held force (N), while the hand's point moves from p_BH (m) at
+  /// constant velocity.
   void step(const std::optional<TipPose>&, const Eigen::Vector3d& force,
             const Eigen::Vector3d& p_BH, const Eigen::Vector3d& v_BH, std::int64_t dt_ns) noexcept {
     for (int i = 0; i < 3; ++i) {
@@ -42,17 +43,17 @@ class THIMBLE_EXPORT PointTip {
     }
   }
 
-  /// Takes other constants of mass, friction and hand; how it moves stays as it is.
+  /// Sets other constants of mass, friction and hand; the motion continues unchanged.
   void take(const AxisDynamics& dynamics) noexcept { dynamics_ = dynamics; }
 
   Eigen::Vector3d p_BT() const noexcept { return {axes_[0].x, axes_[1].x, axes_[2].x}; }
   Eigen::Vector3d v_BT() const noexcept { return {axes_[0].v, axes_[1].v, axes_[2].v}; }
   const State& state() const noexcept { return axes_; }
-  /// Puts it elsewhere (m), moving (m/s).
+  /// Sets position (m) and velocity (m/s).
   void put(const Eigen::Vector3d& p_BT, const Eigen::Vector3d& v_BT) noexcept {
     for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)] = {p_BT[i], v_BT[i]};
   }
-  /// Puts it back to where it was, at rest.
+  /// Returns to an earlier position, at rest.
   void stop_at(const State& before) noexcept {
     axes_ = before;
     for (AxisState& axis : axes_) axis.v = 0;

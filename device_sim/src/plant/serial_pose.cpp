@@ -51,7 +51,7 @@ Eigen::Vector3d SerialPose::angles() const noexcept {
 
 bool SerialPose::angles_near(const SerialPose& from, const Eigen::Vector3d& q_from,
                              Eigen::Vector3d& q) const noexcept {
-  // There sines and cosines are those of unit vectors to some roundings.
+  // Closer to that, sines and cosines are not those of unit vectors to a few roundings.
   if (!(sin_sum_ > kSingular)) return false;
   const Eigen::Vector3d sin_turned(sin_a_ * from.cos_a_ - cos_a_ * from.sin_a_,
                                    sin_b_ * from.cos_b_ - cos_b_ * from.sin_b_,
@@ -61,7 +61,7 @@ bool SerialPose::angles_near(const SerialPose& from, const Eigen::Vector3d& q_fr
                                      cos_c_ * from.cos_c_ + sin_c_ * from.sin_c_});
   if (!(cos_least > 0)) return false;
   constexpr double kNear = 0.05;
-  // Half a turn less what the series can add: beyond, the arc tangent changes its sign.
+  // Half a turn less the series' max. contribution: beyond, the arc tangent changes its sign.
   constexpr double kHalfTurn = 3.14;
   for (int i = 0; i < 3; ++i) {
     const double s = sin_turned[i], s2 = s * s;

@@ -6,34 +6,35 @@
 
 namespace thimble::device_sim {
 
-/// Holds the true pose of a serial arm as sines and cosines of its joint angles, found from the tip
-/// without a single trigonometric function. Frame B: base of the arm.
+/// The true pose of a serial arm as sines and cosines of its joint angles, found from the tip
+/// without trigonometric functions. Frame B: base of the arm.
 class SerialPose {
  public:
-  /// The smallest sine of the angle between the links, and the smallest distance from the yaw
-  /// axis in units of the first link, that force_from uses. Nearer to fold, stretch or the yaw axis
-  /// the structure carries what the formula would send to infinity. [guess: within 3 degrees of the
-  /// end of travel; no arm is meant to be used there]
+  /// Lower bound that force_from uses for the sine of the angle between the links, and for the
+  /// distance from the yaw axis in units of the first link. Closer to fold, stretch or the yaw axis
+  /// the structure carries the force that would be infinite in the formula. [guess: within 3
+  /// degrees of the end of travel; no arm is meant to be used there]
   static constexpr double kSingular = 0.05;
 
-  /// Finds the pose whose tip is at p_BT (m), on the branch of SerialArm::inverse and within reach
-  /// under the same condition. A tip that is not finite is out of reach. Real-time: safe.
+  /// Computes the pose whose tip is at p_BT (m), on the branch of SerialArm::inverse and within
+  /// reach under the same condition. A tip that is not finite is out of reach. Real-time: safe.
   SerialPose(const driver::SerialArm& arm, const Eigen::Vector3d& p_BT) noexcept;
 
-  /// Returns whether the arm gets there; if not, nothing else may be asked. Real-time: safe.
+  /// Returns whether the tip is within reach; if not, no other function may be called. Real-time:
+  /// safe.
   bool within_reach() const noexcept { return within_reach_; }
 
-  /// Finds the tip force f_T_B (N) that joint torques tau (N m) make on a hand: J_BT^-T tau,
+  /// Returns the tip force f_T_B (N) that joint torques tau (N m) exert on a hand: J_BT^-T tau,
   /// bounded near singular poses by kSingular. Real-time: safe.
   Eigen::Vector3d force_from(const Eigen::Vector3d& tau) const noexcept;
 
-  /// Finds the joint angles (A, B, C), rad; equal to SerialArm::inverse. Real-time: safe.
+  /// Returns the joint angles (A, B, C), rad; equal to SerialArm::inverse. Real-time: safe.
   Eigen::Vector3d angles() const noexcept;
 
-  /// Finds them to within Plant::kAboutError from a pose not far off, `from`, with its angles
-  /// `q_from`: from the sines of what the joints have turned since, without an arc tangent. Returns
-  /// false, with nothing found, beyond 0.05 rad, near fold or stretch, and near half a turn.
-  /// Real-time: safe.
+  /// Computes the joint angles within Plant::kAboutError from a nearby pose `from` and its angles
+  /// `q_from`, using the sines of the rotations since then, without an arc tangent. Returns false,
+  /// and leaves `q` unset, beyond 0.05 rad, near fold or stretch, and near half a turn. Real-time:
+  /// safe.
   bool angles_near(const SerialPose& from, const Eigen::Vector3d& q_from,
                    Eigen::Vector3d& q) const noexcept;
 

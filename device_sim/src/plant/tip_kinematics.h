@@ -9,16 +9,16 @@
 
 namespace thimble::device_sim {
 
-/// What a plant needs to know of an arm's build, found from where the tip is. Frames: B base, T
-/// tip.
+/// Kinematics of an arm at a tip position, as a plant needs them. Frames: B base, T tip.
 struct TipPose {
   Eigen::Vector3d q{0, 0, 0};  ///< Joint angles, rad.
-  /// d q / d p_BT, rad/m: joints turn by `G v_BT`, and torques pull on the tip by `G^T tau`.
+  /// d q / d p_BT, rad/m: joints turn by `G v_BT`, and torques exert the force `G^T tau` on the
+  /// tip.
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
 };
 
-/// Finds the pose of a serial arm whose tip is at p_BT (m), bounded near singular poses as
-/// SerialPose is; empty beyond its reach. Real-time: safe.
+/// Returns the pose of a serial arm whose tip is at p_BT (m), bounded near singular poses like
+/// SerialPose; empty beyond its reach. Real-time: safe.
 inline std::optional<TipPose> tip_pose(const driver::SerialArm& arm,
                                        const Eigen::Vector3d& p_BT) noexcept {
   const SerialPose pose(arm, p_BT);
@@ -30,8 +30,8 @@ inline std::optional<TipPose> tip_pose(const driver::SerialArm& arm,
   return found;
 }
 
-/// Finds the same of an arm with a linkage by its inverse kinematics alone, G as a central
-/// difference over 1 um (error about 1e-9 of itself). Real-time: safe.
+/// Returns the same for an arm with a linkage, from its inverse kinematics only. G is a central
+/// difference over 1 um (relative error about 1e-9). Real-time: safe.
 inline std::optional<TipPose> tip_pose(const driver::LinkageArm& arm,
                                        const Eigen::Vector3d& p_BT) noexcept {
   constexpr double kDifference = 1e-6;  // m

@@ -47,7 +47,7 @@ Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
   return {0, 0, 0};
 }
 
-// Its points are finite, and their times grow.
+// Its points are finite, and their times increase.
 HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion, double reach = kReach) {
   std::vector<HandPath::Point> points{{0, p_BT}};
   if (motion == HandMotion::kRest || motion == HandMotion::kNone) {
@@ -60,8 +60,8 @@ HandPath hand_path(const Eigen::Vector3d& p_BT, HandMotion motion, double reach 
   return HandPath::make(points).value();
 }
 
-// A hand in pinch grip on a PHANTOM-like arm [M DEVICES 3]; the free-running board sends a report
-// in the frame after it sampled it, because it waits until the host took the last one [S
+// A hand in pinch grip on a PHANTOM-like arm [M DEVICES 3]. The free-running board sends a report
+// in the frame after it sampled it, because it waits until the host has taken the last one [S
 // woody-experimental main.cpp: send, then sample again].
 SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
   SimulatedArmSettings settings;
@@ -76,8 +76,8 @@ SimulatedArmSettings settings_of_board(double tip_mass, double current_max) {
   return settings;
 }
 
-/// Puts the constants of another arm into a board's settings. Delays, and what the board speaks,
-/// stay its own.
+/// Copies the constants of another arm into a board's settings. The board keeps its delays and
+/// protocol.
 SimulatedArmSettings with_arm(SimulatedArmSettings board, const ShelfArm& arm) {
   const SimulatedArmSettings& own = arm.settings;
   board.plant = own.plant;
@@ -105,12 +105,12 @@ driver::Result<std::unique_ptr<UsbArm>> plugged(driver::Result<std::unique_ptr<A
   return {std::move(arm).value()};
 }
 
-/// What stands on the shelf: a HID board and the arm on it.
+/// An entry of the shelf: a HID board and its arm.
 struct OnBoard {
   const HidBoard& board;
   UsbDescription description;
   SimulatedArmSettings settings;
-  Eigen::Vector3d p_BT;  // where its hand begins, m
+  Eigen::Vector3d p_BT;  // start of the hand's path, m
 };
 
 template <class Geometry>
@@ -133,7 +133,8 @@ driver::Result<std::unique_ptr<UsbArm>> falcon_arm(const ShelfOptions& options) 
   }
   const auto model = options.arm ? driver::model_as<driver::DeltaArm>(options.arm->model)
                                  : driver::falcon::falcon_model();
-  // Tip mass and friction of a Falcon are not known [DEVICES 3]; those of the PHANTOM stand in.
+  // Tip mass and friction of a Falcon are unknown [DEVICES 3]; those of the PHANTOM are used
+  // instead.
   SimulatedArmSettings settings = settings_of_board(0.15, 1);
   if (options.arm) settings = with_arm(settings, *options.arm);
   auto falcon = FalconOnUsb::make(falcon_description(options.serial), model, settings,
@@ -149,7 +150,7 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                                                      const ShelfOptions& options) {
   if (name == "woodenhaptics") {
     const auto model = driver::hfab::woody_model();
-    // 0.2 kg is about what links of 170 and 110 g weigh at the tip [guess].
+    // 0.2 kg is about the weight of links of 170 and 110 g at the tip [guess].
     return hid_arm({.board = kWoodenHapticsBoard,
                     .description = mbed_hid_description(driver::woody::kReportSize, options.serial),
                     .settings = settings_of_board(0.2, 3),
@@ -157,7 +158,7 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                    model, options);
   }
   const auto polhem = [&](const HidBoard& board, UsbDescription description) {
-    // Its home is where it is parked; the hand works in the middle of its room.
+    // The home pose is the parking pose; the hand works in the middle of the workspace.
     return hid_arm({.board = board,
                     .description = std::move(description),
                     .settings = settings_of_board(kPolhemMass, 3),

@@ -88,7 +88,7 @@ UsbDescription falcon_description(std::string serial) {
   UsbDescription d;
   d.vendor_id = 0x0403;
   d.product_id = 0xcb48;
-  d.release = 0x0400;  // FT232BM [S libftdi tells chips apart by it]
+  d.release = 0x0400;  // FT232BM [S libftdi distinguishes chips by it]
   d.manufacturer = "FTDI";
   d.product = "FALCON HAPTIC";
   d.serial = or_else(std::move(serial), "SIM0001");

@@ -7,25 +7,25 @@
 
 namespace thimble::device_sim::usb {
 
-// What the boards say of themselves on the bus, byte for byte as their libraries have it. None of
-// these functions may run on the servo thread.
+// USB descriptions of the boards, byte for byte as their libraries send them. None of these
+// functions may run on the servo thread.
 
-/// The serial number that every mbed board tells [S mbed USBDevice.cpp, stringIserialDesc].
+/// The serial number of every mbed board [S mbed USBDevice.cpp, stringIserialDesc].
 inline constexpr const char* kMbedSerial = "0123456789";
 
-/// Returns what an mbed board with USBHID(report_size, report_size) says, the class's own ids
-/// 1234:0006 and bcdDevice 0001 included: boards differ in their report descriptor only [S mbed
-/// USBHID.h, USBHID.cpp, USBDevice.cpp]. An empty serial number is kMbedSerial.
+/// Returns the description of an mbed board with USBHID(report_size, report_size), including the
+/// class's own ids 1234:0006 and bcdDevice 0001: boards differ in their report descriptor only [S
+/// mbed USBHID.h, USBHID.cpp, USBDevice.cpp]. An empty serial number means kMbedSerial.
 UsbDescription mbed_hid_description(std::uint8_t report_size, std::string serial);
 
-/// Returns what a Teensy with the USB type "Raw HID" says: the raw reports on its first interface,
-/// an emulated serial port ("seremu") for debug output on its second [S PaulStoffregen/cores
-/// teensy3/usb_desc.h, usb_desc.c]. Its serial number is a decimal number that each chip has; an
-/// empty one is ours, 1234560.
+/// Returns the description of a Teensy with the USB type "Raw HID". Raw reports are on its first
+/// interface, an emulated serial port ("seremu") for debug output is on its second [S
+/// PaulStoffregen/cores teensy3/usb_desc.h, usb_desc.c]. Its serial number is a decimal number of
+/// each chip; an empty one means ours, 1234560.
 UsbDescription teensy_raw_hid_description(std::string serial);
 
-/// Returns what a Novint Falcon says. The strings are quoted from memory. An empty serial number is
-/// ours, SIM0001.
+/// Returns the description of a Novint Falcon. The strings are quoted from memory. An empty serial
+/// number means ours, SIM0001.
 UsbDescription falcon_description(std::string serial);
 
 }  // namespace thimble::device_sim::usb

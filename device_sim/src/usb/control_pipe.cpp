@@ -64,7 +64,7 @@ PacketResult ControlPipe::standard(const SetupPacket& setup, std::span<std::byte
   switch (setup.request) {
     case kGetDescriptor: {
       if (!setup.to_host()) return stall();
-      // For a string the index is its language; there is one.
+      // For a string the index is its language; there is only one.
       const bool of_interface = recipient == kRecipientInterface;
       const std::vector<std::byte> descriptor =
           build_descriptor(device_.description(), static_cast<std::uint8_t>(setup.value >> 8),
@@ -98,7 +98,7 @@ PacketResult ControlPipe::standard(const SetupPacket& setup, std::span<std::byte
                      setup.index < device_.description().interfaces.size()
                  ? done()
                  : stall();
-    case kSetAddress:  // the host's controller does that itself over usbip; harmless
+    case kSetAddress:  // over usbip the host's controller does that itself; harmless
       return setup.to_host() ? stall() : done();
     case kClearFeature:
       return feature(setup, false);

@@ -19,10 +19,10 @@ constexpr double kUploadRate = 140'000;
 constexpr double kRunRate = 1'500'000;
 constexpr double kRateTolerance = 0.03;
 
-// A host that has been silent for so long asks for nothing any more. [chosen]
+// After this silence a host's request no longer counts. [chosen]
 constexpr std::int64_t kAsked_ns = 500'000'000;
 
-// Where the encoders begin before they are homed; any value would do.
+// Encoder values before homing; any value would do.
 constexpr std::array<std::int32_t, 3> kUnhomed{911, -1733, 402};
 
 }  // namespace

@@ -11,40 +11,41 @@
 
 namespace thimble::device_sim::usb {
 
-/// Counts what the board met.
+/// Event counters of the board.
 struct FalconCounters {
   std::uint64_t packets = 0;    ///< Packets understood and answered.
-  std::uint64_t malformed = 0;  ///< Frames of 16 bytes that are no packet; not answered.
+  std::uint64_t malformed = 0;  ///< Frames of 16 bytes that are not packets; not answered.
   std::uint64_t stray = 0;      ///< Bytes outside of any packet.
-  std::uint64_t resets = 0;     ///< Times the boot loader began anew.
+  std::uint64_t resets = 0;     ///< Restarts of the boot loader.
 };
 
-/// What a Falcon makes of a packet without the homing bit. libnifalcon's header says of the flags
-/// of the homed legs "if homing mode on", and its users who need the encoders keep the bit in every
-/// packet [S FalconFirmwareNovintSDK.h; "keep track of encoders" in programs on top of it]. What
-/// becomes of the counts is not known.
+/// Behaviour of a Falcon on a packet without the homing bit. libnifalcon's header comments the
+/// flags of the homed legs with "if homing mode on". Programs that need the encoders keep the bit
+/// in every packet [S FalconFirmwareNovintSDK.h; "keep track of encoders" in programs on top of
+/// it]. The effect on the counts is unknown.
 enum class FalconHoming : std::uint8_t {
-  kForgets,     ///< Flags and homes are lost; the arm must be homed anew. The hardest for a driver.
+  kForgets,     ///< Flags and homes are lost; the arm must be homed again. The hardest case for a
+                ///< driver.
   kHidesFlags,  ///< No leg counts as homed in the answer; the homes are kept.
-  kKeeps,       ///< Nothing.
+  kKeeps,       ///< No effect.
 };
 
-/// The processor of a Novint Falcon, as a host meets it [S libnifalcon FalconCommLibUSB.cpp,
-/// FalconFirmware.cpp]: a boot loader that a rising DTR resets (firmware is then lost), that
-/// answers a greeting at 9600 baud, echoes the firmware at 140 kbaud, and then the firmware, which
-/// answers each packet at 1.5 Mbaud with one packet. Encoders count from an arbitrary value until
-/// their leg passed its home in homing mode.
+/// The processor of a Novint Falcon, as seen by a host [S libnifalcon FalconCommLibUSB.cpp,
+/// FalconFirmware.cpp]. A rising DTR resets its boot loader; firmware is then lost. The boot loader
+/// answers a greeting at 9600 baud and echoes the firmware at 140 kbaud. The firmware then answers
+/// each packet at 1.5 Mbaud with one packet. Encoders count from an arbitrary value until their leg
+/// has passed its home in homing mode.
 class THIMBLE_EXPORT FalconBoard final : public SerialBoard {
  public:
-  /// What the boot loader and the firmware are doing.
+  /// State of the boot loader.
   enum class Stage : std::uint8_t {
     kBoot,    ///< Waits for the greeting at 9600 baud.
     kReady,   ///< Greeted; waits for 'A' at 140 kbaud.
     kUpload,  ///< Echoes firmware.
   };
 
-  /// `image` is the firmware that this board can run; empty if any will do.
-  /// Real-time: never from the servo thread.
+  /// `image` is the firmware that this board can run; empty: any. Real-time: never from the servo
+  /// thread.
   explicit FalconBoard(std::vector<std::byte> image, FalconHoming homing = FalconHoming::kForgets);
 
   // All functions below are Real-time: safe.
@@ -54,30 +55,30 @@ class THIMBLE_EXPORT FalconBoard final : public SerialBoard {
   void wires(bool dtr, bool rts) noexcept override;
   /// Restarts the boot loader, as a rising DTR does: firmware and homes are lost.
   void restart() noexcept;
-  /// Returns the board at which rate the host talks now: firmware that was uploaded begins to run
-  /// when the host comes to the running rate.
+  /// Sets the baud rate of the host: uploaded firmware starts when the host switches to the running
+  /// rate.
   void host_rate(double baud) noexcept;
 
-  /// Returns where the encoders really stand, counts. Must be called before `hear`.
+  /// Sets the true encoder positions, counts. Must be called before `hear`.
   void set_encoders(const std::array<double, 3>& exact_counts) noexcept;
 
-  /// Switches the motors off if no packet came for the watchdog's time.
+  /// Switches the motors off if no packet came within the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
-  /// Sets the watchdog's time, ns; 0: it has none. Whether a real Falcon has one is not known, so
-  /// nothing may be promised that hangs on it.
+  /// Sets the watchdog's time, ns; 0: no watchdog. It is unknown whether a real Falcon has one, so
+  /// nothing may be promised that depends on it.
   void set_watchdog(std::int64_t time_ns) noexcept { watchdog_ns_ = time_ns; }
 
-  Stage stage() const noexcept { return stage_; }  ///< Returns what it waits for.
+  Stage stage() const noexcept { return stage_; }  ///< Returns the state of the boot loader.
   /// Returns whether firmware runs.
   bool running() const noexcept { return running_; }
-  /// Returns how many bytes of firmware came.
+  /// Returns the number of bytes of firmware received.
   std::size_t uploaded() const noexcept { return uploaded_; }
-  /// Shows the last message of the host.
+  /// Returns the last message of the host.
   const driver::falcon::HostPacket& asked() const noexcept { return asked_; }
-  /// Shows the last message to the host.
+  /// Returns the last message to the host.
   const driver::falcon::ArmPacket& answered() const noexcept { return answered_; }
-  bool motors_on() const noexcept { return motors_on_; }  ///< Returns whether it has them on.
-  /// Returns whether a host asks it to home now and some leg has not passed its home.
+  bool motors_on() const noexcept { return motors_on_; }  ///< Returns whether the motors are on.
+  /// Returns whether a host requests homing now and some leg has not passed its home.
   bool wants_homing() const noexcept;
   const FalconCounters& counters() const noexcept { return counters_; }
 
@@ -91,18 +92,18 @@ class THIMBLE_EXPORT FalconBoard final : public SerialBoard {
   Stage stage_ = Stage::kBoot;
   bool running_ = false, image_right_ = true;
   bool dtr_ = false;
-  std::size_t greeted_ = 0;  // letters of the greeting heard so far
+  std::size_t greeted_ = 0;  // number of bytes of the greeting received so far
   std::size_t uploaded_ = 0;
   std::array<std::byte, driver::falcon::kPacketSize> frame_{};
   std::size_t frame_size_ = 0;
   std::array<double, 3> exact_{}, before_{};
-  std::array<std::int32_t, 3> offset_{};  // what an encoder counts too much before it is homed
+  std::array<std::int32_t, 3> offset_{};  // error of each encoder count before it is homed
   std::uint8_t homed_ = 0;
-  bool seen_ = false;  // encoders have been told
+  bool seen_ = false;  // encoder positions have been set
   driver::falcon::HostPacket asked_;
   driver::falcon::ArmPacket answered_;
   bool motors_on_ = false;
-  std::int64_t watchdog_ns_ = 100'000'000;  // a guess: whether a real one has any is not known
+  std::int64_t watchdog_ns_ = 100'000'000;  // a guess: a real one may have none
   std::int64_t now_ns_ = 0, last_packet_ns_ = 0;
   FalconCounters counters_;
 };

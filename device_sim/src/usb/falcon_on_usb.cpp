@@ -11,8 +11,8 @@
 namespace thimble::device_sim::usb {
 namespace {
 
-constexpr double kMotorValuesPerAmpere = 1000;  // as driver::falcon::FalconArm counts them
-constexpr double kMotorValueMax = 4096;         // what users of libnifalcon clamp to [S]
+constexpr double kMotorValuesPerAmpere = 1000;  // as in driver::falcon::FalconArm
+constexpr double kMotorValueMax = 4096;  // limit to which programs based on libnifalcon clamp [S]
 
 }  // namespace
 

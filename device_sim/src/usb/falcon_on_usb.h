@@ -21,29 +21,29 @@
 
 namespace thimble::device_sim::usb {
 
-/// A simulated Novint Falcon on a USB plug: FTDI converter, board, delta mechanics and a hand.
-/// What the host sends reaches the board at the line's rate, the board samples the encoders when a
-/// packet is complete, and its answer goes to the host when the latency timer of 1 ms is over.
+/// A simulated Novint Falcon with a USB plug: FTDI converter, board, delta mechanics and a hand.
+/// Bytes of the host reach the board at the line's rate. The board samples the encoders when a
+/// packet is complete. Its answer goes to the host when the latency timer of 1 ms has expired.
 class THIMBLE_EXPORT FalconOnUsb final : public UsbArm {
  public:
   /// Makes the arm at rest at the path's first point, with motors and encoders of `model`. Of the
-  /// settings it takes plant, hand, weight and wiring; board and bus are its own. `image` is the
-  /// firmware that it can run; empty if any will do. Fails as DeltaPlant::make does. Real-time:
-  /// never from the servo thread.
+  /// settings it uses plant, hand, weight and wiring; board and bus are its own. `image` is the
+  /// firmware that it can run; empty: any. Fails like DeltaPlant::make. Real-time: never from the
+  /// servo thread.
   static driver::Result<std::unique_ptr<FalconOnUsb>> make(
       UsbDescription description, const driver::JointModel<driver::DeltaArm>& model,
       const SimulatedArmSettings& settings, HandPath path, std::vector<std::byte> image,
       std::uint64_t seed = 0);
 
-  /// Gives the hand another way, whose time 0 is now. Real-time: never from the servo thread.
+  /// Sets another path of the hand, whose time 0 is now. Real-time: never from the servo thread.
   void lead(HandPath path);
-  /// Lets the hand home the arm from now on whenever a host asks for it; its own way waits
-  /// meanwhile. A hand that has let go takes the tip for that long. Real-time: safe.
+  /// From now on, the hand homes the arm whenever a host requests it; its own path waits meanwhile.
+  /// A hand that has let go takes the tip for that time. Real-time: safe.
   void home_when_asked() noexcept { homes_ = true; }
-  /// Returns the hand, to be led or held by whoever lets time pass. Real-time: safe.
+  /// Returns the hand. The caller that advances time may lead or hold it. Real-time: safe.
   Hand& hand() noexcept { return hand_; }
-  /// Lets a hand of other constants take the place of the one on the tip; it homes the arm no
-  /// longer. Fails if they are out of range. Real-time: never from the servo thread.
+  /// Replaces the hand on the tip by one with other constants, which no longer homes the arm. Fails
+  /// if they are out of range. Real-time: never from the servo thread.
   driver::Result<void> take_hand(const HandSettings& hand);
   void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { hand_.lead(p_BH); }
   void hold_tip(bool held) noexcept override;
@@ -60,8 +60,8 @@ class THIMBLE_EXPORT FalconOnUsb final : public UsbArm {
   ArmTruth truth() const noexcept override;
 
   // For tests. Real-time: safe.
-  const FalconBoard& board() const noexcept { return board_; }  ///< Shows its board.
-  const FtdiChip& chip() const noexcept { return chip_; }       ///< Shows its converter.
+  const FalconBoard& board() const noexcept { return board_; }  ///< Returns the board.
+  const FtdiChip& chip() const noexcept { return chip_; }       ///< Returns the converter.
   const DeltaPlant& plant() const noexcept { return plant_; }
 
  private:
@@ -78,7 +78,7 @@ class THIMBLE_EXPORT FalconOnUsb final : public UsbArm {
   HomingHand homing_hand_;
   bool homes_ = false;
   LoadedTip tip_;
-  bool wanted_held_ = true, held_ = true;  // what was asked for; homing takes the tip as well
+  bool wanted_held_ = true, held_ = true;  // as requested; homing takes the tip as well
   WiringSettings wiring_;
   DeltaPlant plant_;
   FalconBoard board_;

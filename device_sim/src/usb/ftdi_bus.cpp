@@ -30,7 +30,7 @@ bool FtdiBus::write(std::span<const std::byte> bytes) noexcept {
 bool FtdiBusLine::request(std::uint8_t number, std::uint16_t value) {
   const SetupPacket setup{.request_type = 0x40, .request = number, .value = value};
   const bool done = bus_.device().control(setup, {}).answer == Answer::kDone;
-  step();  // a control transfer takes its frame
+  step();  // a control transfer takes one frame
   return done;
 }
 
@@ -49,7 +49,7 @@ bool FtdiBusLine::purge() {
 }
 
 bool FtdiBusLine::write(std::span<const std::byte> bytes) {
-  constexpr int kFramesMax = 1000;  // as long as the real line waits
+  constexpr int kFramesMax = 1000;  // as long as the timeout of the real line
   for (int i = 0; i < kFramesMax; ++i) {
     if (bus_.write(bytes)) return true;
     step();

@@ -14,8 +14,8 @@
 
 namespace thimble::device_sim::usb {
 
-/// A full-speed bus with one FTDI converter on it: frames of a millisecond; in each the host
-/// takes what the converter has. Keeps a reference to the device. Real-time: safe.
+/// A full-speed bus with one FTDI converter on it, with frames of a millisecond; in each the host
+/// takes the packets of the converter. Keeps a reference to the device. Real-time: safe.
 class FtdiBus {
  public:
   static constexpr std::int64_t kFrame_ns = UsbDevice::kFrame_ns;
@@ -25,10 +25,10 @@ class FtdiBus {
   std::int64_t time_ns() const noexcept { return time_ns_; }
   UsbDevice& device() noexcept { return device_; }
 
-  /// Lets time pass within a frame.
+  /// Advances time within a frame.
   void advance_to(std::int64_t time_ns) noexcept;
 
-  /// Goes to the beginning of the next frame and calls `take` with each packet that comes.
+  /// Advances to the beginning of the next frame and calls `take` with each packet that arrives.
   template <class Take>
   void frame(Take&& take) noexcept {
     advance_to((time_ns_ / kFrame_ns + 1) * kFrame_ns);
@@ -50,7 +50,7 @@ class FtdiBus {
   std::int64_t time_ns_;
 };
 
-/// The serial line behind it, for the set-up; its waiting is simulated time. Real-time: never
+/// The serial line behind the bus, for the set-up; it waits in simulated time. Real-time: never
 /// from the servo thread.
 class FtdiBusLine final : public driver::SerialLine {
  public:
@@ -73,8 +73,8 @@ class FtdiBusLine final : public driver::SerialLine {
   std::deque<std::byte> heard_;
 };
 
-/// A driver's wire to it: frames pass as the clock does, whose time 0 is `begin_ns` of the arm.
-/// Keeps no clock alive. Real-time: safe.
+/// The driver's transport to the converter. Frames pass with the clock; its time 0 is `begin_ns` of
+/// the arm. Does not own the clock. Real-time: safe.
 class FtdiBusTransport final : public driver::Transport {
  public:
   FtdiBusTransport(UsbDevice& device, driver::Clock& clock, const driver::Framing& framing,

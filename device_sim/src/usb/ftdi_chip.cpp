@@ -23,8 +23,8 @@ enum FtdiRequest : std::uint8_t {
 };
 constexpr std::uint16_t kResetAll = 0, kPurgeReceived = 1, kPurgeSent = 2;
 
-// The first status byte's low nibble is 1 on this chip; CTS and DSR are wired up. The second says
-// that the transmitter is empty [S Linux ftdi_sio.h].
+// The first status byte's low nibble is 1 on this chip; CTS and DSR are wired up. The second
+// reports an empty transmitter [S Linux ftdi_sio.h].
 constexpr std::byte kModemByte{0x31};
 constexpr std::byte kLineByte{0x60};
 
@@ -39,7 +39,7 @@ PacketResult done(std::size_t size = 0) noexcept {
 }  // namespace
 
 double FtdiChip::rate() const noexcept {
-  // Low 14 bits divide; the upper ones add eighths in an odd order [S ftdi_sio.c].
+  // The low 14 bits divide; the upper bits add eighths in an irregular order [S ftdi_sio.c].
   constexpr std::array<double, 8> kEighths{0, 4, 2, 1, 3, 5, 6, 7};
   const std::uint32_t whole = divisor_ & 0x3fffU;
   if (divisor_ == 0) return kClock;
@@ -61,7 +61,7 @@ PacketResult FtdiChip::control(const SetupPacket& setup, std::span<std::byte> da
       if (setup.value == kResetAll) latency_ms_ = kLatencyDefault_ms;
       return done();
     case kModemControl: {
-      // The high byte says which wire the low byte sets.
+      // The high byte selects the wire that the low byte sets.
       const unsigned mask = setup.value >> 8U;
       if ((mask & 1U) != 0) dtr_ = (low & 1U) != 0;
       if ((mask & 2U) != 0) rts_ = (low & 2U) != 0;

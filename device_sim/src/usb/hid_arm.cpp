@@ -15,13 +15,13 @@ namespace {
 using driver::get_word;
 using driver::put_word;
 
-// Requests of the HID class that a board may take [HID 1.11, 7.2].
+// Requests of the HID class that a board may accept [HID 1.11, 7.2].
 enum HidRequest : std::uint8_t {
   kSetReport = 0x09,
   kSetIdle = 0x0a,
 };
 
-/// Lets the firmware speak what the board does, with encoders that a board can have.
+/// Sets the protocol of the board, and encoders that the board can have.
 SimulatedArmSettings on_board(SimulatedArmSettings settings, const HidBoard& board) {
   settings.firmware.speaks = board.layout == HidLayout::kWoodenHaptics ? driver::ArmKind::kWoody
                                                                        : driver::ArmKind::kPolhem;
@@ -72,7 +72,7 @@ void HidArm::keep_sample() noexcept {
 }
 
 void HidArm::advance_to(std::int64_t time_ns) noexcept {
-  // Frame by frame, so that what the encoders really saw is known for each.
+  // Frame by frame, so that the true encoder positions of each frame are recorded.
   while (arm_.time_ns() < time_ns) {
     const std::int64_t frame_ns =
         (arm_.time_ns() / UsbDevice::kFrame_ns + 1) * UsbDevice::kFrame_ns;
@@ -86,14 +86,14 @@ std::size_t HidArm::lay_out(std::span<const std::byte> report,
   const std::size_t size = report_size();
   std::fill_n(packet.begin(), size, std::byte{0});
   std::copy(report.begin(), report.end(), packet.begin());
-  // It numbers what it sends [S], and not what the bus had no room for.
+  // The board numbers the reports it sends [S], not those for which the bus had no room.
   if (board_.layout == HidLayout::kWoodenHaptics) {
     put_word(packet, 3, static_cast<std::int16_t>(counter_));
   }
   return size;
 }
 
-// A free-running board gives what it sampled last.
+// A free-running board gives its last sample.
 bool HidArm::newest(BoardBytes& report) noexcept {
   std::uint32_t skipped = 0;
   report.size = arm_.take_report(report.bytes, skipped);
@@ -105,14 +105,14 @@ bool HidArm::newest(BoardBytes& report) noexcept {
   return true;
 }
 
-// Samples the encoders; the report then waits until the host takes it.
+// Samples the encoders; the report then waits for the host.
 void HidArm::offer() noexcept {
   report_ = arm_.sample_now();
   report_sample_ = sample_now();
   offers_ = true;
 }
 
-// A board that answers gives the report that waits, and then reads the message that came meanwhile.
+// A board that answers gives the waiting report, then reads the message that arrived meanwhile.
 bool HidArm::offered(BoardBytes& report) noexcept {
   if (!offers_) return false;
   report = report_;
@@ -129,7 +129,7 @@ bool HidArm::offered(BoardBytes& report) noexcept {
 
 PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexcept {
   if (address != board_.in) {
-    // An interface for debug output has nothing to say.
+    // An interface for debug output sends nothing.
     return {description_.endpoint(address) != nullptr ? Answer::kNak : Answer::kStall, 0};
   }
   BoardBytes report{};
@@ -141,7 +141,7 @@ PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexc
   return {Answer::kDone, lay_out(report, packet)};
 }
 
-// A message of another length moves nothing and does not keep the motors on.
+// A message of another length has no effect and does not keep the motors on.
 void HidArm::use_message(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() != report_size()) {
     ++malformed_;
@@ -179,7 +179,7 @@ PacketResult HidArm::control(const SetupPacket& setup, std::span<std::byte> data
   const bool for_hid = (setup.request_type & kKindMask) == kKindClass &&
                        (setup.request_type & 0x1fU) == kRecipientInterface && !setup.to_host();
   if (!for_hid || !board_.takes_set_idle) return {Answer::kStall, 0};
-  // A Teensy takes both and does nothing for it [S teensy3/usb_dev.c].
+  // A Teensy accepts both without effect [S teensy3/usb_dev.c].
   if (setup.request == kSetIdle) return {Answer::kDone, 0};
   if (setup.request == kSetReport) return {Answer::kDone, data.size()};
   return {Answer::kStall, 0};

@@ -15,16 +15,16 @@
 
 namespace thimble::device_sim::usb {
 
-/// A simulated arm on a HID plug: descriptors, reports as its board sends them, and behind them
-/// plant, hand and firmware of SimulatedArm. Each endpoint moves a packet a frame at most.
+/// A simulated arm with a HID plug: descriptors, reports as its board sends them, and behind them
+/// plant, hand and firmware of SimulatedArm. Each endpoint moves at most one packet per frame.
 class HidArm final : public UsbArm {
  public:
-  /// Makes the arm; fails as SimulatedArm::make does. Real-time: never from the servo thread.
+  /// Makes the arm; fails like SimulatedArm::make. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<HidArm>> make(
       const HidBoard& board, UsbDescription description,
       const driver::JointModel<driver::SerialArm>& model, const SimulatedArmSettings& settings,
       HandPath path, std::uint64_t seed = 0);
-  /// Makes an arm with a linkage in the same way.
+  /// As above, for an arm with a linkage.
   static driver::Result<std::unique_ptr<HidArm>> make(
       const HidBoard& board, UsbDescription description,
       const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
@@ -43,17 +43,17 @@ class HidArm final : public UsbArm {
     return arm_.fix_mass(mass, gravity_B);
   }
 
-  /// Shows the arm behind the plug. Real-time: safe.
+  /// Returns the arm behind the plug. Real-time: safe.
   const SimulatedArm& arm() const noexcept { return arm_; }
-  /// Returns how many messages had a length that the board does not know. Real-time: safe.
+  /// Returns the number of messages with a length unknown to the board. Real-time: safe.
   std::uint64_t malformed() const noexcept { return malformed_; }
-  /// Shows what kind of board it is. Real-time: safe.
+  /// Returns the kind of board. Real-time: safe.
   const HidBoard& board() const noexcept { return board_; }
-  /// Returns the bytes of a report. Real-time: safe.
+  /// Returns the size of a report, bytes. Real-time: safe.
   std::size_t report_size() const noexcept { return board_.report_size(); }
 
  private:
-  /// Where the encoders really stood when a report was sampled.
+  /// True encoder positions when a report was sampled.
   struct Sample {
     std::int64_t time_ns = -1;
     Eigen::Vector3d exact_counts{0, 0, 0};
@@ -77,7 +77,7 @@ class HidArm final : public UsbArm {
   SimulatedArm arm_;
   ArmTruth truth_;
   std::array<Sample, kSamples> samples_;
-  // Of a board that answers only: the report that waits for the host, and the message that came
+  // For a board that only answers: the report that waits for the host, and a message that arrived
   // meanwhile.
   BoardBytes report_{};
   Sample report_sample_;

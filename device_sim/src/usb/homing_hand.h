@@ -5,26 +5,26 @@
 
 namespace thimble::device_sim::usb {
 
-/// What the hand on a Falcon does when the arm is to be homed, as a user is told to: it pulls the
-/// grip out, pushes it in, and comes back to where it was, again and again until every leg has
-/// passed its home. Frame B: base of the arm. All functions are Real-time: safe.
+/// Motion of the hand on a Falcon during homing, as a user is instructed. It pulls the grip out,
+/// pushes it in, and returns to where it was, until every leg has passed its home. Frame B: base of
+/// the arm. All functions are Real-time: safe.
 class HomingHand {
  public:
-  /// How far the grip is pulled and pushed from the middle of the workspace along the base's z, m:
-  /// all legs pass their homes within 15 mm of the middle [C from the geometry].
+  /// Distance of pull and push from the middle of the workspace along the base's z, m. All legs
+  /// pass their homes within 15 mm of the middle [C from the geometry].
   static constexpr double kReach = 0.020;
-  /// How long the hand takes from one end to the other, s. [chosen: 80 mm/s, a calm stroke]
+  /// Time from one end to the other, s. [chosen: 80 mm/s, a calm stroke]
   static constexpr double kStroke = 0.5;
 
   /// Takes the middle of the workspace, m.
   explicit HomingHand(const Eigen::Vector3d& p_BM) noexcept : p_BM_(p_BM) {}
 
-  /// Returns where the hand is (m) at a time (ns, never before the last one): at `p_BH`, where it
-  /// otherwise is, or on its way for as long as homing is wanted. While it is busy `p_BH` must stay
-  /// where it was when it began.
+  /// Returns the position of the hand (m) at a time (ns, not decreasing): `p_BH`, its position
+  /// without homing, or a point of its stroke while homing is wanted. While `busy`, `p_BH` must not
+  /// change.
   Eigen::Vector3d at(const Eigen::Vector3d& p_BH, std::int64_t time_ns, bool wanted) noexcept;
 
-  /// Returns whether it is on its way.
+  /// Returns whether the hand is moving for homing.
   bool busy() const noexcept { return busy_; }
 
  private:

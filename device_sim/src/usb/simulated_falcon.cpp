@@ -12,14 +12,14 @@ namespace thimble::device_sim::usb {
 namespace {
 
 // The hand pulls the grip out and pushes it in; the legs pass their homes within 15 mm of the
-// middle, whatever the rest of its way is.
+// middle, whatever the rest of the path is.
 constexpr double kHomingReach = 0.020;  // m
 constexpr double kHomingStroke = 0.5;   // s from one end to the other
 // A pinch grip [M DEVICES 3].
 constexpr HandSettings kHomingHand{.mass = 0.025, .stiffness = 300, .damping = 3};
-constexpr std::int64_t kRest_ns = 500'000'000;  // until the grip stands still again
+constexpr std::int64_t kRest_ns = 500'000'000;  // until the grip is at rest again
 
-// These points are finite, and their times grow.
+// These points are finite, and their times increase.
 HandPath resting_at(const Eigen::Vector3d& p_BH) {
   return HandPath::make({{0, p_BH}}).value();
 }
@@ -67,7 +67,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
   if (firmware.empty()) firmware.assign(2 * falcon::kBlockSize, std::byte{0x5a});
   FtdiBus bus(*falcon_, 0);
   FtdiBusLine line(bus);
-  const falcon::BootSettings quick{.settle_ms = 0};  // its pauses are of the world's time
+  const falcon::BootSettings quick{.settle_ms = 0};  // its pauses would be real time
   if (auto loaded = falcon::upload_firmware(line, firmware, quick); !loaded) {
     return loaded.error();
   }
@@ -84,7 +84,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
     return driver::Error{
         "The simulated Falcon was not homed; its hand must begin inside of its workspace."};
   }
-  // The arm's frames go on from here; the hand's way begins with one of them.
+  // The arm's frames continue from here; the hand's path begins with one of them.
   begin_ns_ = (std::max(bus.time_ns(), end_ns) / FtdiBus::kFrame_ns + 1) * FtdiBus::kFrame_ns;
   while (bus.time_ns() < begin_ns_) bus.frame([](std::span<const std::byte>) {});
   return {};

@@ -41,8 +41,8 @@ Bytes hid_descriptor(const InterfaceDescription& interface) {
   return bytes;
 }
 
-// Interface, HID and endpoint descriptors, in the order that the HID class asks for
-// [HID 1.11, 7.1].
+// Interface, HID and endpoint descriptors, in the order that the HID class requires [HID 1.11,
+// 7.1].
 void put_interface(Bytes& bytes, const InterfaceDescription& interface, std::size_t number) {
   put(bytes, {9, kInterfaceDescriptor, static_cast<unsigned>(number), 0,
               static_cast<unsigned>(interface.endpoints.size()), interface.interface_class,
@@ -141,8 +141,8 @@ std::vector<std::byte> build_raw_report_descriptor(std::uint16_t usage_page, std
   put(bytes, {0x75, 0x08});                               // report size 8 bits
   put(bytes, {0x15, 0x00});                               // logical minimum 0
   put(bytes, {0x26, 0xff, 0x00});                         // logical maximum 255
-  put(bytes, {0x95, in_bytes, 0x09, 0x01, 0x81, 0x02});   // so many inputs: data, variable
-  put(bytes, {0x95, out_bytes, 0x09, 0x02, 0x91, 0x02});  // so many outputs
+  put(bytes, {0x95, in_bytes, 0x09, 0x01, 0x81, 0x02});   // number of inputs: data, variable
+  put(bytes, {0x95, out_bytes, 0x09, 0x02, 0x91, 0x02});  // number of outputs
   put(bytes, {0xc0});
   return bytes;
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, kFaultKinds> kNames{
     "stall",     "short",   "long",       "torn",   "stale",
     "duplicate", "silence", "bit_errors", "unplug", "lost"};
-constexpr std::size_t kTooMany = 8;  // bytes of a long packet beyond the good ones
+constexpr std::size_t kTooMany = 8;  // additional bytes of an overlong packet
 
 std::string_view next_word(std::string_view& line) {
   const std::size_t begin = std::min(line.find_first_not_of(" \t\r\n"), line.size());
@@ -122,7 +122,7 @@ PacketResult FaultyDevice::control(const SetupPacket& setup, std::span<std::byte
   return device_.control(setup, data);
 }
 
-// Makes a good packet bad; `before` is the packet that went the same way earlier.
+// Corrupts a good packet; `before` is the previous packet in the same direction.
 void FaultyDevice::spoil(const FaultOrder& order, std::span<std::byte> packet, std::size_t& size,
                          const Kept& before) noexcept {
   switch (order.kind) {
@@ -172,7 +172,7 @@ PacketResult FaultyDevice::in(std::uint8_t address, std::span<std::byte> packet)
   if (result.answer != Answer::kDone) return result;
   const Kept before = last_in_;
   const bool stale = open != nullptr && open->order.kind == FaultKind::kStale;
-  if (!stale) {  // what is stale stays what it was before the fault began
+  if (!stale) {  // a stale packet stays the one before the fault began
     last_in_.size = std::min(result.size, kPacketMax);
     std::copy_n(packet.begin(), last_in_.size, last_in_.bytes.begin());
   }

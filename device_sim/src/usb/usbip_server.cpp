@@ -76,7 +76,7 @@ UsbipServer::~UsbipServer() {
 
 void UsbipServer::adopt(int socket) {
   fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
-  // Each answer is small and somebody waits for it. Not every socket is TCP; then it fails.
+  // Answers are small and the client waits for each. Not every socket is TCP; then this fails.
   const int yes = 1;
   setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   clients_.push_back({socket, std::make_unique<UsbipSession>(device_, bus_id_), false, now_ns_});
@@ -104,7 +104,7 @@ void UsbipServer::accept_client() {
   adopt(socket);
 }
 
-/// Disconnects the client that came first and has not the device; false if there is none.
+/// Disconnects the oldest client that has not attached the device; false if there is none.
 bool UsbipServer::make_room() {
   const auto oldest = std::find_if(clients_.begin(), clients_.end(), [](const Client& client) {
     return client.session->state() != UsbipSession::State::kAttached;
@@ -115,7 +115,7 @@ bool UsbipServer::make_room() {
   return true;
 }
 
-/// Disconnects clients that let the server wait for too long.
+/// Disconnects clients that keep the server waiting for too long.
 void UsbipServer::drop_late() {
   for (Client& client : clients_) {
     const bool waits = client.session->state() != UsbipSession::State::kAttached ||
@@ -221,14 +221,14 @@ void UsbipServer::run(const std::atomic<bool>& stop, const FrameObserver& observ
     if (read(timer, &passed, sizeof passed) == sizeof passed && passed > 0) {
       late_frames_ += passed - 1;
       number += static_cast<std::int64_t>(passed);
-      serve(0);  // what was asked before the frame began belongs to it
+      serve(0);  // requests from before the frame belong to it
       frame(number * UsbDevice::kFrame_ns);
       if (observer) observer(number);
       continue;
     }
     wait_for(timer);
     serve(0);
-    // The frame that is running ends when the timer says so, not before.
+    // The running frame ends only when its timer expires.
     const std::int64_t end_ns = (number + 1) * UsbDevice::kFrame_ns - 1;
     send_bulk(std::min(monotonic_ns() - start_ns, end_ns));
   }

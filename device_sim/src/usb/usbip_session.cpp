@@ -9,8 +9,8 @@
 namespace thimble::device_sim::usb {
 namespace {
 
-// Linux's errno values, which are what travels over the wire [Linux, usbip_protocol.rst; uapi
-// errno.h]; written out because another system's differ.
+// Linux's errno values, which the protocol uses [Linux, usbip_protocol.rst; uapi errno.h]. Written
+// out because those of other systems differ.
 constexpr std::int32_t kStalled = -32;    // EPIPE
 constexpr std::int32_t kBabble = -75;     // EOVERFLOW
 constexpr std::int32_t kUnlinked = -104;  // ECONNRESET
@@ -37,8 +37,7 @@ void UsbipSession::receive(std::span<const std::byte> bytes, bool available) {
   input_.erase(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(taken));
 }
 
-// Returns whether a message is there; after one that is none nobody knows where the next
-// begins.
+// Returns whether a message is complete. After an invalid one, the start of the next is unknown.
 bool UsbipSession::whole(Decode decoded) noexcept {
   if (decoded == Decode::kInvalid) state_ = State::kClosing;
   return decoded == Decode::kWhole;
@@ -98,7 +97,7 @@ void UsbipSession::unlink(const UsbipCommand& command) {
 
 template <class Chosen>
 void UsbipSession::run_chosen(std::int64_t frame, Chosen&& chosen) {
-  // An endpoint whose transfer waits, or that had its packet in this frame, is done for it.
+  // An endpoint with a waiting transfer, or with a packet in this frame, is done for this frame.
   std::uint32_t done = 0;
   for (auto transfer = pending_.begin(); transfer != pending_.end() && takes_more();) {
     const std::uint32_t bit = bit_of(transfer->address);
@@ -159,7 +158,7 @@ UsbipSession::Step UsbipSession::run_control(Transfer& transfer) {
       pipe_.transfer(transfer.setup, std::span<std::byte>(transfer.data).first(size));
   switch (result.answer) {
     case Answer::kDone:
-      // What went to the device went as a whole; what comes from it is what it had.
+      // Data to the device were moved completely; data from it only as far as it had any.
       transfer.moved = transfer.setup.to_host() ? std::min(result.size, size) : size;
       return complete(transfer, 0);
     case Answer::kNak:

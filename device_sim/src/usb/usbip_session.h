@@ -16,54 +16,55 @@
 
 namespace thimble::device_sim::usb {
 
-/// One connection of a USB/IP client to a device: bytes in, bytes out, and in between the
-/// schedule of a full-speed bus. It owns no socket and no clock, so that tests feed it by hand.
+/// One connection of a USB/IP client to a device: bytes in, bytes out, and in between the schedule
+/// of a full-speed bus. It owns no socket and no clock, so that tests can pass bytes directly.
 ///
-/// An interrupt transfer waits for its frame, as it does on a real bus: in each frame an interrupt
-/// endpoint moves one packet if its interval is over, a bulk endpoint up to kBulkPackets, and the
-/// control pipe one transfer. What goes out in bulk may also go at once, in what a frame has left
-/// (`send_bulk`). Transfers of one endpoint keep their order.
+/// An interrupt transfer waits for its frame, as on a real bus. In each frame an interrupt endpoint
+/// moves one packet if its interval has passed, a bulk endpoint up to kBulkPackets, and the control
+/// pipe one transfer. Bulk data to the device may also be sent at once, in the unused part of a
+/// frame (`send_bulk`). Transfers of one endpoint keep their order.
 class UsbipSession {
  public:
-  /// How many bulk packets of 64 bytes a frame holds [USB 2.0, table 5-9].
+  /// Bulk packets of 64 bytes per frame [USB 2.0, table 5-9].
   static constexpr int kBulkPackets = 19;
-  /// How many transfers may wait; a client that hands over more is hung up on.
+  /// Max. number of waiting transfers; a client that submits more is disconnected.
   static constexpr std::size_t kPendingMax = 256;
 
-  /// How many bytes may wait for a client that does not read them: then nothing more is taken from
-  /// it and no transfer of its is run. One reply may go beyond. [chosen: a second of reports]
+  /// Max. number of bytes that wait for a client that does not read them. Then no more bytes of the
+  /// client are accepted and none of its transfers run. One reply may exceed the limit. [chosen: a
+  /// second of reports]
   static constexpr std::size_t kOutputMax = 1U << 16;
 
-  /// What a connection is good for.
+  /// State of a connection.
   enum class State : std::uint8_t {
     kAsking,    ///< Not attached yet.
-    kAttached,  ///< Transfers flow.
-    kClosing,   ///< Send what is left of `output`, then hang up.
+    kAttached,  ///< Transfers are processed.
+    kClosing,   ///< Send the rest of `output`, then disconnect.
   };
 
-  /// Keeps a reference to the device, which must live longer.
+  /// Keeps a reference to the device, which must outlive the session.
   UsbipSession(UsbDevice& device, std::string bus_id);
 
-  /// Takes bytes of the client. `available` says whether the device may be imported now. What is no
-  /// message makes the state kClosing. Real-time: never from the servo thread.
+  /// Takes bytes of the client. `available` states whether the device may be imported now. Bytes
+  /// that are not a message set the state to kClosing. Real-time: never from the servo thread.
   void receive(std::span<const std::byte> bytes, bool available);
 
-  /// Runs one frame of the bus at its start time (ns); a device that is gone makes the state
-  /// kClosing. The caller moves the device's time. Real-time: never from the servo thread.
+  /// Runs one frame of the bus at its start time (ns); a device that is gone sets the state to
+  /// kClosing. The caller advances the device's time. Real-time: never from the servo thread.
   void frame(std::int64_t time_ns);
 
-  /// Returns whether bulk data wait to go to the device. Real-time: safe.
+  /// Returns whether bulk data wait to be sent to the device. Real-time: safe.
   bool has_bulk_to_send() const noexcept;
 
-  /// Sends bulk data to the device in the running frame. The caller moves the device's time.
+  /// Sends bulk data to the device in the running frame. The caller advances the device's time.
   /// Real-time: never from the servo thread.
   void send_bulk();
 
-  /// Returns whether more bytes of the client may be taken: not while too many wait for it to be
-  /// read. Real-time: safe.
+  /// Returns whether more bytes of the client may be accepted: not while too many unread bytes wait
+  /// for it. Real-time: safe.
   bool takes_more() const noexcept { return output_.size() < kOutputMax; }
 
-  /// Gives the bytes for the client; the caller takes away from the front what it sent.
+  /// Returns the bytes for the client; the caller removes the bytes it has sent from the front.
   std::vector<std::byte>& output() noexcept { return output_; }
 
   State state() const noexcept { return state_; }
@@ -74,7 +75,7 @@ class UsbipSession {
     std::uint32_t sequence = 0;
     std::uint8_t address = 0;  // of the endpoint
     SetupPacket setup;
-    std::vector<std::byte> data;  // what goes to the device, or room for what it sends
+    std::vector<std::byte> data;  // data for the device, or room for data from it
     std::size_t moved = 0;
   };
   enum class Step : std::uint8_t { kWaits, kComplete, kGone };

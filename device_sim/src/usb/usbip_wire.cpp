@@ -34,7 +34,7 @@ void put(Bytes& bytes, std::uint32_t value, std::size_t size) {
 
 void put_text(Bytes& bytes, const std::string& text, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
-    // The last byte stays zero, so that the text always ends.
+    // The last byte stays zero, so that the text is always terminated.
     const bool inside = i < text.size() && i + 1 < size;
     bytes.push_back(inside ? static_cast<std::byte>(text[i]) : std::byte{0});
   }
@@ -51,7 +51,7 @@ void put_device(Bytes& bytes, const UsbDescription& device, const std::string& b
   put(bytes, device.release, 2);
   put(bytes, 0, 3);  // class, subclass and protocol are those of the interfaces
   put(bytes, 1, 1);  // configuration
-  put(bytes, 1, 1);  // of so many
+  put(bytes, 1, 1);  // number of configurations
   put(bytes, static_cast<std::uint32_t>(device.interfaces.size()), 1);
 }
 
@@ -72,7 +72,7 @@ void pad_to_header(Bytes& bytes, std::size_t begin) {
 
 Decode decode_request(std::span<const std::byte> bytes, UsbipRequest& request) {
   if (bytes.size() < kRequestHeaderSize) return Decode::kPartial;
-  // Versions differ in what the kernel speaks, not in these messages; only the code decides.
+  // Versions differ in the kernel's protocol, not in these messages; only the code matters.
   const std::uint32_t code = get(bytes, 2, 2);
   if (code == kRequestList) {
     request = {.kind = UsbipRequest::Kind::kList, .bus_id = {}, .size = kRequestHeaderSize};

@@ -22,42 +22,41 @@ inline constexpr std::size_t kBusIdSize = 32;          ///< Bytes of a bus id, z
 inline constexpr std::size_t kUsbipHeaderSize = 48;    ///< Bytes before a transfer's data.
 inline constexpr std::size_t kTransferMax = 1U << 16;  ///< Larger transfers are refused, bytes.
 
-/// What a client asks before a device is attached.
+/// A request of a client before a device is attached.
 struct UsbipRequest {
-  /// What a client asks.
+  /// Kind of a request.
   enum class Kind : std::uint8_t { kList, kImport };
-  Kind kind = Kind::kList;  ///< What is asked.
-  std::string bus_id;       ///< For kImport: the device it wants.
+  Kind kind = Kind::kList;  ///< Kind of this request.
+  std::string bus_id;       ///< For kImport: the requested device.
   std::size_t size = 0;     ///< Bytes of the message.
 };
 
-/// One transfer that the host's controller hands over, or takes back.
+/// One transfer that the host's controller submits, or cancels.
 struct UsbipCommand {
-  /// What the host asks.
+  /// Kind of a command.
   enum class Kind : std::uint8_t { kSubmit, kUnlink };
-  Kind kind = Kind::kSubmit;         ///< What is asked.
+  Kind kind = Kind::kSubmit;         ///< Kind of this command.
   std::uint32_t sequence = 0;        ///< Number of the command.
   std::uint32_t device = 0;          ///< (bus << 16) | device number.
   bool to_host = false;              ///< Direction of the data.
   std::uint8_t endpoint = 0;         ///< Number, 0 to 15.
   std::uint32_t length = 0;          ///< Bytes to move.
-  std::uint32_t unlinked = 0;        ///< For kUnlink: sequence number of the transfer taken back.
+  std::uint32_t unlinked = 0;        ///< For kUnlink: sequence number of the cancelled transfer.
   std::array<std::byte, 8> setup{};  ///< For endpoint 0.
-  std::size_t size = 0;  ///< Bytes of the whole message; its last `length` are the data if
-                         ///< they go to the device.
+  std::size_t size = 0;  ///< Bytes of the message; data to the device are the last `length`.
 };
 
-/// How far a decoder came.
+/// Result of a decoder.
 enum class Decode : std::uint8_t {
   kWhole,    ///< A whole message.
   kPartial,  ///< More bytes are needed.
-  kInvalid,  ///< No message can begin like this; the connection is of no use any more.
+  kInvalid,  ///< Not the start of a message; the connection must be closed.
 };
 
-/// Decodes what a client says before a device is attached.
+/// Decodes a message of a client before a device is attached.
 Decode decode_request(std::span<const std::byte> bytes, UsbipRequest& request);
 
-/// Decodes what the host's controller says once a device is attached. Isochronous transfers,
+/// Decodes a message of the host's controller after a device is attached. Isochronous transfers,
 /// endpoints beyond 15 and transfers beyond kTransferMax are invalid.
 Decode decode_command(std::span<const std::byte> bytes, UsbipCommand& command) noexcept;
 
@@ -68,7 +67,7 @@ std::vector<std::byte> encode_list(const UsbDescription* device, const std::stri
 std::vector<std::byte> encode_import(const UsbDescription* device, const std::string& bus_id);
 
 /// Appends the answer to a transfer: `status` is 0 or a negative errno of Linux, `moved` the bytes
-/// moved, `data` what goes to the host.
+/// moved, `data` the bytes for the host.
 void append_submit_reply(std::vector<std::byte>& bytes, std::uint32_t sequence, std::int32_t status,
                          std::uint32_t moved, std::span<const std::byte> data);
 
@@ -76,27 +75,27 @@ void append_submit_reply(std::vector<std::byte>& bytes, std::uint32_t sequence, 
 void append_unlink_reply(std::vector<std::byte>& bytes, std::uint32_t sequence,
                          std::int32_t status);
 
-// The other side, for tests and for attaching to the kernel.
+// The client's side, for tests and for attaching to the kernel.
 
 /// Encodes a client's request.
 std::vector<std::byte> encode_request(const UsbipRequest& request);
 
-/// Encodes a transfer or an unlink with the data that goes to the device.
+/// Encodes a transfer or an unlink with its data for the device.
 std::vector<std::byte> encode_command(const UsbipCommand& command,
                                       std::span<const std::byte> data = {});
 
-/// The answer to a transfer or an unlink.
+/// Answer to a transfer or an unlink.
 struct UsbipReply {
   bool unlink = false;         ///< Whether it answers an unlink.
-  std::uint32_t sequence = 0;  ///< Number of the command that it answers.
+  std::uint32_t sequence = 0;  ///< Number of the answered command.
   std::int32_t status = 0;     ///< 0, or a negative errno.
-  std::uint32_t moved = 0;     ///< Bytes that went over.
+  std::uint32_t moved = 0;     ///< Bytes transferred.
 };
 
-/// Decodes the header of an answer; data to the host follow it. Empty if it is none.
+/// Decodes the header of an answer; data for the host follow it. Empty if it is not an answer.
 std::optional<UsbipReply> decode_reply(std::span<const std::byte, kUsbipHeaderSize> bytes) noexcept;
 
-/// The bytes of an import's answer when the device is there, and when it is not.
+/// Size of an import's answer, bytes, if the device is present, and if it is not.
 inline constexpr std::size_t kImportReplySize = 8 + 0x138;
 inline constexpr std::size_t kImportRefusalSize = 8;
 

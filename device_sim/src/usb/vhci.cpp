@@ -51,7 +51,7 @@ driver::Result<std::string> read_text(const std::filesystem::path& file) {
   return std::string(text.data(), static_cast<std::size_t>(size));
 }
 
-// Asks the server for the device; leaves the socket ready for transfers.
+// Requests the device from the server; leaves the socket ready for transfers.
 driver::Result<void> import_device(int socket, std::uint16_t port, const std::string& bus_id) {
   const timeval limit{5, 0};
   setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);

@@ -9,20 +9,21 @@
 
 namespace thimble::driver {
 
-/// Checks whether the enabling input is held. A button that is down from the first tick on does not
-/// count until it was seen released: it may be stuck, or taped. All functions are Real-time: safe.
+/// Checks whether the enabling input is held. A button that is down from the first tick does not
+/// count until it has been released once: it may be stuck, or taped. All functions are Real-time:
+/// safe.
 class EnablingInput {
  public:
-  /// Takes what must be held.
+  /// Takes the inputs that must be held.
   explicit EnablingInput(const HoldToRun& settings) noexcept : settings_(settings) {}
 
-  /// Begins again: a button must be seen released first, and what a caller held counts for nothing.
+  /// Restarts: a button must be released first, and an earlier `hold_until` is cancelled.
   void restart() noexcept {
     released_ = false;
     until_ns_.store(kNever_ns, std::memory_order_relaxed);
   }
 
-  /// Lets the caller's input count as held up to a time of the loop's clock, ns. Any thread.
+  /// Counts the caller's input as held until `time_ns` on the loop's clock, ns. Any thread.
   void hold_until(std::int64_t time_ns) noexcept {
     until_ns_.store(time_ns, std::memory_order_relaxed);
   }
@@ -41,7 +42,7 @@ class EnablingInput {
   static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::min();
 
   HoldToRun settings_;
-  bool released_ = false;  // the button, since it began
+  bool released_ = false;  // the button was released since the start
   std::atomic<std::int64_t> until_ns_{kNever_ns};
 };
 

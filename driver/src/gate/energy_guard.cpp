@@ -6,13 +6,13 @@
 namespace thimble::driver {
 namespace {
 
-/// More than any surface holds that a hand can press, J: 10 N over the workspace of an arm.
+/// More than any surface stores that a hand can press, J: 10 N over the workspace of an arm.
 constexpr double kHeldMost = 2;
 
 }  // namespace
 
 void PassivityObserver::book(double work, double held) noexcept {
-  // Written so that NaN and infinity hold nothing.
+  // Written so that NaN and infinity store nothing.
   const double more = held > 0 && held < HUGE_VAL ? std::min(held, kHeldMost) : 0;
   energy_ = std::min(energy_ - work, settings_.reservoir + more);
 }

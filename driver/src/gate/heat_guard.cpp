@@ -8,11 +8,11 @@
 namespace thimble::driver {
 namespace {
 
-// A message holds whole mA, rounded: a current may be larger than was asked for by so much, A.
+// A message holds integer mA, rounded: a current may exceed the requested one by this much, A.
 constexpr double kRounding = 0.0005;
 
 // Returns a heat up to which `limit` allows `share` times the continuous current, by its own
-// formula and with room for its rounding; -1 if it may not.
+// formula and with a margin for its rounding; -1 if there is none.
 double heat_of_full_current(double share, double slope) noexcept {
   constexpr double kRoom = 1 + 1e-9;
   return slope > 0 ? 1 - (share * share * kRoom - 1) / slope : -1;
@@ -20,10 +20,10 @@ double heat_of_full_current(double share, double slope) noexcept {
 
 }  // namespace
 
-// Why the heat never passes 1: the largest squared load at the heat h is u(h) = 1 + s (1 - h). Held
-// for dt it leaves 1 - h' = (1 - h) (1 - g (1 + s)) with g = 1 - exp(-dt / tau), which is not
-// negative as long as g (1 + s) <= 1. The slope s is the smaller of the one for which the current
-// begins to fall at kWarning, and of what that asks at the longest hold.
+// Proof that the heat never exceeds 1. The max. squared load at heat h is u(h) = 1 + s (1 - h).
+// Held for dt it leaves 1 - h' = (1 - h) (1 - g (1 + s)) with g = 1 - exp(-dt / tau), which is not
+// negative as long as g (1 + s) <= 1. The slope s is the smaller of two: the one for which the
+// current begins to fall at kWarning, and the one that this inequality allows at the longest hold.
 HeatGuard::HeatGuard(const HeatSettings& settings, const std::array<MotorDrive, 3>& drives,
                      double longest_hold) noexcept
     : settings_(settings), drives_(drives), named_(settings.named()), heat_(settings.at_start) {
@@ -36,7 +36,7 @@ HeatGuard::HeatGuard(const HeatSettings& settings, const std::array<MotorDrive, 
     slope_[i] = std::min(fall, 1 / hold - 1);
     cool_[i] = heat_of_full_current((current_max_[i] + kRounding) / settings.continuous_current[i],
                                     slope_[i]);
-    // A heat that nobody can know is the limit.
+    // An invalid heat counts as the limit.
     if (!(heat_[i] >= 0 && heat_[i] <= 1)) heat_[i] = 1;
     heat_most_ = std::max(heat_most_, heat_[i]);
   }
@@ -67,7 +67,7 @@ void HeatGuard::sent(const std::array<std::int16_t, 3>& mA, bool scaled) noexcep
 void HeatGuard::limit() noexcept {
   limiting_ = false;
   for (std::size_t i = 0; i < 3; ++i) {
-    // So it is in nearly every tick, and no root is asked for.
+    // The usual case, which needs no square root.
     if (heat_[i] <= cool_[i]) {
       drives_[i].current_max = current_max_[i];
       continue;

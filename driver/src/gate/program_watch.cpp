@@ -6,8 +6,8 @@
 namespace thimble::driver {
 namespace {
 
-/// Returns how far a force must come back from its farthest value to have turned, N, after a swing
-/// of `swing`: more than a stiff wall answers a count or two with.
+/// Returns by how much a force must return from its extreme to count as turned, N, after a swing of
+/// `swing`. It is more than a stiff wall's answer to one or two counts.
 double turn_of(double swing) noexcept {
   constexpr double kLeast = 0.1;  // N [chosen]
   return std::max(kLeast, swing / 4);
@@ -25,7 +25,7 @@ void ProgramWatch::restart() noexcept {
 
 double ProgramWatch::share(const Eigen::Vector3d& f_asked_W, const Eigen::Vector3d& f_sent_W,
                            const Eigen::Vector3d& p_WT, double dt) noexcept {
-  // Written so that what is no number is left out; the gate makes a fault of it.
+  // Written so that numbers that are not finite are skipped; the gate makes them a fault.
   if (!(f_asked_W.squaredNorm() + p_WT.squaredNorm() < HUGE_VAL && dt >= 0)) return share_;
   time_ += dt;
   const bool limited = f_asked_W.squaredNorm() > force_max_ * force_max_;
@@ -64,7 +64,7 @@ void ProgramWatch::found(const Axis& axis) noexcept {
   share_ = 0;
   muted_ = kMute;
   quiet_ = 0;
-  // The spring is known; how it swings has to be seen again.
+  // The spring remains known; its oscillation must be observed again.
   for (Axis& one : axes_) one.known = std::min<std::size_t>(one.known, 1);
 }
 
@@ -75,7 +75,7 @@ bool ProgramWatch::follow(Axis& axis, double f, double x, bool limited) noexcept
     axis.f = f;
     axis.since = time_;
   } else if (time_ - axis.since > kLongest) {
-    // A force that has stood still so long starts again.
+    // A force that was constant for this long starts again.
     axis.turn = farthest = {f, x, time_, axis.work, limited};
     axis.known = 0;
     return false;
@@ -84,7 +84,7 @@ bool ProgramWatch::follow(Axis& axis, double f, double x, bool limited) noexcept
   const double ahead = axis.direction * (f - farthest.f);
   if (ahead >= 0) {
     farthest = {f, x, time_, axis.work, farthest.limited || limited};
-    // A force that stands still has not begun to swing.
+    // A constant force is not oscillating yet.
     if (f == axis.turn.f) axis.turn = farthest;
     return false;
   }
@@ -121,7 +121,7 @@ bool ProgramWatch::Axis::feeds(std::size_t i, double force_max) const noexcept {
 
 /// Returns whether the newest halves have the stiffness of the touch.
 bool ProgramWatch::Axis::springs(std::size_t count) const noexcept {
-  constexpr double kSame = 1.4;  // what a count and the wire's delay make of it [chosen]
+  constexpr double kSame = 1.4;  // effect of a count and of the wire's delay [chosen]
   if (!(stiffness > 0)) return false;
   for (std::size_t i = 0; i < count; ++i) {
     const double force = stiffness * halves[i].way;

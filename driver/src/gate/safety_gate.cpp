@@ -9,15 +9,15 @@ namespace thimble::driver {
 
 namespace {
 
-/// Returns the limits of a gate for which a gap of five times the stall is a fault, even where the
-/// board's own watchdog waits for longer (0.5 s of the mbed boards). [chosen: 0.1 s of all arm
+/// Returns the limits of a gate for which a gap of five times the stall is a fault. This holds even
+/// if the board's own watchdog waits longer (0.5 s on the mbed boards). [chosen: 0.1 s in all arm
 /// files, the watchdog of the boards with text lines]
 GateLimits with_gap(GateLimits limits) noexcept {
   limits.watchdog_ns = std::min(limits.watchdog_ns, 5 * std::max<std::int64_t>(limits.stall_ns, 1));
   return limits;
 }
 
-/// Returns the point on the way from one force to another that is at most `rise` away.
+/// Returns the point on the segment from one force to another that is at most `rise` away.
 Eigen::Vector3d towards(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                         double rise) noexcept {
   const Eigen::Vector3d way = to - from;
@@ -26,27 +26,27 @@ Eigen::Vector3d towards(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   return from + rise / length * way;
 }
 
-/// Returns the force that may follow `f_last_W` when `f_W` is wanted: at most `rise` (N, >= 0) is
-/// added to what is left of the old force, in whatever direction. All forces in N, in the world;
-/// `v_WT` in m/s. All must be finite.
+/// Returns the force that may follow `f_last_W` when `f_W` is requested: at most `rise` (N, >= 0)
+/// is added to the rest of the old force, in any direction. All forces in N, in the world; `v_WT`
+/// in m/s. All must be finite.
 ///
-/// As a rule the old force is held: shortened to the wanted length, which is never slowed, it moves
-/// towards the wanted force by at most `rise`. Holding must not push a hand on: a slow limit on the
-/// fall of a force makes a passive wall active [PHYSICS 1.6]. So where the held force gives the
-/// hand more power than the wanted one, the old force is dropped as far as it does not help: to the
-/// point of it (between none and all) that is nearest to the wanted force, and at most `rise` is
-/// added to that. The one of both that gives less power is sent. At a speed up to `speed_floor`
-/// (m/s), which a flickering encoder count can feign, the old force is held.
+/// Usually the old force is held: it is shortened to the requested length, which is never delayed,
+/// and moves towards the requested force by at most `rise`. Holding must not push a hand on: a slow
+/// limit on the fall of a force makes a passive wall active [PHYSICS 1.6]. So if the held force
+/// gives the hand more power than the requested one, a second candidate is computed. The old force
+/// is reduced to the point between none and all of it that is nearest to the requested force, and
+/// at most `rise` is added. The candidate that gives less power is sent. At a speed up to
+/// `speed_floor` (m/s), which a flickering encoder count can imitate, the old force is held.
 ///
-/// What is sent f' has these properties, whatever is wanted:
-/// - its distance from the segment between 0 and `f_last_W` is at most `rise`: a part of the old
-///   force may go at once, and no more than `rise` comes;
-/// - |f'| <= |f_last_W| + rise, which follows, and |f'| <= |f_W|: both ways end in the ball about 0
-///   through f_W, the first because it is convex, the second because it is the nearest point to f_W
-///   of a convex set with 0 in it;
-/// - f'.v <= f_W.v, or f'.v is no more than that of the second way.
+/// The sent force f' has these properties for any request:
+/// - Its distance from the segment between 0 and `f_last_W` is at most `rise`: a part of the old
+///   force may vanish at once, and at most `rise` is added.
+/// - |f'| <= |f_last_W| + rise, which follows, and |f'| <= |f_W|. Both candidates end in the ball
+///   about 0 through f_W: the first because the ball is convex, the second because it is the
+///   nearest point to f_W of a convex set with 0 in it.
+/// - f'.v <= f_W.v, or f'.v is no more than that of the second candidate.
 ///
-/// tests/unit/driver/gate/rise_limit_test.cpp holds them. Real-time: safe.
+/// Verified by tests/unit/driver/gate/rise_limit_test.cpp. Real-time: safe.
 Eigen::Vector3d limit_rise(const Eigen::Vector3d& f_W, const Eigen::Vector3d& f_last_W,
                            const Eigen::Vector3d& v_WT, double rise, double speed_floor) noexcept {
   const double square_now = f_W.squaredNorm();
@@ -112,7 +112,7 @@ void SafetyGate::trip(Fault fault) noexcept {
 
 // Every comparison is written so that NaN takes the safe branch.
 
-/// Checks everything that switches the force off, and lets the time of the tick pass.
+/// Checks all conditions that switch the force off, and advances the time of the tick.
 inline bool SafetyGate::admit(double magnitude, const Eigen::Vector3d& v_WT, double dt) noexcept {
   if (!(magnitude < HUGE_VAL)) trip(Fault::kForceNotFinite);
   const double speed = v_WT.norm();
@@ -127,7 +127,7 @@ inline bool SafetyGate::admit(double magnitude, const Eigen::Vector3d& v_WT, dou
   }
   if (dt * 1e9 >= static_cast<double>(limits_.stall_ns)) {
     ++counters_.stalls;
-    // A first soft start that was not over stays as slow as it was.
+    // If the first soft start was not complete, the next one is as slow.
     if (since_start_ >= opening_) opening_ = limits_.reopen;
     since_start_ = 0;
     f_last_W_.setZero();
@@ -138,19 +138,19 @@ inline bool SafetyGate::admit(double magnitude, const Eigen::Vector3d& v_WT, dou
   return true;
 }
 
-/// Returns the force that the soft start lets through now, N.
+/// Returns the force that the soft start allows now, N.
 inline double SafetyGate::force_open() const noexcept {
   return limits_.force_max * since_start_ / opening_;
 }
 
-/// Returns a force, cut to what may go out now.
+/// Returns a force, cut to the presently allowed one.
 inline Eigen::Vector3d SafetyGate::within_open(const Eigen::Vector3d& f_W) const noexcept {
   const double open = std::min(limits_.force_max, force_open());
   const double magnitude = f_W.norm();
   return magnitude > open ? Eigen::Vector3d(f_W * (open / magnitude)) : f_W;
 }
 
-/// Returns the requested force, cut to the arm's limit as far as the soft start has opened it.
+/// Returns the requested force, cut to the part of the arm's limit that the soft start allows.
 inline Eigen::Vector3d SafetyGate::limit_length(const Eigen::Vector3d& f_T_W,
                                                 double magnitude) noexcept {
   double allowed = magnitude;
@@ -158,7 +158,7 @@ inline Eigen::Vector3d SafetyGate::limit_length(const Eigen::Vector3d& f_T_W,
     allowed = limits_.force_max;
     ++counters_.limited;
   }
-  // The mean of the power changes slowly, so the force does.
+  // The mean power changes slowly, so the force does too.
   if (power_ > power_limit_ && allowed > 0) {
     const double beyond = (power_ / power_limit_ - 1) / (GateLimits::kPowerFade - 1);
     allowed *= std::max(0.0, 1 - beyond);
@@ -174,7 +174,7 @@ inline Eigen::Vector3d SafetyGate::limit_length(const Eigen::Vector3d& f_T_W,
   return magnitude > allowed ? Eigen::Vector3d(f_T_W * (allowed / magnitude)) : f_T_W;
 }
 
-/// Makes the force that goes out, no further from the last one than the rise limit allows.
+/// Makes the force to send, within the rise limit of the last one.
 inline GatedForce SafetyGate::limit_change(const Eigen::Vector3d& f_W,
                                            const Eigen::Vector3d& v_WT) noexcept {
   // A usual tick ends here. A shorter force of the same direction may be further away.
@@ -196,14 +196,14 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
 
 GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
                                     double dt, const EnergyFlow& flow) noexcept {
-  // What was given is given, whatever becomes of this tick.
+  // Energy already given is booked, whatever happens in this tick.
   observer_.book(flow);
   if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
   const double requested = f_T_W.norm();
   f_program_W_.setZero();
   if (!admit(requested, v_WT, dt)) return GatedForce();
   Eigen::Vector3d f_W = limit_length(f_T_W, requested);
-  // What a program asks for passes the stage as it is: no storage of it is known.
+  // A program's force passes the stage unchanged: its stored energy is unknown.
   const bool program = (flow.f_program_W.array() != 0).any();
   if (program && requested > 0) f_program_W_ = f_W.norm() / requested * flow.f_program_W;
   if (energy_.stage == EnergyStage::kBounding) {
@@ -218,9 +218,9 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
   } else if (energy_.stage == EnergyStage::kPassivity) {
     counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
     const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
-    // A damper within its bounds cannot hold a wall that pushes on and on, slowly. So beyond the
-    // onset the force fades with the debt, whatever the velocity seems to be, and at twice the
-    // onset there is none left that could give energy. What the hand brings in brings it back.
+    // A damper within its bounds cannot stop a wall that keeps pushing slowly. So beyond the onset
+    // the force fades with the debt, whatever velocity is measured, and at twice the onset no force
+    // remains that could give energy. Energy from the hand restores the force.
     const double share = observer_.share(dt);
     if (share < 1 || (damping_W.array() != 0).any()) {
       f_W = share * (f_W - f_program_W_) + f_program_W_ + damping_W;

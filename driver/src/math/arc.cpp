@@ -7,14 +7,15 @@
 namespace thimble::math {
 namespace {
 
-/// Of an angle to 60 bits: what may be wrong with it, with a bit in reserve.
+/// Error bound of an angle to 60 bits, with a bit in reserve.
 constexpr double kArcDoubt = 0x1p-59;
 
-/// Of a rough angle. Its series leaves out u^11 / 11 and less, where u is at most 1/16 and the
-/// angle at least u: 2^-43, beside which roundings are nothing; a bit in reserve.
+/// Error bound of a rough angle. Its series omits u^11 / 11 and smaller terms, where u is at most
+/// 1/16 and the angle at least u: 2^-43, compared with which roundings are negligible; a bit in
+/// reserve.
 constexpr double kRoughDoubt = 0x1p-42;
 
-/// The angle of (x, y) to 42 bits; not both are 0.
+/// The angle of (x, y) to 42 bits; at least one of them is not 0.
 double rough_arc(double y, double x) noexcept {
   const double up = std::abs(y), along = std::abs(x);
   const bool steep = up > along;
@@ -30,8 +31,8 @@ double rough_arc(double y, double x) noexcept {
   return y < 0 ? -arc : arc;
 }
 
-/// The angle of (x, y), of which the greater is between 2^-30 and 2, and the ratio above 2^-61: a
-/// rough one, and the angle from there, which is so small that it is its own tangent.
+/// The angle of (x, y); the greater of the two is between 2^-30 and 2, and their ratio above 2^-61.
+/// It is a rough angle plus the difference, which is so small that it equals its tangent.
 double arc_of(DoubleDouble y, DoubleDouble x) noexcept {
   const double rough = rough_arc(y.hi, x.hi);
   const NearAngle near = near_angle(rough);
@@ -79,13 +80,13 @@ double atan2(double y, double x) noexcept {
   const bool steep = up > along;
   double most = steep ? up : along;
   if ((steep ? along : up) <= most * 0x1p-60) {
-    // Beside an axis an angle is its own tangent.
+    // Close to an axis an angle equals its tangent.
     if (!steep && !std::signbit(x)) return y / x;
     const DoubleDouble axis = steep ? kHalfPi : kPi;
     const double away = steep ? x / up : up / along;
     return std::copysign((axis + -away).hi, y);
   }
-  // Neither too large nor too small for the power, and for exact products.
+  // Scaled so that powers are in range and products are exact.
   const double nearer = most > 1 ? 0x1p-200 : 0x1p200;
   if (!(most > 0x1p-800 && most < 0x1p800)) {
     most *= nearer;
@@ -99,7 +100,8 @@ double atan2(double y, double x) noexcept {
 RoughAngle rough_atan2(double y, double x) noexcept {
   const double up = std::abs(y), along = std::abs(x);
   const double least = up > along ? along : up, most = up > along ? up : along;
-  // Beside an axis the ratio may be denormal; far out its rounding may not be that of a number.
+  // Close to an axis the ratio may be denormal; for very large or small numbers rounding errors are
+  // not relative.
   if (!(most < 0x1p1000 && least > most * 0x1p-60 && most > 0x1p-900)) {
     return {.angle = 0, .wrong = HUGE_VAL};
   }
@@ -110,7 +112,7 @@ RoughAngle rough_atan2(double y, double x) noexcept {
 double asin(double sine) noexcept {
   const double size = std::abs(sine);
   if (!(size < 1)) return size == 1 ? sine * kHalfPi.hi : (sine - sine) / (sine - sine);
-  if (size <= 0x1p-26) return sine;  // sine^3 / 6 is below a half of its last place
+  if (size <= 0x1p-26) return sine;  // sine^3 / 6 is below half of its last place
   return arc_of({sine, 0}, beside(sine));
 }
 

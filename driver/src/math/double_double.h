@@ -18,12 +18,12 @@
 
 namespace thimble::math {
 
-/// A number as the sum of two, of which the second is at most half a unit in the last place of the
-/// first: 106 bits. All functions are Real-time: safe, and use no fused multiply-add, so that every
-/// processor computes the same. Sums and products after [Dekker] and [Knuth].
+/// A number as the sum of two doubles, 106 bits. The second is at most half a unit in the last
+/// place of the first. All functions are Real-time: safe, and use no fused multiply-add, so that
+/// every processor computes the same. Sums and products after [Dekker] and [Knuth].
 struct DoubleDouble {
   double hi;  ///< The number, rounded.
-  double lo;  ///< What rounding took.
+  double lo;  ///< The rounding error.
 
   constexpr DoubleDouble(double a = 0, double rest = 0) noexcept : hi(a), lo(rest) {}  // NOLINT
 };
@@ -41,7 +41,7 @@ inline DoubleDouble exact_sum(double a, double b) noexcept {
   return {sum, (a - (sum - of_b)) + (b - of_b)};
 }
 
-/// Returns a number of 26 bits near a; the rest has 26 as well. |a| < 2^996.
+/// Returns the upper 26 bits of a; the remainder has 26 as well. |a| < 2^996.
 inline double upper_half(double a) noexcept {
   const double shifted = 134217729 * a;  // 2^27 + 1
   return shifted - (shifted - a);

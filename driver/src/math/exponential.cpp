@@ -8,11 +8,11 @@
 namespace thimble::math {
 namespace {
 
-/// What may be wrong with e^x to 65 bits, and with e^x - 1 to 59, with a bit in reserve.
+/// Error bounds of e^x to 65 bits, and of e^x - 1 to 59, with a bit in reserve.
 constexpr double kPowerDoubt = 0x1p-64;
 constexpr double kLessOneDoubt = 0x1p-58;
 
-/// The whole number in the lowest bits of a sum with kWhole.
+/// The integer in the lowest bits of a sum with kWhole.
 std::int64_t whole_of(double shifted) noexcept {
   return std::bit_cast<std::int64_t>(shifted) << 13 >> 13;
 }
@@ -24,7 +24,7 @@ DoubleDouble power_of_rest(DoubleDouble rest) noexcept {
   return rest + more * (rest * rest);
 }
 
-/// e^x, x of less than 708, as 2^exponent (whole + part): `whole` is of the table.
+/// e^x, x less than 708, as 2^exponent (whole + part): `whole` is from the table.
 struct NearPower {
   double whole, part_hi, part_lo;
   std::int64_t exponent;
@@ -66,7 +66,7 @@ double rounded(const WidePower& power) noexcept {
     return value.hi * power_of_2(power.exponent + 1) / 2;
   }
   if (power.exponent < -1080) return 0;
-  // A denormal number: the last place of the sum is the one that it has.
+  // A denormal number: the last place of the sum is that of the result.
   const double shift = power_of_2(-1022 - power.exponent);
   const DoubleDouble sum = exact_sum(shift, value.hi);
   const double whole = sum.hi + (sum.lo + value.lo);
@@ -94,7 +94,7 @@ double exp2(double x) noexcept {
     if (std::isnan(x)) return x;
     return x > 0 ? std::numeric_limits<double>::infinity() : 0;
   }
-  // Steps of 1 / 64 are exact, and so is what remains.
+  // Steps of 1 / 64 are exact, and so is the remainder.
   const double shifted = x * 64 + kWhole;
   const std::int64_t step = whole_of(shifted);
   const DoubleDouble rest = kLn2 * (x - (shifted - kWhole) / 64);
@@ -118,7 +118,7 @@ double expm1(double x) noexcept {
   const double size = std::abs(x);
   if (!(size < 38)) {
     if (std::isnan(x)) return x;
-    if (x < 0) return -1;  // the rest is below a half of its last place
+    if (x < 0) return -1;  // the remainder is below half of its last place
     return x < 120 ? wide_expm1({x, 0}).hi : exp(x);
   }
   if (size <= 0x1p-54) return x;
@@ -135,7 +135,7 @@ double expm1(double x) noexcept {
 double tanh(double x) noexcept {
   const double size = std::abs(x);
   if (std::isnan(x)) return x;
-  if (size <= 0x1p-27) return x;  // x^3 / 3 is below a half of its last place
+  if (size <= 0x1p-27) return x;  // x^3 / 3 is below half of its last place
   if (size >= 20) return std::copysign(1, x);
   const DoubleDouble more = wide_expm1({2 * size, 0});
   return std::copysign((more / (more + 2.0)).hi, x);

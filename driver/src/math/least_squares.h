@@ -17,7 +17,7 @@ class ScaledNormal {
  public:
   using Vector = Eigen::Matrix<double, Matrix::RowsAtCompileTime, 1>;
 
-  /// Takes J^T J, with `ridge` (without unit) added to the scaled diagonal, which keeps equations
+  /// Takes J^T J. Adds `ridge` (without unit) to the scaled diagonal, which keeps equations
   /// solvable that do not determine all unknowns.
   explicit ScaledNormal(const Matrix& normal, double ridge = 0)
       : scale_(normal.diagonal()
@@ -28,8 +28,8 @@ class ScaledNormal {
     scaled_.diagonal().array() += ridge;
   }
 
-  /// Adds `stiffness` (without unit) that holds unknown `k` at `value`, which makes a bound of the
-  /// unknown an equation. Adds its part to `right`, a right side.
+  /// Adds `stiffness` (without unit) that pulls unknown `k` to `value`, which expresses a bound of
+  /// the unknown as an equation. Adds its part to `right`, a right side.
   void hold(Eigen::Index k, double value, double stiffness, Vector& right) {
     scaled_(k, k) += stiffness;
     right[k] += stiffness * value / (scale_[k] * scale_[k]);
@@ -40,8 +40,8 @@ class ScaledNormal {
     return scale_.asDiagonal() * scaled_.ldlt().solve(Vector(scale_.asDiagonal() * right));
   }
 
-  /// Returns the inverse of J^T J: the covariance of the unknowns where the rows of J are in
-  /// units of their noise.
+  /// Returns the inverse of J^T J: the covariance of the unknowns if the rows of J are in units of
+  /// their noise.
   Matrix covariance() const {
     const Matrix one = Matrix::Identity(scaled_.rows(), scaled_.cols());
     return scale_.asDiagonal() * scaled_.ldlt().solve(one) * scale_.asDiagonal();
@@ -52,27 +52,27 @@ class ScaledNormal {
   Matrix scaled_;
 };
 
-/// When a search by levenberg_marquardt ends, and how it chooses its damping.
+/// Stop conditions and damping of levenberg_marquardt.
 struct SearchEffort {
-  int rounds = 30;           ///< At most.
-  int tries = 8;             ///< Steps of a round until one is better.
-  double least_gain = 1e-6;  ///< Ends a search whose round gained less than this share.
-  double damping = 1e-2;     ///< Of the first step, relative to the diagonal.
-  double max_damping = 1e6;  ///< Ends a search that finds no better step with less damping.
-  double raised = 5;         ///< Factor of the damping after a step that was not better.
-  double lowered = 0.2;      ///< The same after one that was.
+  int rounds = 30;           ///< Max. number of rounds.
+  int tries = 8;             ///< Max. number of steps per round until one is better.
+  double least_gain = 1e-6;  ///< Stops when a round gains less than this share.
+  double damping = 1e-2;     ///< Damping of the first step, relative to the diagonal.
+  double max_damping = 1e6;  ///< Stops when no step with less damping is better.
+  double raised = 5;         ///< Factor of the damping after a step that is not better.
+  double lowered = 0.2;      ///< Factor of the damping after a better step.
   double ridge = 0;          ///< Added to the diagonal, as a share of its largest element.
 };
 
-/// Minimizes a sum of squares from `x` by the steps of Levenberg and Marquardt, with the damping
+/// Minimizes a sum of squares from `x` by the steps of Levenberg and Marquardt. The damping is
 /// scaled by the diagonal of J^T J (D W Marquardt, An algorithm for least-squares estimation of
-/// nonlinear parameters, 1963). Changes `x` only to what has a smaller sum. Returns the sum, of
-/// squares alone where the problem has priors.
+/// nonlinear parameters, 1963). Changes `x` only to values with a smaller sum. Returns the sum of
+/// squares; it does not include priors.
 ///
 /// `Problem` has:
 /// - `double linearize(const X& x, Matrix& normal, Vector& gradient)`: fills J^T J and J^T r, with
-///   priors in the first alone; returns the sum of squares at x;
-/// - `X stepped(const X& x, const Vector& by)`: the place after a step, which it may bound;
+///   priors in the former only; returns the sum of squares at x;
+/// - `X stepped(const X& x, const Vector& by)`: the point after a step, which it may bound;
 /// - `double sum(const X& x)`: the sum of squares; infinite or not a number where x is not allowed.
 template <class Matrix, class X, class Problem>
 double levenberg_marquardt(const Problem& problem, X& x, const SearchEffort& effort) {

@@ -29,7 +29,7 @@ DoubleDouble wide_logarithm(double x) noexcept {
   const double series =
       1 + s2 * (1. / 3 + s2 * (1. / 5 + s2 * (1. / 7 + s2 * (1. / 9 + s2 * (1. / 11 + s2 / 13)))));
   const double rough = 2 * s.hi * series;
-  // log(m) = rough + log(m e^-rough), where the second is below 10^-12.
+  // log(m) = rough + log(m e^-rough), where the second term is below 10^-12.
   const WidePower power = wide_power({-rough, 0});
   const DoubleDouble table = scaled(power.table, power_of_2(power.exponent));
   const DoubleDouble z = (table + table * power.more) * m + -1.0;
@@ -67,7 +67,7 @@ double pow(double base, double x) noexcept {
   const DoubleDouble logarithm = wide_logarithm(normal) - kLn2 * shift;
   const double size = logarithm.hi * x;
   if (!(std::abs(size) < 760)) return size > 0 ? kInfinity : 0;
-  // So small that the result is 1, and its product with the logarithm perhaps inexact.
+  // So small that the result is 1, and its product with the logarithm may be inexact.
   if (std::abs(size) < 0x1p-60) return 1;
   if (std::abs(x) > 0x1p900) return size > 0 ? kInfinity : 0;
   return rounded(wide_power(logarithm * x));

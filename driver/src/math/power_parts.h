@@ -20,7 +20,7 @@ struct WidePower {
   std::int64_t exponent = 0;
 };
 
-/// Returns the parts of e^x, |x| < 800; `x` to 2^-100.
+/// Returns the parts of e^x, |x| < 800; `x` is accurate to 2^-100.
 WidePower wide_power(DoubleDouble x) noexcept;
 
 /// Returns (1 + more) * table * 2^exponent with one rounding: infinite if it is too large, denormal

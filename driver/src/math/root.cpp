@@ -16,7 +16,7 @@ double hypot(double x, double y) noexcept {
   }
   if (most < least) std::swap(most, least);
   if (least <= most * 0x1p-54) return most;
-  // So that squares and their parts are normal.
+  // Keeps squares and their parts normal.
   double scale = 1;
   if (most > 0x1p400) scale = 0x1p-700;
   if (most < 0x1p-300) scale = 0x1p700;
@@ -24,7 +24,7 @@ double hypot(double x, double y) noexcept {
   least *= scale;
   const DoubleDouble root = square_root(exact_product(most, most) + exact_product(least, least));
   if (scale != 0x1p700 || root.hi >= 0x1p-322) return root.hi / scale;
-  // A denormal number: the last place of the sum is the one that it has.
+  // A denormal number: the last place of the sum is that of the result.
   const double shift = 0x1p-322;
   const DoubleDouble sum = exact_sum(shift, root.hi);
   return ((sum.hi + (sum.lo + root.lo)) - shift) / scale;
@@ -41,7 +41,7 @@ double cbrt(double x) noexcept {
     size *= 0x1p-300;
     scale = 0x1p100;
   }
-  // A third of the exponent, to 5 bits, and three steps that triple them.
+  // A third of the exponent, to 5 bits, and three steps, each of which triples the number of bits.
   double root = std::bit_cast<double>(std::bit_cast<std::uint64_t>(size) / 3 + 0x2a9f7893782da1ce);
   for (int i = 0; i < 3; ++i) {
     const double cube = root * root * root;

@@ -6,12 +6,12 @@
 namespace thimble::math {
 namespace {
 
-/// Of a sine to 61 bits: what may be wrong with it, with a bit in reserve.
+/// Error bound of a sine to 61 bits, with a bit in reserve.
 constexpr double kSineDoubt = 0x1p-60;
 
 __extension__ using TwoWords = unsigned __int128;
 
-/// An angle as steps of pi / 64 and a rest of 106 bits.
+/// An angle as steps of pi / 64 and a remainder of 106 bits.
 struct FarAngle {
   std::uint64_t step = 0;
   DoubleDouble rest;
@@ -25,8 +25,8 @@ FarAngle parts_of(double angle) noexcept {
   return {std::bit_cast<std::uint64_t>(shifted) & 127, rest};
 }
 
-/// Of an angle beyond `kNearAngle`: 256 bits of 1 / (2 pi), from where its product with the angle
-/// is no whole number of turns any more [PayneHanek].
+/// For an angle beyond `kNearAngle`: 256 bits of 1 / (2 pi), from the first bit whose product with
+/// the angle is not an integer number of turns [PayneHanek].
 FarAngle parts_of_far(double angle) noexcept {
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(angle);
   const auto exponent = static_cast<int>(bits >> 52 & 2047) - 1075;
@@ -44,10 +44,10 @@ FarAngle parts_of_far(double angle) noexcept {
   }
   const std::uint64_t step = (turns[0] + (std::uint64_t{1} << 56)) >> 57;
   turns[0] -= step << 57;
-  // The rest is below half a step, of either sign.
+  // The remainder is below half a step, of either sign.
   const bool less = turns[0] >> 63 != 0;
   if (less) {
-    for (std::uint64_t& word : turns) word = ~word;  // 2^-256 of a turn too little
+    for (std::uint64_t& word : turns) word = ~word;  // 2^-256 of a turn too small
   }
   DoubleDouble rest;
   for (int i = 3; i >= 0; --i) {
@@ -68,12 +68,12 @@ DoubleDouble far_sine(std::uint64_t step, DoubleDouble sine, DoubleDouble cosine
   return s + (s * cosine_less_1 + c * sine);
 }
 
-/// NaN of infinity and of NaN, as <cmath> has it.
+/// NaN for infinity and NaN, as in <cmath>.
 double no_angle(double angle) noexcept {
   return angle - angle;
 }
 
-/// Whether rounding `v` gives one double even if `v` is wrong by `doubt` times itself.
+/// Whether rounding `v` gives one double even if the relative error of `v` is `doubt`.
 bool is_sure(DoubleDouble v, double doubt) noexcept {
   const double wrong = doubt * v.hi;
   return v.hi + (v.lo - wrong) == v.hi + (v.lo + wrong);
@@ -93,7 +93,7 @@ WideSineCosine wide_sine_cosine(double angle) noexcept {
 }
 
 WideSineCosine wide_sine_cosine(DoubleDouble angle) noexcept {
-  // What the second part adds is below 2^-53 of the angle: the square of that is enough.
+  // The second part adds less than 2^-53 of the angle, so its square suffices.
   const auto [sine, cosine] = wide_sine_cosine(angle.hi);
   const DoubleDouble small = {angle.lo, 0}, less = exact_product(angle.lo, -angle.lo / 2);
   return {sine + (cosine * small + sine * less), cosine + (cosine * less - sine * small)};
@@ -102,7 +102,7 @@ WideSineCosine wide_sine_cosine(DoubleDouble angle) noexcept {
 double sin(double angle) noexcept {
   const double size = std::abs(angle);
   if (size <= kNearAngle) {
-    if (size <= 0x1p-26) return angle;  // angle^3 / 6 is below a half of its last place
+    if (size <= 0x1p-26) return angle;  // angle^3 / 6 is below half of its last place
     const NearAngle near = near_angle(angle);
     const DoubleDouble sine = near_sine(near.step, near, near_turn(near));
     if (near.good && is_sure(sine, kSineDoubt)) return sine.hi;

@@ -11,11 +11,12 @@ namespace thimble::math {
 
 /// Sine and cosine with more bits than a double has.
 struct WideSineCosine {
-  DoubleDouble sine;    ///< Of the angle.
-  DoubleDouble cosine;  ///< Of the angle.
+  DoubleDouble sine;    ///< Sine of the angle.
+  DoubleDouble cosine;  ///< Cosine of the angle.
 };
 
-/// Up to here an angle (rad) takes 25 bits of steps of pi / 64, whose parts are then exact.
+/// Up to this angle (rad), the number of steps of pi / 64 fits 25 bits, and its products with the
+/// parts of a step are exact.
 inline constexpr double kNearAngle = 0x1p20;
 
 /// Returns sine and cosine of any finite angle (rad) to 98 bits or more.
@@ -26,16 +27,16 @@ inline double cut(double a) noexcept {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & ~std::uint64_t{0x7ffffff});
 }
 
-/// Adding and taking off this rounds a number below 2^51 to a whole one, which the lowest bits of
-/// the sum hold as well.
+/// Adding and subtracting this rounds a number below 2^51 to an integer, which the lowest bits of
+/// the sum also hold.
 inline constexpr double kWhole = 0x1.8p52;
 
-/// An angle as a whole number of steps of pi / 64 and a rest.
+/// An angle as an integer number of steps of pi / 64 and a remainder.
 struct NearAngle {
   std::uint64_t step = 0;  ///< Modulo 128.
-  double hi = 0;           ///< The rest, rad.
-  double lo = 0;           ///< What `hi` lacks.
-  bool good = false;       ///< Whether the rest has 64 good bits: not beside a multiple of pi / 64.
+  double hi = 0;           ///< Remainder, rad.
+  double lo = 0;           ///< Rounding error of `hi`.
+  bool good = false;       ///< Remainder has 64 good bits: not close to a multiple of pi / 64.
 };
 
 /// Returns the parts of an angle (rad) of at most `kNearAngle`, in the shortest time: `lo` is not
@@ -56,20 +57,20 @@ inline NearAngle near_angle(double angle) noexcept {
   return {quick.step, rest.hi, rest.lo, quick.good};
 }
 
-/// What both functions of the rest of an angle are made of.
+/// Common terms of sine and cosine of a remainder.
 struct NearTurn {
   double cosine_less_1;  ///< cos(rest) - 1
   double sine_more;      ///< sin(rest) - hi
 };
 
-/// Returns them for a rest of at most pi / 128: series up to 10^-22.
+/// Returns them for a remainder of at most pi / 128: series up to 10^-22.
 inline NearTurn near_turn(const NearAngle& a) noexcept {
   const double r2 = a.hi * a.hi;
   return {r2 * (-0.5 + r2 * (1. / 24 + r2 * (-1. / 720 + r2 * (1. / 40320)))) - a.hi * a.lo,
           a.lo + a.hi * r2 * (-1. / 6 + r2 * (1. / 120 + r2 * (-1. / 5040 + r2 * (1. / 362880))))};
 }
 
-/// Returns the sine at `step` plus the rest, to 61 bits.
+/// Returns the sine at `step` plus the remainder, to 61 bits.
 inline DoubleDouble near_sine(std::uint64_t step, const NearAngle& a, const NearTurn& t) noexcept {
   const DoubleDouble sine = kSines[step], cosine = kSines[step + 32];
   const double rest = cut(a.hi), slope = cut(cosine.hi);
@@ -79,15 +80,15 @@ inline DoubleDouble near_sine(std::uint64_t step, const NearAngle& a, const Near
       sum.hi, sum.lo + (small + (sine.lo + (sine.hi * t.cosine_less_1 + cosine.hi * t.sine_more))));
 }
 
-/// Returns sine and cosine of an angle (rad) of at most `kNearAngle` whose rest is good, to 61
+/// Returns sine and cosine of an angle (rad) of at most `kNearAngle` whose remainder is good, to 61
 /// bits.
 inline WideSineCosine near_sine_cosine(const NearAngle& a) noexcept {
   const NearTurn t = near_turn(a);
   return {near_sine(a.step, a, t), near_sine((a.step + 32) & 127, a, t)};
 }
 
-/// Returns sine and cosine of an angle (rad) whose rest is good, wrong by less than 1.2 units in
-/// the last place: by series up to 10^-17, in sums that wait little for each other.
+/// Returns sine and cosine of an angle (rad) whose remainder is good, with an error below 1.2 units
+/// in the last place. Series up to 10^-17, in sums with short dependency chains.
 inline SineCosine quick_sine_cosine(const NearAngle& a) noexcept {
   const double r2 = a.hi * a.hi, r4 = r2 * r2;
   const double cosine_less_1 = (-0.5 * r2 - a.hi * a.lo) + r4 * (1. / 24 - r2 * (1. / 720));

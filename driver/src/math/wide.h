@@ -5,7 +5,8 @@
 
 namespace thimble::math {
 
-// For what is prepared once and needs more bits than a double has. Real-time: safe.
+// Functions for values that are prepared once and need more bits than a double has. Real-time:
+// safe.
 
 /// Returns e^x to 95 bits, 0 below -700; x < 700.
 THIMBLE_EXPORT DoubleDouble wide_exp(DoubleDouble x) noexcept;

@@ -19,7 +19,7 @@ struct Character {
   char32_t code;
 };
 
-/// Returns the character that a text begins with, of length 0 if it begins with no UTF-8.
+/// Returns the first character of a text; its length is 0 if it is not UTF-8.
 Character first_of(std::string_view text) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {1, byte(0)};
@@ -30,7 +30,7 @@ Character first_of(std::string_view text) {
     if ((byte(i) & 0xC0U) != 0x80) return {0, 0};
     code = code << 6U | (byte(i) & 0x3FU);
   }
-  // Shorter forms, halves of surrogate pairs, and what is beyond Unicode.
+  // Overlong forms, halves of surrogate pairs, and numbers beyond Unicode.
   const bool long_form = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
   if (long_form || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF) return {0, 0};
   return {length, code};

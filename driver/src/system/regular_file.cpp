@@ -45,8 +45,8 @@ std::string size_text(std::uint64_t bytes) {
 }  // namespace
 
 Result<RegularFile> RegularFile::open(const std::filesystem::path& path) {
-  // A pipe without a writer is opened without waiting, and refused; a terminal does not become this
-  // process's.
+  // A pipe without a writer is opened without waiting, and refused; a terminal does not become the
+  // controlling terminal of this process.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) {
     if (errno == ENOENT || errno == ENOTDIR) return Error{"there is no such file."};
@@ -75,7 +75,7 @@ std::uint64_t RegularFile::stored() const noexcept {
     const off_t data = lseek(descriptor_, at, SEEK_DATA);
     if (data < 0 && errno == ENXIO) break;  // a hole up to the end
     const off_t hole = data < 0 ? -1 : lseek(descriptor_, data, SEEK_HOLE);
-    if (hole <= data) {  // a file system that knows no holes
+    if (hole <= data) {  // a file system without holes
       stored = size_;
       break;
     }

@@ -11,8 +11,8 @@
 
 namespace thimble::driver {
 
-/// A regular file, open for reading. Folders, pipes, sockets and devices are refused and never
-/// waited for: a path may come from a file of unknown origin. Real-time: never from the servo
+/// A regular file, open for reading. Folders, pipes, sockets and devices are refused without
+/// waiting for them: a path may come from a file of unknown origin. Real-time: never from the servo
 /// thread.
 class THIMBLE_EXPORT RegularFile {
  public:
@@ -28,12 +28,12 @@ class THIMBLE_EXPORT RegularFile {
 
   /// Returns the descriptor, which this object closes.
   int descriptor() const noexcept { return descriptor_; }
-  /// Returns the descriptor, which the caller closes from now on.
+  /// Returns the descriptor. The caller must close it.
   int release() noexcept { return std::exchange(descriptor_, -1); }
   /// Returns the size in bytes at the time of opening, holes included.
   std::uint64_t size() const noexcept { return size_; }
-  /// Returns the bytes that are stored, without holes: never less than the bytes that are not 0,
-  /// rounded up to blocks of the file system.
+  /// Returns the number of bytes stored, without holes: at least the bytes that are not 0, rounded
+  /// up to blocks of the file system.
   std::uint64_t stored() const noexcept;
 
  private:

@@ -20,11 +20,11 @@
 namespace thimble::driver {
 namespace {
 
-// A process with more address space than this runs under a sanitizer, whose shadow a limit of
-// address space does not go with.
+// A process with more address space than this runs under a sanitizer, whose shadow memory is
+// incompatible with a limit of address space.
 constexpr std::uint64_t kAddressSpaceMax = std::uint64_t{1} << 40;
 
-// Where the returned bytes begin: after their number, aligned for any type.
+// Offset of the returned bytes: after their number, aligned for any type.
 constexpr std::size_t kHead = 64;
 
 bool write_all(int file, const void* from, std::size_t size) noexcept {
@@ -39,7 +39,7 @@ bool write_all(int file, const void* from, std::size_t size) noexcept {
   return true;
 }
 
-// Returns the address space of this process in bytes, 0 if it is not known.
+// Returns the address space of this process in bytes, 0 if unknown.
 std::uint64_t address_space() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -53,8 +53,8 @@ void limit(int what, std::uint64_t value) {
   setrlimit(static_cast<__rlimit_resource>(what), &now);
 }
 
-// Ends the child at once. Unlike _exit, which the thread sanitizer turns into a failure where a
-// thread of the parent was running at the fork: to it, the child's copy of that thread is leaked.
+// Ends the child at once. The thread sanitizer turns _exit into a failure if a thread of the parent
+// was running at the fork. It takes the child's copy of that thread for leaked.
 [[noreturn]] void leave(int code) noexcept {
   for (;;) syscall(SYS_exit_group, code);
 }
@@ -63,7 +63,7 @@ void limit(int what, std::uint64_t value) {
 [[noreturn]] void be_child(const std::function<void(ApartWriter&)>& work, const ApartLimits& limits,
                            std::uint64_t space, int result) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // The handlers of this program are made for the program, not for its child.
+  // The handlers of this program must not run in its child.
   for (int number = 1; number < NSIG; ++number) std::signal(number, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -72,7 +72,7 @@ void limit(int what, std::uint64_t value) {
   std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead
   limit(RLIMIT_FSIZE, kHead + limits.bytes);
   limit(RLIMIT_CPU, static_cast<std::uint64_t>(limits.seconds));
-  alarm(10 * static_cast<unsigned>(limits.seconds));  // for who waits and uses no time
+  alarm(10 * static_cast<unsigned>(limits.seconds));  // for a child that waits and uses no time
   if (space > 0 && space < kAddressSpaceMax) limit(RLIMIT_AS, space + limits.bytes);
   const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
   for (int file = 0; nowhere >= 0 && file < 3; ++file) dup2(nowhere, file);
@@ -80,7 +80,7 @@ void limit(int what, std::uint64_t value) {
     ApartWriter writer(result);
     if (lseek(result, kHead, SEEK_SET) < 0) leave(1);
     work(writer);
-    // The size last: a parent that finds it right knows that all is there.
+    // The size is written last: a parent that finds it correct knows that all bytes are there.
     const std::uint64_t size = writer.size();
     if (!writer.good()) leave(2);
     if (lseek(result, 0, SEEK_SET) != 0 || !write_all(result, &size, sizeof size)) leave(1);
@@ -120,7 +120,7 @@ ApartMemory::~ApartMemory() {
 Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
                               const ApartLimits& limits) {
   const int made = memfd_create("thimble_apart", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  // Beyond the standard streams, which the child closes.
+  // Above the standard streams, which the child closes.
   const int result = made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, 3);
   if (made >= 0) close(made);
   if (result < 0) return Error{"finds no memory to be read in"};
@@ -131,7 +131,7 @@ Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
   int status = 0;
   while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  // Nothing that the child may have left behind changes it from now on.
+  // From now on no leftover process of the child can change it.
   constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
   struct stat found {};
   const bool there = child > 0 && fcntl(result, F_ADD_SEALS, kSeals) == 0 &&

@@ -13,28 +13,28 @@
 
 namespace thimble::driver {
 
-/// What work in a separate process may use.
+/// Limits of work in a separate process.
 struct ApartLimits {
-  int seconds = 10;  ///< Of processor time.
-  /// Of memory, above what this process has now; and of what it returns.
+  int seconds = 10;  ///< Processor time, s.
+  /// Max. memory above the present use of this process; also max. size of the result. Bytes.
   std::size_t bytes = std::size_t{1} << 30;
 };
 
-/// Takes what work in a separate process returns.
+/// Receives the result of work in a separate process.
 class THIMBLE_EXPORT ApartWriter {
  public:
   explicit ApartWriter(int file) noexcept : file_(file) {}
   /// Adds bytes. Returns false if there is no room for them; then nothing is returned.
   bool write(const void* bytes, std::size_t size) noexcept;
-  /// Adds the number of items, then the items: what ApartReader takes as an array.
+  /// Adds the number of items, then the items, as ApartReader::take_array reads them.
   template <class Item>
   bool write_array(const Item* items, std::size_t count) noexcept {
     const std::uint64_t number = count;
     return write(&number, sizeof number) && write(items, count * sizeof(Item));
   }
-  /// Drops what was written. Returns false if that fails.
+  /// Drops all bytes written. Returns false if that fails.
   bool restart() noexcept;
-  /// Returns whether all bytes found room.
+  /// Returns whether there was room for all bytes.
   bool good() const noexcept { return good_; }
   /// Returns the number of bytes written.
   std::size_t size() const noexcept { return size_; }
@@ -45,7 +45,7 @@ class THIMBLE_EXPORT ApartWriter {
   bool good_ = true;
 };
 
-/// What work in a separate process returned: memory that nothing changes any longer.
+/// The result of work in a separate process, in memory that no longer changes.
 class THIMBLE_EXPORT ApartMemory {
  public:
   ApartMemory(const std::byte* at, std::size_t mapped, std::span<const std::byte> bytes) noexcept
@@ -66,15 +66,15 @@ class THIMBLE_EXPORT ApartMemory {
   std::span<const std::byte> bytes_;
 };
 
-/// Reads what work in a separate process returned, in the order in which it was written.
+/// Reads the result of work in a separate process, in the order in which it was written.
 ///
-/// What that process read may have broken it, so it may have written anything: nothing is read
+/// Malformed input may have corrupted that process, so its output is untrusted: nothing is read
 /// beyond its bytes, and nothing is allocated that they do not hold.
 class ApartReader {
  public:
   explicit ApartReader(std::span<const std::byte> bytes) noexcept : left_(bytes) {}
 
-  /// Copies bytes. Returns false, with nothing taken, if fewer are left.
+  /// Copies bytes. Returns false, and takes nothing, if fewer are left.
   bool take(void* into, std::size_t size) noexcept {
     if (left_.size() < size) return false;
     if (size > 0) std::memcpy(into, left_.data(), size);
@@ -82,7 +82,7 @@ class ApartReader {
     return true;
   }
   /// Copies an array of ApartWriter::write_array into a std::string or std::vector of plain items.
-  /// Returns false if it claims more items than are left.
+  /// Returns false if its item count exceeds the bytes left.
   template <class Array>
   bool take_array(Array& items) {
     std::uint64_t number = 0;
@@ -98,14 +98,14 @@ class ApartReader {
   std::span<const std::byte> left_;
 };
 
-/// Returns what `work` writes, done by a child of this process: whatever it does, this process
-/// neither crashes nor hangs. What the child writes to standard output or error is lost; files and
-/// memory that it changes are its own. The error says in half a sentence how the child ended
-/// ("takes more than 10 s"). Real-time: never from the servo thread.
+/// Returns the bytes that `work` writes, run in a child process. The child cannot crash or hang
+/// this process. Its standard output and error are lost; its changes to files and memory stay its
+/// own. The error states, as half a sentence, how the child ended ("takes more than 10 s").
+/// Real-time: never from the servo thread.
 THIMBLE_EXPORT Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
                                              const ApartLimits& limits);
 
-/// As above, for work that returns a text.
+/// As above, for work that returns a string.
 THIMBLE_EXPORT Result<std::string> run_apart(const std::function<std::string()>& work,
                                              const ApartLimits& limits);
 

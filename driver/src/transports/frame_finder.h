@@ -11,8 +11,8 @@
 
 namespace thimble::driver {
 
-/// Finds whole messages in a stream of bytes and keeps the newest. Total: any bytes in any pieces.
-/// All functions are Real-time: safe.
+/// Finds complete messages in a stream of bytes and keeps the newest. Total: accepts any bytes in
+/// any pieces. All functions are Real-time: safe.
 class THIMBLE_EXPORT FrameFinder {
  public:
   explicit FrameFinder(const Framing& framing) noexcept;
@@ -20,17 +20,17 @@ class THIMBLE_EXPORT FrameFinder {
   /// Takes the next bytes of the stream.
   void push(std::span<const std::byte> bytes) noexcept;
 
-  /// Returns whether a message came that was not taken yet.
+  /// Returns whether a message has arrived that was not taken yet.
   bool ready() const noexcept { return ready_ > 0; }
 
-  /// Copies the newest message and forgets it; returns its size, 0 if there is none. `skipped`
-  /// tells how many older ones were dropped. A message longer than the buffer is cut.
+  /// Copies the newest message and removes it; returns its size, 0 if there is none. `skipped` is
+  /// set to the number of older messages dropped. A message longer than the buffer is cut.
   std::size_t take(std::span<std::byte> buffer, std::uint32_t& skipped) noexcept;
 
-  /// Returns how many whole messages came so far.
+  /// Returns the number of complete messages so far.
   std::uint64_t found() const noexcept { return found_; }
 
-  /// Returns how many messages were torn: begun and never ended, or too long.
+  /// Returns the number of torn messages: started but never ended, or too long.
   std::uint64_t torn() const noexcept { return torn_; }
 
  private:

@@ -15,7 +15,7 @@ namespace thimble::driver {
 namespace {
 
 // Requests of FTDI converters and their values [S libnifalcon FalconCommLibUSB.cpp, libftdi].
-constexpr std::uint8_t kVendorOut = LIBUSB_REQUEST_TYPE_VENDOR;  // to the device, outwards
+constexpr std::uint8_t kVendorOut = LIBUSB_REQUEST_TYPE_VENDOR;  // to the device
 enum FtdiRequest : std::uint8_t {
   kReset = 0,
   kModemControl = 1,
@@ -59,7 +59,7 @@ class UsbFtdiLine final : public FtdiLine {
   }
 
   int read(std::span<std::byte> bytes, int timeout_ms) override {
-    // The converter answers every latency time with its status bytes alone, so count those turns.
+    // The converter sends only its status bytes once per latency time, so those rounds are counted.
     for (int waited_ms = 0; heard_.empty() && waited_ms <= timeout_ms; ++waited_ms) {
       std::array<std::byte, kFtdiPacketSize> packet{};
       int count = 0;
@@ -95,7 +95,7 @@ class UsbFtdiLine final : public FtdiLine {
   }
 
   FtdiUsb usb_;
-  std::vector<std::byte> heard_;  // bytes that came and were not asked for yet
+  std::vector<std::byte> heard_;  // bytes received and not read yet
 };
 
 Error cannot_open(const UsbAddress& address, int code) {
@@ -134,11 +134,11 @@ Result<std::unique_ptr<FtdiLine>> FtdiLine::open(const UsbAddress& address) {
   if (devices != nullptr) libusb_free_device_list(devices, 1);
   if (code != 0) return cannot_open(address, code);
   libusb_set_auto_detach_kernel_driver(usb.handle.get(), 1);
-  // Only one program can have an interface: to claim it is the lock.
+  // Only one program can claim an interface, so the claim is the lock.
   code = libusb_claim_interface(usb.handle.get(), kFtdiInterface);
   if (code != 0) return cannot_open(address, code);
-  // An endpoint that stalled under the program before stays halted until somebody says this. A
-  // converter that refuses it tells so at the first request.
+  // An endpoint that stalled under the previous program stays halted until it is cleared. A
+  // converter that refuses this fails at the first request.
   libusb_clear_halt(usb.handle.get(), kFtdiEndpointIn);
   libusb_clear_halt(usb.handle.get(), kFtdiEndpointOut);
   return std::unique_ptr<FtdiLine>(std::make_unique<UsbFtdiLine>(std::move(usb)));

@@ -14,13 +14,13 @@ namespace thimble::driver {
 /// An arm behind an FTDI converter: a serial line for the set-up, then a transport.
 class THIMBLE_EXPORT FtdiLine : public SerialLine {
  public:
-  /// Opens the converter, takes it from the kernel's serial driver if that has it, and claims it,
-  /// which only one program can. Fails with the name of the program that has it.
+  /// Opens the converter, detaches it from the kernel's serial driver if necessary, and claims it.
+  /// Only one program can. Fails with the name of the program that holds it.
   static Result<std::unique_ptr<FtdiLine>> open(const UsbAddress& address);
 
-  /// Turns the line into a transport; the line is of no use afterwards. All transfers are made here
-  /// and used again and again; libusb itself allocates a request block per transfer and takes its
-  /// own (uncontended) locks. FTDI's two status bytes per packet are taken out.
+  /// Turns the line into a transport; the line is unusable afterwards. All transfers are allocated
+  /// here and reused. libusb itself allocates a request block per transfer and takes its own
+  /// (uncontended) locks. FTDI's two status bytes per packet are removed.
   virtual Result<std::unique_ptr<Transport>> into_transport(const Framing& framing,
                                                             const Clock& clock) = 0;
 };

@@ -11,15 +11,16 @@
 namespace thimble::driver {
 namespace {
 
-/// Reads and writes by transfers that are made once. Two reads are always under way, so that the
-/// converter never waits for the host; two writes, so that one that hangs does not stop the next.
+/// Reads and writes with transfers that are allocated once. Two reads are always in flight, so that
+/// the converter never waits for the host; two writes, so that a hanging one does not block the
+/// next.
 class FtdiTransport final : public StreamTransport {
  public:
   FtdiTransport(FtdiUsb usb, const Framing& framing, const Clock& clock)
       : StreamTransport(clock, framing), usb_(std::move(usb)) {}
 
   ~FtdiTransport() override {
-    // The last message is the zero force: give it 20 frames to leave.
+    // The last message is the zero force: wait up to 20 frames for it to leave.
     for (int i = 0; i < 20 && !lost_ && any_under_way(out_); ++i) wait_a_frame();
     for (Slot& slot : in_) cancel(slot);
     for (Slot& slot : out_) cancel(slot);
@@ -53,8 +54,9 @@ class FtdiTransport final : public StreamTransport {
   // Room for the longest message and for whole packets of the converter.
   static constexpr std::size_t kTransferSize = 4 * kFtdiPacketSize;
   static_assert(kTransferSize >= kReportCapacity);
-  static constexpr int kErrorsMax = 8;  // reads that failed in a row, until the wire counts as lost
-  // Signals that may interrupt one call in a row. [chosen: more than a timer sends in a tick]
+  static constexpr int kErrorsMax = 8;  // failed reads in a row after which the wire is lost
+  // Max. number of signals that may interrupt one call in a row. [chosen: more than a timer sends
+  // in a tick]
   static constexpr int kInterruptionsMax = 16;
 
   struct Slot {
@@ -62,7 +64,7 @@ class FtdiTransport final : public StreamTransport {
     libusb_transfer* transfer = nullptr;
     std::array<unsigned char, kTransferSize> bytes{};
     bool under_way = false;
-    bool failed = false;  // what the last transfer of it came to
+    bool failed = false;  // result of its last transfer
   };
 
   static bool any_under_way(const std::array<Slot, 2>& slots) noexcept {
@@ -84,7 +86,7 @@ class FtdiTransport final : public StreamTransport {
 
   bool submit(Slot& slot) noexcept { return submit_code(slot) == 0; }
 
-  /// Returns whether no signal interrupted it.
+  /// Returns false if a signal interrupted it.
   bool handle_events(std::int64_t wait_ns) noexcept {
     timeval time{.tv_sec = wait_ns / 1'000'000'000, .tv_usec = (wait_ns / 1'000) % 1'000'000};
     return libusb_handle_events_timeout_completed(usb_.context.get(), &time, nullptr) !=
@@ -119,7 +121,7 @@ class FtdiTransport final : public StreamTransport {
       case LIBUSB_TRANSFER_CANCELLED:
         self.lost_ = true;
         return;
-      default:  // stall, overflow, error: the next read may go well
+      default:  // stall, overflow, error: the next read may succeed
         if (++self.errors_ > kErrorsMax) self.lost_ = true;
     }
     if (!self.lost_ && !self.submit(slot)) self.lost_ = true;
@@ -133,7 +135,7 @@ class FtdiTransport final : public StreamTransport {
     if (transfer->status == LIBUSB_TRANSFER_NO_DEVICE) slot.owner->lost_ = true;
   }
 
-  // A wait that a signal interrupts is resumed by the caller, which knows the deadline.
+  // The caller, which has the deadline, resumes a wait that a signal interrupted.
   TransportStatus pump(std::int64_t wait_ns) noexcept override {
     if (wait_ns > 0) {
       handle_events(wait_ns);
@@ -158,8 +160,8 @@ class FtdiTransport final : public StreamTransport {
       return TransportStatus::kLost;
     }
     if (code == 0) newest_ = &*free;
-    // The outcome of a write is known later; that of an earlier one is reported now. After a
-    // failure it is not known whether the arm takes this one, although it is handed over.
+    // The result of a write is known later; that of an earlier one is reported now. After a failure
+    // it is unknown whether the arm takes this message, although it was submitted.
     const bool refused = refused_ || code != 0;
     refused_ = false;
     return refused ? TransportStatus::kRefused : TransportStatus::kOk;
@@ -175,7 +177,7 @@ class FtdiTransport final : public StreamTransport {
 
   FtdiUsb usb_;
   std::array<Slot, 2> in_, out_;
-  const Slot* newest_ = nullptr;  // of the message that was handed over last
+  const Slot* newest_ = nullptr;  // slot of the last submitted message
   int errors_ = 0;
   bool refused_ = false;
   bool lost_ = false;

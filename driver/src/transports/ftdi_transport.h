@@ -19,7 +19,7 @@ struct CloseContext {
   void operator()(libusb_context* context) const noexcept { libusb_exit(context); }
 };
 
-/// Gives an interface back and closes its device. Real-time: never from the servo thread.
+/// Releases an interface and closes its device. Real-time: never from the servo thread.
 struct CloseHandle {
   void operator()(libusb_device_handle* handle) const noexcept {
     libusb_release_interface(handle, kFtdiInterface);
@@ -27,13 +27,13 @@ struct CloseHandle {
   }
 };
 
-/// An open and claimed converter. The handle goes before its context.
+/// An open and claimed converter. The handle is destroyed before its context.
 struct FtdiUsb {
   std::unique_ptr<libusb_context, CloseContext> context;
   std::unique_ptr<libusb_device_handle, CloseHandle> handle;
 };
 
-/// Begins to read the converter for good. Real-time: never from the servo thread.
+/// Starts continuous reading of the converter. Real-time: never from the servo thread.
 Result<std::unique_ptr<Transport>> start_ftdi_transport(FtdiUsb usb, const Framing& framing,
                                                         const Clock& clock);
 

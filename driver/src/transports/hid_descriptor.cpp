@@ -6,7 +6,7 @@
 namespace thimble::driver {
 namespace {
 
-// Items that matter here: prefix byte without its two length bits [HID 1.11, 6.2.2.4 to 6.2.2.8].
+// Items used here: prefix byte without its two length bits [HID 1.11, 6.2.2.4 to 6.2.2.8].
 enum ItemTag : std::uint8_t {
   kInput = 0x80,
   kOutput = 0x90,
@@ -44,7 +44,7 @@ HidReports read_hid_descriptor(std::span<const std::byte> bytes) noexcept {
       value |= std::to_integer<std::uint32_t>(bytes[i]) << (8 * i);
     }
     bytes = bytes.subspan(length);
-    // Saturated at a size that the sums below cannot overflow with.
+    // Clamped so that the sums below cannot overflow.
     const std::uint64_t bits =
         std::uint64_t{std::min(size_bits, 1U << 16)} * std::uint64_t{std::min(count, 1U << 16)};
     switch (prefix & ~3U) {

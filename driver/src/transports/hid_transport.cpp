@@ -32,22 +32,22 @@ class HidTransport final : public Transport {
                             std::int64_t deadline_ns) noexcept override {
     TransportRead read;
     if (lost_) return {.status = TransportStatus::kLost};
-    // The kernel keeps 63 reports for whoever has the arm open (a ring of HIDRAW_BUFFER_SIZE, 64,
-    // linux/drivers/hid/hidraw.c) and drops those that come later: when nobody has read for 63 ms
-    // they are the oldest, and the tip may be anywhere by now. Then the next one is waited for, two
-    // frames at the longest. An arm that sends faster than it is read is left after two rounds.
+    // The kernel keeps 63 reports per reader (a ring of HIDRAW_BUFFER_SIZE, 64,
+    // linux/drivers/hid/hidraw.c) and drops later ones. After 63 ms without a read the kept reports
+    // are old, and the tip may be anywhere. Then the next report is awaited, for at most two
+    // frames. An arm that sends faster than it is read is abandoned after two rounds.
     constexpr std::uint32_t kReportsKept = 63, kReportsMax = 128;
     constexpr int kNext_ms = 2;
     std::uint32_t reports = 0;
     int wait_ms = 0;
     bool waited_for_next = false;
     int interruptions = 0;
-    std::int64_t until_ns = deadline_ns;  // of a wait
+    std::int64_t until_ns = deadline_ns;  // end of a wait
     while (reports < kReportsMax) {
       errno = 0;
       const int count = hid_read_timeout(device_, reinterpret_cast<unsigned char*>(buffer.data()),
                                          buffer.size(), wait_ms);
-      // A signal says nothing of the arm. (hidapi makes an error text then, on the heap.)
+      // A signal is not a fault of the arm. (hidapi would then allocate an error text.)
       if (count < 0 && errno == EINTR) {
         if (++interruptions > kInterruptionsMax) break;
         if (wait_ms > 0) wait_ms = whole_ms_until(until_ns);
@@ -86,14 +86,14 @@ class HidTransport final : public Transport {
     const std::size_t used = std::min(report.size(), kReportCapacity);
     std::memcpy(message.data() + 1, report.data(), used);
     const std::size_t size = 1 + std::max(used, message_size_);
-    // The kernel would send it, and the arm would throw it away without a word.
+    // The kernel would send a message of another length, but the arm would discard it silently.
     if (size != 1 + out_bytes_) return TransportStatus::kRefused;
     for (int i = 0; i <= kInterruptionsMax; ++i) {
       errno = 0;
       if (hid_write(device_, message.data(), size) >= 0) return TransportStatus::kOk;
       if (errno != EINTR) break;
     }
-    // A stalled or silent endpoint is an arm that refuses; only a missing device is a lost one.
+    // A stalled or silent endpoint means that the arm refuses; only a missing device is lost.
     if (errno != ENODEV && errno != EIO && errno != ESHUTDOWN && errno != EBADF) {
       return TransportStatus::kRefused;
     }
@@ -102,10 +102,11 @@ class HidTransport final : public Transport {
   }
 
  private:
-  // Signals that may interrupt one read or write. [chosen: more than a timer sends in a tick]
+  // Max. number of signals that may interrupt one read or write. [chosen: more than a timer sends
+  // in a tick]
   static constexpr int kInterruptionsMax = 16;
 
-  /// hidapi waits in whole milliseconds: rounded down, so as not to pass the deadline.
+  /// hidapi waits in whole milliseconds: rounded down, to keep the deadline.
   int whole_ms_until(std::int64_t deadline_ns) const noexcept {
     return static_cast<int>(
         std::clamp<std::int64_t>((deadline_ns - clock_.now_ns()) / 1'000'000, 0, 60'000));
@@ -115,11 +116,11 @@ class HidTransport final : public Transport {
   hid_device* device_;
   NodeLock lock_;
   std::size_t message_size_;
-  std::size_t out_bytes_;  // what the arm's descriptor says a message is long
+  std::size_t out_bytes_;  // length of a message in the arm's descriptor
   bool lost_ = false;
 };
 
-/// Asks an open node for its report descriptor; nothing if it is no HID device.
+/// Reads the report descriptor of an open node; empty if it is not a HID device.
 std::optional<HidReports> ask_for_reports(int file) {
   int size = 0;
   hidraw_report_descriptor descriptor{};

@@ -8,10 +8,10 @@
 
 namespace thimble::driver {
 
-/// Begins to listen on a port of the loopback interface, which programs of this computer reach
-/// only, and returns the port; `port` 0: a free one. The error ends with `remedy`, as the rest of
-/// its sentence. Who connects is judged by distrust_of_peer (socket_owner.h). Real-time: never from
-/// the servo thread.
+/// Starts to listen on a port of the loopback interface, which only programs of this computer
+/// reach. Returns the port; `port` 0 selects a free one. The error message ends with `remedy`.
+/// Check each connection with distrust_of_peer (socket_owner.h). Real-time: never from the servo
+/// thread.
 inline Result<std::uint16_t> listen_on_loopback(boost::asio::ip::tcp::acceptor& acceptor,
                                                 std::uint16_t port, const std::string& remedy) {
   using Acceptor = boost::asio::ip::tcp::acceptor;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a process's number from its folder's name, 0 if it is no process.
+/// Returns the process id of a folder in /proc, 0 if it is not a process.
 int process_of(const fs::path& folder) {
   const std::string text = folder.filename().string();
   int pid = 0;
@@ -25,7 +25,7 @@ int process_of(const fs::path& folder) {
   return status == std::errc() && end == text.data() + text.size() ? pid : 0;
 }
 
-/// Returns whether an open file (/proc/PID/fd/N) is the node: by its path, or as the same device
+/// Returns whether an open file (/proc/PID/fd/N) is the node: the same path, or the same device
 /// under another path.
 bool is_node(const fs::path& open_file, const fs::path& node, const struct stat* known) {
   std::error_code gone;
@@ -80,7 +80,7 @@ Result<void> lock_open_file(int file, const std::string& node) {
     return Error{node + " cannot be locked (" + std::strerror(errno) +
                  "), so another program could use it at the same time."};
   }
-  // Those that know nothing of the lock.
+  // Programs that do not use the lock.
   if (const auto holder = find_holder(node)) return Error{used_by(node, *holder)};
   return {};
 }

@@ -6,10 +6,9 @@
 
 namespace thimble::driver {
 
-/// An FTDI converter seen as what it converts: a serial line with its control wires. For set-up
-/// only (boot, firmware upload); touching goes through a Transport. Every function answers false
-/// if the converter did not take the request; the line is then of no further use.
-/// Real-time: never from the servo thread.
+/// An FTDI converter as a serial line with control wires. For set-up only (boot, firmware upload);
+/// forces and positions go through a Transport. Every function returns false if the converter did
+/// not accept the request; the line is then unusable. Real-time: never from the servo thread.
 class SerialLine {
  public:
   SerialLine() = default;
@@ -23,15 +22,16 @@ class SerialLine {
   virtual bool set_frame_8n1() = 0;
   virtual bool set_rts(bool high) = 0;  ///< Sets the line RTS.
   virtual bool set_dtr(bool high) = 0;  ///< Sets the line DTR.
-  /// Sets how long the converter keeps bytes back before it sends a packet that is not full, ms.
+  /// Sets the time for which the converter holds bytes back before it sends a packet that is not
+  /// full, ms.
   virtual bool set_latency_ms(std::uint8_t latency_ms) = 0;
-  /// Forgets every byte in the converter, both ways.
+  /// Discards every byte in the converter, both ways.
   virtual bool purge() = 0;
 
   /// Sends all bytes.
   virtual bool write(std::span<const std::byte> bytes) = 0;
-  /// Waits up to `timeout_ms` for bytes (without FTDI's status bytes); tells how many came, 0 if
-  /// none, or -1 if the converter is gone.
+  /// Waits up to `timeout_ms` for bytes (without FTDI's status bytes). Returns their number: 0 if
+  /// none arrived, -1 if the converter is gone.
   virtual int read(std::span<std::byte> bytes, int timeout_ms) = 0;
 };
 

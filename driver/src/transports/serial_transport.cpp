@@ -23,8 +23,8 @@ class SerialTransport final : public StreamTransport {
   SerialTransport(NodeLock lock, const Framing& framing, const Clock& clock) noexcept
       : StreamTransport(clock, framing), lock_(std::move(lock)), file_(lock_.file()) {}
   ~SerialTransport() override {
-    // The last message is the zero force: let it out before the port closes, but do not hang on an
-    // arm that takes nothing (tcdrain would, and so would close).
+    // The last message is the zero force. It must leave before the port closes, but an arm that
+    // accepts nothing must not block (tcdrain would, and so would close).
     int waiting = 0;
     for (int ms = 0; ms < 100 && ioctl(file_, TIOCOUTQ, &waiting) == 0 && waiting > 0; ++ms) {
       timespec time{.tv_sec = 0, .tv_nsec = 1'000'000};
@@ -39,10 +39,11 @@ class SerialTransport final : public StreamTransport {
     if (wait_ns > 0) {
       pollfd port{.fd = file_, .events = POLLIN, .revents = 0};
       const timespec time{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
-      // A wait that a signal interrupts is resumed by the caller, which knows the deadline.
+      // The caller, which has the deadline, resumes a wait that a signal interrupted.
       if (ppoll(&port, 1, &time, nullptr) <= 0) return TransportStatus::kOk;
     }
-    // A full port holds 4 kB (a page per tty buffer); more than that per call is not a port.
+    // A full port holds 4 kB (a page per tty buffer); with more than that per call it is not a
+    // serial port.
     constexpr int kReadsMax = 16;
     std::array<std::byte, 256> bytes;
     for (int i = 0; i < kReadsMax; ++i) {
@@ -59,8 +60,8 @@ class SerialTransport final : public StreamTransport {
   }
 
   TransportStatus put(std::span<const std::byte> bytes) noexcept override {
-    // A message of which only a part fitted is completed first: the arm would read the part and the
-    // next message as one, and take neither.
+    // A partly sent message is completed first: the arm would read the part and the next message as
+    // one, and take neither.
     if (rest_size_ > 0) {
       const auto rest = std::span<const std::byte>(rest_).first(rest_size_);
       const std::size_t size = put_some(rest);
@@ -86,9 +87,10 @@ class SerialTransport final : public StreamTransport {
     return waiting > 0 ? TransportStatus::kNothing : TransportStatus::kOk;
   }
 
-  /// Writes as many bytes as the port takes now, and returns how many.
+  /// Writes as many bytes as the port accepts now; returns their number.
   std::size_t put_some(std::span<const std::byte> bytes) noexcept {
-    // Signals that may interrupt it. [chosen: more than a timer sends in a tick]
+    // Max. number of signals that may interrupt the write. [chosen: more than a timer sends in a
+    // tick]
     constexpr int kInterruptionsMax = 16;
     for (int i = 0; i <= kInterruptionsMax; ++i) {
       const ssize_t count = ::write(file_, bytes.data(), bytes.size());
@@ -102,11 +104,11 @@ class SerialTransport final : public StreamTransport {
     return 0;
   }
 
-  NodeLock lock_;  // the port itself, which it closes
+  NodeLock lock_;  // holds and closes the port itself
   int file_;
-  std::array<std::byte, kReportCapacity> rest_{};  // of a message of which a part went out
+  std::array<std::byte, kReportCapacity> rest_{};  // rest of a partly sent message
   std::size_t rest_size_ = 0;
-  bool gone_ = false;  // a write failed for good
+  bool gone_ = false;  // a write failed permanently
 };
 
 }  // namespace
@@ -114,8 +116,7 @@ class SerialTransport final : public StreamTransport {
 Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
                                                          const Framing& framing,
                                                          const Clock& clock) {
-  // The lock keeps out programs that look for it, TIOCEXCL those that do not (unless root runs
-  // them).
+  // The lock excludes programs that check it, TIOCEXCL those that do not (unless root runs them).
   auto lock = NodeLock::take(node);
   if (!lock) return lock.error();
   const int file = lock->file();

@@ -15,15 +15,15 @@
 namespace thimble::driver {
 namespace {
 
-/// One end of a connection, as the kernel's lists write it: words of the address in the machine's
-/// order, and the port.
+/// One end of a connection in the format of the kernel's lists: words of the address in the
+/// machine's byte order, and the port.
 struct Address {
   std::array<std::uint32_t, 4> words{};
   bool four = false;  // IPv4: only the first word counts
   std::uint16_t port = 0;
 };
 
-/// Turns an address into its form in IPv4, also one that is mapped into IPv6; nothing for another
+/// Converts an address, also an IPv4 address mapped into IPv6, to an Address; empty for another
 /// family.
 std::optional<Address> address_of(const sockaddr_storage& from) {
   Address address;
@@ -47,7 +47,7 @@ std::optional<Address> address_of(const sockaddr_storage& from) {
   return address;
 }
 
-/// Writes an address as /proc/net/tcp does, or as /proc/net/tcp6 if `six`.
+/// Formats an address as in /proc/net/tcp, or as in /proc/net/tcp6 if `six`.
 std::string listed(const Address& address, bool six) {
   std::array<char, 64> text{};
   const auto& w = address.words;
@@ -63,12 +63,12 @@ std::string listed(const Address& address, bool six) {
   return text.data();
 }
 
-/// Looks for a connection in one of the kernel's lists.
+/// Searches one of the kernel's lists for a connection.
 std::optional<uid_t> user_in(const char* list, const std::string& local,
                              const std::string& remote) {
   std::ifstream lines(list);
   std::string line;
-  std::getline(lines, line);  // names of the columns
+  std::getline(lines, line);  // column names
   while (std::getline(lines, line)) {
     std::istringstream fields(line);
     std::string number, here, there, state, queues, timer, retransmits;
@@ -93,7 +93,7 @@ std::optional<uid_t> user_of_peer(int socket) {
   }
   const auto here = address_of(own), there = address_of(other);
   if (!here || !there) return {};
-  // The other end is listed from its own side.
+  // The other end is listed from its own point of view.
   if (there->four) {
     if (auto user = user_in("/proc/net/tcp", listed(*there, false), listed(*here, false))) {
       return user;

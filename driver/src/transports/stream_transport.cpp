@@ -4,8 +4,8 @@ namespace thimble::driver {
 
 namespace {
 
-// Each round of waiting either moves bytes or waits; the number of rounds bounds a stream that
-// never ends and never makes a message.
+// Each round either moves bytes or waits. The number of rounds bounds a stream that never ends and
+// never forms a message.
 constexpr int kRoundsMax = 4096;
 
 }  // namespace
@@ -13,7 +13,7 @@ constexpr int kRoundsMax = 4096;
 TransportRead StreamTransport::read_latest(std::span<std::byte> buffer,
                                            std::int64_t deadline_ns) noexcept {
   TransportRead read;
-  std::int64_t wait_ns = 0;  // what is there already comes first, whatever the deadline
+  std::int64_t wait_ns = 0;  // bytes that are already there come first, regardless of the deadline
   for (int round = 0; round < kRoundsMax && !lost_; ++round) {
     lost_ = pump(wait_ns) == TransportStatus::kLost;
     wait_ns = deadline_ns - clock_.now_ns();

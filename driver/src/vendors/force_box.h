@@ -5,13 +5,13 @@
 
 namespace thimble::driver {
 
-/// The next force for an arm, from the servo thread to the one that speaks with the arm. A force
-/// that waits is not replaced by another, so that what was taken is what the loop believes; only
-/// zero force overtakes it. Neither side ever waits. Real-time: safe, both ways.
+/// The next force for an arm, from the servo thread to the thread that exchanges data with the arm.
+/// A waiting force is not replaced by another, so that the loop knows which force was accepted.
+/// Only zero force overtakes it. Neither side ever waits. Real-time: safe, both ways.
 class ForceBox {
  public:
-  /// Puts a force (N); false if the one before still waits, which then goes out, unless this one is
-  /// zero: then zero goes out in its place. By the servo thread.
+  /// Stores a force (N). Returns false if the previous one still waits; that one is then sent. If
+  /// the new force is zero, zero is sent instead of the waiting one. Called by the servo thread.
   bool put(const Eigen::Vector3d& f) noexcept {
     if (full_.load(std::memory_order_acquire)) {
       if (f.isZero(0)) zero_.store(true, std::memory_order_release);
@@ -23,7 +23,8 @@ class ForceBox {
     return true;
   }
 
-  /// Takes the force that waits (N); false if none does. By the thread that speaks with the arm.
+  /// Takes the waiting force (N); false if there is none. Called by the thread that exchanges data
+  /// with the arm.
   bool take(Eigen::Vector3d& f) noexcept {
     if (!full_.load(std::memory_order_acquire)) return false;
     f = f_;
@@ -33,8 +34,8 @@ class ForceBox {
     return true;
   }
 
-  /// Returns whether a zero that was put last is with the other thread: nothing waits, or nothing
-  /// but one more zero. By the servo thread.
+  /// Returns whether the last zero force has been taken by the other thread: nothing waits, or only
+  /// one more zero. Called by the servo thread.
   bool zero_settled() const noexcept {
     return !full_.load(std::memory_order_acquire) || zero_taken_.load(std::memory_order_acquire);
   }
@@ -42,7 +43,7 @@ class ForceBox {
  private:
   Eigen::Vector3d f_{0, 0, 0};
   std::atomic<bool> full_{false}, zero_{false};
-  std::atomic<bool> zero_taken_{false};  // the force that was taken last was zero
+  std::atomic<bool> zero_taken_{false};  // the force taken last was zero
 };
 
 }  // namespace thimble::driver

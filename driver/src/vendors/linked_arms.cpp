@@ -12,7 +12,7 @@ namespace thimble::driver {
 
 void link_boards(std::vector<FoundArm>& found) {
   for (FoundArm& arm : found) {
-    // `thimble doctor` says why, where a library is missing.
+    // `thimble doctor` reports a missing library.
     if (arm.vendor_id == kForceDimension) {
       const auto library = dhd::library();
       if (!library) continue;
@@ -36,12 +36,12 @@ std::vector<FoundArm> find_linked_arms() {
   std::vector<FoundArm> found;
   const std::uint16_t port = haply::port_of_user();
   const auto arms = haply::find_arms(port);
-  if (!arms) return found;  // `thimble doctor` says why
+  if (!arms) return found;  // `thimble doctor` reports the reason
   for (const haply::FoundInverse3& arm : *arms) {
     FoundArm one;
     one.kind = ArmKind::kHaply;
     one.board = BoardKind::kHaplyService;
-    // Our own stand-in is an arm that Thimble drives already: it is used only if it is named.
+    // Our own stand-in is an arm that Thimble already drives, so it is used only if it is named.
     one.certainty = arm.stand_in ? Certainty::kUnknown : Certainty::kProvesItself;
     one.arm = arm.stand_in ? "stand-in of Thimble" : "Haply Inverse3";
     one.bus = kServiceBus;

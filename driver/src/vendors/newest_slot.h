@@ -6,19 +6,19 @@
 
 namespace thimble::driver {
 
-/// The newest value that one thread hands to another: three places, of which one is being written,
-/// one being read, and one waits between them. Older values are dropped. Neither side ever waits.
-/// Real-time: safe, both ways, if copying a T is.
+/// The newest value that one thread passes to another, in three slots: one is written, one is read,
+/// and one waits between them. Older values are dropped. Neither side ever waits. Real-time: safe,
+/// both ways, if copying a T is.
 template <class T>
 class NewestSlot {
  public:
-  /// Puts a value in place of one that was not taken. By one thread.
+  /// Stores a value; replaces one that was not taken. Called by one thread.
   void put(const T& value) noexcept {
     places_[writing_] = value;
     writing_ = waiting_.exchange(writing_ | kFresh, std::memory_order_acq_rel) & kPlace;
   }
 
-  /// Takes the newest value; false if there is none since the last. By one other thread.
+  /// Takes the newest value; false if there is none since the last. Called by one other thread.
   bool take(T& value) noexcept {
     if ((waiting_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     reading_ = waiting_.exchange(reading_, std::memory_order_acq_rel) & kPlace;
@@ -30,9 +30,9 @@ class NewestSlot {
   static constexpr std::uint32_t kPlace = 3, kFresh = 4;
 
   std::array<T, 3> places_{};
-  std::uint32_t writing_ = 0;              // of the one who puts
-  std::uint32_t reading_ = 1;              // of the one who takes
-  std::atomic<std::uint32_t> waiting_{2};  // a place, and whether it was taken
+  std::uint32_t writing_ = 0;              // of the thread that puts
+  std::uint32_t reading_ = 1;              // of the thread that takes
+  std::atomic<std::uint32_t> waiting_{2};  // a slot, and whether it was taken
 };
 
 }  // namespace thimble::driver

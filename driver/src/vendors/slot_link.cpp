@@ -5,7 +5,7 @@
 namespace thimble::driver {
 namespace {
 
-/// Between two looks for a state while a read waits, ns. [chosen: a tenth of a tick]
+/// Interval of checks for a new state while a read waits, ns. [chosen: a tenth of a tick]
 constexpr std::int64_t kLook_ns = 100'000;
 
 }  // namespace
@@ -34,13 +34,13 @@ LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
   if (is_lost()) return {LinkStatus::kLost};
   const double length = force.f_T_W().norm();
   const double scale = length > force_most_ ? force_most_ / length : 1;
-  // What is refused must not go out once the arm takes forces again.
+  // A refused force must not be sent when the arm takes forces again.
   const bool refuses = refuses_.load(std::memory_order_acquire);
   const bool taken =
       box_.put(refuses ? Eigen::Vector3d(0, 0, 0)
                        : Eigen::Vector3d(scale * (R_WB.transpose() * force.f_T_W())));
   ring();
-  // Zero is what it has meanwhile.
+  // Meanwhile the arm has zero force.
   if (!taken || (refuses && length > 0)) return {LinkStatus::kRefused};
   return {LinkStatus::kOk, scale};
 }
@@ -52,7 +52,7 @@ LinkStatus SlotLink::settled() noexcept {
 
 void SlotLink::publish(const ArmSample& sample) noexcept {
   NumberedSample fresh{sample, ++published_};
-  fresh.sample.pose.q = sample.pose.p_BT;  // as ToldArm has it
+  fresh.sample.pose.q = sample.pose.p_BT;  // as in ToldArm
   newest_.put(fresh);
 }
 

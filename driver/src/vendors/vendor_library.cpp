@@ -9,7 +9,7 @@
 namespace thimble::driver {
 namespace {
 
-/// A library that was opened.
+/// An open library.
 struct Opened {
   void* handle;
   std::string file;
@@ -23,7 +23,7 @@ Result<Opened> open_first(std::span<const std::string> files) {
     const char* why = dlerror();
     looked_for += (looked_for.empty() ? "" : ", ") + file;
     std::error_code missing;
-    // One that is there, or a name for which the linker misses something else.
+    // The file exists, or the linker reports another missing file for this name.
     const std::string text = why == nullptr ? "" : why;
     const bool there = std::filesystem::exists(file, missing) || !text.starts_with(file + ":");
     if (there && refused.empty()) refused = text;

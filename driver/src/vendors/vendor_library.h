@@ -10,7 +10,7 @@
 
 namespace thimble::driver {
 
-/// A function of a vendor's library, and the pointer that it is put into.
+/// A function of a vendor's library, and the pointer that receives its address.
 class VendorFunction {
  public:
   template <class Function>
@@ -26,17 +26,17 @@ class VendorFunction {
   std::function<void(void*)> put_;
 };
 
-/// Opens the first of these files that exists, finds the functions in it, and returns the file. The
-/// library is never closed: what such libraries leave behind (threads, handlers) would not survive
-/// it. The error says which files were looked for; or what the linker says of one that exists and
-/// cannot be opened, such as another library that it needs; or which function is missing and
-/// `otherwise`: what the library is not, and what to install. Real-time: never from the servo
-/// thread.
+/// Opens the first of these files that exists, looks up the functions, and returns the file. The
+/// library is never closed: threads and handlers that such libraries leave behind would not survive
+/// it. If there is none, the error lists the files that were tried. If one cannot be opened, for
+/// example because another library is missing, it is the linker's message. If a function is
+/// missing, it names the function and ends with `otherwise`: what the library is not, and what to
+/// install. Real-time: never from the servo thread.
 Result<std::string> open_vendor_library(std::span<const std::string> files,
                                         std::initializer_list<VendorFunction> functions,
                                         const std::string& otherwise);
 
-/// Returns the file that the environment variable `name` names, alone; `files` if it is not set.
+/// Returns only the file that the environment variable `name` names; `files` if it is not set.
 std::vector<std::string> vendor_files(const char* name, std::vector<std::string> files);
 
 }  // namespace thimble::driver

@@ -11,23 +11,23 @@
 namespace thimble::bringup {
 namespace {
 
-// What a motion behind cables costs beyond its statistics [chosen likewise, with soft arms 1 to 20,
+// Errors of a motion behind cables beyond its statistics [chosen likewise, with soft arms 1 to 20,
 // 101 to 120 and 6000 to 6019 of identify_cables_test].
-constexpr double kCableMass = 0.01;       // of mass; of the link's inertia for a motor's
+constexpr double kCableMass = 0.01;       // of mass; for a motor, of the link's inertia
 constexpr double kCableFriction = 0.007;  // N of friction and weight for each N of Coulomb friction
 constexpr double kCableViscous = 0.06;    // N s/m for each N of Coulomb friction
 constexpr double kCableGain = 0.0065;     // of a gain
 constexpr double kCableDelay = 2e-5;      // s
-constexpr double kCableDamping = 0.05;    // of a cable's damping, with which dry friction mixes
-constexpr double kCableLines = 2;         // times what the lines' noise says
-// Share of these errors that is left where motors and cables are simulated to the encoders' steps
-// and motors do not rub, which hides some of them [chosen: identify_cables_test,
+constexpr double kCableDamping = 0.05;    // of a cable's damping, which dry friction affects
+constexpr double kCableLines = 2;         // times the lines' noise
+// Remaining share of these errors if motors and cables are simulated to the encoders' steps and the
+// motors have no friction, which hides some of them [chosen: identify_cables_test,
 // identify_play_test].
 constexpr double kOfUnderstood = 0.4;
-// Lines are fitted to 1 to 1.5; bent geometry and friction leave the rest.
+// Lines fit to 1 to 1.5; the rest is due to nonlinear geometry and friction.
 constexpr double kLinesMisfitMost = 10;
-// Half-width of an interval over the value, of a cable, and of a motor's inertia: of one that is
-// small beside its link little is known, and little hangs on it.
+// Max. half-width of an interval over the value, of a cable, and of a motor's inertia. If the
+// latter is small compared with its link's, little is known of it, and it matters little.
 constexpr double kCableUnknownMost = 0.6;
 constexpr double kMotorUnknownMost = 1;
 
@@ -36,8 +36,8 @@ constexpr double kMotorUnknownMost = 1;
 driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::ArmFile& file,
                                         CableFit& lines, bool refine, PerMass& fit) {
   constexpr int kRounds = 2;
-  // The method's errors beside those of the statistics [chosen as those above]: times a deviation,
-  // and of the link's inertia.
+  // Errors of the method in addition to the statistics [chosen like those above]: times a
+  // deviation, and of the link's inertia.
   constexpr double kTrust = 3, kShareError = 0.02;
   const LineSpectrum spectrum = refine ? line_spectrum(motion) : LineSpectrum{};
   for (int round = 0;; ++round) {
@@ -81,7 +81,7 @@ void put_cables(Identified& found) {
   constants.cables = cable_constants(found.lines, constants.gain);
   for (std::size_t i = 0; i < 3; ++i) {
     CableConstants& cable = (*constants.cables)[i];
-    // What a motor's inertia is taken for too much, the link's is taken for too little.
+    // An excess in a motor's inertia is missing in the link's.
     const auto k = static_cast<Eigen::Index>(i);
     widen(cable.inertia, mass * found.lines.JTJ(k, k));
     for (Estimate* estimate :

@@ -13,11 +13,11 @@ namespace {
 using Complex = std::complex<double>;
 using Wave = std::vector<Complex>;
 
-constexpr double kWhole = 90, kNone = 150;  // Hz; between them what is kept fades [chosen: far
-                                            // above what 60 ms of smoothing leave of it]
-constexpr double kEnds = 0.5;               // s, where the ends of the record are felt
+constexpr double kWhole = 90, kNone = 150;  // Hz; between them the gain fades [chosen: far above
+                                            // the band that 60 ms of smoothing leave]
+constexpr double kEnds = 0.5;               // s, affected by the ends of the record
 
-/// A series without the straight line between its ends, which a transform would see as a step.
+/// A series without the straight line between its ends, which a transform would treat as a step.
 struct Leant {
   Wave wave;
   double first = 0, rise = 0;  // of the line, per tick
@@ -59,14 +59,14 @@ Complex laplace(std::size_t i, std::size_t count, double dt) {
   return {0, sign * 2 * std::numbers::pi * hertz(i, count, dt)};
 }
 
-/// How a joint's torque and angle make what its cable does to the link: torque of an equal motor
-/// without inertia, and angle.
+/// Conversion of a joint's torque and angle to the effect of its cable on the link: torque of an
+/// equal motor without inertia, and angle.
 struct JointOfLink {
   std::vector<double> tau, q, ddq;
 };
 
-/// Returns the transform of what friction takes of a motor's torque, whose angles' transform is
-/// `turned`, in the middle of each tick.
+/// Returns the transform of the friction torque of a motor, whose angles' transform is `turned`, in
+/// the middle of each tick.
 Wave rubbed(const Wave& turned, double viscous, double coulomb, double dt) {
   const std::size_t count = turned.size();
   Wave rate(count);
@@ -103,7 +103,7 @@ JointOfLink behind_cable(const ArmMotion& motion, const CableFit& cables, int jo
   if (viscous != 0 || coulomb != 0) rubs = rubbed(turned.wave, viscous, coulomb, motion.dt);
   for (std::size_t i = 0; i < count; ++i) {
     const Complex s = laplace(i, count, motion.dt);
-    // The torque of a tick is its mean over the tick that it is late.
+    // The torque of a tick is its mean over the delayed tick.
     Complex pull = gain * turn_by(-s.imag() * fit.theta[TwoMass::kDelay]) * pushed.wave[i] -
                    inertia * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
     if (!rubs.empty()) pull -= rubs[i];
@@ -115,7 +115,7 @@ JointOfLink behind_cable(const ArmMotion& motion, const CableFit& cables, int jo
   }
   JointOfLink link{series_of(pushed.wave), series_of(turned.wave), series_of(faster)};
   for (std::size_t i = 0; i < count; ++i) {
-    // The lines that were taken off bend nothing: a steady torque stretches the cable.
+    // The lines that were removed bend nothing: a constant torque stretches the cable.
     link.tau[i] += pushed.at(i);
     link.q[i] += turned.at(i) - give * gain * pushed.at(i);
   }
@@ -132,7 +132,7 @@ std::array<CableConstants, 3> cable_constants(const CableFit& fit,
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     using TwoMassSlope = Eigen::Matrix<double, TwoMass::kCount, 1>;
-    // Each is a product of powers, so that its relative error is a sum of theirs.
+    // Each is a product of powers, so its relative error is a sum of theirs.
     const auto estimate = [&](double value, const TwoMassSlope& relative, double of_gain) {
       TwoMassSlope slope = relative;
       for (int j = 0; j < TwoMass::kCount; ++j) slope[j] /= theta[j] != 0 ? theta[j] : 1;
@@ -161,7 +161,7 @@ std::array<CableConstants, 3> cable_constants(const CableFit& fit,
 
 driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFit& fit,
                                           const scene::ArmFile& file) {
-  // A number of ticks with small factors, which transforms are quick for.
+  // A number of ticks with small prime factors, which makes transforms fast.
   ArmMotion whole = motion;
   const auto over = static_cast<std::ptrdiff_t>(motion.samples.size() % 500);
   whole.samples.erase(whole.samples.begin(), whole.samples.begin() + over);

@@ -9,15 +9,15 @@
 
 namespace thimble::bringup {
 
-/// Returns motors and cables out of what the lines show, with the gain of each motor: true torque
-/// over that of the arm file.
+/// Returns the constants of motors and cables from the lines and the gain of each motor: true
+/// torque over that of the arm file.
 std::array<CableConstants, 3> cable_constants(const CableFit& fit,
                                               const std::array<Estimate, 3>& gain);
 
-/// Returns the motion of the links behind cables that stretch, as if they had a motor each that
-/// does to them what the cables do: torques kHeldBack ticks late, nothing above 60 Hz, and half a
-/// second less at either end. A fit to it shows a rigid arm's mass, friction and weight. The error
-/// says that the links would have been out of reach.
+/// Returns the motion of the links behind elastic cables, as if each link had a motor with the
+/// cable's torque. Torques are kHeldBack ticks late, nothing is above 60 Hz, and half a second is
+/// missing at either end. A fit to it gives a rigid arm's mass, friction and weight. The error
+/// states that the links would have been out of reach.
 inline constexpr int kHeldBack = 3;
 driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFit& fit,
                                           const scene::ArmFile& file);

@@ -21,8 +21,8 @@ double resonance_of(double compliance, double inverse_mass) {
   return std::sqrt(inverse_mass / compliance) / kTurn;
 }
 
-/// Looks about a fit that is no good for a better one, where single cables are several times softer
-/// or stiffer: places that have all joints alike lie in other valleys.
+/// Searches near a bad fit for a better one, with single cables several times softer or stiffer:
+/// starts with all joints alike lie in other local minima.
 void look_about(const TwoMassSearch& search, double enough, TwoMassTheta& x, double& least) {
   constexpr int kSweeps = 2, kSomeRounds = 30;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -39,8 +39,8 @@ void look_about(const TwoMassSearch& search, double enough, TwoMassTheta& x, dou
   }
 }
 
-/// Looks for cables in many places, for each of several delays: lines have many a valley. Where a
-/// rigid arm fits already, few places do.
+/// Searches for cables from many starts, for each of several delays, because lines have many local
+/// minima. If a rigid arm already fits, few starts suffice.
 TwoMassTheta first_guess(const TwoMassSearch& search, const LineSpectrum& spectrum,
                          const TwoMassTheta& rigid, const PerMass& slow, double stiff) {
   constexpr double kSoftest = 8, kStiffest = 400;  // Hz
@@ -114,7 +114,7 @@ void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart
   start.segment<3>(TwoMass::kGain) = slow.gain;
   start.segment<3>(TwoMass::kInertia) = slow.gain.cwiseProduct(slow.ratio);
   start[TwoMass::kDelay] = slow.delay;
-  // From where the lines alone led, and from where the slow part is.
+  // From the result of the lines without the slow part, and from the slow part.
   TwoMassTheta elastic = into_search(found.elastic.theta), other = into_search(start);
   double least = search.go(elastic, true, kRoundsMost);
   const double sum = search.go(other, true, kRoundsMost);
@@ -134,7 +134,7 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
   rigid = into_search(rigid);
   double stiff = search.go(rigid, false, kRoundsMost), least = HUGE_VAL;
   TwoMassTheta elastic = first_guess(search, spectrum, from_search(rigid), slow, stiff);
-  // The noise is what the better of both leaves beside the lines.
+  // The noise is the residual of the better fit between the lines.
   for (int round = 0; round < 2; ++round) {
     stiff = search.go(rigid, false, kRoundsMost);
     least = search.go(elastic, true, kRoundsMost);
@@ -155,12 +155,12 @@ CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt
   found.rigid.misfit = stiff / static_cast<double>(search.rows() - TwoMass::kRigidCount);
   put_elastic(found, search, elastic, least);
   constexpr double kBetter = 20;
-  double lowest = HUGE_VAL;  // Hz, at which a link oscillates on its cable
+  double lowest = HUGE_VAL;  // Hz, oscillation of a link on its cable
   for (int i = 0; i < 3; ++i) {
     const double give = std::max(0.0, found.elastic.theta[TwoMass::kCompliance + i]);
     lowest = std::min(lowest, resonance_of(give, 1 / spectrum.JTJ(i, i)));
   }
-  // Beyond all lines it is no cable that is seen but an amplifier that lags.
+  // Above all lines the cause is not a cable but the lag of an amplifier.
   found.stretches = found.better > kBetter && lowest < LineForces::kHighest;
   Eigen::Vector3d give, error;
   search.look_for_give(found.rigid.theta, give, error);

@@ -7,14 +7,14 @@
 
 namespace thimble::bringup {
 
-/// Constants of an arm's joints per moved mass, as its lines show them: motors on whose other side,
-/// behind cables, the links are. For motor i with the joint torque tau_i,
+/// Constants of an arm's joints per moved mass, from its lines: motors that drive the links through
+/// cables. For motor i with the joint torque tau_i,
 ///
 ///     J_i q_i'' + b_i q_i' + pull_i = g_i tau_i(t - delay),   pull_i = (k_i + d_i d/dt)(q_i -
 ///     l_i), J^T J (l'' + b l') = pull,   1/k_i = c_i,   d_i/k_i = t_i.
 ///
-/// Without cables that stretch q = l. What dry friction does to small fast motions looks like
-/// viscous friction: b and b_i are no constants of the arm.
+/// Without elastic cables q = l. In small fast motions dry friction looks like viscous friction, so
+/// b and b_i are not constants of the arm.
 struct TwoMass {
   enum Index {
     kGain = 0,
@@ -30,34 +30,34 @@ struct TwoMass {
 
   Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
   Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
-  double misfit =
-      0;  ///< chi^2 per degree of freedom, with the noise that is seen beside the lines.
+  double misfit = 0;  ///< chi^2 per degree of freedom, with the noise between the lines.
 
-  /// Returns the natural frequencies of a joint, Hz: of the link on its cable (the motor held), and
-  /// of motor and link against each other.
+  /// Returns the natural frequencies of a joint, Hz: of the link on its cable (motor held), and of
+  /// motor and link against each other.
   double antiresonance(int joint, const Eigen::Matrix3d& JTJ) const;
   double resonance(int joint, const Eigen::Matrix3d& JTJ) const;
 };
 
-/// What the lines say of the cables.
+/// Result of the lines about the cables.
 struct CableFit {
-  TwoMass rigid;    ///< The best without a cable that stretches.
-  TwoMass elastic;  ///< The best with cables.
-  /// The lines tell both apart: by how much the elastic one's Bayesian information is better.
+  TwoMass rigid;    ///< Best fit without elastic cables.
+  TwoMass elastic;  ///< Best fit with cables.
+  /// Gain of the Bayesian information criterion by elastic cables; the lines distinguish both
+  /// models.
   double better = 0;
-  bool stretches = false;  ///< It is so much better that the cables are believed.
-  /// Where nothing was seen: cables that let the links oscillate below this would have been, Hz for
-  /// each joint.
+  bool stretches = false;  ///< The gain suffices to accept the cables.
+  /// If nothing was seen: cables would have been seen whose links oscillate below this frequency,
+  /// Hz for each joint.
   Eigen::Vector3d unseen_from{0, 0, 0};
-  /// Friction of the motors' side per moved mass, where the motors' motion showed some (PlayFit):
-  /// of it lines see a viscous part alone, which differs from line to line.
+  /// Friction of the motors' side per moved mass, if the motors' motion showed some (PlayFit).
+  /// Lines show only a viscous part of it, which differs from line to line.
   Eigen::Vector3d rotor_viscous{0, 0, 0}, rotor_coulomb{0, 0, 0};
-  Eigen::Matrix3d JTJ = Eigen::Matrix3d::Zero();  ///< Of the motion, m^2.
-  std::vector<Eigen::Vector3d> noise;             ///< RMS beside each line, rad for each joint.
+  Eigen::Matrix3d JTJ = Eigen::Matrix3d::Zero();  ///< Mean over the motion, m^2.
+  std::vector<Eigen::Vector3d> noise;             ///< RMS between the lines, rad for each joint.
 };
 
-/// What the slow part of a motion, fitted to the links behind the cables, says of the same
-/// constants, with deviations.
+/// Values of the same constants, with deviations, from the slow part of a motion that was fitted to
+/// the links behind the cables.
 struct SlowPart {
   Eigen::Vector3d gain{0, 0, 0}, gain_error{0, 0, 0};
   Eigen::Vector3d ratio{0, 0, 0}, ratio_error{0, 0, 0};  ///< Inertia over gain.
@@ -68,8 +68,8 @@ struct SlowPart {
 /// the same lines. Real-time: never from the servo thread.
 void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart& slow, double dt);
 
-/// Fits both models to the lines of a motion, from what its slow part shows, and chooses by the
-/// Bayesian information. Real-time: never from the servo thread.
+/// Fits both models to the lines of a motion, starting from its slow part, and selects one by the
+/// Bayesian information criterion. Real-time: never from the servo thread.
 CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt);
 
 }  // namespace thimble::bringup

@@ -19,7 +19,7 @@ inline constexpr int kSlowRows = 7;  // of a SlowPart
 
 inline constexpr double kNoiseLeast = 1e-12;  // rad, below any encoder's
 
-/// Returns whether the search goes by the logarithm of a constant.
+/// Returns whether the search uses the logarithm of a constant.
 inline bool is_log(int k) {
   return k >= TwoMass::kCompliance || (k >= TwoMass::kInertia && k < TwoMass::kRotorViscous);
 }
@@ -28,8 +28,7 @@ inline double log_of(double amount) {
   return math::log(std::max(amount, 1e-12));
 }
 
-/// Search space: inertias, compliances and how these fade go by logarithms, which keeps them
-/// positive.
+/// Search space: logarithms of inertias, compliances and their fading, which keep them positive.
 inline TwoMassTheta into_search(TwoMassTheta theta) {
   theta.tail<6>() = theta.tail<6>().unaryExpr(&log_of);
   theta.segment<3>(TwoMass::kInertia) = theta.segment<3>(TwoMass::kInertia).unaryExpr(&log_of);
@@ -65,14 +64,15 @@ inline Eigen::Vector3cd two_mass_answer(const TwoMassTheta& theta, const Spectra
   return Z.inverse() * push;
 }
 
-/// Levenberg's and Marquardt's search over the constants that fit the lines best.
+/// Search of Levenberg and Marquardt for the constants that fit the lines best.
 class TwoMassSearch {
  public:
   TwoMassSearch(const LineSpectrum& spectrum, double dt) : spectrum_(spectrum), dt_(dt) {
     sigma_.resize(spectrum.lines.size());
   }
 
-  /// Takes what is beside the lines, less the model's answer to it, for their noise.
+  /// Estimates the noise from the frequencies between the lines, without the model's response to
+  /// their torques.
   void measure_noise(const TwoMassTheta& theta, bool elastic) {
     constexpr std::size_t kBeside = LineSpectrum::kBeside;
     std::vector<Eigen::Vector3d> power(sigma_.size(), Eigen::Vector3d::Zero());
@@ -83,7 +83,7 @@ class TwoMassSearch {
       power[i / kBeside] += rest.cwiseAbs2() / static_cast<double>(kBeside);
     }
     for (std::size_t i = 0; i < sigma_.size(); ++i) {
-      // With that of its neighbours: eight frequencies alone know it to a third.
+      // Averaged with the neighbours: eight frequencies give it only to a third.
       const std::size_t low = i == 0 ? 0 : i - 1, high = std::min(i + 1, sigma_.size() - 1);
       Eigen::Vector3d sum(0, 0, 0);
       for (std::size_t k = low; k <= high; ++k)
@@ -107,7 +107,7 @@ class TwoMassSearch {
     return math::ScaledNormal<Eigen::MatrixXd>(slope.transpose() * slope, kRidge).covariance();
   }
 
-  /// What is known of compliances about a rigid arm: their values and deviations.
+  /// Estimates compliances about a rigid arm: their values and deviations.
   void look_for_give(const TwoMassTheta& rigid, Eigen::Vector3d& give,
                      Eigen::Vector3d& error) const {
     Eigen::MatrixXd slope, all(rows(), TwoMass::kRigidCount + 3);
@@ -138,18 +138,18 @@ class TwoMassSearch {
            (slow_ != nullptr ? kSlowRows : 0);
   }
 
-  /// From now on the slow part of the motion counts too.
+  /// From now on, includes the slow part of the motion.
   void take_slow_part(const SlowPart& slow) { slow_ = &slow; }
   const std::vector<Eigen::Vector3d>& sigma() const { return sigma_; }
 
  private:
   static constexpr double kRidge = 1e-10;  // of a scaled diagonal
 
-  /// The search as math::levenberg_marquardt takes it.
+  /// The problem for math::levenberg_marquardt.
   struct Problem {
     const TwoMassSearch& search;
     bool elastic;
-    int count;  // constants that are searched for: the first ones
+    int count;  // number of constants searched for: the first ones
 
     double linearize(const TwoMassTheta& x, Eigen::MatrixXd& normal,
                      Eigen::VectorXd& gradient) const {
@@ -160,7 +160,7 @@ class TwoMassSearch {
       gradient = slope.transpose() * rest;
       return sum_of(x, rest);
     }
-    /// Bounds a step to a factor of e where the search is by the logarithm.
+    /// Bounds a step to a factor of e for logarithms.
     TwoMassTheta stepped(TwoMassTheta x, const Eigen::VectorXd& by) const {
       for (int k = 0; k < count; ++k) x[k] += is_log(k) ? std::clamp(by[k], -1.0, 1.0) : by[k];
       return x;
@@ -178,7 +178,7 @@ class TwoMassSearch {
       const Eigen::Vector3cd off =
           two_mass_answer(theta, line, spectrum_.JTJ, dt_, elastic) - line.q;
       for (int joint = 0; joint < 3; ++joint) {
-        // Half of the noise's power is in either part.
+        // Either part has half of the noise's power.
         const std::complex<double> one = std::sqrt(2.0) * off[joint] / sigma_[i][joint];
         rest[static_cast<Eigen::Index>(6 * i) + 2 * joint] = one.real();
         rest[static_cast<Eigen::Index>(6 * i) + 2 * joint + 1] = one.imag();
@@ -187,7 +187,7 @@ class TwoMassSearch {
     if (slow_ != nullptr) rest.tail<kSlowRows>() = slow_rest(theta);
   }
 
-  /// How far the constants are from what the slow part says, in its deviations.
+  /// Difference of the constants from the slow part, in its deviations.
   Eigen::Matrix<double, kSlowRows, 1> slow_rest(const TwoMassTheta& theta) const {
     Eigen::Matrix<double, kSlowRows, 1> rest;
     const Eigen::Vector3d gain = theta.segment<3>(TwoMass::kGain);
@@ -198,13 +198,13 @@ class TwoMassSearch {
     return rest;
   }
 
-  /// Fills what the constants at `x` leave of the lines.
+  /// Computes the residuals of the lines for the constants at `x`.
   void rest_at(const TwoMassTheta& x, bool elastic, Eigen::VectorXd& rest) const {
     residuals(from_search(x), elastic, rest);
   }
 
-  /// Returns the sum of squares; infinite where a motor pulls the other way, for which way the
-  /// motors pull was seen before.
+  /// Returns the sum of squares; infinite if a motor pulls in the opposite direction, because the
+  /// directions are already known.
   static double sum_of(const TwoMassTheta& x, const Eigen::VectorXd& rest) {
     const double sum = rest.squaredNorm();
     return x.segment<3>(TwoMass::kGain).minCoeff() > 0 && std::isfinite(sum) ? sum : HUGE_VAL;
@@ -227,7 +227,7 @@ class TwoMassSearch {
     }
   }
 
-  /// What a constant that may be zero is measured by.
+  /// Scale of a constant that may be zero.
   double floor_of(int k) const {
     if (k == TwoMass::kViscous) return 0.1;
     if (k >= TwoMass::kRotorViscous && k < TwoMass::kCompliance) {

@@ -15,12 +15,11 @@
 namespace thimble::bringup {
 namespace {
 
-// Wald's statistic of a wave's two factors, above which it is believed [chosen: no arm without
-// waves of identify_waves_test is told to have some].
+// Wald's statistic of a wave's two factors required for acceptance [chosen: no arm without waves of
+// identify_waves_test is reported to have some].
 constexpr double kWaveBelieved = 60;
-// What quantised angles and torques that are held for a tick cost beyond the statistics, of an
-// amplitude and, in rad, of a phase [chosen: so that intervals hold 95 % of the truths,
-// identify_waves_test].
+// Error due to quantised angles and held torques beyond the statistics, of an amplitude and, in
+// rad, of a phase [chosen: so that intervals hold 95 % of the truths, identify_waves_test].
 constexpr double kWaveMethod = 0.004;
 constexpr int kWaveRounds = 3;  // of Newton's search
 
@@ -30,10 +29,10 @@ MotorWave& wave_of(MotorWaves& waves, Eigen::Index wave) {
   return (wave % 2 == 0 ? waves.cogging : waves.ripple)[static_cast<std::size_t>(wave / 2)];
 }
 
-/// Sine's and cosine's factors of each wave, as WaveRows has them.
+/// Factors of sine and cosine of each wave, as in WaveRows.
 using WaveFactors = Eigen::Matrix<double, WaveRows::kCount, 1>;
 
-/// Puts amplitude and phase of factors, with what their covariance says.
+/// Sets amplitude and phase from factors and their covariance.
 void put_wave(MotorWave& wave, bool cogging, const Eigen::Vector2d& factors,
               const Eigen::Matrix2d& covariance) {
   // Cogging pulls back.
@@ -81,7 +80,7 @@ class WavesOfMotion {
   }
 
  private:
-  /// Chooses the waves that the data show, leaving out the weakest one after the other.
+  /// Selects the significant waves by removing the weakest one repeatedly.
   void believe(const FittedMotion& motion) {
     const WaveRows rows(motion, found_.ratio);
     const Eigen::MatrixXd columns = rows.columns(found_.periods);
@@ -110,7 +109,7 @@ class WavesOfMotion {
     }
   }
 
-  /// Notes which waves would have been seen.
+  /// Computes the detection limits of waves.
   void bounds(const FittedMotion& motion) {
     bound(motion, found_.least);
     if (found_.least == found_.most) return;
@@ -150,7 +149,7 @@ class WavesOfMotion {
                        motion.residual.clusters);
   }
 
-  /// Adds what a fit says on top of what the motion was freed of.
+  /// Adds the result of a fit to the waves already removed from the motion.
   void take(const FurtherColumns& fit) {
     Eigen::Index k = 0;
     for (Eigen::Index wave = 0; wave < kWavesOfArm; ++wave) {

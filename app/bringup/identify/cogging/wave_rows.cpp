@@ -11,7 +11,7 @@ namespace thimble::bringup {
 namespace {
 
 constexpr double kEndsOfAngles =
-    0.01;  // of the ticks, at either end of the angles [chosen: single visits]
+    0.01;  // of the ticks, at either end of the angles [chosen: excludes single visits]
 
 }  // namespace
 

@@ -11,25 +11,25 @@
 namespace thimble::bringup {
 namespace {
 
-// For a first look one bump in two, and of its ticks one in two: bumps overlap fourfold, and at
-// 1 kHz no wave is quick.
+// A first search uses one bump in two, and one of its ticks in two: bumps overlap fourfold, and at
+// 1 kHz all waves are slow.
 constexpr std::size_t kBumpsInWaves = 2;
 constexpr int kTicksInWaves = 2;
-// How many others the best number is compared with, and how clearly it must be better: one-sided
-// 99.9 % of a normal distribution.
+// Number of candidates compared with the best number, and the required distance: one-sided 99.9 %
+// of a normal distribution.
 constexpr std::size_t kNumbersCompared = 8;
 constexpr double kClearlyBetter = 3.09;
 
 /// Some of an arm's motors.
 using Motors = std::array<bool, 3>;
 
-/// Returns which motors turned far enough for waves of a number of periods to be seen.
+/// Returns the motors that turned far enough to show waves of a number of periods.
 Motors turned_enough(const WaveRows& rows, double periods) {
   const Eigen::Vector3d turned = rows.turned(periods);
   return {turned[0] >= kPeriodsTurned, turned[1] >= kPeriodsTurned, turned[2] >= kPeriodsTurned};
 }
 
-/// What a fit leaves of one equation in some, with directions that its own constants can take up.
+/// Part of the residual of some equations of a fit that its own constants cannot absorb.
 class UnexplainedRest {
  public:
   UnexplainedRest(const FittedMotion& motion, std::size_t stride) : stride_(stride) {
@@ -50,7 +50,7 @@ class UnexplainedRest {
     rest_ -= taken_ * (taken_.transpose() * rest_);
   }
 
-  /// Returns what waves of some motors leave of it.
+  /// Returns the residual with waves of some motors.
   Eigen::VectorXd with(const WaveRows& rows, const WaveRows::Phases& phases, const Motors& motors,
                        int every) const {
     Eigen::MatrixXd waves = rows.columns(phases, stride_, every);
@@ -70,11 +70,11 @@ class UnexplainedRest {
 
  private:
   std::size_t stride_;
-  Eigen::MatrixXd taken_;  // an orthonormal base
+  Eigen::MatrixXd taken_;  // an orthonormal basis
   Eigen::VectorXd rest_;
 };
 
-/// How clearly one number explains more than another: the difference of their residuals' squares,
+/// Significance of the difference between two numbers: the difference of their squared residuals,
 /// half second by half second, over its deviation [M Vuong 1989].
 double clearer(const Eigen::VectorXd& best, const Eigen::VectorXd& other,
                const std::vector<int>& clusters) {
@@ -92,9 +92,9 @@ double clearer(const Eigen::VectorXd& best, const Eigen::VectorXd& other,
   return variance > 0 ? sum / std::sqrt(variance) : HUGE_VAL;
 }
 
-/// Compares numbers of periods by what their waves leave of all equations: two by the motors that
-/// turned far enough by either, for with one motor more the wrong number explains more than the
-/// right one.
+/// Compares numbers of periods by the residual of all equations with their waves. Two numbers are
+/// compared with the motors that turned far enough for both: with one more motor, the wrong number
+/// would explain more than the right one.
 class ComparedNumbers {
  public:
   ComparedNumbers(const FittedMotion& motion, const WaveRows& rows)
@@ -123,7 +123,7 @@ class ComparedNumbers {
   std::map<std::pair<double, Motors>, Eigen::VectorXd> left_;
 };
 
-/// Makes the phases of one period more.
+/// Advances the phases by one period.
 void turn_on(WaveRows::Phases& phases, const WaveRows::Phases& once) {
   for (std::size_t k = 0; k < phases.size(); ++k) {
     for (std::size_t joint = 0; joint < 3; ++joint) phases[k][joint] *= once[k][joint];
@@ -138,7 +138,7 @@ WavePeriods find_periods(const FittedMotion& motion, const WaveRows& rows, doubl
   const double least = named > 0 ? named : kWavePeriodsLeast;
   const double most = named > 0 ? named : kWavePeriodsMost;
   const UnexplainedRest some(motion, kBumpsInWaves);
-  std::vector<std::pair<double, double>> tried;  // what is left, by which number
+  std::vector<std::pair<double, double>> tried;  // residual, and the number
   const WaveRows::Phases once = rows.phases(1);
   WaveRows::Phases phases = rows.phases(least);
   for (double periods = least; periods <= most; ++periods) {

@@ -9,7 +9,8 @@
 namespace thimble::bringup {
 namespace {
 
-// What is written, by what is seen: mass, inertias, yaws and moment_b as in LinkFit, weight.
+// Written constants as a function of the seen ones: mass, inertias, yaws and moment_b as in
+// LinkFit, weight.
 constexpr int kSeenLinks = 8, kWrittenLinks = 10;
 using SeenLinks = Eigen::Matrix<double, kSeenLinks, 1>;
 using WrittenLinks = Eigen::Matrix<double, kWrittenLinks, 1>;
@@ -17,10 +18,10 @@ struct Of {
   enum Index { kMass, kA, kB, kC, kYawB, kYawC, kCoupling, kMomentB, kMomentC, kWeight };
 };
 
-// kg, the least that an arm file may name at the tip.
+// kg, min. mass at the tip in an arm file.
 constexpr double kTipLeast = 1e-3;
 
-/// Takes a mass from the tip to the elbow's coupling.
+/// Moves a mass from the tip to the elbow's coupling.
 WrittenLinks links_with_coupling(const SeenLinks& seen, const driver::SerialArm& arm, double mass) {
   const double lb = arm.length_b, lc = arm.length_c;
   WrittenLinks is;
@@ -40,7 +41,7 @@ WrittenLinks links_with_coupling(const SeenLinks& seen, const driver::SerialArm&
 
 driver::Result<void> check_written(const WrittenLinks& is) {
   device_sim::LinkSettings links;
-  // What is written with six digits must be accepted too.
+  // Values written with six digits must be accepted too.
   constexpr double kRounding = 2e-5;
   links.inertia = is.segment<3>(Of::kA);
   const double about_yaw = is[Of::kA] + std::abs(is[Of::kYawB]) + std::abs(is[Of::kYawC]);
@@ -60,7 +61,7 @@ driver::Result<WrittenLinks> written_links(const SeenLinks& seen, const driver::
         "No links move as this arm does: with what was found, inertia would be below zero in some "
         "pose. Look for play and for what rubs, and take more time (--seconds)."};
   }
-  // The more coupling, the more inertia everywhere.
+  // More coupling means more inertia everywhere.
   for (int round = 0; round < 60; ++round) {
     const double middle = 0.5 * (least + most);
     (check_written(at(middle)) ? most : least) = middle;
@@ -79,7 +80,8 @@ driver::Result<TipAndLinks> tip_and_links(const LinkFit& fit, const Eigen::Vecto
   const Eigen::Matrix<double, kSeenLinks, kSeenLinks> covariance =
       look * fit.covariance * look.transpose();
   const SeenLinks deviation = covariance.diagonal().cwiseSqrt();
-  // Inertia A that cannot be told from none may be found below zero; no coupling mends it.
+  // An inertia A that does not differ significantly from zero may be found below zero; coupling
+  // cannot correct that.
   if (seen[Of::kA] < 0 && seen[Of::kA] > -kNormal95 * deviation[Of::kA]) seen[Of::kA] = 0;
   const auto found = written_links(seen, fit.arm);
   if (!found) return found.error();

@@ -10,9 +10,9 @@
 namespace thimble::bringup {
 namespace {
 
-constexpr int kRateTicks = 10;  // ticks to either side, as MotionEquations has it for the tip
-constexpr int kLeverTicks = 2;  // ticks to either side, for how levers change
-// The joint that each inertia turns with.
+constexpr int kRateTicks = 10;  // ticks to either side, as in MotionEquations for the tip
+constexpr int kLeverTicks = 2;  // ticks to either side, for changes of levers
+// The joint of each inertia.
 constexpr std::array<Eigen::Index, 5> kJointOfInertia = {0, 1, 2, 0, 0};
 
 }  // namespace
@@ -53,7 +53,7 @@ LinkEquations::Inertias LinkEquations::turning(int tick, int axis) const {
   const MotionSample& sample = at(tick);
   const Eigen::Vector3d& rate = rate_[static_cast<std::size_t>(tick)];
   const Eigen::Vector3d along = sample.G.col(axis);
-  // Half of what sin^2 changes by with its angle.
+  // Half of the derivative of sin^2 by its angle.
   const double by_b = math::sin(sample.q[1]) * math::cos(sample.q[1]);
   const double by_c = math::sin(sample.q[2]) * math::cos(sample.q[2]);
   const double a = rate[0];
@@ -73,7 +73,7 @@ LinkEquations::Row LinkEquations::row(const MotionEquations::Equation& equation)
     const auto i = static_cast<std::size_t>(j + kHalf);
     const int tick = middle + j;
     curved += bump_.curvature[i] * (at(tick).q - at(middle).q);
-    // By parts, what the lever changes by within the bump; both are small at its ends.
+    // By parts, the change of the lever within the bump; both are small at its ends.
     const Inertias rise = (levers_[static_cast<std::size_t>(tick + kLeverTicks)].col(axis) -
                            levers_[static_cast<std::size_t>(tick - kLeverTicks)].col(axis)) /
                           (2 * kLeverTicks * motion_.dt);
@@ -97,7 +97,7 @@ LinkEquations::Row LinkEquations::row(const MotionEquations::Equation& equation)
 
 LinkEquations::StepNoise LinkEquations::step_noise(
     const MotionEquations::Equation& equation) const {
-  // Second derivatives have nearly all of it; joints enter them by these factors.
+  // Second derivatives contain nearly all of the noise; joints enter them by these factors.
   Eigen::Matrix<double, 6, 3> factor = Eigen::Matrix<double, 6, 3>::Zero();
   factor.row(0) = at(equation.middle).G.inverse().row(equation.axis);
   const Inertias there = levers_[static_cast<std::size_t>(equation.middle)].col(equation.axis);

@@ -18,14 +18,15 @@ namespace {
 constexpr int kLinkConstants = LinkRows::kConstants, kLinkColumns = LinkRows::kCount;
 constexpr int kGainColumn = LinkRows::kGain, kAddedColumn = LinkRows::kAdded,
               kDelayColumn = LinkRows::kDelay;
-// What the smoothing of rates and signs costs beyond the statistics, of a mass [chosen: that of
-// motion at one place, kMethodMass of identify.cpp; identify_places_test counts what it holds].
+// Error of a mass due to the smoothing of rates and signs, beyond the statistics [chosen: that of
+// motion at one pose, kMethodMass of identify.cpp]. identify_places_test counts how often intervals
+// hold.
 constexpr double kLinkMethodMass = 0.0004;
 
 using LinkColumns = LinkRows::Columns;
 using MassTerms = Eigen::Matrix<double, 3, 6>;
 
-/// What mass and the five inertias multiply on the mass matrix' diagonal.
+/// Factors of mass and the five inertias on the mass matrix' diagonal.
 MassTerms masses_at(const driver::SerialArm& arm, const Eigen::Vector3d& q) {
   MotionSample there;
   there.q = q;
@@ -50,7 +51,7 @@ class LinkSearch {
           "The motions are too short or at places too few to tell links, or the tip stood still "
           "for most of them."};
     }
-    constexpr std::size_t kSome = 8;  // enough for a first look
+    constexpr std::size_t kSome = 8;  // enough for a first search
     double delay = coarse_delay([this](double at) { return residual_at(at, kSome); });
     for (int round = 0; round < 3; ++round) {
       table_.find_signs(solve(delay));
@@ -69,11 +70,11 @@ class LinkSearch {
     const Eigen::MatrixXd gains = table_.pushed(delay, stride),
                           all = table_.rows(gains, stride, true);
     const Eigen::VectorXd right = gains.rowwise().sum();
-    // Motors that come at the wrong time push less: of all that they do.
+    // Motors with a wrong delay explain less: relative to all of their force.
     return (right - all * table_.least(all, right)).squaredNorm() / right.squaredNorm();
   }
 
-  /// One fit with its covariance, the delay's column with it.
+  /// One fit with its covariance, including the delay's column.
   struct Raw {
     LinkColumns theta;
     Eigen::MatrixXd covariance;
@@ -109,7 +110,7 @@ class LinkSearch {
     return {1 + a, 1 + b, 1 - a - b};
   }
 
-  /// Gives all constants their scale: that of the known mass, or of the gains' geometric mean.
+  /// Scales all constants by the known mass, or by the gains' geometric mean.
   LinkFit scaled(const Raw& raw, double delay) const {
     LinkFit found;
     const Eigen::Vector3d gain = gains_of(raw.theta);
@@ -172,8 +173,8 @@ class LinkSearch {
     return found;
   }
 
-  /// What was seen of the mass at each place: by how much more of what mass takes there the rest
-  /// would be nothing.
+  /// Mass seen at each pose: the factor of the mass force there with which the residual would
+  /// vanish.
   std::vector<LinkFit::Place> places_of(const Raw& raw) const {
     std::vector<LinkFit::Place> places;
     Eigen::Index k = 0;
@@ -206,7 +207,7 @@ class LinkSearch {
     return places;
   }
 
-  /// The most that a mass may differ from the same axis' one at the first place, of it.
+  /// Max. difference between a mass and that of the same axis at the first pose, relative.
   double change_most(const LinkFit& fit) const {
     const auto masses = [&](std::size_t n) {
       const auto& samples = table_.motions()[n].samples;

@@ -66,7 +66,7 @@ void LinkRows::find_signs(const Columns& theta) {
         links_at_tip(theta.segment<kConstants>(LinkFit::kInertia), samples[samples.size() / 2]);
     const double coulomb = std::max(0.0, theta[LinkFit::kCoulomb]);
     const Eigen::Vector3d yields = masses.inverse().diagonal();
-    // Constants of no arm in the first rounds find no signs.
+    // In the first rounds, constants of no possible arm give no signs.
     if ((yields.array() > 0).all()) equations_[n].find_signs(Eigen::Vector3d(coulomb * yields));
   }
   put_frictions();

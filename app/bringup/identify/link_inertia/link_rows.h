@@ -11,9 +11,10 @@
 
 namespace thimble::bringup {
 
-/// The equations of several motions in one table, for least squares: the motors' forces by the arm
-/// file on one side, what they do on the other. Gains are seen by two differences of them, their
-/// sum being on that side. The motions must outlive it. Real-time: never from the servo thread.
+/// The equations of several motions in one table, for least squares: the motors' forces with the
+/// arm file's constants on one side, their effects on the other. Gains appear as two differences;
+/// their sum is on the force side. The motions must outlive it. Real-time: never from the servo
+/// thread.
 class LinkRows {
  public:
   static constexpr int kConstants = LinkEquations::kCount;
@@ -25,39 +26,40 @@ class LinkRows {
 
   explicit LinkRows(const std::vector<ArmMotion>& motions);
 
-  /// Finds where dry friction turns its sign, by what it slows each axis by.
+  /// Finds where dry friction changes its sign, from the deceleration that it causes along each
+  /// axis.
   void find_signs(const Columns& theta);
 
   /// Returns the motors' forces at a delay (s), joint by joint, of one equation in `stride`.
   Eigen::MatrixXd pushed(double delay, std::size_t stride = 1) const;
 
-  /// Returns the rows of what these forces do; without links their columns are zero.
+  /// Returns the rows of the effects of these forces; without links their columns are zero.
   Eigen::MatrixXd rows(const Eigen::MatrixXd& gains, std::size_t stride, bool with_links) const;
 
   /// Returns the constants of least squares; a column of zeros has the constant zero. The encoders'
-  /// steps make accelerations larger than they are, and masses smaller: what they add to the sums
-  /// is known, and taken off.
+  /// steps increase accelerations and so decrease masses. Their contribution to the sums is known,
+  /// and is subtracted.
   Columns least(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right) const;
 
-  /// Returns the force (N) that mass, links and known mass take in one equation.
+  /// Returns the force (N) of mass, links and known mass in one equation.
   double taken(Eigen::Index number, const Columns& theta) const {
     return fixed_.row(number).head<6>().dot(theta.head<6>()) +
            theta[kAdded] * fixed_(number, kAdded);
   }
-  /// Returns what the encoders' steps add to the square of that over a motion's equations of one
-  /// axis, N^2.
+  /// Returns the contribution of the encoders' steps to the square of that force over a motion's
+  /// equations of one axis, N^2.
   double noise_of(std::size_t motion, std::size_t axis, const Columns& theta) const {
     return theta.head<6>().dot(noise_at_[motion][axis] * theta.head<6>());
   }
 
   const std::vector<ArmMotion>& motions() const { return motions_; }
   const std::vector<MotionEquations>& equations() const { return equations_; }
-  /// Returns which half second of which motion each equation belongs to.
+  /// Returns the half second and motion of each equation, as a cluster number.
   const std::vector<int>& clusters() const { return clusters_; }
   std::size_t count() const { return count_; }
-  /// Returns a motion that was not seen well enough, or null.
+  /// Returns a motion with too many missing reports, or null.
   const ArmMotion* torn() const { return torn_; }
-  bool loaded() const { return loaded_; }  ///< With a known mass, some of them.
+  bool loaded() const { return loaded_; }  ///< Some motions have a known mass.
 
  private:
   void fill();
@@ -65,7 +67,7 @@ class LinkRows {
 
   const std::vector<ArmMotion>& motions_;
   std::vector<MotionEquations> equations_;
-  Eigen::MatrixXd fixed_;  // what does not hang on the delay
+  Eigen::MatrixXd fixed_;  // the part that is independent of the delay
   std::vector<int> clusters_;
   StepNoise noise_ = StepNoise::Zero();             // of the encoders' steps, in all equations
   std::vector<std::array<StepNoise, 3>> noise_at_;  // in those of each motion and axis

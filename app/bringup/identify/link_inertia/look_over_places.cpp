@@ -34,7 +34,7 @@ driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFil
     over.not_done = "not done, for something holds the tip, which was not led away from it.";
     return over;
   }
-  // What was recorded before ends here.
+  // The earlier recording ends here.
   bench.watch({});
   auto motions = record_places(bench, file, order, places_in(file, places), stop);
   if (!motions) {

@@ -10,23 +10,22 @@
 
 namespace thimble::bringup {
 
-/// Apparent mass of the tip at a place.
+/// Apparent mass of the tip at a pose.
 struct PlaceMass {
   Eigen::Vector3d p_W{0, 0, 0};  ///< m
-  std::array<Estimate, 3> mass;  ///< By the constants, along x, y and z of the base, kg.
-  std::array<Estimate, 3> seen;  ///< By the motion there alone, kg.
+  std::array<Estimate, 3> mass;  ///< From the constants, along x, y and z of the base, kg.
+  std::array<Estimate, 3> seen;  ///< From the motion there only, kg.
 };
 
-/// Returns the masses at the places that motions were about. Real-time: never from the servo
-/// thread.
+/// Returns the masses at the poses of the motions. Real-time: never from the servo thread.
 std::vector<PlaceMass> masses_at_places(const LinkFit& fit, const scene::ArmFile& file);
 
-/// Returns the apparent mass that a serial arm's file names at joint angles q (rad), along x, y and
-/// z of the base, kg. Real-time: never from the servo thread.
+/// Returns the apparent mass in a serial arm's file at joint angles q (rad), along x, y and z of
+/// the base, kg. Real-time: never from the servo thread.
 std::array<double, 3> named_masses(const scene::ArmFile& file, const Eigen::Vector3d& q);
 
-/// The least and the most apparent mass over the places of the workspace where the arm moves easily
-/// (`moves_easily`), looked at in steps of its extent over 8, kg.
+/// Min. and max. apparent mass over the poses of the workspace where the arm moves easily
+/// (`moves_easily`), on a grid of 1/8 of its extent, kg.
 struct MassRange {
   Estimate least, most;
 };
@@ -35,7 +34,7 @@ MassRange mass_range(const LinkFit& fit, const scene::ArmFile& file);
 /// Returns that range as a sentence.
 std::string range_text(const LinkFit& fit, const scene::ArmFile& file);
 
-/// Returns all as a table that people read.
+/// Returns all as a table for users.
 std::string place_table(const LinkFit& fit, const scene::ArmFile& file);
 
 }  // namespace thimble::bringup

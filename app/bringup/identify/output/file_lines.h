@@ -10,8 +10,8 @@
 
 namespace thimble::bringup {
 
-/// The lines of a YAML text in which the rest of a line can be exchanged, from where a value
-/// stands; all other lines stay as they are. Real-time: never from the servo thread.
+/// The lines of a YAML text in which the rest of a line can be replaced from the start of a value;
+/// all other lines are unchanged. Real-time: never from the servo thread.
 class FileLines {
  public:
   explicit FileLines(const std::string& text) {
@@ -28,7 +28,7 @@ class FileLines {
     return true;
   }
 
-  /// Puts a line behind that of a value, as far in as its key.
+  /// Adds a line after that of a value, with the indentation of its key.
   bool add_behind(const YAML::Node& value, const std::string& line) {
     const YAML::Mark mark = value.Mark();
     const auto at = static_cast<std::size_t>(mark.line);
@@ -39,7 +39,7 @@ class FileLines {
     return true;
   }
 
-  /// Puts lines before that of a key, as far in as it.
+  /// Adds lines before that of a key, with its indentation.
   bool add_before(const YAML::Node& key, const std::vector<std::string>& lines) {
     const YAML::Mark mark = key.Mark();
     const auto at = static_cast<std::size_t>(mark.line);

@@ -37,8 +37,8 @@ bool near_train(double value, double wanted) {
   return std::abs(value - wanted) <= 1e-4 * wanted;
 }
 
-/// Exchanges the torque constants, or adds them where the file leaves them to the program, and
-/// returns them.
+/// Replaces the torque constants, or adds them if the file leaves them to the program, and returns
+/// them.
 driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& before,
                                  const ArmConstants& found, const IdentifiedMark& mark,
                                  FileLines& lines, std::array<double, 3>& torque) {
@@ -69,8 +69,8 @@ driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& b
   return bad_form("joints.torque_constant");
 }
 
-/// Exchanges the delays. The bus and the converter of a Falcon are code: what was measured of them
-/// is a remark.
+/// Replaces the delays. The bus and the converter of a Falcon are code, so their measured delay is
+/// written as a comment.
 bool put_delay(const YAML::Node& simulation, const scene::ArmFile& before, const Estimate& delay,
                const IdentifiedMark& mark, FileLines& lines) {
   if (before.is<driver::DeltaArm>()) {
@@ -80,7 +80,7 @@ bool put_delay(const YAML::Node& simulation, const scene::ArmFile& before, const
   }
   const YAML::Node wire = simulation["wire"];
   if (!wire || !wire["delay_in"] || !wire["delay_out"]) return false;
-  // Motion shows the sum of both ways alone.
+  // Motion only shows the sum of both delays.
   const double in =
       std::min(delay.value, 1e-9 * static_cast<double>(before.simulated.wire.delay_in_ns));
   const double out = std::round(1e9 * (delay.value - in)) * 1e-9;
@@ -94,7 +94,7 @@ struct TrainConstant {
   const char* key;
   const char* unit;
   Estimate CableConstants::*member;
-  bool always = false;  // the others only where there is some, or was
+  bool always = false;  // the others only if there is some, or was
 
   std::string values(const std::array<CableConstants, 3>& cables) const {
     return fmt::format("[{:.5g}, {:.5g}, {:.5g}]", (cables[0].*member).value,
@@ -116,7 +116,7 @@ constexpr TrainConstant kTrainConstants[] = {
     {"viscous", "N m s/rad", &CableConstants::viscous},
     {"coulomb", "N m", &CableConstants::coulomb}};
 
-/// Returns the constants that are written.
+/// Returns the constants to write.
 std::vector<TrainConstant> train_constants(const YAML::Node& train,
                                            const std::array<CableConstants, 3>& cables) {
   std::vector<TrainConstant> all;
@@ -129,14 +129,14 @@ std::vector<TrainConstant> train_constants(const YAML::Node& train,
   return all;
 }
 
-/// Exchanges stiffness, inertia, damping, play and friction of the drive train, or adds the section
-/// before `tip`.
+/// Replaces stiffness, inertia, damping, backlash and friction of the drive train, or adds the
+/// section before `tip`.
 bool put_train(const YAML::Node& simulation, const std::array<CableConstants, 3>& cables,
                const IdentifiedMark& mark, FileLines& lines) {
   const YAML::Node train = simulation["drive_train"];
   const std::vector<TrainConstant> constants = train_constants(train, cables);
   if (train && train.Style() == YAML::EmitterStyle::Flow) {
-    // On one line: the marks of all that it says behind it.
+    // On one line: the marks of all its values at the end.
     YAML::Node changed = YAML::Clone(train);
     std::string marks;
     for (const TrainConstant& constant : constants) {
@@ -200,14 +200,14 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   if (!put(tip["mass"], found.mass.value, "kg, apparent", found.mass.plus_minus)) {
     return bad_form("simulation.tip.mass");
   }
-  // An arm has no friction below zero, whatever the fit says.
+  // Friction of an arm is never negative, whatever the fit gives.
   const double viscous = std::max(0.0, found.viscous.value);
   const double coulomb = std::max(0.0, found.coulomb.value);
   if (!put(tip["viscous"], viscous, "N s/m", found.viscous.plus_minus) ||
       !put(tip["coulomb"], coulomb, "N per axis", found.coulomb.plus_minus)) {
     return bad_form("simulation.tip friction");
   }
-  // A weight that cannot be told from none is none.
+  // A weight that does not differ significantly from zero is omitted.
   const bool has_weight = static_cast<bool>(tip["weight"]);
   const bool weighs = found.weight.value > found.weight.plus_minus;
   const double weight = weighs ? found.weight.value : 0;
@@ -263,7 +263,7 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
 namespace {
 
 driver::Result<std::string> text_of(const std::filesystem::path& arm_file) {
-  constexpr std::uint64_t kMaxBytes = 4'000'000;  // as of every arm file
+  constexpr std::uint64_t kMaxBytes = 4'000'000;  // as for every arm file
   auto content = driver::read_file(arm_file, kMaxBytes);
   if (!content) {
     return driver::Error{"The arm file " + arm_file.string() + ": " + content.error().message};

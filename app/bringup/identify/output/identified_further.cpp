@@ -17,16 +17,16 @@
 namespace thimble::bringup {
 namespace {
 
-// Width over RMS of what is evenly spread.
+// Ratio of width to RMS of a uniform distribution.
 const double kWidth = std::sqrt(12.0);
-// s, RMS below which nothing is written [chosen: a hundredth of what a tick would show].
+// s, RMS below which nothing is written [chosen: a hundredth of the visible effect in a tick].
 constexpr double kJitterLeast = 1e-6;
 
 std::int64_t ns(double s) {
   return std::llround(1e9 * s);
 }
 
-/// Puts further constants into the lines of one file.
+/// Writes further constants into the lines of one file.
 class Further {
  public:
   Further(const YAML::Node& root, const scene::ArmFile& file, const Identified& found,
@@ -40,7 +40,7 @@ class Further {
 
   bool put() { return put_link() && put_saturation() && tell_friction() && put_train(); }
 
-  /// Returns whether a file that was read again says what was put.
+  /// Returns whether a file that was read back has the written values.
   bool agrees(const scene::ArmFile& read) const {
     const auto& firmware = read.simulated.firmware;
     const auto& wire = read.simulated.wire;
@@ -66,7 +66,7 @@ class Further {
     if (file_.is<driver::DeltaArm>()) return true;
     double jitter_error = 0;
     const bool answers = found_.watchdog && found_.watchdog->last.end == WatchdogEnd::kAnswersOnly;
-    // One that speaks when it is spoken to is as quick as whoever asks.
+    // The report rate of an arm that sends only when asked depends on the host.
     const bool timed =
         found_.reports && found_.reports->period.value > 0 && !found_.reports->blurred && !answers;
     if (timed) {
@@ -89,11 +89,11 @@ class Further {
     return !timed || put_jitter(wire, jitter_error);
   }
 
-  /// The delay was seen with the jitter in it, so a wire without the key gets a line to be put in.
+  /// The measured delay includes the jitter, so a wire without the key gets a line to add it.
   bool put_jitter(const YAML::Node& wire, double jitter_error) {
     const std::string spread = marked(jitter_, "s, evenly spread", jitter_error, mark_);
     if (wire["jitter"]) {
-      // Half of it is in the mean of each way.
+      // Half of it is in the mean of each direction.
       const Estimate& delay = found_.constants.delay;
       const double in = 1e-9 * static_cast<double>(file_.simulated.wire.delay_in_ns);
       const double out = std::max(0.0, delay.value - std::min(delay.value, in) - jitter_);
@@ -129,8 +129,8 @@ class Further {
                     "A, of all motors the least that was seen (" + all + ")", error);
   }
 
-  /// Puts cogging, ripple and friction of joints. The drive train of a delta arm is not simulated:
-  /// of these remarks.
+  /// Writes cogging, ripple and friction of joints. The drive train of a delta arm is not
+  /// simulated, so these are comments.
   bool put_train() {
     if (!file_.is<driver::DeltaArm>()) {
       const YAML::Node train = simulation_["drive_train"];
@@ -184,7 +184,8 @@ class Further {
     return true;
   }
 
-  /// Returns the drive by whose constants torques were asked for: before they were exchanged.
+  /// Returns the drive with the constants used for the requested torques: before they were
+  /// replaced.
   driver::MotorDrive asked_with(std::size_t i) const {
     driver::MotorDrive drive = file_.model.drives[i];
     if (exchanged_) drive.torque_constant /= found_.constants.gain[i].value;
@@ -192,12 +193,12 @@ class Further {
   }
 
   YAML::Node simulation_;
-  bool exchanged_;  // the torque constants: those of some arms are built in
+  bool exchanged_;  // whether the torque constants were; those of some arms are built in
   const scene::ArmFile& file_;
   const Identified& found_;
   const IdentifiedMark& mark_;
   FileLines& lines_;
-  double period_ = 0, watchdog_ = 0, jitter_ = 0;  // s, as the file says them then
+  double period_ = 0, watchdog_ = 0, jitter_ = 0;  // s, as written to the file
 };
 
 driver::Error bad_form() {

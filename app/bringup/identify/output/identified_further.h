@@ -8,11 +8,11 @@
 
 namespace thimble::bringup {
 
-/// Returns the text that `identified_text` made with what else was found of the arm, each with its
-/// mark: period of the reports, watchdog of the firmware, saturation of the amplifiers, cogging and
-/// ripple of the motors, and the wire's jitter where the file has that key. Friction that differs
-/// by direction, which no key holds, and jitter that the file does not name are told in comments.
-/// Fails as `identified_text` does. Real-time: never from the servo thread.
+/// Adds further results to the text of `identified_text`, each with its mark. They are report
+/// period, firmware watchdog, saturation of the amplifiers, cogging and ripple of the motors, and
+/// the wire's jitter if the file has that key. Comments give friction that differs by direction,
+/// which no key holds, and jitter that the file does not name. Fails like `identified_text`.
+/// Real-time: never from the servo thread.
 driver::Result<std::string> further_text(const std::string& text, const Identified& found,
                                          const IdentifiedMark& mark);
 

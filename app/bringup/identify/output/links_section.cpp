@@ -12,7 +12,7 @@
 namespace thimble::bringup {
 namespace {
 
-/// The keys of a section with their values, each marked.
+/// The keys of a section with their values, each with its mark.
 std::vector<std::pair<std::string, std::string>> entries_of(const LinkConstants& links,
                                                             const IdentifiedMark& mark) {
   const auto& inertia = links.inertia;
@@ -33,7 +33,7 @@ std::vector<std::pair<std::string, std::string>> entries_of(const LinkConstants&
   return all;
 }
 
-/// One line of all of them, the marks behind it.
+/// One line with all of them, the marks at its end.
 std::string line_of(const std::vector<std::pair<std::string, std::string>>& entries) {
   std::string values, marks;
   for (const auto& [key, text] : entries) {

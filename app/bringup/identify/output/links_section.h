@@ -10,14 +10,14 @@
 
 namespace thimble::bringup {
 
-/// Puts the links that were seen into the section `links` of `simulation`, or adds it before `tip`.
-/// Where links were sought and none seen, a section that is there says so and names none. Fails if
-/// its form cannot be changed. Real-time: never from the servo thread.
+/// Writes the links that were seen into the section `links` of `simulation`, or adds it before
+/// `tip`. If links were searched for and none seen, the values of an existing section become zero.
+/// Fails if its form cannot be changed. Real-time: never from the servo thread.
 driver::Result<void> put_links(const YAML::Node& simulation, const ArmConstants& found,
                                const IdentifiedMark& mark, FileLines& lines);
 
-/// Returns whether a file that was read again names the links that were put. Real-time: never from
-/// the servo thread.
+/// Returns whether a file that was read back names the written links. Real-time: never from the
+/// servo thread.
 bool reads_links(const device_sim::LinkSettings& read, const ArmConstants& found);
 
 }  // namespace thimble::bringup

@@ -7,8 +7,8 @@
 namespace thimble::bringup {
 namespace {
 
-/// A friction joint by joint; none has any below zero, and what was not seen is zero, its interval
-/// what would have been.
+/// A friction joint by joint. None is negative; one that was not seen is zero, with its detection
+/// limit as interval.
 std::array<Estimate, 3> written(const Identified& found, bool seen, bool dry) {
   std::array<Estimate, 3> all;
   for (std::size_t i = 0; i < 3; ++i) {

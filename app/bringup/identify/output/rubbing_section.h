@@ -11,14 +11,13 @@
 
 namespace thimble::bringup {
 
-/// Returns what is written of the friction of a rigid arm's joints. Where it was looked for and
-/// none was seen, a file whose `train` names some says zero. Real-time: never from the servo
-/// thread.
+/// Returns the keys for the friction of a rigid arm's joints. If it was searched for and none seen,
+/// a file whose `train` names some gets zero. Real-time: never from the servo thread.
 std::vector<TrainKey> rubbing_keys(const YAML::Node& train, const Identified& found,
                                    const IdentifiedMark& mark);
 
-/// Returns whether a file that was read again names what was put. Real-time: never from the servo
-/// thread.
+/// Returns whether a file that was read back names the written values. Real-time: never from the
+/// servo thread.
 bool reads_rubbing(const device_sim::DriveTrainSettings& read, const Identified& found);
 
 }  // namespace thimble::bringup

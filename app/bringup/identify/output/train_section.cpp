@@ -19,7 +19,7 @@ bool put_train_keys(const YAML::Node& simulation, const std::vector<TrainKey>& k
   if (keys.empty()) return true;
   const YAML::Node train = simulation["drive_train"];
   if (train && train.Style() == YAML::EmitterStyle::Flow) {
-    // On one line: the remarks of all that it says behind it.
+    // On one line: the comments of all its values at the end.
     YAML::Node changed = YAML::Clone(train);
     std::string remarks;
     for (const TrainKey& key : keys) {

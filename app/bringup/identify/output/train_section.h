@@ -12,16 +12,16 @@
 
 namespace thimble::bringup {
 
-/// One key of the section `drive_train`: its value, and what stands behind it.
+/// One key of the section `drive_train`: its value, and the comment after it.
 struct TrainKey {
   std::string name, value, remark;
 
-  /// Makes one that has a value for each motor or joint.
+  /// Makes a key with a value for each motor or joint.
   static TrainKey of(const std::string& name, const std::string& unit,
                      const std::array<Estimate, 3>& values, const IdentifiedMark& mark);
 };
 
-/// Puts keys into the section `drive_train` of `simulation`, or adds it before `tip`. Answers
+/// Writes keys into the section `drive_train` of `simulation`, or adds it before `tip`. Returns
 /// whether the file's form can be changed. Real-time: never from the servo thread.
 bool put_train_keys(const YAML::Node& simulation, const std::vector<TrainKey>& keys,
                     FileLines& lines);

@@ -16,7 +16,7 @@ struct WaveKey {
   std::array<Estimate, 3> values;
 };
 
-/// What the keys say; a wave that was not seen is none, and its interval what would have been.
+/// The values of the keys; a wave that was not seen is zero, with its detection limit as interval.
 std::vector<WaveKey> keys_of(const Identified& found) {
   const MotorWaves& waves = found.waves;
   std::vector<WaveKey> keys{{"cogging", "N m at the motor", {}},

@@ -11,14 +11,13 @@
 
 namespace thimble::bringup {
 
-/// Returns what is written of cogging and ripple of the motors: those that were seen. Where they
-/// were looked for and none was seen, a file whose `train` names some says zero. Real-time: never
-/// from the servo thread.
+/// Returns the keys for the cogging and ripple that were seen. If they were searched for and none
+/// seen, a file whose `train` names some gets zero. Real-time: never from the servo thread.
 std::vector<TrainKey> wave_keys(const YAML::Node& train, const Identified& found,
                                 const IdentifiedMark& mark);
 
-/// Returns whether a file that was read again names what was put. Real-time: never from the servo
-/// thread.
+/// Returns whether a file that was read back names the written values. Real-time: never from the
+/// servo thread.
 bool reads_waves(const device_sim::DriveTrainSettings& read, const Identified& found);
 
 }  // namespace thimble::bringup

@@ -8,7 +8,7 @@
 namespace thimble::bringup {
 namespace {
 
-/// The sums of a fit, with an equation of its own for each column of zeros.
+/// The sums of a fit, with a trivial equation for each column of zeros.
 Eigen::MatrixXd normal_of(const Eigen::MatrixXd& rows) {
   Eigen::MatrixXd normal = rows.transpose() * rows;
   for (Eigen::Index k = 0; k < normal.cols(); ++k) {

@@ -5,26 +5,25 @@
 
 namespace thimble::bringup {
 
-/// Returns the covariance of least squares whose residuals hang together within clusters, by the
-/// sandwich of their scores. A column of zeros was not asked for: its variance is zero.
-/// `clusters`: which cluster each row belongs to, one after the other. Real-time: never from the
-/// servo thread.
+/// Returns the covariance of least squares whose residuals are correlated within clusters, by the
+/// sandwich of their scores. A column of zeros was not requested: its variance is zero. `clusters`:
+/// cluster of each row, in ascending order. Real-time: never from the servo thread.
 Eigen::MatrixXd clustered_covariance(const Eigen::MatrixXd& rows, const Eigen::VectorXd& rest,
                                      const std::vector<int>& clusters);
 
-/// What further columns add to a fit by least squares.
+/// Effect of further columns on a fit by least squares.
 struct FurtherColumns {
-  Eigen::VectorXd change;      ///< What the rows' own constants change by.
-  Eigen::VectorXd factor;      ///< Of each further column.
-  double left = 1;             ///< Share of the residual's sum of squares that is left with them.
-  Eigen::MatrixXd covariance;  ///< Of the factors, by clusters.
+  Eigen::VectorXd change;      ///< Change of the rows' own constants.
+  Eigen::VectorXd factor;      ///< Factor of each further column.
+  double left = 1;             ///< Remaining share of the residual's sum of squares.
+  Eigen::MatrixXd covariance;  ///< Covariance of the factors, by clusters.
   double better =
-      0;  ///< By how much the Bayesian information prefers to have them; above 0: it does.
+      0;  ///< Gain of the Bayesian information criterion; above 0: the columns are accepted.
 };
 
-/// Fits rows and further columns together to what the rows leave. The information is that of Wald's
-/// statistic, less what so many constants cost for so many rows, so that residuals which hang
-/// together count no more than they tell. Real-time: never from the servo thread.
+/// Fits rows and further columns together to the residual of the rows. The criterion uses Wald's
+/// statistic, less the penalty for this number of constants and rows, so that correlated residuals
+/// count only for the information in them. Real-time: never from the servo thread.
 FurtherColumns fit_further(const Eigen::MatrixXd& rows, const Eigen::VectorXd& rest,
                            const Eigen::MatrixXd& further, const std::vector<int>& clusters);
 

@@ -6,7 +6,7 @@
 
 namespace thimble::bringup {
 
-/// Finds roughly where `residual_at(delay)` is least, s: in steps of half a millisecond.
+/// Returns a coarse minimum of `residual_at(delay)`, s, in steps of half a millisecond.
 template <class Residual>
 double coarse_delay(const Residual& residual_at) {
   double best = 0, least = residual_at(0.0);
@@ -17,7 +17,7 @@ double coarse_delay(const Residual& residual_at) {
   return best;
 }
 
-/// Finds the least of `residual_at(delay)` within half a millisecond of a delay (s) by golden
+/// Returns the minimum of `residual_at(delay)` within half a millisecond of a delay (s) by golden
 /// sections, to `within` (s).
 template <class Residual>
 double refined_delay(double about, double within, const Residual& residual_at) {

@@ -8,16 +8,17 @@
 
 namespace thimble::bringup {
 
-/// What a fit leaves of each equation, and how that hangs on its constants.
+/// Residual of each equation, and its derivatives by the constants.
 struct FitResidual {
-  /// d left / d constant, an equation each; the last column is the delay's (per s). Columns of
-  /// constants that are exactly zero, which were not asked for, are zero.
+  /// d residual / d constant, an equation each; the last column is the delay's (per s). Columns of
+  /// constants that are exactly zero, which were not requested, are zero.
   Eigen::MatrixXd rows;
   Eigen::VectorXd rest;       ///< m/s^2
-  std::vector<int> clusters;  ///< Which half second each equation belongs to.
+  std::vector<int> clusters;  ///< Half second of each equation, as a cluster number.
 };
 
-/// Returns what the constants and the delay of `fit` leave. Real-time: never from the servo thread.
+/// Returns the residuals of the constants and the delay of `fit`. Real-time: never from the servo
+/// thread.
 FitResidual residual_of(const MotionEquations& equations, const PerMass& fit);
 
 }  // namespace thimble::bringup

@@ -7,8 +7,8 @@
 
 namespace thimble::bringup {
 
-/// A motion, the constants that were fitted to it, and what these leave: what further constants are
-/// looked for in. The motion must outlive it. Real-time: never from the servo thread.
+/// A motion, the constants fitted to it, and their residuals, in which further constants are
+/// searched for. The motion must outlive it. Real-time: never from the servo thread.
 struct FittedMotion {
   PerMass fit;
   MotionEquations equations;

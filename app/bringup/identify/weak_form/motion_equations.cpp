@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kHop = 15;         // ticks between bumps
 constexpr int kSmooth = 10;      // ticks to either side, for the sign of a velocity
-constexpr double kSlow = 0.003;  // m/s, below which the sign of a velocity is not known
-constexpr int kSlowMost = 3;  // ticks that an axis may be so slow, which turns and does not stick
+constexpr double kSlow = 0.003;  // m/s, below which the sign of a velocity is unknown
+constexpr int kSlowMost = 3;     // ticks at such speed of an axis that reverses and does not stick
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void MotionEquations::find_velocities() {
 }
 
 void MotionEquations::find_signs(double coulomb) {
-  // Where one axis turns, its own friction alone changes.
+  // When one axis reverses, only its own friction changes.
   find_signs(Eigen::Vector3d(std::max(0.0, coulomb) * masses_.inverse().diagonal()));
 }
 
@@ -128,7 +128,7 @@ void MotionEquations::gather() {
 }
 
 void MotionEquations::sum_frictions() {
-  // Dry friction hangs on where the signs turn, nothing here on the delay.
+  // Dry friction depends on the times of reversal; nothing here depends on the delay.
   for (Equation& equation : equations_) {
     const int axis = equation.axis, middle = equation.middle;
     equation.viscous = equation.coulomb = equation.stiffness = 0;
@@ -155,7 +155,7 @@ MotionEquations::Pushed MotionEquations::sum_of(std::size_t number, int late,
     const Eigen::Vector3d rise = bump_.value[i + 1] * next.G.col(axis) - from;
     sums.from += tau.cwiseProduct(from);
     sums.rise += tau.cwiseProduct(rise);
-    // That of accelerations moves little within a tick.
+    // The terms of accelerations change little within a tick.
     if (with_inertia_) sums.inert -= at(middle + j - late).ddq.cwiseProduct(from + 0.5 * rise);
   }
   sums.summed = true;
@@ -163,7 +163,7 @@ MotionEquations::Pushed MotionEquations::sum_of(std::size_t number, int late,
 }
 
 const MotionEquations::Pushed& MotionEquations::pushed_late(std::size_t number, int late) const {
-  // A line search asks for the same ticks again and again, so each is summed up once.
+  // A line search uses the same ticks repeatedly, so each sum is computed once.
   auto& all = pushed_[static_cast<std::size_t>(late)];
   if (all.empty()) all.resize(equations_.size());
   Pushed& sums = all[number];

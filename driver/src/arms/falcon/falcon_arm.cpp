@@ -4,8 +4,8 @@ namespace thimble::driver::falcon {
 
 bool PacketWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
   const auto packet = decode_arm_packet(bytes);
-  // A leg that is not homed counts from anywhere. The arm was homed before it was opened, so it has
-  // lost its home since, and where its tip is nobody knows.
+  // A leg that is not homed counts from an arbitrary value. The arm was homed before it was opened,
+  // so it has lost its home since, and its tip position is unknown.
   if (!packet || packet->homed != kAllHomed) return false;
   for (std::size_t i = 0; i < 3; ++i) reading.counts[i] = packet->counts[i];
   reading.auxiliary = {packet->homed, 0, 0};
@@ -15,7 +15,8 @@ bool PacketWire::decode(std::span<const std::byte> bytes, ArmReading& reading) n
 
 std::size_t PacketWire::encode(const std::array<std::int16_t, 3>& motors,
                                std::span<std::byte, kReportCapacity> bytes) noexcept {
-  // Homing mode stays on: libnifalcon's users leave it on, and the arm keeps reporting its legs.
+  // Homing mode stays on, as in programs based on libnifalcon, and the arm keeps reporting its
+  // legs.
   const auto packet = encode_host_packet({.motors = motors, .lights = kGreenLight | kHomingMode});
   std::copy(packet.begin(), packet.end(), bytes.begin());
   return packet.size();

@@ -22,7 +22,7 @@ Error line_lost(const char* step) {
                "). Unplug the arm from USB and from power, plug it in again and retry."};
 }
 
-/// Reads until `wanted` bytes are there or a read brings nothing; tells how many came.
+/// Reads until `wanted` is full or a read returns nothing; returns the number of bytes.
 std::size_t read_all(SerialLine& line, std::span<std::byte> wanted, int timeout_ms) {
   std::size_t size = 0;
   while (size < wanted.size()) {
@@ -33,8 +33,8 @@ std::size_t read_all(SerialLine& line, std::span<std::byte> wanted, int timeout_
   return size;
 }
 
-/// Returns whether `answer` comes as the end of what the line brings. The converter may bring stray
-/// bytes from before (a zero is known [S]), so the answer need not be the beginning.
+/// Returns whether the bytes that the line delivers end with `answer`. The converter may deliver
+/// stray earlier bytes (a zero is known [S]), so `answer` need not be at the beginning.
 bool answers(SerialLine& line, std::span<const std::byte> answer, int timeout_ms) {
   std::array<std::byte, 64> heard{};
   std::size_t size = 0;
@@ -52,7 +52,8 @@ void pause(int ms) {
   std::this_thread::sleep_for(std::chrono::milliseconds(ms));
 }
 
-/// Sends every block; tells how many bytes came back right, which is all of them on success.
+/// Sends every block; returns the number of bytes echoed correctly, which is all of them on
+/// success.
 std::size_t send_blocks(SerialLine& line, std::span<const std::byte> firmware, int timeout_ms) {
   std::array<std::byte, kBlockSize> echo{};
   for (std::size_t sent = 0; sent < firmware.size();) {
@@ -97,7 +98,8 @@ Result<void> enter_run_mode(SerialLine& line) {
 }
 
 bool firmware_answers(SerialLine& line, const BootSettings& settings) {
-  // The first packet after a mode change may meet a half-read one; a second one settles it.
+  // The first packet after a mode change may follow an incomplete one; a second packet resolves
+  // that.
   for (int attempt = 0; attempt < 3; ++attempt) {
     if (home_once(line, 0, settings).answered) return true;
   }
@@ -143,7 +145,7 @@ Result<UploadReport> upload_firmware(SerialLine& line, std::span<const std::byte
   std::string why = "no attempt was made";
   while (report.attempts < settings.block_attempts_max) {
     ++report.attempts;
-    // A loader that is in an unknown state is reset; only then is the next byte surely the first.
+    // The loader may be in an unknown state. After a reset the next byte is certainly the first.
     if (auto entered = enter_boot_loader(line, settings); !entered) return entered.error();
     const std::size_t sent = send_blocks(line, firmware, settings.answer_timeout_ms);
     if (sent < firmware.size()) {
@@ -181,7 +183,7 @@ HomingState home_once(SerialLine& line, std::uint8_t homed_before, const BootSet
                                          (homed_before == kAllHomed ? kGreenLight : kRedLight));
   HomingState state;
   if (!line.write(encode_host_packet(ask))) return state;
-  // Skip what is not the beginning of a packet, then take sixteen bytes.
+  // Skip bytes before the beginning of a packet, then take sixteen bytes.
   std::array<std::byte, kPacketSize> packet{};
   for (std::size_t skipped = 0; skipped < 4 * kPacketSize; ++skipped) {
     if (read_all(line, std::span(packet).first(1), settings.answer_timeout_ms) != 1) return state;

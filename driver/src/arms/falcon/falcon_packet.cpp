@@ -54,7 +54,7 @@ Packet encode(const Parts& parts) noexcept {
 
 std::optional<ArmPacket> decode_arm_packet(std::span<const std::byte> bytes) noexcept {
   const auto parts = decode(bytes);
-  // Bit 7 of the flags belongs to nothing that is known, so a packet that has it is damaged.
+  // Bit 7 of the flags has no known meaning, so a packet with it is damaged.
   if (!parts || parts->flags > 0x7f) return std::nullopt;
   return ArmPacket{.counts = parts->numbers,
                    .buttons = static_cast<std::uint8_t>(parts->flags & 0x0f),

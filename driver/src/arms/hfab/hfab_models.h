@@ -11,9 +11,9 @@
 
 namespace thimble::driver::hfab {
 
-// The arms that Haptikfabriken boards drive, as their host library has them [S forsslund/hfabapi
-// hfab_math.h, hfab_api.cpp]: the number in each text line says which it is. All counters are zero
-// in the home pose.
+// The arms that Haptikfabriken boards drive, with the constants of their host library [S
+// forsslund/hfabapi hfab_math.h, hfab_api.cpp]. The number in each text line identifies the arm.
+// All counters are zero in the home pose.
 
 /// Returns the data of the Polhem (its third edition, "polhem_v3").
 THIMBLE_EXPORT JointModel<LinkageArm> polhem_model() noexcept;
@@ -30,16 +30,16 @@ enum class WoodyBoard : std::uint8_t {
 
 /// Returns the data of the WoodenHaptics on one of its boards.
 ///
-/// Joint A of the mbed board is minus its encoder, and its motor is positive: both published
+/// Joint A of the mbed board is minus its encoder, and its motor is positive. Both published
 /// clients of the 8-byte reports agree on that [S CHAI3D CWoodenDevice.cpp, haptikfabrikenapi
 /// fsusbhapticdevicethread.cpp and kinematics.cpp]. On text lines both are positive [S hfabapi].
-/// Encoders B and C are reversed everywhere. Motors B and C are reversed as CHAI3D and hfabapi have
-/// them; haptikfabrikenapi drives them positive on the mbed board, so that sources contradict each
-/// other there and only `thimble feel-check` can tell. Real-time: safe.
+/// Encoders B and C are reversed everywhere. Motors B and C are reversed as in CHAI3D and hfabapi.
+/// haptikfabrikenapi drives them positive on the mbed board, so the sources contradict each other
+/// there and only `thimble feel-check` can decide. Real-time: safe.
 THIMBLE_EXPORT JointModel<SerialArm> woody_model(WoodyBoard board = WoodyBoard::kMbed) noexcept;
 
-/// Makes the arm of a text line's model number, or nothing for a number that nobody knows.
-/// Real-time: never from the servo thread.
+/// Makes the arm of a text line's model number; null for an unknown number. Real-time: never from
+/// the servo thread.
 std::unique_ptr<const Arm> make_line_arm(std::int32_t model_number);
 
 }  // namespace thimble::driver::hfab

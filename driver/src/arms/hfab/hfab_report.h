@@ -11,60 +11,59 @@
 
 namespace thimble::driver::hfab {
 
-// The 14-byte reports of the Haptikfabriken arms (Polhem v2, 16c0:0486), little endian, as read in
+// The 14-byte reports of the Haptikfabriken arms (Polhem v2, 16c0:0486), little endian. Source:
 // their published firmware and host library (see app/guide/pages/driver.md, mark [S]). Boards built
 // on the Teensy pad both to 64 bytes. Everything here is Real-time: safe.
 
 inline constexpr std::size_t kReportSize = 14;
 inline constexpr std::size_t kPaddedReportSize = 64;
 
-/// What the arm sends: counters of three motor and three gimbal encoders, and a flag word.
+/// A report from the arm: counters of three motor and three gimbal encoders, and a flag word.
 struct InputReport {
   std::array<std::int16_t, 6> counts{};  ///< Encoders a to f.
-  /// Bit 0: the calibration button was pressed and no preset came since. The other bits are
+  /// Bit 0: the calibration button was pressed and no preset has come since. The other bits are
   /// unknown.
   std::int16_t info = 0;
 
   friend bool operator==(const InputReport&, const InputReport&) = default;
 };
 
-/// What an output report asks of the firmware.
+/// Command of an output report.
 enum class Command : std::int16_t {
   kDrive = 0,  ///< Use the currents. (Every value but 1 means this; the host library sends 0 or 2.)
   kPreset = 1,  ///< Set counters a, b, c from the attributes and d, e, f from the current fields.
 };
 
-/// What the arm takes: motor currents, or a preset for its counters.
+/// A report from the host: motor currents, or a preset for the counters.
 struct OutputReport {
   std::array<std::int16_t, 3> current_mA{};  ///< Currents of the motors, mA.
   std::int16_t command = 0;                  ///< A Command.
-  std::array<std::int16_t, 3> attributes{};  ///< What kPreset sets counters by.
+  std::array<std::int16_t, 3> attributes{};  ///< Counter values for kPreset.
 
   friend bool operator==(const OutputReport&, const OutputReport&) = default;
 };
 
-/// Returns whether as many bytes may be a report. Real-time: safe.
+/// Returns whether `size` is a possible length of a report. Real-time: safe.
 constexpr bool is_report_size(std::size_t size) noexcept {
   return size == kReportSize || size == kPaddedReportSize;
 }
 
-// All of it is known where it is called, so that what is read or written stays in registers and
-// does not go through memory word by word, to be read there as a whole, for which a processor
-// waits.
+// The functions below are inline so that values stay in registers. Written to memory word by word
+// and read back as a whole, they would stall the processor.
 
-/// Reads what the arm sent. Precondition: the bytes may be a report (is_report_size).
+/// Reads a report of the arm. Precondition: the bytes may be a report (is_report_size).
 inline InputReport read_input(std::span<const std::byte> bytes) noexcept {
   return {.counts = {get_word(bytes, 0), get_word(bytes, 1), get_word(bytes, 2), get_word(bytes, 3),
                      get_word(bytes, 4), get_word(bytes, 5)},
           .info = get_word(bytes, 6)};
 }
-/// Reads what the host sent. Precondition: the bytes may be a report (is_report_size).
+/// Reads a report of the host. Precondition: the bytes may be a report (is_report_size).
 inline OutputReport read_output(std::span<const std::byte> bytes) noexcept {
   return {.current_mA = {get_word(bytes, 0), get_word(bytes, 1), get_word(bytes, 2)},
           .command = get_word(bytes, 3),
           .attributes = {get_word(bytes, 4), get_word(bytes, 5), get_word(bytes, 6)}};
 }
-/// Writes what the arm sends.
+/// Writes a report of the arm.
 inline void write_input(const InputReport& report,
                         std::span<std::byte, kReportSize> bytes) noexcept {
   const auto& [a, b, c, d, e, f] = report.counts;
@@ -73,7 +72,7 @@ inline void write_input(const InputReport& report,
   put_word(bytes, 5, f);
   put_word(bytes, 6, report.info);
 }
-/// Writes what the host sends.
+/// Writes a report of the host.
 inline void write_output(const OutputReport& report,
                          std::span<std::byte, kReportSize> bytes) noexcept {
   const auto& [a, b, c] = report.current_mA;
@@ -81,8 +80,8 @@ inline void write_output(const OutputReport& report,
   for (std::size_t i = 0; i < 3; ++i) put_word(bytes, 4 + i, report.attributes[i]);
 }
 
-/// The same as reports of their own: what is read is empty unless it is 14 bytes, or 64 of which
-/// the first 14 count.
+/// Checked versions of the functions above. Decoding is empty unless the input is 14 bytes, or 64
+/// bytes, of which the first 14 are used.
 inline std::optional<InputReport> decode_input(std::span<const std::byte> bytes) noexcept {
   if (!is_report_size(bytes.size())) return std::nullopt;
   return read_input(bytes);
@@ -102,7 +101,7 @@ inline std::array<std::byte, kReportSize> encode_output(const OutputReport& repo
   return bytes;
 }
 
-/// Pads a report of either direction with zeros, as boards built on the Teensy send and take it.
+/// Pads a report of either direction with zeros, as boards built on the Teensy send and accept it.
 inline std::array<std::byte, kPaddedReportSize> pad(
     const std::array<std::byte, kReportSize>& report) noexcept {
   std::array<std::byte, kPaddedReportSize> padded{};

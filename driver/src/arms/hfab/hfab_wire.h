@@ -8,20 +8,20 @@
 
 namespace thimble::driver::hfab {
 
-/// How lines of either direction stand out of the stream.
+/// Framing of lines of either direction in the byte stream.
 inline constexpr Framing kLineFraming{
     .begin = std::byte{'['}, .end = std::byte{']'}, .size_max = kLineCapacity};
 
-/// The text protocol as an arm sees it. An answer with an error after which the board repeats
-/// old counts (kErrorStale) is rejected, so that old positions never pass for new ones.
-/// Real-time: safe.
+/// Wire format of the text protocol. An answer is rejected if its error means that the board
+/// repeats old counts (kErrorStale), so that an old position is never used as a new one. Real-time:
+/// safe.
 struct LineWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
                             std::span<std::byte, kReportCapacity> bytes) noexcept;
 };
 
-/// The 14-byte HID protocol as an arm sees it. Real-time: safe.
+/// Wire format of the 14-byte HID protocol. Real-time: safe.
 struct ReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
@@ -33,9 +33,9 @@ struct ReportWire {
   }
 };
 
-/// The same with counts of 32 bits in two words each: encoders d to f carry the lower halves of a
-/// to c. No real arm does; simulated arms with ideal encoders do, whose counts are 1/65536 of the
-/// real ones (`with_fine_counts`). Real-time: safe.
+/// ReportWire with counts of 32 bits in two words each: encoders d to f carry the lower halves of a
+/// to c. No real arm does this. Simulated arms with ideal encoders do; their counts are 1/65536 of
+/// the real ones (`with_fine_counts`). Real-time: safe.
 struct FineReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,
@@ -44,7 +44,7 @@ struct FineReportWire {
   }
 };
 
-/// A serial arm that speaks the 14-byte reports.
+/// A serial arm that uses the 14-byte reports.
 using HfabArm = WireArm<ReportWire, SerialArm>;
 
 }  // namespace thimble::driver::hfab

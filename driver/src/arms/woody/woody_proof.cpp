@@ -10,12 +10,14 @@
 namespace thimble::driver::woody {
 namespace {
 
-// Chance hits the next number once in 65,536, so that 20 in a row are none. They take 20 ms of the
-// second that is waited: a board that has just got power waits half a second [S main.cpp, wait_ms].
+// Random data have the next number once in 65,536, so 20 in a row are not chance. They take 20 ms
+// of the second that is waited. A board that has just got power waits half a second [S main.cpp,
+// wait_ms].
 constexpr int kWanted = 20;
 constexpr std::int64_t kListen_ns = 1'000'000'000;
 constexpr std::int64_t kWait_ns = 20'000'000;
-// A wall clock ends it after a second; this ends it on a clock that stands still. [chosen]
+// A wall clock ends the wait after a second; this bound ends it if the clock does not advance.
+// [chosen]
 constexpr int kReadsMax = 2000;
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace thimble::driver::woody {
 namespace {
 
-// Both directions are three signed words and one without a sign.
+// Both directions are three signed words and one unsigned word.
 constexpr std::size_t kLastWord = 3;
 
 struct Words {

@@ -6,7 +6,7 @@
 
 namespace thimble::driver::woody {
 
-/// The 8-byte HID protocol as an arm sees it. Real-time: safe.
+/// Wire format of the 8-byte HID protocol. Real-time: safe.
 struct ReportWire {
   static bool decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept;
   static std::size_t encode(const std::array<std::int16_t, 3>& mA,

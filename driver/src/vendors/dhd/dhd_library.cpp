@@ -52,7 +52,7 @@ Result<Library> open(const std::vector<std::string>& files) {
 }
 
 Result<Library> look() {
-  // The soname has a number [S sofa 3497]; libdhd has the drd functions in no version known.
+  // The soname has a number [S sofa 3497]; no known version of libdhd has the drd functions.
   std::vector<std::string> files{"libdrd.so.3", "libdrd.so"};
   if (const char* sdk = std::getenv("FDSDK"); sdk != nullptr && *sdk != 0) {
     const std::string folder = std::string(sdk) + "/lib/release/lin-x86_64-gcc/";

@@ -9,10 +9,10 @@ namespace thimble::driver::dhd {
 
 // Force Dimension's library, by the names and types that open clients call [S CHAI3D
 // CDeltaDevices.cpp, HAPI ForceDimensionHapticsDevice, ICube fd_effort_hi.cpp,
-// sawForceDimensionSDK]. Whoever writes this needs no header of the vendor's. Lengths in m, forces
-// in N; the arm's number is the last argument; answers below 0 are failures.
+// sawForceDimensionSDK]. No header of the vendor is needed. Lengths in m, forces in N. The arm's
+// number is the last argument; results below 0 are failures.
 
-/// The functions of the library that are called here.
+/// The functions of the library that this driver calls.
 struct Functions {
   int (*dhdGetDeviceCount)() = nullptr;
   void (*dhdGetSDKVersion)(int* major, int* minor, int* release, int* revision) = nullptr;
@@ -42,19 +42,19 @@ struct Functions {
   int (*dhdSetForce)(double x, double y, double z, char id) = nullptr;
 };
 
-/// The library as it was found.
+/// The opened library.
 struct Library {
-  std::string file;     ///< Which was opened.
-  std::string version;  ///< What it calls its version ("3.17.5").
-  Functions call;       ///< None of them null.
+  std::string file;     ///< File that was opened.
+  std::string version;  ///< Version that it reports ("3.17.5").
+  Functions call;       ///< Functions; none of them null.
 };
 
 /// Returns the library: the file that THIMBLE_DHD_LIBRARY names, else libdrd.so.3 and its other
-/// names where the linker and the vendor's own folder ($FDSDK) have them. It is opened once and
-/// stays. The error says what is missing. Real-time: never from the servo thread.
+/// names, found by the linker or in the vendor's own folder ($FDSDK). It is opened once and never
+/// closed. The error states what is missing. Real-time: never from the servo thread.
 THIMBLE_EXPORT Result<Library> library();
 
-/// Opens a library of a name, as `library` does; for tests.
+/// Opens the library of the given file name, like `library`; for tests.
 Result<Library> load(const std::string& file);
 
 }  // namespace thimble::driver::dhd

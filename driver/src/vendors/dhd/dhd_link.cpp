@@ -14,26 +14,25 @@
 namespace thimble::driver::dhd {
 namespace {
 
-constexpr char kId = 0;  // the only arm's
+constexpr char kId = 0;  // id of the only arm
 constexpr int kOn = 1, kOff = 0;
 
-/// After this the arm's watchdog switches the motors off, in steps of 125 us [S
-/// forcedimension_core]: 20 ms, as long as a force is kept here [chosen; the most there is are 32
-/// ms].
+/// Time after which the arm's watchdog switches the motors off, in steps of 125 us [S
+/// forcedimension_core]: 20 ms, equal to kForceKept [chosen; the max. is 32 ms].
 constexpr unsigned char kWatchdog = 160;
 
-/// How often it is asked whether the forces are still on: the library says nothing of it otherwise.
-/// [chosen: every 8 ms at 4 kHz, less than half of what is a fault]
+/// Interval of checks whether the forces are still on; the library does not report that unasked.
+/// [chosen: every 8 ms at 4 kHz, less than half of the time that is a fault]
 constexpr unsigned kStatusEvery = 32;
 constexpr std::size_t kStatusSize = 17, kStatusForce = 5;  // [S forcedimension_core]
 
-/// How long a force is sent on without a new one from the loop. [chosen: 20 missed ticks]
+/// Time for which a force is repeated without a new one from the loop. [chosen: 20 missed ticks]
 constexpr auto kForceKept = std::chrono::milliseconds(20);
 
-/// A number of failed reads in a row that is a loss. [chosen: 50 ms at 4 kHz]
+/// Number of failed reads in a row after which the arm is lost. [chosen: 50 ms at 4 kHz]
 constexpr int kFailuresMost = 200;
 
-/// Far outside of what an arm can be, so that a slipped unit is no position, m.
+/// Far beyond any position of an arm, m: a position in a wrong unit is rejected.
 constexpr double kFarthest = 2;
 
 Error failure(const Library& library, const std::string& what) {
@@ -43,11 +42,11 @@ Error failure(const Library& library, const std::string& what) {
 
 class DhdLink;
 
-/// The owner of the library. Its functions know one arm and no handles, so that whatever a link
-/// does at its end it does to the arm of all links: one link has it at a time, and a lost one is
-/// shut down before its successor opens the arm.
+/// The owner of the library. The library's functions have one arm and no handles, so anything that
+/// a link does at its end affects the arm of all links. Therefore one link owns it at a time, and a
+/// lost one is shut down before its successor opens the arm.
 struct Owner {
-  std::recursive_mutex mutex;  // a link that is refused ends while it is held
+  std::recursive_mutex mutex;  // recursive: a refused link is destroyed while it is held
   DhdLink* link = nullptr;
 };
 
@@ -56,7 +55,7 @@ Owner& owner() {
   return only;
 }
 
-/// An arm that was opened, and is closed at the end.
+/// An open arm, closed in the destructor.
 class OpenArm {
  public:
   static Result<OpenArm> open(const Library& library) {
@@ -109,7 +108,7 @@ class DhdLink final : public SlotLink {
 
   bool gone() const noexcept { return is_lost(); }
 
-  /// Ends what it does with the library, for good. Precondition: as the constructor.
+  /// Ends all use of the library, permanently. Precondition: as for the constructor.
   void shut_down() noexcept {
     if (!arm_) return;
     ends_.store(true, std::memory_order_release);
@@ -140,8 +139,8 @@ class DhdLink final : public SlotLink {
     }
   }
 
-  /// Tells the loop of forces that the library has switched off: its watchdog, too fast a motion, a
-  /// person at the arm's button. They stay off until the arm is opened anew.
+  /// Notifies the loop of forces that the library has switched off: by its watchdog, after too fast
+  /// a motion, or by the arm's button. They stay off until the arm is reopened.
   void look_at_force(const Functions& call) noexcept {
     std::array<int, kStatusSize> status{};
     if (call.dhdGetStatus(status.data(), kId) >= 0) refuse(status[kStatusForce] == 0);
@@ -179,14 +178,14 @@ class DhdLink final : public SlotLink {
     } else if (now - asked_at_ > kForceKept) {
       f_T_B_.setZero();
     }
-    // An arm whose pose is not known gets no force.
+    // An arm with an unknown pose gets no force.
     const Eigen::Vector3d f = failures_ == 0 ? f_T_B_ : Eigen::Vector3d(0, 0, 0);
     if (call.dhdSetForce(f.x(), f.y(), f.z(), kId) < 0) lose();
   }
 
-  std::optional<OpenArm> arm_;  // none: it was shut down
+  std::optional<OpenArm> arm_;  // empty after shut_down
   std::atomic<bool> ends_{false};
-  // Of the thread.
+  // Used only by the thread.
   Eigen::Vector3d f_T_B_{0, 0, 0};
   std::chrono::steady_clock::time_point asked_at_;
   int failures_ = 0;
@@ -194,15 +193,15 @@ class DhdLink final : public SlotLink {
   std::thread thread_;
 };
 
-/// Switches the forces on, in the order of the open clients [S ICube fd_effort_hi.cpp]: nothing
-/// pushes before the watchdog stands.
+/// Switches the forces on, in the order of the open clients [S ICube fd_effort_hi.cpp]: no force
+/// before the watchdog is set.
 Result<void> enable(const OpenArm& arm) {
   const Functions& call = arm.call();
   const auto step = [&](int answer, const char* what) -> Result<void> {
     if (answer < 0) return failure(arm.library(), std::string("The arm did not ") + what);
     return {};
   };
-  // Experts alone may set it, and expert may nobody stay.
+  // Only expert mode can set the watchdog, and the arm must not stay in expert mode.
   call.dhdEnableExpertMode();
   const int watched = call.dhdSetWatchdog(kWatchdog, kId);
   auto done_watch = step(watched, "take its watchdog's time");
@@ -215,7 +214,7 @@ Result<void> enable(const OpenArm& arm) {
   return step(call.dhdEnableForce(kOn, kId), "switch its forces on");
 }
 
-/// Opens the arm, once no other link of this program has it. Precondition: the caller holds the
+/// Opens the arm if no other link of this program has it. Precondition: the caller holds the
 /// owner's mutex.
 Result<OpenArm> take_arm(const Library& library) {
   if (DhdLink* const link = owner().link; link != nullptr) {

@@ -1,6 +1,6 @@
 #include "vendors/haply/haply_link.h"
 
-// In place of the other sources of this folder in a build without Boost.Beast or nlohmann's JSON.
+// Replaces the other sources of this folder in a build without Boost.Beast or nlohmann's JSON.
 
 namespace thimble::driver::haply {
 namespace {

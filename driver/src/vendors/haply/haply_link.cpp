@@ -12,8 +12,8 @@
 namespace thimble::driver::haply {
 namespace {
 
-/// How long an answer is waited for before the next force goes out all the same: a service that
-/// left one message out must not be silent for ever. [chosen: half of what counts as silence]
+/// Max. wait for an answer before the next force is sent: a service that missed one message must
+/// not stay silent for ever. [chosen: half of the time that counts as silence]
 constexpr std::int64_t kAnswer_ns = 10'000'000;
 
 class HaplyLink final : public SlotLink, private Traffic {
@@ -35,11 +35,11 @@ class HaplyLink final : public SlotLink, private Traffic {
  private:
   void ring() noexcept override { socket_->ring(); }
 
-  // By the thread of the socket.
+  // Called by the thread of the socket.
   void serve() noexcept {
     try {
       socket_->serve(*this);
-    } catch (const std::exception&) {  // no memory, say: nobody speaks with the arm any more
+    } catch (const std::exception&) {  // for example out of memory: the arm gets no more messages
       lose();
     }
   }
@@ -48,7 +48,7 @@ class HaplyLink final : public SlotLink, private Traffic {
     const StateRead read = read_state(text, device_id_, state_);
     if (read == StateRead::kGone) {
       lose();
-      // Now, not when the link is destroyed: by then a successor may drive the arm.
+      // Done now and not in the destructor: by then a successor may drive the arm.
       return socket_->leave();
     }
     trusted_ = read == StateRead::kOk;
@@ -67,7 +67,7 @@ class HaplyLink final : public SlotLink, private Traffic {
     if (!take_force(f_T_B)) return std::nullopt;
     waits_ = true;
     sent_at_ns_ = now_ns;
-    // An arm whose pose is not known gets no force.
+    // An arm with an unknown pose gets no force.
     if (!trusted_) f_T_B.setZero();
     return force_message(device_id_, f_T_B);
   }
@@ -77,7 +77,7 @@ class HaplyLink final : public SlotLink, private Traffic {
   const Clock& clock_;
   std::unique_ptr<Socket> socket_;
   std::string device_id_;
-  // Of the socket's thread.
+  // Used only by the socket's thread.
   ArmState state_;
   bool waits_ = false, trusted_ = true;
   std::int64_t sent_at_ns_ = 0;

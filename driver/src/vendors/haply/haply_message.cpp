@@ -12,11 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-// Far outside of what the arm can be or do, so that a message in mm, say, is no position.
+// Far beyond any position or velocity of the arm, so that for example a message in mm is rejected.
 constexpr double kFarthest = 2;   // m
 constexpr double kFastest = 100;  // m/s
 
-/// Returns a number with six decimals, whatever the locale is.
+/// Formats a number with six decimals, independent of the locale.
 std::string number(double value) {
   char text[400];  // the largest double has 309 digits before the point
   const auto end = std::to_chars(text, std::end(text), value, std::chars_format::fixed, 6);
@@ -27,7 +27,7 @@ json parsed(std::string_view text) {
   return json::parse(text, nullptr, /*allow_exceptions=*/false);
 }
 
-/// Returns a member, or null where there is none.
+/// Returns a member, or null if there is none.
 const json& member(const json& object, const char* key) {
   static const json kNothing;
   if (!object.is_object()) return kNothing;
@@ -70,7 +70,7 @@ std::uint16_t read_buttons(const json& state) {
   return static_cast<std::uint16_t>(buttons);
 }
 
-/// Reads the first grip; false if it tells what cannot be. No grip is none.
+/// Reads the first grip; false if its values are impossible. A message without a grip is valid.
 bool read_grip(const json& message, ArmState& state) {
   for (const char* kind : {"verse_grip", "wireless_verse_grip"}) {
     const json& grips = member(message, kind);
@@ -85,7 +85,7 @@ bool read_grip(const json& message, ArmState& state) {
   return true;
 }
 
-/// Reads an arm and the grip beside it.
+/// Reads an arm and its grip.
 bool read_arm(const json& message, const json& arm, ArmState& state) {
   const json& told = member(arm, "state");
   ArmState read = state;
@@ -103,7 +103,7 @@ bool is_false(const json& status, const char* key) {
   return told.is_boolean() && !told.get<bool>();
 }
 
-/// Returns why an arm gives no positions to rely on; empty if nothing speaks against it.
+/// Returns the reason why the positions of an arm are unreliable; empty if there is none.
 std::string trouble_of(const json& arm) {
   const json& status = member(arm, "status");
   if (is_false(status, "power_supply")) return "It has no power: plug in its power supply.";
@@ -146,7 +146,7 @@ Result<std::vector<FoundInverse3>> read_first(std::string_view text) {
     one.trouble = trouble_of(arm);
     const json& in_use = member(member(arm, "status"), "in_use");
     if (one.trouble.empty() && in_use.is_boolean() && in_use.get<bool>()) {
-      // The service adds up what all programs ask for [S], past any limit of ours.
+      // The service adds up the forces of all programs [S], beyond any limit of ours.
       one.trouble = "Another program uses it: end that one, for the service adds up their forces.";
     }
     if (!read_arm(message, arm, one.state) && one.trouble.empty()) {

@@ -28,7 +28,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::size_t kMessageMost =
-    256 * 1024;  // bytes; one of an arm has some hundreds. [chosen]
+    256 * 1024;  // bytes; a message of one arm has some hundreds. [chosen]
 constexpr auto kFarewell = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -41,7 +41,7 @@ class Socket::Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Connects and waits for the first message; returns what went wrong, empty if nothing.
+  /// Connects and waits for the first message; returns an error message, empty on success.
   std::string open(std::uint16_t port, std::chrono::nanoseconds timeout) {
     if (ring_fd_ < 0) return "The kernel gives no event descriptor: too many files are open.";
     const auto until = std::chrono::steady_clock::now() + timeout;
@@ -70,7 +70,7 @@ class Socket::Connection {
     wait(until);
     if (failed) return "What listens on port " + std::to_string(port) + " says nothing.";
     first_ = take_text();
-    // Only now has it accepted the connection, so that the kernel knows its process.
+    // The service has accepted the connection only now, so the kernel knows its process.
     const std::string stranger = distrust_of_peer(stream_.next_layer().native_handle());
     if (!stranger.empty()) {
       return "What listens on port " + std::to_string(port) + " is " + stranger +
@@ -96,7 +96,7 @@ class Socket::Connection {
 
   void ring() noexcept {
     const std::uint64_t one = 1;
-    // Fails only where the bell rings already, or where a signal interrupts it.
+    // Fails only if a wake-up is already pending, or if a signal interrupts it.
     constexpr int kInterruptionsMax = 16;  // chosen: more than a timer sends in a tick
     for (int i = 0; i < kInterruptionsMax; ++i) {
       if (::write(ring_fd_, &one, sizeof one) >= 0 || errno != EINTR) break;
@@ -109,7 +109,7 @@ class Socket::Connection {
   }
 
  private:
-  /// Runs what was begun until it is done; gives it up at `until`.
+  /// Runs the pending operation until it is done; cancels it at `until`.
   void wait(std::chrono::steady_clock::time_point until) {
     io_.restart();
     io_.run_until(until);
@@ -128,7 +128,7 @@ class Socket::Connection {
 
   void read() {
     stream_.async_read(buffer_, [this](const error_code& failed, std::size_t) {
-      // While it closes, the close ends it.
+      // During closing, the close operation ends it.
       if (failed && leaving_) return;
       if (failed) return end();
       const auto data = buffer_.data();
@@ -148,7 +148,7 @@ class Socket::Connection {
     });
   }
 
-  /// Ends it soon, whatever the other side does.
+  /// Ends the connection soon, whatever the other side does.
   void hurry() {
     if (hurries_) return;
     hurries_ = true;

@@ -8,9 +8,9 @@
 namespace thimble::driver::hd {
 
 // The library of OpenHaptics (HDAPI), by the names, types and numbers that open clients use [S
-// pyOpenHaptics hd_define.py; CHAI3D hdPhantom.cpp; sawSensablePhantom mtsSensableHD.cpp]. Whoever
-// writes this needs no header of the vendor's. Lengths in mm, forces in N, transforms column by
-// column; x right, y up, z to the user.
+// pyOpenHaptics hd_define.py; CHAI3D hdPhantom.cpp; sawSensablePhantom mtsSensableHD.cpp]. No
+// header of the vendor is needed. Lengths in mm, forces in N, transforms column by column; x right,
+// y up, z to the user.
 
 inline constexpr unsigned kNoDevice = 0xFFFFFFFF;
 inline constexpr unsigned kButtons = 0x2000, kPosition = 0x2050, kVelocity = 0x2051,
@@ -20,18 +20,18 @@ inline constexpr unsigned kButtons = 0x2000, kPosition = 0x2050, kVelocity = 0x2
 inline constexpr unsigned kStyleEncoderReset = 1, kStyleAuto = 2, kStyleInkwell = 4;
 inline constexpr unsigned kCallbackDone = 0, kCallbackContinue = 1;
 inline constexpr unsigned short kFirstPriority = 0xFFFF;
-// Errors: forces that the arm does not give, a device that is gone, frames that were not right.
+// Errors: forces that the arm cannot give, a missing device, faulty frames.
 inline constexpr unsigned kWarmMotors = 0x0200, kForceError = 0x0204, kDeviceFault = 0x0300,
                           kTimerError = 0x0304;
 
 /// An error of the library, which it returns by value.
 struct ErrorInfo {
   unsigned code = 0;    ///< 0: none.
-  int internal = 0;     ///< The vendor's own number.
-  unsigned device = 0;  ///< Whose.
+  int internal = 0;     ///< Internal number of the vendor.
+  unsigned device = 0;  ///< Device of the error.
 };
 
-/// The functions of the library that are called here.
+/// The functions of the library that this driver calls.
 struct Functions {
   unsigned (*hdInitDevice)(const char* name) = nullptr;
   void (*hdDisableDevice)(unsigned device) = nullptr;
@@ -53,18 +53,18 @@ struct Functions {
   void (*hdUpdateCalibration)(unsigned style) = nullptr;
 };
 
-/// The library as it was found.
+/// The opened library.
 struct Library {
-  std::string file;  ///< Which was opened.
-  Functions call;    ///< None of them null.
+  std::string file;  ///< File that was opened.
+  Functions call;    ///< Functions; none of them null.
 };
 
-/// Returns the library: the file that THIMBLE_HD_LIBRARY names, else libHD.so where the linker has
-/// it. It is opened once and stays. The error says what is missing. Real-time: never from the servo
-/// thread.
+/// Returns the library: the file that THIMBLE_HD_LIBRARY names, else libHD.so as the linker finds
+/// it. It is opened once and never closed. The error states what is missing. Real-time: never from
+/// the servo thread.
 THIMBLE_EXPORT Result<Library> library();
 
-/// Opens a library of a name, as `library` does; for tests.
+/// Opens the library of the given file name, like `library`; for tests.
 Result<Library> load(const std::string& file);
 
 }  // namespace thimble::driver::hd

@@ -17,19 +17,20 @@ namespace {
 
 using std::chrono::steady_clock;
 
-/// How long a force is sent on without a new one from the loop. [chosen: 20 missed ticks]
+/// Time for which a force is repeated without a new one from the loop. [chosen: 20 missed ticks]
 constexpr auto kForceKept = std::chrono::milliseconds(20);
-/// How long forces are refused after an error about them. [chosen: five times what is a fault]
+/// Time for which forces are refused after an error about them. [chosen: five times the time that
+/// is a fault]
 constexpr auto kRefused = std::chrono::milliseconds(100);
-/// How long the end waits for the frame with zero force.
+/// Max. wait at the end for the frame with zero force.
 constexpr auto kFarewell = std::chrono::milliseconds(200);
-/// How often and how long it is asked whether the device is calibrated.
+/// Interval and number of checks whether the device is calibrated.
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr int kLooksAtOpening = 50, kLooksAtCalibration = 500;
-constexpr int kErrorsPerFrame = 8;  // read from the queue; more wait for the next frame
+constexpr int kErrorsPerFrame = 8;  // read from the queue; further ones wait for the next frame
 
 constexpr double kMetres = 1e-3;  // per mm
-constexpr double kFarthest = 2;   // m, far outside of what an arm can be
+constexpr double kFarthest = 2;   // m, far beyond any position of an arm
 
 Error failure(const Library& library, const std::string& what, unsigned code) {
   const char* why = library.call.hdGetErrorString(code);
@@ -49,10 +50,10 @@ unsigned first_error(const Functions& call) {
 
 class HdLink;
 
-/// The owner of the library. Its scheduler is one for all devices and links: one link has it at a
-/// time, and a lost one is shut down before its successor opens the device.
+/// The owner of the library. Its scheduler is one for all devices and links. Therefore one link
+/// owns it at a time, and a lost one is shut down before its successor opens the device.
 struct Owner {
-  std::recursive_mutex mutex;  // a link that is refused ends while it is held
+  std::recursive_mutex mutex;  // recursive: a refused link is destroyed while it is held
   HdLink* link = nullptr;
 };
 
@@ -61,7 +62,7 @@ Owner& owner() {
   return only;
 }
 
-/// A device that was opened, and is given back at the end.
+/// An open device, released in the destructor.
 class OpenDevice {
  public:
   static Result<OpenDevice> open(const Library& library) {
@@ -114,7 +115,7 @@ class HdLink final : public SlotLink {
 
   bool gone() const noexcept { return is_lost(); }
 
-  /// Ends what it does with the library, for good. Precondition: as the constructor.
+  /// Ends all use of the library, permanently. Precondition: as for the constructor.
   void shut_down() noexcept {
     if (!device_) return;
     ends_.store(true, std::memory_order_release);
@@ -123,14 +124,14 @@ class HdLink final : public SlotLink {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     call().hdStopScheduler();
-    // A callback that is done is no task any more.
+    // A callback that has ended is no longer scheduled.
     if (!ended_.load(std::memory_order_acquire)) call().hdUnschedule(task_);
     device_.reset();
     lose();
     owner().link = nullptr;
   }
 
-  /// Switches the forces on, once the device says that it is calibrated.
+  /// Switches the forces on after the device reports that it is calibrated.
   Result<void> enable() {
     for (int look = 0; call().hdCheckCalibration() != kCalibrated; ++look) {
       if (look == kLooksAtOpening) {
@@ -155,7 +156,7 @@ class HdLink final : public SlotLink {
     call().hdBeginFrame(device_->handle());
     ArmSample sample;
     const bool understood = ask(sample);
-    // An arm whose pose is not known, or that is lost, gets no force.
+    // An arm that is lost or has an unknown pose gets no force.
     const bool trusted = understood && !rejected_ && !is_lost();
     const Eigen::Vector3d f = last || !trusted ? Eigen::Vector3d(0, 0, 0) : force_at(now);
     call().hdSetDoublev(kForce, f.data());
@@ -211,16 +212,16 @@ class HdLink final : public SlotLink {
     if (understood) publish(sample);
   }
 
-  std::optional<OpenDevice> device_;  // none: it was shut down
+  std::optional<OpenDevice> device_;  // empty after shut_down
   unsigned long task_ = 0;
   std::atomic<bool> ends_{false}, ended_{false};
-  // Of the scheduler's thread.
+  // Used only by the scheduler's thread.
   Eigen::Vector3d f_T_B_{0, 0, 0};
   steady_clock::time_point asked_at_, refused_until_;
-  bool rejected_ = false;  // the frame before
+  bool rejected_ = false;  // the previous frame was rejected
 };
 
-/// Opens the device, once no other link of this program has it. Precondition: the caller holds the
+/// Opens the device if no other link of this program has it. Precondition: the caller holds the
 /// owner's mutex.
 Result<OpenDevice> take_device(const Library& library) {
   if (HdLink* const link = owner().link; link != nullptr) {

@@ -13,23 +13,23 @@ namespace {
 
 using Gap = GapTheta;
 
-// Pieces of motion, ticks of each: short ones for the search, in which a wrong start does little,
-// long ones for the constants, which slow motion shows.
+// Pieces of motion, and their ticks. Short ones are for the search, where a wrong start has little
+// effect; long ones for the constants, which slow motion shows.
 constexpr std::size_t kShortPieces = 60, kShort = 40, kMiddle = 60, kLongPieces = 50, kLong = 80;
 constexpr double kFitsAlready = 1.1, kFitsNearly = 1.5;  // chi^2 per degree of freedom
 constexpr double kFits = 2;
-// What the search costs beyond the statistics, one deviation of it [chosen: so that intervals hold
-// 95 % of the truths of hidden arms, identify_play_test]: of a width, and rad.
+// Error of the search beyond the statistics, as one standard deviation [chosen: so that intervals
+// hold 95 % of the truths of hidden arms, identify_play_test]: of a width, and rad.
 constexpr double kMethodShare = 0.006, kMethodWidth = 3e-6;
-// Likewise half-widths of intervals of the friction of motors, N m s/rad and N m: by statistics
-// alone, arms with wide play that have none are given up to 6e-5 N m [identify_joint_friction_test,
+// Likewise half-widths of intervals of the friction of motors, N m s/rad and N m. By statistics
+// only, arms with wide backlash and no friction get up to 6e-5 N m [identify_joint_friction_test,
 // identify_play_test].
 constexpr double kMethodViscous = 5e-5, kMethodCoulomb = 3e-5;
-// Damping of a cable over its stiffness, s: what loses more is no spring [chosen: at 40 Hz more
-// than 0.6 of the critical damping].
+// Max. damping of a cable over its stiffness, s: a part with more losses is not a spring [chosen:
+// at 40 Hz more than 0.6 of the critical damping].
 constexpr double kFadeMost = 5e-3, kFade = 3e-4;
-constexpr double kPlayBetter = 20;  // information, before it is believed
-constexpr double kPlayShows = 5;    // deviations, before a number is written
+constexpr double kPlayBetter = 20;  // information required for acceptance
+constexpr double kPlayShows = 5;    // deviations required to write a number
 
 bool is_spring(const Gap::Vector& theta, int joint) {
   return theta[Gap::kDamping + joint] < kFadeMost * theta[Gap::kStiffness + joint];
@@ -38,13 +38,13 @@ bool are_springs(const GapFit& fit) {
   return is_spring(fit.theta, 0) && is_spring(fit.theta, 1) && is_spring(fit.theta, 2);
 }
 
-/// Takes another fit if it leaves less.
+/// Takes another fit if its residual is smaller.
 void keep_better(GapFit& best, const GapFit& other) {
   if (other.misfit < best.misfit) best = other;
 }
 
-/// Leaves another valley for what fits better: a motor that mostly stands hides its cable, and one
-/// that is soft and loses much looks alike. From stiffer ones that lose little.
+/// Leaves a local minimum for a better one. A motor that mostly stands still hides its cable, and a
+/// soft one with large losses looks the same. Starts from stiffer cables with small losses.
 void leave_valley(const GapPieces& whole, const GapSought& sought, GapFit& fit) {
   constexpr double kStiffer[] = {2, 6};
   for (int joint = 0; joint < 3; ++joint) {
@@ -58,7 +58,7 @@ void leave_valley(const GapPieces& whole, const GapSought& sought, GapFit& fit) 
   }
 }
 
-/// Searches for play from several widths.
+/// Searches for backlash from several widths.
 GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapFit& without,
                    bool friction) {
   const GapSought sought{.play = true, .friction = friction};
@@ -68,9 +68,9 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
     from.segment<3>(Gap::kPlay) = motion.step;
     return fit_gap(pieces, from, sought, 20);
   }
-  // In steps of the encoders: what is below one is not seen, and what is far above 15 is no cable.
+  // In encoder steps: less than one is not visible, and far more than 15 is not a cable.
   constexpr double kWidths[] = {2, 5, 13};
-  constexpr double kStiffer = 2;  // than with the play in it
+  constexpr double kStiffer = 2;  // than with the backlash in it
   const GapPieces few(motion, 24, kShort);
   GapFit best;
   for (const double width : kWidths) {
@@ -80,7 +80,7 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
     keep_better(best, fit_gap(few, from, sought, 5));
   }
   best = fit_gap(pieces, best.theta, sought, 25);
-  // Where one joint is caught in another valley: elsewhere with it.
+  // If one joint is in another local minimum: its other values are tried.
   for (int sweep = 0; sweep < 2; ++sweep) {
     for (int joint = 0; joint < 3; ++joint) {
       for (const double wider : {0.4, 2.5}) {
@@ -95,8 +95,8 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
   return best;
 }
 
-/// Searches for friction of the motors: from what was found without, and if that does not fit, from
-/// shares of the friction that a rigid arm has along its axes.
+/// Searches for friction of the motors, starting from the fit without it; if that does not fit,
+/// from shares of a rigid arm's friction along its axes.
 GapFit search_friction(const ArmMotion& motion, const GapPieces& pieces, const Gap::Vector& start,
                        const Eigen::Matrix3d& JTJ, const GapFit& without) {
   const GapSought sought{.friction = true};
@@ -116,14 +116,14 @@ GapFit search_friction(const ArmMotion& motion, const GapPieces& pieces, const G
   return best;
 }
 
-/// Returns by how much the Bayesian information prefers a fit with `count` constants more.
+/// Returns the gain of the Bayesian information criterion by a fit with `count` more constants.
 double better_by(const GapFit& without, const GapFit& with, int count) {
   const double misfit = std::max(1.0, with.misfit);
   return (without.chi2 / without.samples - with.chi2 / with.samples) * with.samples / misfit -
          count * math::log(with.samples);
 }
 
-/// Says what the fits without and with play mean.
+/// Judges the fits without and with backlash.
 void judge_play(PlayFit& found) {
   found.better = better_by(found.without, found.with, 3);
   found.fits = std::min(found.without.misfit, found.with.misfit) < kFits && found.with.lost < 0.25;
@@ -140,7 +140,7 @@ void judge_play(PlayFit& found) {
                std::any_of(found.shows.begin(), found.shows.end(), [](bool one) { return one; });
 }
 
-/// Returns one constant over the gain of its motor, whose interval knows how both hang together.
+/// Returns one constant over the gain of its motor; the interval includes their correlation.
 Estimate over_gain(const GapFit& fit, int k, int joint) {
   const int g = Gap::kGain + joint;
   const double gain = fit.theta[g], ratio = fit.theta[k] / gain;
@@ -149,7 +149,7 @@ Estimate over_gain(const GapFit& fit, int k, int joint) {
   return {ratio, kNormal95 * std::sqrt(std::max(0.0, variance)) / gain};
 }
 
-/// Says what a fit with friction of the motors means, beside the same without it.
+/// Judges a fit with friction of the motors, compared with the same fit without it.
 RotorFriction judge_friction(const GapFit& without, const GapFit& with) {
   RotorFriction found;
   found.better = better_by(without, with, 6);
@@ -165,20 +165,21 @@ RotorFriction judge_friction(const GapFit& without, const GapFit& with) {
     take(Gap::kRotorViscous, kMethodViscous, found.viscous[k], found.shows_viscous[k]);
     take(Gap::kRotorCoulomb, kMethodCoulomb, found.coulomb[k], found.shows_coulomb[k]);
   }
-  // A search that ended in another valley leaves little more, and friction that is far off.
+  // A search that ended in another local minimum leaves a somewhat larger residual, and friction
+  // that is far off.
   found.fits = with.misfit < kFitsAlready && are_springs(with);
   found.seen = any && found.fits && found.better > kPlayBetter;
   return found;
 }
 
-/// Looks for friction of the motors beside what was fitted without it.
+/// Searches for friction of the motors in addition to the fit without it.
 void look_for_friction(const GapPieces& whole, PlayFit& found) {
   PlayFit both = found;
   GapFit& best = found.seen ? both.with : both.without;
   best = fit_gap(whole, best.theta, {.play = found.seen, .friction = true}, 15);
   leave_valley(whole, {.play = found.seen, .friction = true}, best);
   if (!found.fits) {
-    // What did not fit without friction may be play or none with it.
+    // A motion that did not fit without friction may have backlash, or only friction.
     both.with = fit_gap(whole, found.with.theta, {.play = true, .friction = true}, 20);
   }
   judge_play(both);
@@ -187,12 +188,12 @@ void look_for_friction(const GapPieces& whole, PlayFit& found) {
   if (both.friction.seen) found = both;
 }
 
-/// Returns constants by which a motion is understood without play and friction of motors, of
-/// springs that give more than `start` says and lose less: lines mislead where a link oscillates
-/// below the lowest of them. None if it is not: of a motor that mostly stands too little is seen
-/// for that.
+/// Returns constants that explain a motion without backlash and friction of motors, with springs
+/// softer than in `start` and with smaller losses. Lines mislead if a link oscillates below the
+/// lowest of them. Empty if there are none: a motor that mostly stands still shows too little for
+/// that.
 std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vector& start) {
-  constexpr double kSofter[] = {0.5, 0.25, 0.125};  // than lines say
+  constexpr double kSofter[] = {0.5, 0.25, 0.125};  // than the lines show
   const GapPieces few(motion, 24, kShort);
   GapFit best;
   for (const double share : kSofter) {
@@ -208,14 +209,14 @@ std::optional<Gap::Vector> softer_start(const ArmMotion& motion, const Gap::Vect
   return best.theta;
 }
 
-/// Looks for play and friction of the motors from constants without either.
+/// Searches for backlash and friction of the motors from constants without either.
 PlayFit find_play_from(const ArmMotion& motion, const Gap::Vector& start,
                        const Eigen::Matrix3d& JTJ) {
   PlayFit found;
   found.searched = true;
   const GapPieces brief(motion, kShortPieces, kShort), whole(motion, kLongPieces, kLong);
   const GapFit plain = fit_gap(brief, start, {}, 15);
-  // Where friction of the motors is all that is missing, play is looked for beside it.
+  // If only friction of the motors is missing, backlash is searched for in addition to it.
   const GapFit rubbed = search_friction(motion, brief, start, JTJ, plain);
   const bool rubs = rubbed.misfit < kFitsNearly && better_by(plain, rubbed, 6) > kPlayBetter;
   const GapFit& without = rubs ? rubbed : plain;
@@ -239,7 +240,7 @@ PlayFit find_play_from(const ArmMotion& motion, const Gap::Vector& start,
     return found;
   }
   if (!found.seen && found.with.misfit < found.without.misfit) {
-    // Whatever play is too small to be seen makes nothing better: another valley does.
+    // Backlash too small to be seen improves nothing; then the cause is another local minimum.
     Gap::Vector tight = found.with.theta;
     tight.segment<3>(Gap::kPlay).setZero();
     keep_better(found.without, fit_gap(whole, tight, {.friction = true}, 20));

@@ -10,44 +10,46 @@
 
 namespace thimble::bringup {
 
-/// Friction of the motors' side, which turns its sign with the motors and not with the tip, joint
-/// by joint. Its torques are those of the arm file's torque constants, at the joints; one that is
-/// not seen would have been above value + plus_minus.
+/// Friction of the motors' side, whose sign follows the motors and not the tip, joint by joint.
+/// Torques use the arm file's torque constants, at the joints. If one is not seen, it would have
+/// been above value + plus_minus.
 struct RotorFriction {
   std::array<Estimate, 3> viscous;  ///< N m s/rad
   std::array<Estimate, 3> coulomb;  ///< N m
   std::array<bool, 3> shows_viscous{}, shows_coulomb{};
-  double better = 0;  ///< By how much the Bayesian information prefers it.
-  bool fits = false;  ///< Nothing but the encoders' steps is left with it.
-  bool seen = false;  ///< It fits, is so much better, and some of it shows.
+  double better = 0;  ///< Gain of the Bayesian information criterion by it.
+  bool fits = false;  ///< Its residual is only that of the encoders' steps.
+  bool seen = false;  ///< It fits, the gain suffices, and some of the constants show.
 };
 
-/// What a motion shows of play in the cables, and of friction of the motors before them.
+/// Result of the search for backlash in the cables, and for friction of their motors.
 struct PlayFit {
   bool searched = false;
-  GapFit without, with;  ///< Without and with play, fitted to the same pieces of motion.
-  GapFit plain;          ///< Without play and without friction of the motors.
+  GapFit without, with;  ///< Fits without and with backlash, to the same pieces of motion.
+  GapFit plain;          ///< Fit without backlash and without friction of the motors.
   RotorFriction friction;
-  double better = 0;  ///< By how much the Bayesian information prefers play.
-  bool seen = false;  ///< Play is believed: it is so much better, and what is left is small.
-  bool fits = false;  ///< The better of both leaves little more than the encoders' steps.
-  /// Neither fits, though play leaves far less: something like it, which is not understood.
+  double better = 0;  ///< Gain of the Bayesian information criterion by backlash.
+  bool seen = false;  ///< Backlash is accepted: the gain suffices, and the residual is small.
+  bool fits = false;  ///< The residual of the better fit is little more than the encoders' steps.
+  /// Neither fits, though backlash leaves a far smaller residual: a similar effect that is not
+  /// understood.
   bool like_play = false;
-  /// Whole widths, rad at the joints, and whether each is seen. One that is not would have been
-  /// above value + plus_minus.
+  /// Whole widths, rad at the joints, and whether each is seen. If one is not seen, it would have
+  /// been above value + plus_minus.
   std::array<Estimate, 3> width;
   std::array<bool, 3> shows{};
 
-  /// Returns whether play or friction of motors is told, by which alone the motion is understood.
+  /// Returns whether backlash or friction of motors is reported; the motion is understood only with
+  /// it.
   bool told() const { return seen || friction.seen; }
-  /// Returns whether the better fit leaves the encoders' steps alone: then motors and cables are
-  /// known better by it than by lines, with play or without.
+  /// Returns whether the better fit leaves only the encoders' steps. Motors and cables are then
+  /// known better from it than from lines, with or without backlash.
   bool understood() const;
   const GapFit& best() const { return seen ? with : without; }
 };
 
-/// Looks for play, and for friction of the motors, in a motion, whose fits as that of a rigid arm
-/// and as lines are known. Real-time: never from the servo thread.
+/// Searches for backlash, and for friction of the motors, in a motion whose fits as a rigid arm and
+/// as lines are known. Real-time: never from the servo thread.
 PlayFit find_play(const ArmMotion& motion, const PerMass& rigid, const CableFit& lines);
 
 /// Returns the constants of the same arm with another mass on its tip, fitted from those without it

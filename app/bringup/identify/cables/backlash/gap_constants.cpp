@@ -49,7 +49,7 @@ PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion) {
                  kNormal95 * std::sqrt(fit.covariance(GapTheta::kDelay, GapTheta::kDelay))};
   found.windows = fit.pieces;
   found.left_out = static_cast<std::size_t>(fit.lost * static_cast<double>(found.windows));
-  // Of the angles, for a fit of which no accelerations are known.
+  // From the angles, for a fit without known accelerations.
   double square = 0;
   Eigen::Vector3d mean(0, 0, 0);
   for (const MotionSample& sample : motion.samples) mean += sample.q;
@@ -76,7 +76,7 @@ TwoMass two_mass_of(const GapFit& fit, const TwoMass& before) {
   for (int i = 0; i < 3; ++i) {
     take(TwoMass::kGain + i, GapTheta::kGain + i);
     take(TwoMass::kInertia + i, GapTheta::kInertia + i);
-    // Of dry friction lines see what they were fitted with.
+    // Lines contain the dry friction with which they were fitted.
     if (fit.theta.tail<6>().isZero(0)) found.theta[TwoMass::kRotorViscous + i] = 0;
     const double stiffness = fit.theta[GapTheta::kStiffness + i],
                  damping = fit.theta[GapTheta::kDamping + i];

@@ -6,18 +6,19 @@
 
 namespace thimble::bringup {
 
-// Constants with play and friction of motors, from those that the other fits know, and back.
+// Conversion between constants with backlash and friction of motors and the constants of the other
+// fits.
 
-/// Returns constants to begin with. At high frequencies a motor moves alone, whatever its play is:
-/// the lines know gain over inertia. At low ones it moves with its link, as in the rigid fit. Both
-/// together are gain and inertia.
+/// Returns start values. At high frequencies a motor moves without its link, whatever its backlash
+/// is, so the lines give gain over inertia. At low frequencies it moves with its link, as in the
+/// rigid fit. Together they give gain and inertia.
 GapTheta::Vector gap_constants(const PerMass& rigid, const CableFit& lines);
 
-/// Returns what a fit with play says of what moves the tip, in place of the weak form's: a spring
-/// that holds the tip is in it. `windows` are its pieces.
+/// Returns the tip constants of a fit with backlash, replacing those of the weak form; a spring
+/// that holds the tip is included. `windows` is the number of its pieces.
 PerMass per_mass_of(const GapFit& fit, const ArmMotion& motion);
 
-/// Returns what it says of motors and cables, in place of the lines' `before`.
+/// Returns the constants of motors and cables of the fit, replacing those of the lines, `before`.
 TwoMass two_mass_of(const GapFit& fit, const TwoMass& before);
 
 }  // namespace thimble::bringup

@@ -12,7 +12,7 @@ namespace {
 
 using Gap = GapTheta;
 
-/// The normal equations of one piece, its state eliminated.
+/// The normal equations of one piece, with its state eliminated.
 struct GapPart {
   Eigen::Matrix<double, GapState::kCount, Eigen::Dynamic> cross;  // of state and constants
   GapState::Vector down;                                          // along the state
@@ -95,9 +95,9 @@ class GapSearch {
   }
 
  private:
-  /// Returns what the search makes small: what the pieces leave, as if each had a noise of its own
-  /// beside that of the encoders' steps. A piece in a wrong valley of its state counts little, and
-  /// is tracked anew once the others know the constants better.
+  /// Returns the minimized value: the residuals of the pieces, as if each had noise of its own in
+  /// addition to that of the encoders' steps. A piece in a wrong local minimum has little weight,
+  /// and is tracked again when the others give better constants.
   double sum() const {
     const auto rows = static_cast<double>(pieces_.rows());
     double all = 0;
@@ -123,10 +123,10 @@ class GapSearch {
     find_trust();
   }
 
-  /// A motor that rattles may hang on where it began so steeply that slopes hold nowhere: a piece
-  /// that claims to know a constant far better than most do is not believed to.
+  /// A motor that rattles may depend on its start so steeply that derivatives are useless. A piece
+  /// that claims to know a constant far better than most others gets less weight.
   void find_trust() {
-    constexpr double kSteepest = 10;  // times what three of four pieces know [chosen]
+    constexpr double kSteepest = 10;  // times the knowledge of three of four pieces [chosen]
     for (GapPart& part : parts_) part.trust = 1;
     for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(free_.size()); ++k) {
       std::vector<double> known;
@@ -140,7 +140,7 @@ class GapSearch {
     }
   }
 
-  /// Adds up the pieces, each by its weight.
+  /// Adds up the pieces, each with its weight.
   template <class Weight>
   void add_up(const Weight& weight_of, Eigen::MatrixXd& reduced, Eigen::VectorXd& right) const {
     const auto count = static_cast<Eigen::Index>(free_.size());
@@ -153,8 +153,9 @@ class GapSearch {
     }
   }
 
-  /// Holds viscous friction at zero where a step would take it below, which motion alone would do:
-  /// that of the tip and those of the motors hardly differ. Returns whether any was.
+  /// Holds viscous friction at zero if a step would make it negative, which may happen because
+  /// motion hardly distinguishes that of the tip from those of the motors. Returns whether any was
+  /// held.
   bool pin_viscous(const Eigen::VectorXd& by, math::ScaledNormal<Eigen::MatrixXd>& normal,
                    Eigen::VectorXd& right) const {
     constexpr double kPin = 1e6;  // of scaled equations, whose diagonal is one
@@ -197,7 +198,7 @@ class GapSearch {
 
   GapPieces& pieces_;
   Gap::Vector theta_;
-  bool friction_;  // of the motors is searched for
+  bool friction_;  // that of the motors is searched for
   std::vector<int> free_;
   std::vector<GapPart> parts_;
   GapSlopes slopes_;

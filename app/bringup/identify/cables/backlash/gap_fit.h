@@ -8,30 +8,30 @@
 
 namespace thimble::bringup {
 
-/// What is searched for beside gains, delay, tip, motors and cables.
+/// Constants searched for in addition to gains, delay, tip, motors and cables.
 struct GapSought {
-  bool play = false;      ///< The widths.
-  bool friction = false;  ///< That of the motors' side.
+  bool play = false;      ///< Widths of the backlash.
+  bool friction = false;  ///< Friction of the motors' side.
 };
 
 /// A fit of GapTheta to pieces of a motion.
 struct GapFit {
   GapTheta::Vector theta = GapTheta::Vector::Zero();
-  /// Zero where a constant was not searched for.
+  /// Zero for a constant that was not searched for.
   Eigen::Matrix<double, GapTheta::kCount, GapTheta::kCount> covariance =
       Eigen::Matrix<double, GapTheta::kCount, GapTheta::kCount>::Zero();
-  double chi2 = 0;           ///< Squares of what is left, over the variance of the encoders' steps.
+  double chi2 = 0;           ///< Sum of squared residuals over the variance of the encoders' steps.
   double misfit = HUGE_VAL;  ///< chi^2 per degree of freedom; infinite if nothing was fitted.
-  double samples = 0;        ///< Angles that were fitted.
-  std::size_t pieces = 0;    ///< That they are of.
-  double lost = 0;           ///< Share of the pieces that lost the track and were left out.
+  double samples = 0;        ///< Number of fitted angles.
+  std::size_t pieces = 0;    ///< Number of fitted pieces.
+  double lost = 0;  ///< Share of the pieces that lost track of the motion and were omitted.
 };
 
-/// Fits GapTheta to the motors' angles (output error) by multiple shooting: the model moves over
-/// each of the pieces from a state of its own, and states and constants together leave the least.
-/// Short pieces keep what rattles in its play from being chaotic over them. The search is
-/// Levenberg's and Marquardt's, the states eliminated piece by piece. Constants that are not among
-/// `sought` stay as they are in `from`. Real-time: never from the servo thread.
+/// Fits GapTheta to the motors' angles (output error) by multiple shooting. The model moves over
+/// each piece from a state of its own, and states and constants together minimize the residual.
+/// Short pieces avoid the chaos of a motor that rattles in its backlash. The search is that of
+/// Levenberg and Marquardt, with the states eliminated piece by piece. Constants that are not in
+/// `sought` keep their values in `from`. Real-time: never from the servo thread.
 GapFit fit_gap(GapPieces pieces, const GapTheta::Vector& from, const GapSought& sought, int rounds);
 
 }  // namespace thimble::bringup

@@ -7,7 +7,7 @@
 
 #include "compact_mesh/wide_lanes.h"
 
-// Lanes are never passed from one function to another that is not inlined.
+// SIMD vectors are only passed to functions that are inlined.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
@@ -18,11 +18,11 @@ namespace {
 
 using Gap = GapTheta;
 
-// Sub-steps of a tick of 1 ms: a resonance at 300 Hz is 0.15 % too high then, (w h)^2 / 24
-// [C drive_train_plant.h].
+// Sub-steps of a tick of 1 ms: a resonance at 300 Hz is then 0.15 % too high, (w h)^2 / 24 [C
+// drive_train_plant.h].
 constexpr int kSubSteps = 10;
 
-/// A number of each model.
+/// A number for each model.
 using Lanes [[gnu::vector_size(8 * kGapRunsAtOnce)]] = double;
 using Mask [[gnu::vector_size(8 * kGapRunsAtOnce)]] = std::int64_t;
 using Lanes3 = std::array<Lanes, 3>;
@@ -38,14 +38,14 @@ THIMBLE_GAP_INLINE Lanes with_sign(const Lanes& c, const Lanes& x) {
   return x < 0.0 ? -c : c;
 }
 
-/// Returns by how much x is beyond the play, which is free on both sides.
+/// Returns by how much x exceeds the backlash, which is free on both sides.
 THIMBLE_GAP_INLINE Lanes stretch(const Lanes& x, const Lanes& free) {
   return x - (x < -free ? -free : x > free ? free : x);
 }
 
-/// Returns what cables pull with, on the mean over a sub-step in which the motor gets ahead by
-/// `way` about `ahead` (rad): so the constants and states change it smoothly, wherever in the
-/// sub-step the play ends.
+/// Returns the mean torque of cables over a sub-step in which the motor moves ahead by `way` about
+/// `ahead` (rad). So constants and states change it smoothly, wherever in the sub-step the backlash
+/// ends.
 THIMBLE_GAP_INLINE Lanes mean_pull(const Lanes& ahead, const Lanes& way, const Lanes& free,
                                    const Lanes& stiffness, const Lanes& damping) {
   const Lanes before = stretch(ahead - 0.5 * way, free), after = stretch(ahead + 0.5 * way, free);
@@ -59,7 +59,7 @@ THIMBLE_GAP_INLINE Lanes mean_pull(const Lanes& ahead, const Lanes& way, const L
   return on_one_side ? whole : part;
 }
 
-/// Moves one axis with dry friction `c` for h (s) under the acceleration a of all else.
+/// Moves one axis with dry friction `c` for h (s) under the acceleration a of all other forces.
 THIMBLE_GAP_INLINE void slide_axis(Lanes& x, Lanes& v, const Lanes& a, const Lanes& c, double h) {
   const Lanes push = a - with_sign(c, a);
   const Mask held = size_of(a) <= c;
@@ -69,7 +69,7 @@ THIMBLE_GAP_INLINE void slide_axis(Lanes& x, Lanes& v, const Lanes& a, const Lan
   Lanes to = x + h * (v + 0.5 * h * sliding), speed = after;
   if (any(~slides)) {
     const Mask rests = v == 0.0;
-    // The others come to rest within the step, and go on from there.
+    // The others come to rest within the step, and continue from there.
     const Lanes until = rests ? Lanes{} : -v / sliding;
     const Lanes rest_at = x + 0.5 * v * until, left = h - until;
     const Lanes gone = held ? Lanes{} : left;
@@ -81,12 +81,12 @@ THIMBLE_GAP_INLINE void slide_axis(Lanes& x, Lanes& v, const Lanes& a, const Lan
   v = speed;
 }
 
-/// Constants of all models, each with its own.
+/// Constants of all models, separate for each.
 struct Constants {
   Lanes3 gain, weight, yields, rotor_viscous, rotor_coulomb, stiffness, damping, free;
   Lanes viscous, coulomb, spring;
   std::array<std::ptrdiff_t, kGapRunsAtOnce> ticks_late;
-  Lanes change;  // until when in a tick the torque of the one before stands, in sub-steps
+  Lanes change;  // time in a tick until which the previous torque acts, in sub-steps
   bool rubs = false;
 };
 
@@ -200,7 +200,7 @@ THIMBLE_GAP_INLINE void move_lanes(const ArmMotion& motion, const Eigen::Vector3
   }
 }
 
-/// The same to the bit.
+/// Bit-identical.
 THIMBLE_FOR_AVX2 void move_wide(const ArmMotion& motion, const Eigen::Vector3d& p_middle,
                                 std::span<const GapRun> runs, std::size_t first,
                                 std::size_t count) {

@@ -8,14 +8,14 @@
 
 namespace thimble::bringup {
 
-/// Constants of motors, cables with play, and what is behind them, per moved mass:
+/// Constants of motors, cables with backlash, and links, per moved mass:
 ///
 ///     J_i q_i'' = g_i tau_i(t - delay) - pull_i - b_i q_i' - c_i sgn(q_i'),
 ///     p'' = G^T pull - b p' - c sgn(p') + w - s (p - p_0),
-///     pull_i = k_i (x_i - clamp(x_i, +-play_i / 2)) + d_i x_i' outside of the play, else 0,
+///     pull_i = k_i (x_i - clamp(x_i, +-play_i / 2)) + d_i x_i' outside of the backlash, else 0,
 ///
-/// x_i = q_i - l_i how far motor i is ahead of its link, dry friction with its rest. This is the
-/// two-mass joint of the simulated arm (device_sim DriveTrain), joint by joint.
+/// where x_i = q_i - l_i is the lead of motor i over its link, and dry friction can hold. This is
+/// the two-mass joint of the simulated arm (device_sim DriveTrain), joint by joint.
 struct GapTheta {
   enum Index {
     kGain = 0,
@@ -35,7 +35,7 @@ struct GapTheta {
   using Vector = Eigen::Matrix<double, kCount, 1>;
 };
 
-/// How motors (rad, rad/s at the joints) and tip (base, m, m/s) move at a moment.
+/// State of motors (rad, rad/s at the joints) and tip (base, m, m/s).
 struct GapState {
   static constexpr int kCount = 12;
   using Vector = Eigen::Matrix<double, kCount, 1>;
@@ -46,22 +46,22 @@ struct GapState {
   auto v() { return x.segment<3>(9); }
 };
 
-/// One of several models that are moved at once.
+/// One of several models that move together.
 struct GapRun {
   const GapTheta::Vector* theta = nullptr;
-  GapState* state = nullptr;  ///< Where it begins, and afterwards where it is.
+  GapState* state = nullptr;  ///< Initial state; afterwards the final state.
   double* angles =
-      nullptr;  ///< Room for the motors' angles at each tick (3 x count, rad), or null.
+      nullptr;  ///< Receives the motors' angles at each tick (3 x count, rad), or null.
 };
 
-/// So many are moved in the time of one.
+/// Number of models that move in the time of one.
 inline constexpr std::size_t kGapRunsAtOnce = 4;
 
 /// Moves up to kGapRunsAtOnce models, at tick `first`, over `count` ticks of a motion, under the
-/// torques that were sent, and writes the motors' angles at each, that of `first` included. The
-/// links' angles are those of the tip linearised about where the encoders saw it in that tick:
-/// right to the square of play and stretch. Precondition: `first` is later than the delay.
-/// Real-time: never from the servo thread.
+/// torques sent. Writes the motors' angles at each tick, including `first`. The links' angles are
+/// those of the tip, linearised about the tip that the encoders saw in that tick: correct to the
+/// square of backlash and stretch. Precondition: `first` is later than the delay. Real-time: never
+/// from the servo thread.
 void move_gap_models(const ArmMotion& motion, const Eigen::Vector3d& p_middle,
                      std::span<const GapRun> runs, std::size_t first, std::size_t count);
 

@@ -16,17 +16,18 @@ using Gap = GapTheta;
 
 constexpr int kStates = GapState::kCount;
 // Ticks that are filtered before a piece: twice the slowest oscillation of a link on its cable
-// [chosen]; and that no piece begins or ends in, beside them what smoothing sees.
+// [chosen]. Also the ticks at the beginning and end of the motion in which no piece begins or ends,
+// because of smoothing.
 constexpr std::size_t kTracked = 120, kLeadTicks = 160, kEndTicks = 40;
-// How many times the median a piece leaves that has lost the track [chosen].
+// Ratio to the median residual from which a piece has lost track [chosen].
 constexpr double kLost = 5;
 
 bool is_gap_log(int k) {
   return k >= Gap::kInertia && k < Gap::kPlay;
 }
 
-/// Returns by what a constant is moved to see its slope: small beside what it is known to, large
-/// beside rounding.
+/// Returns the change of a constant for its derivative: small compared with its uncertainty, large
+/// compared with rounding.
 double probe_of_constant(const Gap::Vector& theta, int k) {
   if (is_gap_log(k)) return 1e-4;
   if (k < Gap::kDelay) return 1e-4 * theta[k];
@@ -39,7 +40,7 @@ double probe_of_state(int k) {
   return k < 3 || (k >= 6 && k < 9) ? 1e-6 : 1e-4;
 }
 
-/// Fits a parabola to what encoders saw within `reach` ticks of one: value and slope.
+/// Fits a parabola to the encoder values within `reach` ticks of one: value and slope.
 void smooth_about(const ArmMotion& motion, std::size_t at, int reach, Eigen::Vector3d& value,
                   Eigen::Vector3d& slope) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
@@ -86,8 +87,8 @@ GapPieces::GapPieces(const ArmMotion& motion, std::size_t pieces, std::size_t ti
 }
 
 GapState GapPieces::tracked(const Gap::Vector& theta, std::size_t first) const {
-  // What the model is taken to be wrong by in a tick, and the state in the beginning, squared: rad,
-  // rad/s, m, m/s [chosen: a step of an encoder and what smoothing leaves].
+  // Squared error of the model per tick, and of the initial state: rad, rad/s, m, m/s [chosen: a
+  // step of an encoder and the error of smoothing].
   Normal drift = Normal::Zero(), P = Normal::Zero();
   drift.diagonal() << Eigen::Vector3d::Constant(1e-12), Eigen::Vector3d::Constant(1e-4),
       Eigen::Vector3d::Constant(1e-12), Eigen::Vector3d::Constant(1e-6);
@@ -130,7 +131,7 @@ GapState GapPieces::tracked(const Gap::Vector& theta, std::size_t first) const {
 }
 
 void GapPieces::hold(Normal& normal) {
-  // rad, rad/s, m, m/s [chosen: far more than a filtered state is off].
+  // rad, rad/s, m, m/s [chosen: far more than the error of a filtered state].
   constexpr double kMost[] = {1e-3, 1, 1e-3, 0.3};
   for (int k = 0; k < kStates; ++k) normal(k, k) += 1 / (kMost[k / 3] * kMost[k / 3]);
 }
@@ -146,7 +147,7 @@ void GapPieces::track(const Gap::Vector& theta) {
 }
 
 void GapPieces::settle(const Gap::Vector& theta, int rounds, GapPiece& piece) const {
-  // The state that the piece begins with, as math::levenberg_marquardt searches for it.
+  // The initial state of a piece as a problem for math::levenberg_marquardt.
   struct Problem {
     const GapPieces& pieces;
     const Gap::Vector& theta;
@@ -237,7 +238,7 @@ void GapPieces::slopes(const Gap::Vector& theta, const std::vector<int>& free,
   const auto count = static_cast<Eigen::Index>(rows());
   const std::size_t constants = free.size(), all = constants + kStates + 1;
   out.moved.resize(count, static_cast<Eigen::Index>(all));
-  // The constants, each moved by its probe; the states; and at the end all as it is.
+  // The constants, each changed by its probe; the states; and at the end the unchanged ones.
   std::vector<Gap::Vector> thetas(constants, theta);
   std::vector<GapState> states(all, piece.start);
   std::vector<GapRun> runs(all);
