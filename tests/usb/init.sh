@@ -76,11 +76,11 @@ EOF
 
 # The limits of a real arm come from an installed arm file: here in the tester's folder.
 mkdir -p /tmp/.config/thimble
-cp -r /data/app/arms /tmp/.config/thimble/arm_files
 # The pose in which a program opens an arm is taken for its home pose, so the tip seems to be up to 30 mm from where it is.
 # In a larger workspace no wall of the workspace then adds to the force of the program.
 sed -i 's/^  min: \[-0.1, -0.1, -0.1\]/  min: [-0.15, -0.15, -0.15]/; s/^  max: \[0.1, 0.1, 0.1\]/  max: [0.15, 0.15, 0.15]/' \
-  /tmp/.config/thimble/arm_files/woodenhaptics.yaml
+  /data/app/arms/woodenhaptics.yaml
+cp -r /data/app/arms /tmp/.config/thimble/arm_files
 
 for arm in $arms; do
   image=
