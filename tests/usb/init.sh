@@ -76,9 +76,9 @@ EOF
 
 # The limits of a real arm come from an installed arm file: here in the tester's folder.
 mkdir -p /tmp/.config/thimble
-# The pose in which a program opens an arm is taken for its home pose, so the tip seems to be up to 30 mm from where it is.
-# In a larger workspace no wall of the workspace then adds to the force of the program.
-sed -i 's/^  min: \[-0.1, -0.1, -0.1\]/  min: [-0.15, -0.15, -0.15]/; s/^  max: \[0.1, 0.1, 0.1\]/  max: [0.15, 0.15, 0.15]/' \
+# The pose in which a program opens an arm is taken for its home pose, and the hand moves about 0.2 m above the middle of the
+# workspace. In a larger workspace no wall of it adds to the force of the program, whenever the program starts.
+sed -i 's/^  min: \[-0.1, -0.1, -0.1\]/  min: [-0.3, -0.3, -0.3]/; s/^  max: \[0.1, 0.1, 0.1\]/  max: [0.3, 0.3, 0.3]/' \
   /data/app/arms/woodenhaptics.yaml
 cp -r /data/app/arms /tmp/.config/thimble/arm_files
 
