@@ -9,11 +9,12 @@
 namespace thimble::compat::hd {
 namespace {
 
-constexpr std::size_t kErrorsMost = 64;  // chosen: a program that asks now and then loses none
+constexpr std::size_t kErrorsMost = 64;  // chosen: enough for a program that checks errors only now
+                                         // and then
 
 struct Errors {
   std::mutex mutex;
-  std::deque<HDErrorInfo> all;  // the newest last
+  std::deque<HDErrorInfo> all;  // the newest is last
 };
 
 Errors& errors() {
