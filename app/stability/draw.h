@@ -10,22 +10,22 @@
 
 namespace thimble::stability {
 
-/// Draws numbers that are the same with every standard library: raw bits of the Mersenne twister,
+/// Random numbers that are identical with every standard library: raw bits of the Mersenne twister,
 /// scaled here. Real-time: never from the servo thread.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : bits_(seed) {}
 
   std::uint64_t bits() { return bits_(); }
-  /// Draws from [low, high).
+  /// Returns a number from [low, high).
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53;
   }
-  /// Draws from [low, high) so that each octave is as likely as any other; both above 0.
+  /// Returns a number from [low, high), log-uniform; both bounds above 0.
   double octave(double low, double high) { return low * math::pow(high / low, uniform(0, 1)); }
-  /// Returns whether something of this probability happens.
+  /// Returns true with this probability.
   bool chance(double probability) { return uniform(0, 1) < probability; }
-  /// Draws one of 0 to count - 1.
+  /// Returns an integer from 0 to count - 1.
   std::size_t one_of(std::size_t count) { return static_cast<std::size_t>(bits_() % count); }
   Eigen::Vector3d in_box(double half_side) {
     const double x = uniform(-half_side, half_side);

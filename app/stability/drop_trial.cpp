@@ -17,7 +17,7 @@ double crossing(const WallRun& run, std::size_t after, double offset) {
   return run.time[after - 1] + share * (run.time[after] - run.time[after - 1]);
 }
 
-/// Returns the first tick from `from` on at which the tip is on the free side, or inside.
+/// Returns the first tick from `from` at which the tip is on the free side, or inside.
 std::size_t first(const WallRun& run, std::size_t from, double offset, bool free) {
   while (from < run.x.size() && (run.x[from] > offset) != free) ++from;
   return from;
@@ -35,7 +35,7 @@ driver::Result<Bounce> bounce_of(const WallRun& run, double offset, double pull_
   if (back >= run.x.size()) {
     return driver::Error{"The tip does not leave the wall again, or does not come back to it."};
   }
-  // A late force still acts outside: what it gives belongs to the bounce.
+  // A delayed force still acts outside of the wall, and belongs to the bounce.
   const double after = *std::max_element(run.v.begin() + static_cast<std::ptrdiff_t>(out - 1),
                                          run.v.begin() + static_cast<std::ptrdiff_t>(back));
   const double before = -run.v[in - 1];
@@ -72,10 +72,10 @@ driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& 
   Bounce mean;
   for (int i = 0; i < trial.falls; ++i) {
     const double further = (i + 0.5) / trial.falls;
-    // The speed at the wall without friction: so far the tip moves between two ticks there.
+    // The speed at the wall without friction; divided by the rate it is the motion within a tick.
     const double speed = std::sqrt(2 * trial.pull * trial.height / mass);
     wall.offset = -(trial.height + further * speed / trial.rate);
-    // There and back twice and again, with half of the pull left by friction, and half an
+    // Time for six falls with half of the pull, because friction takes the rest, and for half an
     // oscillation in the wall.
     const double fall = std::sqrt(4 * trial.height * mass / trial.pull);
     wall.duration = wall.pull_start + 6 * fall + 4 * std::sqrt(mass / trial.stiffness) + 0.05;

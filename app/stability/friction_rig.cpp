@@ -16,7 +16,7 @@
 namespace thimble::stability {
 namespace {
 
-// The vintage arm's numbers; app/arms/vintage_phantom.yaml holds the same with their sources.
+// The vintage arm's numbers; app/arms/vintage_phantom.yaml contains the same with their sources.
 constexpr double kUpperLink = 0.138;  // m
 constexpr double kLowerLink = 0.112;  // m
 constexpr double kForceMax = 8.5;     // N [PHYSICS 0]
@@ -32,7 +32,7 @@ driver::JointModel<driver::SerialArm> model_with_step(double step) {
         .sign = signs[i], .ratio = ratios[i], .torque_constant = 0.0234, .current_max = 6};
     model.encoders[i] = {.sign = signs[i], .counts_per_motor_turn = 4000, .home_counts = home[i]};
   }
-  // At home the lower link hangs: its joint alone moves the tip along x, by the link's length.
+  // At home the lower link hangs down: only its joint moves the tip along x, by the link's length.
   if (step > 0) {
     model.encoders[2].counts_per_motor_turn =
         2 * std::numbers::pi * kLowerLink / (ratios[2] * step);
@@ -40,7 +40,7 @@ driver::JointModel<driver::SerialArm> model_with_step(double step) {
   return model;
 }
 
-/// Keeps what a tick did, and what the driver cannot see.
+/// Records the data of a tick, including data that the driver cannot see.
 class RigSink {
  public:
   RigSink(const device_sim::SimulatedArm& arm, const Eigen::Vector3d& p_WB, RigRun& run)
@@ -116,7 +116,7 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .soft_start = 0.3,
                             .stall_ns = 20'000'000,
                             .watchdog_ns = 100'000'000};
-  // It looks at rests of any length, and its reports are never old.
+  // Rests may have any length, and reports are never too old.
   device_settings.motion.hold_most = 1e9;
   auto spoken = simulated.firmware.ideal_encoders
                     ? driver::make_ideal_arm(arm_model(model))
@@ -128,7 +128,7 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
           device_settings, clock.now_ns())
           .value();
   [[maybe_unused]] const auto activated = device->activate();
-  assert(activated);  // nothing of an arm at rest refuses it
+  assert(activated);  // cannot fail for an arm at rest
   RigRun run;
   run.period = static_cast<double>(settings.period_ns) * 1e-9;
   const auto ticks = static_cast<std::size_t>(std::llround(duration / run.period));

@@ -10,8 +10,8 @@
 
 namespace thimble::stability {
 
-/// What hand, arm, wire and surface a friction is tried on. The defaults are the PHANTOM-like
-/// set with a hand in pinch grip at 1 kHz [PHYSICS 0].
+/// Hand, arm, wire and surface for friction tests. The defaults are a PHANTOM-like arm with a hand
+/// in pinch grip at 1 kHz [PHYSICS 0].
 struct FrictionRigSettings {
   double encoder_step = 3e-5;  ///< At the tip along x, m; 0: ideal encoders.
   std::int64_t delay_ns = 0;   ///< From the host's write to the motors.
@@ -23,28 +23,28 @@ struct FrictionRigSettings {
   double hand_stiffness = 300;  ///< N/m
   double hand_damping = 3;      ///< N s/m
   double tremor_amplitude = 0;  ///< m
-  double load = 1;              ///< Force of the surface, N, the same all the time.
+  double load = 1;              ///< Normal force of the surface, N, constant.
   double depth = 0.001;         ///< m
 };
 
 /// One corner of the hand's path along the surface.
 struct RigPoint {
   double time = 0;  ///< s
-  double x = 0;     ///< Where the hand wants to be, m, within 0.03 of the middle.
+  double x = 0;     ///< Target of the hand, m, within 0.03 of the middle.
 };
 
-/// What happened along x, one entry per tick.
+/// Signals along x, one entry per tick.
 struct RigRun {
   double period = 0.001;         ///< s
-  std::vector<double> x;         ///< Where the tip truly was, m.
-  std::vector<double> x_read;    ///< Where the driver saw it, m.
-  std::vector<double> x_wanted;  ///< Where the hand wanted it, m.
-  std::vector<double> force;     ///< What was sent along x, N.
-  bool fault = false;            ///< The loop ended early by a fault of the device.
+  std::vector<double> x;         ///< True position of the tip, m.
+  std::vector<double> x_read;    ///< Position in the driver, m.
+  std::vector<double> x_wanted;  ///< Target of the hand, m.
+  std::vector<double> force;     ///< Force sent along x, N.
+  bool fault = false;            ///< A fault of the device ended the loop early.
 };
 
-/// The force law of the rig: a surface that presses evenly with `load` (N), which is not told,
-/// and the friction on it. Keeps the friction only by reference. Real-time: safe.
+/// The force law of the rig: friction on a surface with constant normal force `load` (N), which is
+/// not sent. Keeps only a reference to the friction. Real-time: safe.
 class EvenSurface {
  public:
   EvenSurface(render::AnyStage& friction, double load, double depth)
@@ -57,17 +57,17 @@ class EvenSurface {
   double load_, depth_;
 };
 
-/// Rubs along a straight line from the wire up: simulated vintage arm at its home pose, where x is
-/// moved by one joint alone, its encoder cut to the asked step; wire, driver, velocity estimate,
-/// safety gate and servo loop as in any session, in virtual time. The surface presses with the same
-/// force all the time; that force is not sent, as if the hand held it exactly, so that only
-/// friction is seen. Begins at rest; forces open softly within the first 0.3 s. Precondition: the
-/// settings are in the simulator's range (the caller's duty; otherwise Result::value throws).
+/// Strokes along a straight line, through all layers from the wire up, in virtual time. The
+/// simulated vintage arm is at its home pose, where one joint moves x; its encoder has the given
+/// step. Wire, driver, velocity estimate, safety gate and servo loop are those of any session. The
+/// surface presses with a constant force, which is not sent, as if the hand balanced it exactly, so
+/// that only friction acts. Begins at rest; forces rise softly within the first 0.3 s.
+/// Precondition: the settings are in the simulator's range (otherwise Result::value throws).
 /// Real-time: never from the servo thread.
 RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double duration,
            const FrictionRigSettings& settings);
 
-/// Returns what an effect may know of the rig. Real-time: never from the servo thread.
+/// Returns the properties of the rig that effects use. Real-time: never from the servo thread.
 render::EffectContext effect_context_of(const FrictionRigSettings& settings);
 
 }  // namespace thimble::stability

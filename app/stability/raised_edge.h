@@ -6,14 +6,16 @@
 
 namespace thimble::stability {
 
-/// By how much a wall is raised at a time [chosen: narrower dips below the edge are stepped over].
+/// Factor between two stiffnesses of the search [chosen: narrower unstable bands below the edge are
+/// skipped].
 inline constexpr double kWallRaised = 1.15;
 
-/// Finds the stiffest wall, N/m, to 1 %, before the first of the raised ones that does not rest:
-/// raised from `low`, which is taken to rest, by `kWallRaised` at a time up to `most`, and halved
-/// in the last step; where all rest, the edge is up to 1.33 times `most`. `rests(stiffness)`
-/// returns a `driver::Result<bool>`. Halving the whole range would do for a loop that is linear; as
-/// an arm is, walls beyond the edge may rest again. Fails as `rests`.
+/// Returns the largest stable stiffness, N/m, to 1 %, below the first unstable one found. The
+/// stiffness is raised from `low`, which must be stable, by the factor `kWallRaised` up to `most`;
+/// the last step is then bisected. If all are stable, the result is up to 1.33 times `most`.
+/// `rests(stiffness)` returns a `driver::Result<bool>`. Bisecting the whole range would suffice for
+/// a linear loop; with a real arm, stiffnesses beyond the edge may be stable again. Fails like
+/// `rests`.
 template <class Rests>
 driver::Result<double> raised_edge(double low, double most, const Rests& rests) {
   for (; low < most; low *= kWallRaised) {

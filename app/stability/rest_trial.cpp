@@ -16,22 +16,22 @@
 namespace thimble::stability {
 namespace {
 
-constexpr double kHeld = 0.3;      // s; a shorter hold of the path is a stroke's turn [chosen]
-constexpr double kSettling = 1.6;  // s; the softest hand creeps on for so long (random_scene.cpp)
-constexpr double kWatched = 0.25;  // s, the last of it
+constexpr double kHeld = 0.3;      // s; a shorter hold of the path is the turn of a stroke [chosen]
+constexpr double kSettling = 1.6;  // s; the softest hand creeps for this long (random_scene.cpp)
+constexpr double kWatched = 0.25;  // s, at the end of a rest
 constexpr double kCorner = 50;     // Hz [PHYSICS 2.5]
 
-/// A stretch of a run in which the hand rests, s.
+/// An interval of a run in which the hand rests, s.
 struct Stretch {
-  double told = 0;   // when it begins by the scene's own time
-  double until = 0;  // when it ends in the run
+  double told = 0;   // its start in the scene's time
+  double until = 0;  // its end in the run
 };
 
 bool same_place(const scene::HandWaypoint& a, const scene::HandWaypoint& b) {
   return a.on == b.on && a.p_W == b.p_W && a.press == b.press;
 }
 
-/// Makes every hold of the hand's path last until what settles has settled; lists them.
+/// Prolongs every hold of the hand's path until the motion has settled; returns the rests.
 std::vector<Stretch> prolong_rests(scene::Scene& scene) {
   std::vector<Stretch> rests;
   std::vector<scene::HandWaypoint>& path = scene.arms.front().hand;
@@ -64,7 +64,7 @@ std::vector<Stretch> prolong_rests(scene::Scene& scene) {
 /// One run of a scene, tick by tick.
 class Run {
  public:
-  /// Runs the scene; the hand is held still for kSettling at each of `stops` (ticks, growing).
+  /// Runs the scene; the hand is held still for kSettling at each of `stops` (ticks, increasing).
   static driver::Result<Run> make(const scene::Scene& scene, const std::vector<std::size_t>& stops,
                                   const std::shared_ptr<scene::SharedMeshes>& meshes) {
     session::SessionOptions options{.adjust = [&](scene::Scene& read) { read = scene; },
@@ -107,7 +107,7 @@ class Run {
   driver::Fault fault() const { return fault_; }
   std::span<const driver::TickRecord> rows() const { return rows_; }
 
-  /// Returns what the force did in the last kWatched before tick `end`.
+  /// Measures the force in the last kWatched before tick `end`.
   Rest watch(double told, std::size_t end) const {
     const auto count = static_cast<std::size_t>(kWatched * scene_->rate);
     const std::size_t begin = end - std::min(end, count);
@@ -185,13 +185,13 @@ driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim:
   bool touches = false;
   for (const Stretch& stretch : stretches) {
     const std::size_t end = tick_of(stretch.until);
-    if (end == 0 || end < tick_of(stretch.told)) break;  // a fault ended the run before
+    if (end == 0 || end < tick_of(stretch.told)) break;  // a fault ended the run earlier
     trial.rests.push_back(run->watch(stretch.told, end));
     touches = touches || trial.rests.back().force > 0;
   }
   trial.fault = run->fault();
   if (touches || trial.fault != driver::Fault::kNone) return trial;
-  // Nowhere does the path rest on anything: stop the hand in what it touches.
+  // The path never rests in contact, so the hand is stopped in the objects that it touches.
   const auto stops = deepest_ticks(scene, run->rows());
   if (stops.empty()) return trial;
   auto again = Run::make(stopped, stops, meshes);

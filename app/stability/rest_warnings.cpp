@@ -22,13 +22,13 @@ using Eigen::Vector3d;
 
 constexpr double kFelt = 0.02;  // N RMS [PHYSICS 6]
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kPressed = 1;   // N, with which a hand rests on something [chosen]
-constexpr double kCreep = 1e-3;  // m/s: slower, a count takes 30 ms and more
-constexpr double kStroke = 0.1;  // m/s; slower oscillations are always there [chosen]
+constexpr double kPressed = 1;   // N, force of a resting hand [chosen]
+constexpr double kCreep = 1e-3;  // m/s: below this, a count takes at least 30 ms
+constexpr double kStroke = 0.1;  // m/s; slower oscillations are always present [chosen]
 constexpr double kProbe = 1e-6;  // m
-constexpr int kTries = 4000;     // places of a texture; finds a sine's curvature within 2 %
+constexpr int kTries = 4000;     // samples of a texture; finds a sine's curvature within 2 %
 
-/// What a field does, found by trying it.
+/// Properties of a field, found by sampling.
 struct FieldTried {
   double push = 0;     // N, on a tip at rest
   double damping = 0;  // N s/m
@@ -55,7 +55,7 @@ bool bends(const scene::SceneObject& object) {
 bool is_flat(const scene::SceneObject& object) {
   const render::ContactChoice& contact = object.contact;
   if (contact.blending) return *contact.blending == render::BlendingChoice::kFlat;
-  // These are smooth, or push towards a proxy.
+  // These trackers are smooth, or push towards a proxy.
   return contact.tracker != render::TrackerChoice::kOffset &&
          contact.tracker != render::TrackerChoice::kPacked &&
          contact.tracker != render::TrackerChoice::kGodObject;
@@ -63,7 +63,7 @@ bool is_flat(const scene::SceneObject& object) {
 
 void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& warnings) {
   if (object.mesh_file.empty() || object.paged) return;
-  // Facets that the body bends are hollow wherever it gives way, whatever the tracker.
+  // Facets of a deformable body become concave where it yields, whatever the tracker.
   const bool god_object = object.contact.tracker == render::TrackerChoice::kGodObject;
   const bool flat = is_flat(object);
   if (bends(object) && (flat || god_object)) {
@@ -74,13 +74,13 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
                     object.name));
     return;
   }
-  // All other trackers are held by both faces of a hollow edge at once.
+  // With all other trackers, both faces of a concave edge hold the tip at once.
   if (object.contact.tracker != render::TrackerChoice::kNormalProjection) return;
   const auto file = scene::load_object_mesh(object);
   if (!file) return;
   const auto mesh = render::ContactMesh::build(file->mesh_W);
   if (!mesh) return;
-  // A jump of 2 F sin(angle / 2), to and fro, has half of it as its RMS.
+  // An alternating jump of 2 F sin(angle / 2) has an RMS of half of it.
   const double felt = 2 * math::asin(kFelt / kPressed);
   const double smooth_up_to = object.contact.crease_angle.value_or(render::kCreaseAngle);
   const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
@@ -92,7 +92,7 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
       object.name, hollow / kDegree, 2 * math::sin(hollow / 2)));
 }
 
-/// What a loop carries with the hand of the scene.
+/// The loop's limits with the hand of the scene.
 struct Loop {
   const scene::Scene& scene;
   scene::LoopTimes times;
@@ -117,7 +117,7 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
           object.name, curvature, from, bare_edge));
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
-      // The arm's own dry friction holds slow oscillations [PHYSICS 1.4].
+      // The arm's dry friction suppresses slow oscillations [PHYSICS 1.4].
       const Carried carried = carried_by(loop.scene.arms.front().arm, loop.times, 0, 0);
       const double held_speed = oscillation_speed_limit(
           hold, carried.damping, loop.scene.arms.front().arm.simulated.plant.coulomb,
@@ -132,11 +132,11 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
   }
 }
 
-/// Warns of a light body that a friction holds: tip and body oscillate against each other, and of
-/// the hand's damping that mode gets only the tip's share in it.
+/// Warns of a light body held by friction: tip and body oscillate against each other, and the hand
+/// damps only the tip's share of that mode.
 ///
-/// With s = m / (m + m_tip) the tip's share, K L <= b_tip s^2 + b (1 - s)^2. A friction turns a
-/// free body too; at its rim a ball counts 1 / (1 + 5 / 2) of its mass.
+/// With s = m / (m + m_tip) the tip's share, K L <= b_tip s^2 + b (1 - s)^2. A friction also turns
+/// a free body; at its rim a ball counts as 1 / (1 + 5 / 2) of its mass.
 void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
                         std::vector<std::string>& warnings) {
   if (!object.body.motion) return;
@@ -159,7 +159,7 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
       object.name, motion.mass, hold, damping / carried.latency));
 }
 
-/// Warns of springs that add up where a tip is on all of them: each may be carried by itself.
+/// Warns of springs that act on the tip at once: each alone may be within the limit.
 void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
   double sum = 0, damping = 0;
   int count = 0;
@@ -208,7 +208,7 @@ double curvature_of(const render::EffectPlan& texture) {
   const auto stage = texture.build();
   Draw draw(1);
   double most = 0;
-  // Pressed by so much that the height itself counts for nothing: the force for each newton.
+  // Pressed deep enough that the height is negligible: the force per newton.
   const auto force = [&stage](const Vector3d& p_W, const Vector3d& n_W) -> Vector3d {
     driver::DeviceState state;
     state.p_WT = p_W;
@@ -238,7 +238,7 @@ double hold_of(const render::EffectPlan& friction) {
     render::SurfaceResponse feel{
         .contact = {.touching = true, .triangle = 0, .depth = 1e-3, .n_W = {0, 0, 1}}};
     feel.contact.p_WP = {x, 0, 0};
-    feel.f_T_W = {0, 0, 10};  // so that nothing slips
+    feel.f_T_W = {0, 0, 10};  // large enough to prevent slip
     stage->touch(state, feel);
     return feel.f_T_W.x();
   };
@@ -252,7 +252,7 @@ double sharpest_hollow(const render::ContactMesh& mesh, double from) {
     const render::TriangleCell& cell = mesh.cell(t);
     for (std::size_t k = 0; k < 3; ++k) {
       if (!mesh.hollow_edge(t, k)) continue;
-      // An edge plane leans back by half the angle.
+      // An edge plane is tilted back by half the angle.
       const double angle = 2 * math::asin(std::min(1.0, -mesh.edge_plane(t, k).n.dot(cell.face.n)));
       if (angle > from) most = std::max(most, angle);
     }
@@ -270,7 +270,7 @@ double quantisation_noise_of(double damping, double step, double speed, double c
 
 std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
-  // The account of the passivity stage knows fields, weights and what the motors carry.
+  // The passivity stage accounts for fields, weights and the force of the motors.
   const driver::EnergyStage stage = scene.energy.value_or(scene.arms.front().arm.energy.stage);
   if (stage != driver::EnergyStage::kBounding) return warnings;
   constexpr double kPushFelt = 0.02;  // N [PHYSICS 6]
@@ -288,7 +288,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
     if (object.build_field) {
       warn(object.name + " pushes a hand", try_field(object, scene.arms.front().arm).push);
     } else if (object.body.motion &&
-               object.body.motion->grip) {  // on the floor it pulls at nothing
+               object.body.motion->grip) {  // resting on the floor, it does not pull
       warn(object.name + " pulls by its weight",
            object.body.motion->mass * object.body.motion->gravity_W.norm());
     }
@@ -298,7 +298,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
 
 std::vector<std::string> rest_causes(const scene::Scene& scene, const std::string& on) {
   std::vector<std::string> causes;
-  if (!scene.arms.front().arm.can_simulate) return causes;  // nothing is known of its tip
+  if (!scene.arms.front().arm.can_simulate) return causes;  // its tip mass and damping are unknown
   const Loop loop{scene, loop_times(scene.arms.front().arm, scene.rate)};
   const double bare_edge = loop.edge(0);
   for (const scene::SceneObject& object : scene.objects) {

@@ -9,7 +9,7 @@
 namespace thimble::stability {
 namespace {
 
-/// One section of second order, by the bilinear transform of s^2 / (s^2 + s / q + 1).
+/// Applies one section of second order, by the bilinear transform of s^2 / (s^2 + s / q + 1).
 void high_pass_section(std::vector<double>& signal, double warped, double q) {
   const double norm = 1 / (1 + warped / q + warped * warped);
   const double a1 = 2 * (warped * warped - 1) * norm;
@@ -30,7 +30,7 @@ void high_pass_section(std::vector<double>& signal, double warped, double q) {
 std::vector<double> high_passed(std::span<const double> signal, double rate, double corner) {
   std::vector<double> out(signal.begin(), signal.end());
   if (out.empty()) return out;
-  // From rest at the first value, so that an offset rings nothing.
+  // Starts at rest at the first value, so that an offset causes no transient.
   for (double& value : out) value -= signal.front();
   const double warped = math::tan(std::numbers::pi * corner / rate);
   for (const double angle : {std::numbers::pi / 8, 3 * std::numbers::pi / 8}) {

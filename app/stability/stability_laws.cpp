@@ -15,10 +15,10 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 
-/// How many angles are looked at in a maximum over angles; the maxima are broad.
+/// Number of angles in a maximum over angles; the maxima are broad.
 constexpr int kAngles = 20'000;
 
-/// Gives what a unit of stiffness and of damping ask of the device's friction at one angle.
+/// The required device friction per unit of stiffness and of damping at one angle.
 struct AngleTerms {
   double stiffness = 0;  // s
   double damping = 0;    // 1
@@ -31,7 +31,7 @@ AngleTerms terms_at(double angle, double period, double delay) {
   return {0.5 * period * ratio, -math::cos((1 + d) * angle)};
 }
 
-/// Finds exp(A) by halving, a series, and squaring; A is small.
+/// Returns exp(A) by scaling, a series, and squaring; A is small.
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
   const int halvings = std::max(0, 2 + std::ilogb(std::max(1e-9, A.cwiseAbs().sum())));
   const Eigen::MatrixXd small = A * std::ldexp(1.0, -halvings);
@@ -45,8 +45,8 @@ Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
   return sum;
 }
 
-/// Moves (x, v, motor force), a held command, and the motor's own (x, v) by `time`: columns are the
-/// unit states. The motor's are there for a cable that stretches alone.
+/// Returns the map of (x, v, motor force), a held command, and the motor's own (x, v) over `time`:
+/// columns are the unit states. The motor's are used only with an elastic cable.
 Eigen::MatrixXd plant_map(const SampledWall& wall, double time) {
   const bool stretches = wall.cable_stiffness > 0;
   Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(stretches ? 6 : 4, stretches ? 6 : 4);
@@ -56,7 +56,7 @@ Eigen::MatrixXd plant_map(const SampledWall& wall, double time) {
   const int force = wall.amplifier_lag > 0 ? 2 : 3;
   if (stretches) {
     rate(4, 5) = 1;
-    // What the cable pulls the tip (rows 0 and 1) and the motor (4 and 5) with.
+    // Cable force on the tip (rows 0 and 1) and on the motor (4 and 5).
     for (const int x : {0, 4}) {
       const double per_mass = 1 / (x == 0 ? wall.mass : wall.rotor_mass);
       const int other = 4 - x;
@@ -90,7 +90,7 @@ double late_stiffness_limit(double damping, double latency, double mass) {
 }
 
 double passive_stiffness(double viscous, double wall_damping, double period, double delay) {
-  // Each angle asks for K s + B w <= b: the least K over all angles with s > 0.
+  // Each angle requires K s + B w <= b: the smallest K over all angles with s > 0.
   double least = kNone;
   for (int i = 0; i <= kAngles; ++i) {
     const AngleTerms terms = terms_at(kPi * i / kAngles, period, delay);
@@ -118,7 +118,7 @@ double restitution(double stiffness, double damping, double mass, double latency
 
 double bristle_length(double friction_force, double latency, double damping, double encoder_step,
                       double coulomb) {
-  // The factor covers the edge that encoder steps move out by up to 1.29 [PHYSICS 2.3].
+  // The factor covers the increase of up to 1.29 by encoder steps [PHYSICS 2.3].
   const double late = 1.5 * friction_force * latency / damping;
   const double coarse = encoder_step > 0 ? friction_force * encoder_step / (2 * coulomb) : 0;
   return std::max(late, coarse);
@@ -126,9 +126,8 @@ double bristle_length(double friction_force, double latency, double damping, dou
 
 namespace {
 
-/// Returns the largest absolute value of the matrix' eigenvalues, as the limit of |A^n|^(1/n)
-/// (Gelfand's formula) at n = 2^60; not a number if an entry is none. Eigen's solver says the same,
-/// and takes as long to build as all else here.
+/// Returns the spectral radius as the limit of |A^n|^(1/n) (Gelfand's formula) at n = 2^60; NaN if
+/// an entry is. Eigen's solver gives the same, but doubles the compile time of this file.
 double spectral_radius(Eigen::MatrixXd power) {
   double exponent = 0, share = 1;
   for (int squared = 0; squared < 60; ++squared) {
@@ -152,7 +151,7 @@ double growth_per_tick(const SampledWall& wall) {
   const double gain =
       wall.velocity_corner > 0 ? -math::expm1(-2 * kPi * wall.velocity_corner * wall.period) : 1;
   // One entry each for x, v, motor force, last x, velocity estimate, the motor's x and v if its
-  // cable stretches, and the commands on their way, the newest first.
+  // cable stretches, and the commands in transit, the newest first.
   const bool stretches = wall.cable_stiffness > 0;
   const int sent = stretches ? 7 : 5;
   const int size = sent + whole + 1;
@@ -177,7 +176,7 @@ double growth_per_tick(const SampledWall& wall) {
     state[4] = estimate;
     tick.col(column) = state;
   }
-  // The same map of states all in metres, whose entries lie not far apart.
+  // The same map with all states in metres, which balances the entries.
   const double of_velocity = wall.period, of_force = wall.period * wall.period / wall.mass;
   Eigen::VectorXd metres = Eigen::VectorXd::Constant(size, of_force);
   metres.head<5>() << 1, of_velocity, of_force, 1, of_velocity;
@@ -188,7 +187,7 @@ double growth_per_tick(const SampledWall& wall) {
 double limit_by_phase(const SampledWall& wall) {
   using Complex = std::complex<double>;
   const double latency = 0.5 * wall.period + wall.delay + wall.amplifier_lag;
-  // The stiffness that would be needed, turned back by the latency: real where there is one.
+  // The required stiffness, rotated back by the latency: real where it exists.
   const auto needed = [&](double w) {
     const Complex tip(wall.hand_stiffness - w * w * wall.mass, w * wall.viscous);
     Complex arm = tip;
@@ -223,7 +222,7 @@ double limit_by_phase(const SampledWall& wall) {
 double stiffness_edge(SampledWall wall) {
   const auto grows = [&wall](double stiffness) {
     wall.stiffness = stiffness;
-    // Written so that NaN grows.
+    // NaN counts as growth.
     return !(growth_per_tick(wall) < 1);
   };
   const double band = wall.cable_stiffness > 0 ? 1.02 * limit_by_phase(wall) : 0;

@@ -18,32 +18,33 @@
 namespace thimble::stability {
 namespace {
 
-/// The part of the limit that is safe to ask for: tightening a grip brings stiffness as well as
-/// damping [chosen]. It is not enough for hands that differ by three, which are looked at apart.
+/// Safe fraction of the limit: a firmer grip adds stiffness as well as damping [chosen]. It does
+/// not cover hands that differ by a factor of three, which are tested separately.
 constexpr double kShare = 0.7;
 
-/// The part of what the worst of those hands carries: there oscillations die within a second
-/// [measured, tests/sim/hand_constants_test].
+/// Safe fraction of the limit of the worst of those hands: with it, oscillations decay within a
+/// second [measured, tests/sim/hand_constants_test].
 constexpr double kShareAnyHand = 0.8;
 
-/// Returns the time between the reports of an arm, or between those that a Falcon is asked for, ms.
+/// Returns the time between the reports of an arm, or between the requests to a Falcon, ms.
 double report_period_ms(const scene::ArmFile& arm, double rate) {
   return arm.is<driver::DeltaArm>()
              ? 1e3 / rate
              : 1e-6 * static_cast<double>(arm.simulated.firmware.report_period_ns);
 }
 
-/// The most periods of delay that the exact map of a tick is made for [chosen].
+/// Maximum delay in periods for the exact map of a tick [chosen].
 constexpr double kPeriodsLate = 32;
 
-/// The worst of what simulated walls could carry.
+/// The worst of the simulated limits.
 struct Edges {
-  double linear = std::numeric_limits<double>::infinity();  // without dry friction and steps, N/m
+  double linear = std::numeric_limits<double>::infinity();  // without dry friction and encoder
+                                                            // steps, N/m
   double as_is = std::numeric_limits<double>::infinity();   // N/m
   int walls = 0;
 };
 
-/// Takes dry friction, encoder steps and tremor from an arm: what is left is what the law is about.
+/// Removes dry friction, encoder steps and tremor from an arm: the law covers only the rest.
 scene::ArmFile without_friction(scene::ArmFile arm) {
   arm.simulated.plant.coulomb = 0;
   arm.simulated.firmware.ideal_encoders = !arm.is<driver::DeltaArm>();
@@ -54,7 +55,7 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
                 int per_side) {
   scene::ArmFile arm = file;
   arm.simulated.hand.tremor_amplitude = 0;
-  // Space for the hand's path within the workspace.
+  // Room for the hand's path within the workspace.
   const Eigen::Vector3d room =
       (0.02 * Eigen::Vector3d::Ones()).cwiseMin(0.25 * (arm.workspace.max_W - arm.workspace.min_W));
   arm.workspace.min_W += room;
@@ -77,11 +78,11 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
   return edges;
 }
 
-/// The fastest loop that advice names, Hz [chosen: what a scene may ask for].
+/// The maximum rate that advice recommends, Hz [chosen: the maximum of a scene].
 constexpr double kRateMost = 1e5;
 
-/// Finds a rate at which the law allows what an object asks for, a whole multiple of the scene's;
-/// none where a faster loop would wait for the arm's reports and wire.
+/// Returns a rate at which the law allows an object's values, an integer multiple of the scene's;
+/// empty if a faster loop would wait for the arm's reports and wire.
 std::optional<double> rate_that_carries(const scene::Scene& scene,
                                         const scene::SceneObject& object) {
   const auto carries = [&](double rate) {
@@ -95,8 +96,8 @@ std::optional<double> rate_that_carries(const scene::Scene& scene,
   return {};
 }
 
-/// Finds the largest damping below an object's own at which its stiffness is safe, N s/m; none
-/// where less damping does not help.
+/// Returns the largest damping below an object's own at which its stiffness is safe, N s/m; empty
+/// if less damping does not help.
 std::optional<double> damping_that_carries(const scene::Scene& scene,
                                            const scene::SceneObject& object,
                                            const scene::LoopTimes& times) {
@@ -118,7 +119,7 @@ std::optional<double> damping_that_carries(const scene::Scene& scene,
   return carries(0) ? std::optional<double>(0) : std::nullopt;
 }
 
-/// Returns a number of two digits that is not above `value`.
+/// Returns `value` rounded down to two digits.
 double rounded_down(double value) {
   if (!(value > 0)) return 0;
   double digit = 1e-9;
@@ -126,7 +127,7 @@ double rounded_down(double value) {
   return digit * std::floor(value / digit);
 }
 
-/// Returns what to change about a wall whose damping alone makes it grow, at any stiffness.
+/// Returns advice for a wall whose damping makes it unstable at any stiffness.
 std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObject& object,
                                 const Carried& carried) {
   const std::optional<double> damping = damping_that_carries(scene, object, carried.times);
@@ -135,14 +136,14 @@ std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObj
       "any stiffness: ",
       object.name, object.damping, 1e3 * carried.latency);
   if (damping) return text + fmt::format("set it to {:.2g} N s/m or less.", rounded_down(*damping));
-  // Without the surface's damping at most.
+  // The limit without the surface's damping.
   const double safe =
       carried_by(scene.arms.front().arm, carried.times, object.stiffness, 0).stiffness_safe;
   return text +
          fmt::format("set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
 }
 
-/// Returns what to change about a wall that is too stiff.
+/// Returns advice for a wall that is too stiff.
 std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
                    const Carried& carried) {
   if (!(carried.stiffness_exact > 0)) return advice_to_damp_less(scene, object, carried);
@@ -167,7 +168,7 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
              1e3 * scene::loop_delay(scene.arms.front().arm));
 }
 
-/// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
+/// Adds the rests of the scene's hand in `trial`, and those of firmer and softer hands.
 void tell_rests(const scene::Scene& scene, const RestTrial& trial,
                 const std::shared_ptr<scene::SharedMeshes>& meshes, TuneResult& result) {
   const device_sim::HandSettings& own = scene.arms.front().arm.simulated.hand;
@@ -218,7 +219,7 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
   }
 }
 
-/// Says what a wall may be that another program computes, over topics.
+/// Adds the limits of a wall that another program computes over topics.
 void tell_topics(const scene::Scene& scene, const scene::LoopTimes& times, const AnswerAges& ages,
                  TuneResult& result) {
   scene::LoopTimes late = times;
@@ -254,10 +255,10 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
   carried.tip = scene::worst_over_workspace(arm);
   carried.damping = carried.tip.damping + arm.simulated.hand.damping;
   carried.stiffness_law = scene::stiffness_limit(carried.damping + damping, carried.latency);
-  // Jitter acts as so much more delay [PHYSICS 1.1].
+  // Jitter acts as additional delay [PHYSICS 1.1].
   const double more = carried.latency - times.period / 2;
-  // A delay of many periods is the same wall to a coarser loop of the same latency, whose map of a
-  // tick stays small.
+  // A delay of many periods is replaced by a coarser loop of the same latency, to keep the map of a
+  // tick small.
   const bool many = more > kPeriodsLate * times.period;
   const double period = many ? carried.latency / (kPeriodsLate + 0.5) : times.period;
   const auto edge_with = [&](const device_sim::HandSettings& hand) {
@@ -293,7 +294,7 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
                                            times.period));
   carried.held_speed = oscillation_speed_limit(stiffness, carried.tip.damping,
                                                arm.simulated.plant.coulomb, carried.latency);
-  // The length that a bristle needs goes with its force, so their quotient is the arm's.
+  // The bristle's length is proportional to its force, so their quotient depends only on the arm.
   carried.bristle_stiffness =
       1 / bristle_length(1, carried.latency, carried.damping, step, arm.simulated.plant.coulomb);
   return carried;
@@ -301,7 +302,9 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
 
 std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
-  if (!scene.arms.front().arm.can_simulate) return warnings;  // nothing is known of its tip
+  if (!scene.arms.front().arm.can_simulate)
+    return warnings;  // its tip mass and damping are
+                      // unknown
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried =
@@ -324,7 +327,7 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
 }
 
 driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& options) {
-  const auto meshes = std::make_shared<scene::SharedMeshes>();  // of all hands
+  const auto meshes = std::make_shared<scene::SharedMeshes>();  // for all hands
   // First, because a scene that cannot be opened fails here.
   const auto trial = try_rests(scene, scene.arms.front().arm.simulated.hand, meshes);
   if (!trial) return trial.error();

@@ -18,19 +18,20 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// What a report can carry [DEVICES 1]: no limit is felt below it.
+// The maximum current of a report [DEVICES 1]: below it no limit applies.
 constexpr double kCurrentMost = 32;  // A
 
-constexpr int kKickTicks = 4;  // so that no kick needs more than the motors' current
+constexpr int kKickTicks = 4;  // limits the motor current of a kick
 
-constexpr double kCurrentStep = 1e-3;  // A, of the messages [DEVICES 1]
+constexpr double kCurrentStep = 1e-3;  // A, resolution of the messages [DEVICES 1]
 
-/// The tip at home and what one count of each encoder and one step of each current make of it.
+/// The tip at home, its motion per encoder count, and the currents per force.
 struct HomeSteps {
   Vector3d p_WT;
-  Matrix3d ways_W;  // columns: jumps by one count of each joint, m in the world
+  Matrix3d ways_W;  // columns: motion by one count of each joint, m in the world
   Matrix3d
-      currents_W;  // columns: currents that a force of 1 N along each axis of the world asks, A
+      // columns: currents for a force of 1 N along each axis of the world, A
+      currents_W;
   Matrix3d R_WB;
 };
 
@@ -69,7 +70,7 @@ ArmDirection along(const Vector3d& way_W, const HomeSteps& home) {
           .force_step = kCurrentStep / (home.currents_W * n_W).cwiseAbs().maxCoeff()};
 }
 
-/// Makes the arm that the case asks for out of that of the file.
+/// Returns the arm of the file with the settings of the case.
 scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   scene::ArmFile arm = file;
   arm.velocity_corner_frequency = wall.velocity_corner;
@@ -83,8 +84,8 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   if (!wall.own_step && wall.step > 0) {
     const double finer = wall.direction.step / wall.step;
     for (auto& encoder : arm.model.encoders) {
-      // The home pose stays in the middle of a step, as it is with the arm's own encoders; where a
-      // wall stands between two steps decides whether it can rest.
+      // The home pose remains in the middle of a step, as with the arm's own encoders: the position
+      // of a wall between two steps decides whether it is stable.
       const auto own = static_cast<double>(encoder.home_counts);
       const double home = std::round(own * finer);
       encoder.counts_per_motor_turn *= home != 0 ? home / own : finer;
@@ -93,7 +94,7 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
   }
   if (!wall.own_step && !(wall.step > 0)) arm.simulated.firmware.ideal_encoders = true;
   if (!wall.own_limits) {
-    // No limit is felt: the soft start lets 20 N through in a microsecond.
+    // No limit applies: the soft start allows 20 N within a microsecond.
     arm.limits = {.force_max = 1e6,
                   .speed_max = 1e4,
                   .rise_max = 1e9,
@@ -110,7 +111,7 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
 }  // namespace
 
 bool ArmDirection::is_one_dimensional() const {
-  constexpr double kWithin = 0.01;  // the laws themselves are met to some percent
+  constexpr double kWithin = 0.01;  // the laws themselves hold to some percent
   return largest_step >= (1 - kWithin) * step && friction_share <= 1 + kWithin;
 }
 
@@ -129,7 +130,7 @@ driver::Result<ArmDirection> diagonal_direction_at_home(const scene::ArmFile& ar
   const auto home = home_steps(arm);
   if (!home) return home.error();
   const Matrix3d& ways = home->ways_W;
-  // The sum of |n . way_i| is largest along the longest of the sums of the ways with any signs.
+  // The sum of |n . way_i| is largest along the longest sum of the ways with any signs.
   Vector3d longest = Vector3d::Zero();
   for (int signs = 0; signs < 4; ++signs) {
     const Vector3d sum =
@@ -179,7 +180,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
                                       .p_WB = arm.p_WB,
                                       .limits = arm.limits,
                                       .energy = wall.energy,
-                                      // A wall at rest is what it looks at.
+                                      // Walls are measured at rest.
                                       .motion = {.hold_most = 1e9},
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000,
@@ -197,7 +198,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
   const auto pull_ns = static_cast<std::int64_t>(wall.pull_start * 1e9);
   int kick_ticks = 0;
   std::size_t gap = 0;
-  // On a late wire the first report has taken its time.
+  // With a delayed wire, the first report has already taken time.
   std::int64_t tick_ns = clock.now_ns();
   Vector3d p_last_W = arm.p_WB + arm.R_WB * board->plant().p_BT();
   double work = 0;
@@ -209,7 +210,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
     // A wall pushes outwards, along the direction, and never pulls.
     if (wall.one_sided) force = depth < 0 ? std::max(force, 0.0) : 0;
     if (wall.kick != 0 && kick_ticks < kKickTicks) {
-      // The gate opens within the first tick, so that the kick begins with the second.
+      // The gate opens within the first tick, so the kick begins with the second.
       const bool kicks = tick > 0 && tick_ns >= kick_ns;
       force = kicks ? -wall.kick * mass / (kKickTicks * period) : 0;
       if (kicks) ++kick_ticks;

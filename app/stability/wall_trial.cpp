@@ -10,13 +10,13 @@
 namespace thimble::stability {
 namespace {
 
-constexpr double kAway = 0.003;   // m; where the hand waits before it goes in
-constexpr double kBegin = 0.35;   // s; the soft start is over
+constexpr double kAway = 0.003;   // m; distance of the hand before it moves in
+constexpr double kBegin = 0.35;   // s; after the soft start
 constexpr double kEnd = 1.55;     // s
-constexpr double kWatched = 0.2;  // s, the last of it
-constexpr double kBefore = 0.4;   // s; so much earlier it is watched, too
+constexpr double kWatched = 0.2;  // s, at the end
+constexpr double kBefore = 0.4;   // s; the earlier interval begins this much before the last one
 
-/// Returns how far the tip moved to and fro in a stretch of time, m.
+/// Returns the peak-to-peak motion of the tip in an interval, m.
 double oscillation_between(const WallRun& run, double from, double to) {
   double least = 1e9, most = -1e9;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
@@ -27,7 +27,7 @@ double oscillation_between(const WallRun& run, double from, double to) {
   return std::max(0.0, most - least);
 }
 
-/// Returns how the force differs from its mean from a time on, N, RMS.
+/// Returns the RMS of the force about its mean from a given time on, N.
 double force_rms(const WallRun& run, double from) {
   double sum = 0, squares = 0;
   int seen = 0;
@@ -44,7 +44,7 @@ double force_rms(const WallRun& run, double from) {
 }  // namespace
 
 driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTrial& trial) {
-  // The hand's spring presses with `press` when it wants to be that far inside.
+  // With this target depth, the hand's spring presses with `press`.
   const double deep = trial.press / std::max(1.0, arm.simulated.hand.stiffness);
   if (!scene::joint_angles_at(arm, trial.p_W + kAway * trial.n_W) ||
       !scene::joint_angles_at(arm, trial.p_W - deep * trial.n_W)) {
@@ -82,8 +82,8 @@ driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTri
 }
 
 bool comes_to_rest(const WallTouch& touch, double quiet) {
-  // Near the edge an oscillation takes long to die, so that it becomes less is enough: 5 % in 0.4 s
-  // are 0.5 % below the edge for 0.1 kg and a latency of 1.5 ms. Written so that NaN is not quiet.
+  // Near the edge an oscillation decays slowly, so a decrease is enough: 5 % in 0.4 s are 0.5 %
+  // below the edge for 0.1 kg and a latency of 1.5 ms. NaN counts as not quiet.
   return !touch.fault &&
          (touch.oscillation <= quiet || touch.oscillation < 0.95 * touch.oscillation_before);
 }
