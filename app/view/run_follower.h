@@ -40,8 +40,8 @@ class RunFollower final : public TouchSource {
   session::RunAttachment& runs_;
   std::unique_ptr<LiveScene> live_;
   std::unique_ptr<DrawnMoment> newest_ = std::make_unique<DrawnMoment>();
-  std::unique_ptr<DrawnMoment> then_ = std::make_unique<DrawnMoment>();  // the kept moment that is
-                                                                         // shown
+  // the kept moment that is shown
+  std::unique_ptr<DrawnMoment> then_ = std::make_unique<DrawnMoment>();
   bool has_moment_ = false;
   MomentRing ring_;
   PlayHead head_ = PlayHead::of_run();

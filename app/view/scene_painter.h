@@ -88,8 +88,7 @@ class ScenePainter {
   std::size_t naive_object_ = 0;
   SolidModels solids_;
   std::vector<Eigen::Matrix4f> places_;  // poses of the objects in this picture
-  Eigen::AlignedBox2i ground_shadow_;    // box in this picture with all shadows on the ground,
-                                         // pixels
+  Eigen::AlignedBox2i ground_shadow_;    // box with all shadows on the ground, pixels
   GlBuffer view_block_;
   GlVertexArray nothing_;
   PaneModel panes_;

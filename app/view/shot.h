@@ -29,8 +29,8 @@ class PlayedScene {
   /// Callback for a moment; `last` is the last tick that was.
   using Look = std::function<void(DrawnMoment& moment, const Plots& plots)>;
 
-  /// Plays the scene once and calls `look` for each of these times (s, in order), with the last
-  /// tick that is no later, or the last of the run. As in a viewer and in a recording
+  /// Plays the scene once and calls `look` for each of these times (s, in order). The tick is the
+  /// last one that is no later, or the last of the run. As in a viewer and in a recording
   /// (RecordingView), tip, force and poses are those of the tick. A dent is the last one drawn
   /// (session::DentRecord), at most 16 ms before. Then it ends the recording, if the options
   /// requested one.

@@ -13,8 +13,7 @@ namespace thimble::view {
 /// A text at a place of the scene.
 struct Label {
   Eigen::Vector3d p_W{0, 0, 0};     ///< m
-  Eigen::Vector3d away_W{0, 0, 0};  ///< Direction from the place in which there is room for the
-                                    ///< text.
+  Eigen::Vector3d away_W{0, 0, 0};  ///< Direction in which there is room for the text.
   std::string text;
   Colour colour{};
 };

@@ -195,8 +195,8 @@ void Content::begin_run(session::SharedReader& run, bool again) {
   }
   if (!felt_follows_) felt_.follow(run.name());
   felt_follows_ = true;
-  notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // that run started this
-                                                                        // window
+  // The run started this window.
+  notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();
 }
 
 driver::Result<void> Content::draw(double frame_time) {

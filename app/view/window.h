@@ -13,14 +13,12 @@ namespace thimble::view {
 
 /// Initial state of a window, and when it closes by itself, for tests.
 struct WindowChoice {
-  HandSource hand = HandSource::kMouse;  ///< Source of the simulated hand, if the run lets a viewer
-                                         ///< move it.
+  HandSource hand = HandSource::kMouse;  ///< Source of the hand, if the run lets a viewer move it.
   FeltChoice felt;
   double ui_scale = 0;  ///< Scale of text and panel; 0: that of the monitor.
   Theme theme = Theme::kLight;
   double seconds = 0;        ///< Closes after this time, s; 0: when the user closes it.
-  std::string last_picture;  ///< PNG of the whole window, written before it closes by itself;
-                             ///< empty: none.
+  std::string last_picture;  ///< PNG of the window before it closes by itself; empty: none.
   double at = -1;  ///< Time of a recording at which it is stopped at first, s; below 0: it plays.
 };
 

@@ -6,8 +6,7 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kRumbleFull = 0.5;  // N, change between ticks for full intensity of the weak
-                                     // motor; chosen
+constexpr double kRumbleFull = 0.5;  // N, change between ticks for full intensity; chosen
 // Time after which a level is sent again, ns: twice before the gamepad would stop. A new level is
 // sent no more often either, because the gamepad's cable transfers 8 ms of commands at a time.
 constexpr auto kBetween = static_cast<std::int64_t>(1e9 * kRumbleMost / 4);

@@ -12,8 +12,7 @@ using Eigen::Vector3d;
 // All values below are chosen by listening: an everyday touch is clearly audible and not clipped.
 constexpr double kPerNewton = 0.4;     // per newton of vibration
 constexpr double kSpreadTime = 0.05;   // s, time constant of the direction of the vibration
-constexpr double kClickHz = 400;       // tap of a hard object; the form A(v) e^-Bt sin wt:
-                                       // [Okamura]
+constexpr double kClickHz = 400;       // tap of a hard object: A(v) e^-Bt sin wt [Okamura]
 constexpr double kClickTime = 0.008;   // s, decay to 1/e
 constexpr double kClickSpeed = 0.2;    // m/s at which a click is loudest
 constexpr double kClickMost = 0.4;     // of full scale 1

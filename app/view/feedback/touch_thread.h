@@ -7,7 +7,7 @@
 
 namespace thimble::view {
 
-/// The chosen outputs for sound and rumble.
+/// The chosen outputs: sound and rumble.
 struct FeltChoice {
   bool sound = false;
   bool rumble = false;
@@ -28,8 +28,7 @@ class TouchThread {
 
  private:
   std::string trouble_;
-  std::unique_ptr<TouchPlayer> player_;  // until the thread takes it; also null if there is no
-                                         // output
+  std::unique_ptr<TouchPlayer> player_;  // until the thread takes it; null: no output
   std::jthread thread_;
 };
 

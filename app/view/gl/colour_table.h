@@ -27,8 +27,7 @@ class ColourTable {
   std::uint8_t nearest(int r, int g, int b) const;
 
   std::vector<Rgb> colours_;
-  mutable std::vector<std::int16_t> known_;  // nearest colour by 6 bits per channel; -1: not yet
-                                             // computed
+  mutable std::vector<std::int16_t> known_;  // nearest, by 6 bits per channel; -1: unknown
 };
 
 }  // namespace thimble::view

@@ -22,8 +22,7 @@ struct CreasedMesh {
   std::vector<Eigen::Vector3f> normals;                 ///< Unit.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< In the order of the mesh.
   std::vector<std::array<std::uint32_t, 2>> edges;      ///< Each edge of the mesh once.
-  bool closed = false;  ///< Each edge joins two triangles with the same orientation, facing
-                        ///< outwards.
+  bool closed = false;  ///< Each edge joins two triangles with the same orientation.
 };
 
 /// Splits a mesh at its creases, where the normals of two polygons differ by more than

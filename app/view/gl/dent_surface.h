@@ -50,8 +50,7 @@ class DentSurface {
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<std::array<std::uint32_t, 3>> drawn_;  // the same triangles, as indices of:
   std::vector<Eigen::Vector3f> drawn_normals_;
-  std::vector<std::array<std::int32_t, 2>> sources_;  // triangles of the points that are no
-                                                      // vertices
+  std::vector<std::array<std::int32_t, 2>> sources_;  // of the points that are no vertices
   std::vector<DentVertex> vertices_;
   std::vector<std::uint32_t> hidden_;
 };

@@ -20,8 +20,7 @@ inline constexpr Colour kJointColour = colour_of(0x4A525C);
 inline constexpr Colour kNormalColour = colour_of(0x009E73);    // bluish green: contact normal
 inline constexpr Colour kFrictionColour = colour_of(0xCC79A7);  // reddish purple
 inline constexpr Colour kSkyColour = colour_of(0xFBFCFD);       // background at the top
-inline constexpr Colour kGroundColour = colour_of(0xE4E8EC);    // background at the bottom, and the
-                                                                // ground
+inline constexpr Colour kGroundColour = colour_of(0xE4E8EC);    // background at the bottom; ground
 inline constexpr Colour kGridColour = colour_of(0x9AA5B1);
 inline constexpr Colour kTextColour = colour_of(0x1F2933);
 inline constexpr Colour kQuietTextColour = colour_of(0x616E7C);

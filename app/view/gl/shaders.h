@@ -25,8 +25,7 @@ std::string surface_fragment(Shading shading, bool bent);
 std::string gouraud_fragment();  ///< Lit per vertex, shadows per pixel.
 std::string shadow_vertex();     ///< Position 0; writes the depth from the light.
 std::string shadow_fragment();
-std::string plain_vertex();  ///< Position 0, in one colour: lines, planes, hidden parts that shine
-                             ///< through.
+std::string plain_vertex();  ///< Position 0, in one colour: lines, planes, hidden solids.
 std::string plain_fragment();
 std::string ground_vertex();  ///< No attributes: a square on the ground.
 /// `shadowed`: reads the shadow map; otherwise without shadows.

@@ -9,8 +9,7 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kWeakest = 0.06;  // fraction of the field's strongest force; weaker arrows are not
-                                   // drawn [chosen]
+constexpr double kWeakest = 0.06;  // of the strongest force; weaker arrows are omitted [chosen]
 
 /// Returns the spacing of a field's samples, m: the maximum length of an arrow.
 double spacing(const std::vector<FieldSample>& field) {

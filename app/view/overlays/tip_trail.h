@@ -14,8 +14,7 @@ namespace thimble::view {
 /// Real-time: never from the servo thread.
 class TipTrail {
  public:
-  static constexpr double kSeconds = 4;  ///< Duration that is kept. Chosen: a stroke in both
-                                         ///< directions.
+  static constexpr double kSeconds = 4;  ///< Kept duration. Chosen: a stroke in both directions.
 
   /// Takes one tick. A tick older than the last one means a new run and clears the path. A tip at
   /// rest adds nothing, nor does one that is not finite.

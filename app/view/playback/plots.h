@@ -49,8 +49,7 @@ TimeRange shifted(const TimeRange& range, double by, const TimeRange& all);
 /// of the screen. Real-time: never from the servo thread.
 class Plots {
  public:
-  static constexpr double kSeconds = 60;      ///< Duration kept of a run: the same as in
-                                              ///< MomentRing.
+  static constexpr double kSeconds = 60;      ///< Kept duration of a run, as in MomentRing.
   static constexpr double kShownSeconds = 8;  ///< Duration shown by default.
   /// Maximum number of ticks kept of a run: a minute at 8 kHz, 23 MB. [chosen]
   static constexpr std::size_t kSamplesMost = 480'000;
