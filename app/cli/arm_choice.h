@@ -20,8 +20,7 @@ struct ArmChoice {
   /// Whether the simulated arm is used if no arm is plugged in. If false, only --device sim selects
   /// it.
   bool simulates_unasked = true;
-  bool no_real_time = false;  ///< Apply forces with a real arm although the loop gets no real-time
-                              ///< priority.
+  bool no_real_time = false;  ///< Apply forces with a real arm without real-time priority.
 
   /// Adds --device, --arm and --firmware to a command.
   void add_options(CLI::App& command);

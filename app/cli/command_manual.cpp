@@ -45,8 +45,7 @@ void print_commands(const CLI::App& above, const std::string& prefix) {
     const std::string name = prefix + command->get_name();
     scene::print_format(".SS %s\n%s\n", roff(name).c_str(),
                         roff(command->get_description()).c_str());
-    if (command->get_help_ptr() == nullptr) {  // a command of another program, which has its
-                                               // options
+    if (command->get_help_ptr() == nullptr) {  // command of another program with the options
       scene::print_format("%s\n", roff(command->get_footer()).c_str());
       continue;
     }
