@@ -145,8 +145,7 @@ bool wait_until(int number, Done done) noexcept {
 /// at once, one gets it and the other changes nothing.
 bool win(int number, const ArmChannel& arm) noexcept {
   constexpr std::int64_t kPause_ns = 10'000'000;
-  constexpr int kLooks = 200;  // 2 s: meanwhile the server closes the arm of a program that has
-                               // just died
+  constexpr int kLooks = 200;  // 2 s: the server closes a dead program's arm meanwhile
   for (int look = 0; look < kLooks; ++look) {
     if (!driver::lock_byte(channel_file(), kFirstOwnerByte + number)) return false;
     if (arm.state.load() == ChannelState::kClosed) return true;

@@ -54,8 +54,7 @@ struct ArmChannel {
   std::atomic<std::uint32_t> waiting{0};    ///< Threads that wait for a tick.
   std::atomic<std::uint64_t> taken{0};      ///< Number of the newest force that was sent.
   std::atomic<std::uint32_t> paced{0};      ///< Whether ticks wait for the program (virtual time).
-  std::atomic<std::uint32_t> permitted{0};  ///< A futex; the value of `ticks` up to which ticks are
-                                            ///< permitted.
+  std::atomic<std::uint32_t> permitted{0};  ///< A futex; `ticks` may rise to this value.
 
   driver::Snapshot<ForceWritten> force;      ///< Written by the program.
   std::atomic<std::uint32_t> enabled{0};     ///< Whether force is enabled.
@@ -70,8 +69,7 @@ struct ArmChannel {
 struct WrongCall {
   std::array<char, 64> function{};      ///< Its name.
   std::array<char, 128> what{};         ///< The problem of the first wrong call.
-  std::atomic<std::uint64_t> count{0};  ///< Number of wrong calls; 0: this entry is free or not
-                                        ///< ready.
+  std::atomic<std::uint64_t> count{0};  ///< Wrong calls; 0: the entry is free or not ready.
 };
 
 /// The whole channel.
@@ -81,15 +79,12 @@ struct Channel {
   /// channel_layout_hash() (channel_layout.h) once the rest is ready; always the first member.
   std::atomic<std::uint64_t> layout{0};
   std::int32_t arm_count = 0;              ///< 1 to kArmsMost.
-  std::atomic<std::uint32_t> requests{0};  ///< A futex; incremented with each request of the
-                                           ///< program.
+  std::atomic<std::uint32_t> requests{0};  ///< A futex; incremented with each request.
   std::array<ArmChannel, kArmsMost> arms;
   std::atomic<std::uint32_t> wrong_calls_used{0};
   std::array<WrongCall, kWrongCallsMost> wrong_calls;
-  std::atomic<std::uint64_t> torques_asked{0};   ///< Forces that came with a torque, which is
-                                                 ///< ignored.
-  std::atomic<std::uint64_t> grippers_asked{0};  ///< Forces that came with a gripper force, which
-                                                 ///< is ignored.
+  std::atomic<std::uint64_t> torques_asked{0};   ///< Forces with a torque, which is ignored.
+  std::atomic<std::uint64_t> grippers_asked{0};  ///< Forces with a gripper force, which is ignored.
 };
 
 }  // namespace thimble::compat

@@ -24,8 +24,7 @@ enum class ArmBuild : std::uint8_t {
 /// Properties and limits of an open arm. Constant while it is open.
 struct ArmFacts {
   std::array<char, 64> name{};            ///< Name in its arm file; ends with a 0.
-  std::array<char, 64> serial{};          ///< Name of the real arm; "sim" and a number for a
-                                          ///< simulated one.
+  std::array<char, 64> serial{};          ///< Name of the real arm; "sim" and a number.
   ArmBuild build = ArmBuild::kSerial;     ///< Mechanism.
   bool simulated = true;                  ///< No real motors.
   bool has_orientation = false;           ///< The arm reports the orientation of the stylus.
@@ -57,8 +56,7 @@ struct ArmReading {
   std::int64_t time_ns = 0;                               ///< Its start, on the clock of the run.
   std::array<double, 3> p_WT{};                           ///< Tip, m.
   std::array<double, 3> v_WT{};                           ///< Its velocity, m/s.
-  std::array<double, 9> R_WT{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Orientation of the stylus, row by
-                                                          ///< row.
+  std::array<double, 9> R_WT{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Stylus orientation, row by row.
   std::array<double, 3> w_WT{};          ///< Angular velocity of the stylus, rad/s.
   std::array<double, 3> q{};             ///< Joint angles, rad.
   std::array<double, 9> J_WT{};          ///< d p_WT / d q, m/rad, row by row; zeros: no joints.
@@ -67,16 +65,14 @@ struct ArmReading {
   std::array<std::int32_t, 3> counts{};  ///< Encoder counts.
   std::uint16_t buttons = 0;             ///< One bit each; bit 0 is the arm's first.
   std::array<double, 3> f_client_W{};    ///< The program's force in this tick, N.
-  std::array<double, 3> f_asked_W{};     ///< The program's and the scene's force: the input of the
-                                         ///< gate, N.
+  std::array<double, 3> f_asked_W{};     ///< Program and scene: the gate's input, N.
   std::array<double, 3> f_sent_W{};      ///< The output of the gate, N.
   std::array<double, 3> heat{};          ///< Heat of the motors; 1: the winding's limit.
   GateCuts cuts;                         ///< Changes by the gate in this tick.
   bool stalled = false;                  ///< The program's force is off because it was not renewed.
   driver::DeviceStage stage = driver::DeviceStage::kIdle;  ///< Stage of the arm.
   driver::Fault fault = driver::Fault::kNone;              ///< The fault that keeps the force off.
-  driver::LinkState link = driver::LinkState::kConnected;  ///< Link to the arm, whatever the fault
-                                                           ///< is.
+  driver::LinkState link = driver::LinkState::kConnected;  ///< Link to the arm, even in a fault.
 };
 
 /// A program's request to an arm.

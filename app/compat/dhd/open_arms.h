@@ -12,7 +12,7 @@
 
 namespace thimble::compat::dhd {
 
-/// State of an arm's force, and who set it.
+/// State of an arm's force: on, off, or never set by the program.
 enum class ForceSwitch : std::uint8_t {
   kUntold,  ///< Not set: the first force enables it.
   kOn,      ///< The force is on.
@@ -50,8 +50,7 @@ struct OpenArm {
   std::atomic<double> vibration_amplitude{0};   ///< N
   std::atomic<std::uint64_t> forces{0};         ///< Number of forces sent.
   std::mutex gap_mutex;                         ///< For the three below.
-  double gap_time = 0, gap = 0, gap_speed = 0;  ///< Time, opening and speed of the gripper: s, m,
-                                                ///< m/s.
+  double gap_time = 0, gap = 0, gap_speed = 0;  ///< s, m, m/s: last state of the gripper.
   std::uint64_t counted_forces = 0;             ///< Value of `forces` at the last dhdGetComFreq.
   std::int64_t counted_ns = 0;                  ///< Time of that call.
   Regulator regulator;                          ///< For the functions drd...

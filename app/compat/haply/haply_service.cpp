@@ -34,8 +34,7 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kMessageMost = 256 * 1024;     // bytes; messages of programs have some
-                                                     // hundreds
+constexpr std::size_t kMessageMost = 256 * 1024;     // bytes; typical are some hundreds
 constexpr std::size_t kProgramsMost = 16;            // simultaneous programs [chosen]
 constexpr auto kPatience = std::chrono::seconds(1);  // for a client that sends no request
 constexpr auto kPause = std::chrono::milliseconds(1);
@@ -79,8 +78,7 @@ class Program {
     thread_ = std::thread([this, &arms] {
       try {
         serve(arms);
-      } catch (const std::exception&) {  // out of memory, for example: as if the program had
-                                         // disconnected
+      } catch (const std::exception&) {  // out of memory, say: as after a disconnect
       }
       arms.leave(session_);
       stream_.next_layer().close();

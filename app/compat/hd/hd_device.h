@@ -33,8 +33,7 @@ struct Device {
   double impulse_limit = 0;                  ///< N/ms; only stored and returned
   std::array<double, 4> light{};             ///< only stored and returned
   std::array<double, 3> joint_references{};  ///< only stored and returned
-  std::int64_t enabled_ns = 0;               ///< Time at which force was enabled, by the arm's
-                                             ///< clock.
+  std::int64_t enabled_ns = 0;               ///< Time of the last enabling, arm's clock.
   std::uint64_t framed_tick = 0;             ///< Tick of the newest frame, plus one.
   driver::Fault fault_told = driver::Fault::kNone;
   driver::LinkState link_reported = driver::LinkState::kConnected;
@@ -46,8 +45,7 @@ struct Device {
 struct Devices {
   std::mutex mutex;
   std::array<Device, kArmsMost> all;
-  std::atomic<HHD> current{0};  ///< For threads without a choice of their own: the newest choice of
-                                ///< any thread.
+  std::atomic<HHD> current{0};  ///< The newest choice of any thread, as the default.
 };
 
 /// Returns the arms. They are never destroyed: threads of the program may use them while it exits.

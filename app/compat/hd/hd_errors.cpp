@@ -9,8 +9,7 @@
 namespace thimble::compat::hd {
 namespace {
 
-constexpr std::size_t kErrorsMost = 64;  // chosen: enough for a program that checks errors only now
-                                         // and then
+constexpr std::size_t kErrorsMost = 64;  // chosen: enough for rare checks of errors
 
 struct Errors {
   std::mutex mutex;

@@ -42,8 +42,7 @@ struct Scheduler {
   HDulong rate = kFullRate;
   std::thread thread;
   bool running = false;
-  std::shared_ptr<std::atomic<bool>> stop;  // of the thread, which may outlive the scheduler if it
-                                            // stops it
+  std::shared_ptr<std::atomic<bool>> stop;  // of the thread, which may outlive the scheduler
   std::atomic<std::int64_t> tick_began_ns{0};
 };
 

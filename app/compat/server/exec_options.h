@@ -27,8 +27,7 @@ struct ExecOptions {
   std::string program = {};             ///< The started program, for the report and the viewer.
   std::vector<ExecArm> arms = {{}};     ///< In the program's numbering.
   std::string scene = {};               ///< Name or path; empty: no objects.
-  std::string hand = "path";            ///< "path": the scene's; "mouse"; or a file
-                                        ///< (read_hand_path.h).
+  std::string hand = "path";            ///< "path": the scene's; "mouse"; or a file.
   std::filesystem::path record = {};    ///< Recording of every tick; empty: none.
   bool overwrite = false;               ///< `record` may replace existing recordings.
   std::filesystem::path firmware = {};  ///< For a real arm that needs firmware.
@@ -41,8 +40,7 @@ struct ExecOptions {
   bool unchecked = false;                       ///< Allow full force without a passed feel check.
   bool homed = false;                           ///< The arm was in its home pose at power-up.
   bool no_real_time = false;                    ///< Run without real-time priority.
-  driver::HoldToRun hold = {};                  ///< Buttons of the arm that must be held for a
-                                                ///< force.
+  driver::HoldToRun hold = {};                  ///< Arm's buttons that must be held for a force.
   /// Called with an arm's number and session before its loop begins, for tests.
   std::function<void(std::size_t, session::Session&)> opened = {};
 };
