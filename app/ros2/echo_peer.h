@@ -10,8 +10,8 @@
 namespace thimble::ros2 {
 
 /// A program at the other end of a run's topics, as a separate participant. It answers each pose
-/// with a zero force that has the stamp of the pose, so that the run can measure the age of the
-/// positions that forces answer.
+/// with a zero force that has the pose's stamp. With it, the run measures the age of the positions
+/// that forces answer.
 class EchoPeer final : public RosPeer {
  public:
   /// Takes the options of the run to answer.

@@ -44,8 +44,7 @@ struct RosOptions {
   std::int64_t stale_ns = 50'000'000;        ///< maximum age of a force
   bool lead_hand = false;                    ///< a topic sets the simulated hand's target
   bool stepped = false;                      ///< virtual time, advanced by a topic
-  bool moves_time = true;  ///< in a stepped run: the topics of this arm advance and publish the
-                           ///< time
+  bool moves_time = true;  ///< in a stepped run: the topics of this arm advance the time
 };
 
 /// One object of a scene for display.
@@ -84,8 +83,7 @@ struct RosCounts {
   std::atomic<std::uint64_t> places{0};       ///< valid targets of the hand
   std::atomic<std::uint64_t> not_finite{0};   ///< refused
   std::atomic<std::uint64_t> wrong_frame{0};  ///< refused
-  std::atomic<std::uint64_t> with_torque{0};  ///< accepted without the torque, for which there is
-                                              ///< no motor
+  std::atomic<std::uint64_t> with_torque{0};  ///< accepted without the torque: no motor for it
   std::atomic<std::uint64_t> skipped{0};      ///< superseded by newer ones before they were read
   std::atomic<std::uint64_t> published{0};    ///< published ticks
 };
@@ -96,11 +94,9 @@ struct RosChannel {
   const driver::Clock* clock = nullptr;  ///< clock of the run; any thread may read it
   /// The newest tick; written by the servo thread.
   const driver::Snapshot<driver::TickRecord>* tick = nullptr;
-  driver::Snapshot<session::ScenePoses> poses;  ///< poses of moving objects; written by the servo
-                                                ///< thread
+  driver::Snapshot<session::ScenePoses> poses;  ///< of moving objects; by the servo thread
   driver::Snapshot<RosWrench> wrench;           ///< the newest force; written by the topics' thread
-  driver::Snapshot<RosHandPlace> hand;          ///< the newest target; written by the topics'
-                                                ///< thread
+  driver::Snapshot<RosHandPlace> hand;          ///< the newest target; by the topics' thread
   RosSteps* steps = nullptr;                    ///< for a stepped run, otherwise null
   std::size_t arm = 0;                          ///< index of the arm in the run
   RosCounts counts;
