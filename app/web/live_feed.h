@@ -56,8 +56,8 @@ class LiveFeed {
   /// Returns whether there is a message for a page.
   bool has_message(const Place& place) const noexcept { return !place.begun || place.next < end(); }
   /// Returns the next message for a page. If the page has no position yet, or its next update is no
-  /// longer kept, the message begins with the state before the oldest update, and contains the
-  /// number of lost ticks.
+  /// longer kept, the message begins with the state before the oldest update. That state contains
+  /// the number of lost ticks.
   std::string message(Place& place) const;
 
   /// Returns the number of the oldest update that is kept, and the number of the next update.
@@ -85,8 +85,7 @@ class LiveFeed {
 
   session::SharedReader& reader_;
   bool draws_all_;
-  std::vector<driver::TickRecord> ticks_;  // the last tick of the previous update, and the new
-                                           // ticks
+  std::vector<driver::TickRecord> ticks_;  // the last one of the previous update, and new ones
   bool has_last_ = false;
   std::uint64_t serial_ = 0;
   std::uint64_t lost_ = 0;
@@ -100,8 +99,7 @@ class LiveFeed {
   std::string told_;  // state and other facts of the run in the last update
   std::uint64_t patches_ = 0;
   std::uint64_t shape_moves_ = 0;
-  std::vector<render::TriangleMesh> first_, base_, meshes_;  // meshes of the objects that are
-                                                             // shaped
+  std::vector<render::TriangleMesh> first_, base_, meshes_;  // of the shaped objects
   std::deque<Update> updates_;
   std::uint64_t oldest_ = 0;
   std::size_t kept_ticks_ = 0, kept_bytes_ = 0;

@@ -17,8 +17,7 @@ class RequestGuard {
   struct Request {
     std::string_view target;  ///< Path and query of the request.
     std::string_view host;    ///< Header `Host`.
-    std::string_view origin;  ///< Header `Origin`: the origin of the requesting page, which every
-                              ///< browser sends.
+    std::string_view origin;  ///< Header `Origin`: origin of the page; every browser sends it.
     /// Header `X-Thimble-Token`. A page of another origin cannot send it without a preflight
     /// request.
     std::string_view token{};

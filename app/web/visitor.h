@@ -117,8 +117,7 @@ class Visitor {
  private:
   static constexpr auto kPatience =
       std::chrono::seconds(5);                    // for a client that sends no request; chosen
-  static constexpr std::size_t kBodyMost = 1024;  // body of a request, bytes: a command with the
-                                                  // name of a knob; chosen
+  static constexpr std::size_t kBodyMost = 1024;  // bytes: a command with a knob's name; chosen
 
   void send(std::string bytes) {
     message_ = std::move(bytes);
