@@ -35,8 +35,7 @@ struct RunOptions {
   std::optional<ros2::RosWords> topics = {};  ///< ROS 2 topics; only in real time.
   std::string hold_to_run = {};  ///< Button of the arm that must be held for a force; empty: none.
   bool no_real_time = false;     ///< Use a real arm although the loop gets no real-time priority.
-  std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< Meshes shared with other runs; null: its
-                                                     ///< own.
+  std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< Shared with other runs; null: its own.
 };
 
 /// Returns the options of a session. Throws ThimbleError or ArgumentError with a sentence.
