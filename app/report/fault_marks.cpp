@@ -49,8 +49,7 @@ constexpr int kPiecesMax = 100;
 
 // A few short edges are hard to find on a picture: up to this number, each gets a ring.
 constexpr std::size_t kRingedMax = 12;
-constexpr double kRingedPieces = 5;  // a line longer than this number of pieces is visible without
-                                     // a ring
+constexpr double kRingedPieces = 5;  // a longer line (in pieces) is visible without a ring
 
 // Returns gnuplot's point type.
 int point_type(Sign sign) {

@@ -15,8 +15,8 @@ namespace thimble::report {
 bool has_marks(const render::MeshFindings& found);
 
 /// Returns the positions of all faults in a view as text: u and v per line. Each kind of fault that
-/// occurs has a block for hidden positions (by more than `tolerance`, in the mesh's unit) and a
-/// block for visible ones, then the same for rings that mark the places of a few edges. Positions
+/// occurs has two blocks: for hidden positions (by more than `tolerance`, in the mesh's unit), and
+/// for visible ones. Two more blocks are for rings that mark the places of a few edges. Positions
 /// at vertices that do not exist or are not finite are omitted.
 std::string fault_table(const render::MeshFindings& found, const render::TriangleMesh& mesh,
                         const MeshView& view, double tolerance);

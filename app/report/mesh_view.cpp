@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kSupersampling = 2;
-constexpr int kGrazing = kSupersampling;  // samples around a point that must also be hidden: a
+constexpr int kGrazing = kSupersampling;  // samples around a point that must be hidden, too: a
                                           // pixel
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 

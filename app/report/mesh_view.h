@@ -16,10 +16,8 @@ namespace thimble::report {
 struct ViewDirection {
   std::string_view name;
   std::string_view u_label, v_label;  ///< World axes along the picture's sides.
-  Eigen::Vector3d u_W, v_W, w_W;      ///< Right, up, and towards the eye in the picture; unit
-                                      ///< vectors.
-  double v_sign = 1;                  ///< -1 if the world's axis `v_label` points down in the
-                                      ///< picture.
+  Eigen::Vector3d u_W, v_W, w_W;      ///< Right, up, and towards the eye; unit vectors.
+  double v_sign = 1;                  ///< -1 if the world's axis `v_label` points down.
 };
 
 /// Returns the views from the front (the user's), from the left, and from above.
@@ -28,7 +26,7 @@ const std::array<ViewDirection, 3>& view_directions();
 /// One shaded picture of a mesh on white, with the depth of each pixel.
 class MeshView {
  public:
-  /// Draws the mesh (m) in a square window of side `extent` (m, > 0) about `center_W`, with
+  /// Draws the mesh (m) in a square window of side `extent` (m, > 0) about `center_W`. It has
   /// `pixels` pixels a side (> 0), each the mean of 2 x 2 samples.
   /// Real-time: never from the servo thread.
   MeshView(const render::TriangleMesh& mesh_W, const ViewDirection& direction,

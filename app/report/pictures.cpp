@@ -65,8 +65,7 @@ double text_width(const std::string& text, double points) {
 std::string fitted(const std::string& text, double pixels, double points) {
   std::string cut = text;
   while (!cut.empty() && text_width(cut + (cut.size() < text.size() ? "…" : ""), points) > pixels) {
-    cut.pop_back();  // only the first byte of a character has a width, so whole characters are
-                     // removed
+    cut.pop_back();  // only a character's first byte has a width, so remove whole characters
   }
   return cut.size() < text.size() ? cut + "…" : text;
 }

@@ -22,8 +22,7 @@ namespace thimble::report {
 
 /// One arm of a touch on a page.
 struct PageArm {
-  std::span<const driver::TickRecord> ticks;  ///< Oldest first; must outlive the writing of the
-                                              ///< page.
+  std::span<const driver::TickRecord> ticks;  ///< Oldest first; must outlive the writing.
   /// The time since the previous tick of each, ns, if ticks between them were omitted; otherwise
   /// empty.
   std::span<const std::int64_t> periods_ns{};
@@ -51,8 +50,7 @@ struct PageTouch {
   std::vector<PageArm> arms{};   ///< One for each arm of the scene, in its order.
   const session::BodyTrace* bodies = nullptr;  ///< Poses of moving objects; null if none moves.
   const session::DentTrace* dents = nullptr;   ///< Dents of objects; null if none can be dented.
-  std::vector<ShapeStep> shapes{};  ///< Steps of the permanent deformation, in s from the first
-                                    ///< tick.
+  std::vector<ShapeStep> shapes{};  ///< Steps of the permanent deformation, s from the first tick.
   std::vector<PageShape> left{};    ///< Final meshes of the deformed objects.
 };
 

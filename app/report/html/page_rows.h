@@ -17,7 +17,7 @@ struct PageTicks {
   /// Takes consecutive ticks.
   PageTicks(std::span<const driver::TickRecord> all) : ticks(all) {}     // NOLINT(*-explicit-*)
   PageTicks(const std::vector<driver::TickRecord>& all) : ticks(all) {}  // NOLINT(*-explicit-*)
-  /// Takes ticks of which some were omitted, with one period (ns) each.
+  /// Takes ticks with gaps between them, with one period (ns) each.
   PageTicks(std::span<const driver::TickRecord> some, std::span<const std::int64_t> periods)
       : ticks(some), periods_ns(periods) {}
 
@@ -39,9 +39,9 @@ struct PageTicks {
 /// the servo thread.
 std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most);
 
-/// Adds the ticks `kept` to a page under the names PREFIX + t (s from `begin_ns` on the loop's
-/// clock), tick, tip, proxy, sent, asked, depth, period, work, speed, object, touching; SI units,
-/// W. The period is the time since the previous tick, kept or not. Real-time: never from the servo
+/// Adds the ticks `kept` to a page; SI units, W. The arrays are PREFIX + t (s from `begin_ns` on
+/// the loop's clock), tick, tip, proxy, sent, asked, depth, period, work, speed, object, touching.
+/// The period is the time since the previous tick, kept or not. Real-time: never from the servo
 /// thread.
 void add_rows(PageBlock& block, const std::string& prefix, const PageTicks& ticks,
               std::span<const std::size_t> kept, std::int64_t begin_ns);

@@ -24,8 +24,7 @@ struct ShapeStep {
   bool empty() const noexcept { return vertices.empty() && triangles.empty(); }
 };
 
-/// Returns the difference between two meshes of which the second was made from the first by moves
-/// and splits.
+/// Returns the changes from one mesh to another that was made from it by moves and splits.
 /// Real-time: never from the servo thread.
 ShapeStep shape_step(const render::TriangleMesh& before, const render::TriangleMesh& after);
 
