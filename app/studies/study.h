@@ -14,9 +14,9 @@ namespace thimble::studies {
 struct Study {
   std::string_view name;   ///< `thimble study NAME`.
   std::string_view about;  ///< Its line in the help.
-  /// Writes pictures and tables into the existing `folder`, and returns the figures, of which
-  /// figures.json and the printed table are made. Fails if a file cannot be written. Null for a
-  /// study with its own options: its command in app/cli/study has them and runs it.
+  /// Writes pictures and tables into the existing `folder`, and returns the figures. figures.json
+  /// and the printed table are made from them. Fails if a file cannot be written. Null for a study
+  /// with its own options: its command in app/cli/study has them and runs it.
   /// Real-time: never from the servo thread.
   driver::Result<std::vector<session::Figure>> (*run)(const std::filesystem::path& folder);
 };

@@ -29,8 +29,7 @@ struct AccuracyPoint {
   bool is_default = false;         ///< On an axis with `given`: the value of a PHANTOM-like arm.
   bool fits = false;               ///< Whether it is used for the slope of the line.
   std::optional<double> law = {};  ///< Error predicted by a published law, if there is one.
-  std::string title = {};          ///< Words for the point, if the line's title and the knob do not
-                                   ///< describe it.
+  std::string title = {};          ///< Words for the point, if line and knob do not describe it.
 };
 
 /// One method with several settings of its knob.
@@ -55,8 +54,7 @@ struct AccuracyAxis {
   std::string felt_words;       ///< Replaces the sentence about the point beyond which accuracy
                                 ///< cannot be felt.
   std::string per = "tick";     ///< Unit of work of the cost.
-  bool given = false;           ///< The knob's value is given by the arm and not chosen by a
-                                ///< program.
+  bool given = false;           ///< The arm gives the value of the knob.
   bool cost_is_added = false;   ///< The cost is an increment, and may be negative.
   std::string default_words;    ///< Why the default is where it is, if it is not on the front.
   std::string left_out;         ///< One or two sentences: what this axis does not show, and why.

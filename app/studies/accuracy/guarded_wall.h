@@ -28,7 +28,7 @@ struct WallGuard {
 /// A wall behind a guard: the sent force of each tick, along one line.
 ///
 /// The coupling is a spring and damper between the tip and a massless point that the wall stops by
-/// an implicit step, so that everything behind the coupling is passive. Spring and damper are 1 /
+/// an implicit step. Everything behind the coupling is therefore passive. Spring and damper are 1 /
 /// 1.1 and 1 / 1.2 of the bound K T / 2 + B < b [PHYSICS 1.2 and 1.6, after Adams and Hannaford].
 /// Real-time: safe, after construction.
 class GuardedWall {

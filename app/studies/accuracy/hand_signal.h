@@ -12,7 +12,7 @@ struct HandSignal {
 /// Returns the position of the hand at `t` s: 20 mm at 0.4 Hz, 1 mm at 3 Hz, 50 um at 10 Hz.
 HandSignal hand_signal(double t);
 
-/// Rounds `x` down to whole steps of an encoder; 0 leaves it unchanged.
+/// Rounds `x` to whole steps of an encoder; 0 leaves it unchanged.
 double counted(double x, double step);
 
 }  // namespace thimble::studies

@@ -35,8 +35,7 @@ std::vector<Eigen::Vector3d> forces_on(const RingTouch& ring);
 struct RingErrors {
   double force = 0;          ///< RMS, as a fraction.
   double direction_p99 = 0;  ///< rad
-  double jump = 0;           ///< Largest rotation within a tick beyond that of the exact normal,
-                             ///< rad.
+  double jump = 0;           ///< Largest rotation within a tick beyond the exact normal's, rad.
 };
 RingErrors ring_errors(const RingTouch& ring);
 

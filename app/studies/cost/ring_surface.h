@@ -29,8 +29,9 @@ struct RingSurface {
 };
 
 /// Returns the states of a tip that strokes the ring for `ticks` ticks of `dt` (s). The tip comes
-/// from outside, strokes forth and back at up to 80 mm/s, 0.5 to 1.5 mm deep, over the whole tube,
-/// stops at each turn, and leaves. There is no noise: the states are identical each time.
+/// from outside, strokes forth and back over the whole tube, stops at each turn, and leaves. Its
+/// speed is up to 80 mm/s, its depth 0.5 to 1.5 mm. There is no noise: the states are identical
+/// each time.
 /// Real-time: never from the servo thread.
 std::vector<driver::DeviceState> ring_stroke(const RingSurface& ring, int ticks, double dt);
 

@@ -38,8 +38,7 @@ struct Cost {
   std::vector<double> round_ns;        // per tick
   std::optional<double> instructions;  // per tick
   std::vector<Vector3d> forces;        // N
-  double error = 0;  // contact: RMS of the force's relative error; effect: RMS of its additional
-                     // force, N
+  double error = 0;  // contact: RMS of the relative error; effect: RMS of the added force, N
   double direction_p99 = 0;  // contact: rad
 
   double median_ns() const {

@@ -13,8 +13,7 @@ namespace thimble::studies {
 struct FrictionCase {
   std::string name;               ///< For files and figures.
   std::string title;              ///< In words.
-  std::string letter;             ///< Letter in the table of [PHYSICS 2.2]; empty if it is not
-                                  ///< there.
+  std::string letter;             ///< Letter in the table of [PHYSICS 2.2]; empty: not in it.
   std::string kind;               ///< Name in the effect table.
   std::string word_key, word;     ///< A setting with a word as its value; none if empty.
   double static_coefficient = 0;  ///< 0: not set.

@@ -16,8 +16,7 @@ namespace {
 constexpr double kStiffnessLeast = 1, kStiffnessMost = 1e5;  // N/m
 constexpr double kDampingLeast = 1e-3, kDampingMost = 1e2;   // N s/m
 constexpr double kQuiet = 0.25;   // counts: a smaller oscillation counts as rest
-constexpr double kEdgeRange = 4;  // an edge is searched between the law divided and multiplied by
-                                  // this
+constexpr double kEdgeRange = 4;  // an edge is searched within this factor of the law
 
 /// Returns `count` values from `least` to `most`, evenly spaced on a logarithmic scale.
 std::vector<double> octaves(double least, double most, int count) {

@@ -26,12 +26,11 @@ struct StabilitySetup {
 
 /// The sweep of a cell, and the meaning of its numbers.
 enum class StabilityPart {
-  kLinearMap,    ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
-  kArmMap,       ///< a: stiffness, b: damping -> final oscillation of the arm without energy stage,
-                 ///< m.
-  kLinearEdge,   ///< b: damping -> largest stiffness of the linear arm, N/m.
-  kArmEdge,      ///< b: damping -> the same of the arm without energy stage.
-  kGuardedEdge,  ///< b: damping -> the same of the complete arm, with the gate's energy stage.
+  kLinearMap,     ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
+  kArmMap,        ///< a: stiffness, b: damping -> final oscillation without energy stage, m.
+  kLinearEdge,    ///< b: damping -> largest stiffness of the linear arm, N/m.
+  kArmEdge,       ///< b: damping -> the same of the arm without energy stage.
+  kGuardedEdge,   ///< b: damping -> the same of the complete arm, with the gate's energy stage.
   kDiagonalEdge,  ///< b: damping -> kArmEdge along the diagonal.
   kRestitution,   ///< a: stiffness, b: damping, c: period s, d: delay s -> mean, minimum, maximum.
   kCycle,  ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> oscillation in counts.

@@ -32,10 +32,10 @@ struct StabilityReport {
   std::vector<session::Figure> figures;
 };
 
-/// Measures the region of stable walls on a simulated arm, through the whole loop from the force
-/// law over gate, wire and firmware to the tip and back, and compares it with the laws: K-B map,
-/// restitution, limit cycles, largest stiffness. Writes pictures, tables and summary.json.
-/// Real-time: never from the servo thread.
+/// Measures the region of stable walls on a simulated arm and compares it with the laws: K-B map,
+/// restitution, limit cycles, largest stiffness. The measurement includes the whole loop from the
+/// force law over gate, wire and firmware to the tip and back. Writes pictures, tables and
+/// summary.json. Real-time: never from the servo thread.
 driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
                                                 const SweepOptions& sweep,
                                                 const std::atomic<bool>& stop);

@@ -16,8 +16,7 @@ constexpr double kFarthest = 0.05;   // m from the middle: a small oscillation t
 constexpr double kCeiling = 25;      // times its initial energy
 constexpr double kFloor = 1e-3;      // of its energy: a smaller oscillation is no longer detected
 constexpr double kStartForce = 0.3;  // N, of a small oscillation: far above a step of the current
-constexpr double kOscillations = 20;  // minimum number, so that a slow one is not judged by its
-                                      // phase
+constexpr double kOscillations = 20;  // minimum number, for a result independent of the phase
 
 /// Returns the value at which a measurement is no longer good, in equal steps of the logarithm.
 template <class Good>

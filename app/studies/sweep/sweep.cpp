@@ -84,8 +84,7 @@ void measure_all(const Sweep& sweep, Work& work, const Keep& keep) {
       } else {
         keep(cell[0], std::move(numbers).value());
       }
-    } catch (const std::exception& thrown) {  // out of memory, for example: must not end the
-                                              // program
+    } catch (const std::exception& thrown) {  // out of memory, say: must not end the program
       fail(thrown.what());
     }
   }

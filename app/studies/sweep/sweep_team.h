@@ -15,10 +15,9 @@ class SweepTeam {
   /// A message between processes.
   using Message = std::vector<std::uint64_t>;
 
-  /// Joins the team in which this process was started; nullptr if it was started alone. Only then
-  /// MPI is loaded, from libthimble_mpi.so next to the program. Fails if the program was built
-  /// without it, because each process would do the whole work. Real-time: never from the servo
-  /// thread.
+  /// Joins the team in which this process was started; nullptr if there is no team. Only then MPI
+  /// is loaded, from libthimble_mpi.so next to the program. Fails if the program was built without
+  /// it, because each process would do the whole work. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<SweepTeam>> join();
 
   SweepTeam() = default;

@@ -31,8 +31,8 @@ constexpr int kTicks = 400;                        // in a stroke
 constexpr int kRepeats = 100;                      // of the worst tick
 constexpr double kSpeeds[] = {0.1, 0.3, 1, 2, 4};  // m/s
 constexpr double kUsualSpeed = 0.3;
-// A triangle is wrong if it is farther from the tip than the nearest one by the distance at which
-// the spring of the other studies, 800 N/m, has 20 mN [PHYSICS 6].
+// Extra distance at which a triangle counts as wrong: there the spring of the other studies, 800
+// N/m, has a force of 20 mN [PHYSICS 6].
 const double kFelt = 0.02 / kCostSpring.stiffness;
 
 /// The ring with bumps and pits of one triangle each, so that many triangles have similar distances

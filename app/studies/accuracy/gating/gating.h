@@ -15,8 +15,7 @@ namespace thimble::studies {
 struct GatingReport {
   std::vector<GateDecision> decisions;
   double force = 0;   ///< RMS force in contact of the full model, N.
-  double change = 0;  ///< RMS change of force without all effects that may be omitted, as a
-                      ///< fraction.
+  double change = 0;  ///< RMS change of force without all unneeded effects, as a fraction.
   bool holds = true;  ///< The change is at most half of the just noticeable difference.
   double full_ns = 0, reduced_ns = 0;                             ///< Time of a whole tick, median.
   std::optional<double> full_instructions, reduced_instructions;  ///< Per tick.

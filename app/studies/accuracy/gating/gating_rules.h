@@ -10,7 +10,7 @@
 
 namespace thimble::studies {
 
-/// Fraction by which a force may change without being noticed: half of 7 % [PHYSICS 6].
+/// Fraction of a force whose change is not noticed: half of 7 % [PHYSICS 6].
 inline constexpr double kShareFelt = 0.035;
 
 /// One effect of the simulated arm, and whether a scene needs it [PHYSICS 8, gating].
