@@ -10,8 +10,7 @@ namespace thimble::stability {
 /// A tip without a hand, which a constant motor force pulls onto a wall.
 struct DropTrial {
   Eigen::Vector3d n_W{0, 1, 0};  ///< The wall's normal, to the free side.
-  double height = 0.004;         ///< Initial distance from the wall, m; the tip begins at the home
-                                 ///< pose.
+  double height = 0.004;         ///< Initial distance of the home pose from the wall, m.
   double pull = 0.5;             ///< N, more than the dry friction of any known arm [DEVICES 3].
   double stiffness = 300;        ///< N/m, [chosen] below the limit of most arms.
   double damping = 0;            ///< N s/m
@@ -30,8 +29,8 @@ struct Bounce {
 
 /// Lets the tip fall and measures its first bounce from its true motion, through the whole loop in
 /// virtual time: arm, wire, device and gate, without an energy stage. Fails if a point is out of
-/// reach, on a fault, or if the tip does not fall or does not leave the wall, so that there is no
-/// bounce. Real-time: never from the servo thread.
+/// reach, on a fault, or if there is no bounce because the tip does not fall or does not leave the
+/// wall. Real-time: never from the servo thread.
 driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& trial);
 
 }  // namespace thimble::stability

@@ -159,7 +159,7 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
       object.name, motion.mass, hold, damping / carried.latency));
 }
 
-/// Warns of springs that act on the tip at once: each alone may be within the limit.
+/// Warns of springs that act on the tip at once: each may be within the limit by itself.
 void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
   double sum = 0, damping = 0;
   int count = 0;

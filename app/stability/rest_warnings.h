@@ -41,8 +41,8 @@ double curvature_of(const render::EffectPlan& texture);
 /// stick.
 double hold_of(const render::EffectPlan& friction);
 
-/// Returns the sharpest concave edge of a mesh for contact (oriented outwards), rad: the angle by
-/// which the normal turns when a tip that rests in the groove changes from one facet to the next.
+/// Returns the sharpest concave edge of a mesh for contact (oriented outwards), rad. This is the
+/// change of the normal when a tip that rests in the groove changes from one facet to the next.
 /// Edges up to `from` (rad) are ignored.
 double sharpest_hollow(const render::ContactMesh& mesh, double from);
 

@@ -5,10 +5,10 @@
 namespace thimble::stability {
 
 // The laws of [PHYSICS 1.1 to 1.5 and 2.3] as pure functions, for one direction of motion;
-// worst_direction.h finds the worst direction. Symbols as there: m, b, c mass, viscous and dry
-// friction of the device (with the hand, if a caller adds it), K, B stiffness and damping of the
-// wall, T the period, d the encoder step. SI units. Arguments that are not finite give results that
-// are not finite. Real-time: never from the servo thread.
+// worst_direction.h finds the worst direction. Symbols as there: m, b, c are mass, viscous and dry
+// friction of the device (with the hand, if a caller adds it). K, B are stiffness and damping of
+// the wall, T is the period, d the encoder step. SI units. Arguments that are not finite give
+// results that are not finite. Real-time: never from the servo thread.
 
 /// Returns the same limit with the effect of latency on the oscillation's period: (b / L) u / sin u
 /// with u tan u = b L / m. From m x'' + b x' + K x(t - L) = 0 at the edge, x = e^{i w t}, u = w L:
@@ -18,7 +18,7 @@ double late_stiffness_limit(double damping, double latency, double mass);
 
 /// Returns the largest stiffness of a wall that is passive for any passive hand, N/m; 0 if there is
 /// none. The condition at each angle a is (K T / 2) sin((d + 1/2) a) / sin(a / 2) - B cos((1 + d)
-/// a) <= b, with `wall_damping` B, `viscous` friction b of the device and d the delay in periods
+/// a) <= b. B is `wall_damping`, b the `viscous` friction of the device, and d the delay in periods
 /// [PHYSICS 1.2, Colgate and Schenkel; form with delay derived there].
 double passive_stiffness(double viscous, double wall_damping, double period, double delay = 0);
 
@@ -56,8 +56,7 @@ struct SampledWall {
   /// acts on the motor and reads its encoder.
   double cable_stiffness = 0;
   double cable_damping = 0;  ///< N s/m
-  double rotor_mass = 0;     ///< Effective mass of the rotor at the tip, kg; only with a cable that
-                             ///< stretches.
+  double rotor_mass = 0;     ///< Effective rotor mass at the tip, kg; only with an elastic cable.
 };
 
 /// Returns the growth of the wall's slowest mode per tick: the spectral radius of the exact map of
@@ -69,7 +68,7 @@ double growth_per_tick(const SampledWall& wall);
 /// K S e^(-i w L) = -Z(w) at some w > 0 below half the loop's rate. L is half a period, the delay
 /// and the amplifier's lag, which counts by its phase at low frequency [PHYSICS 1.1]. S = sin(w T /
 /// 2) / (w T / 2) is the gain of the hold. Z is the arm's force over displacement at the motor, Z =
-/// -w^2 M + C H / (C + H), with H = h + i w b - w^2 m of tip and hand and C = k + i w d of the
+/// -w^2 M + C H / (C + H). In it, H = h + i w b - w^2 m is tip and hand, and C = k + i w d the
 /// cable; without a cable Z = H. `wall.stiffness`, `damping` and `velocity_corner` are ignored. 0
 /// if there is none.
 double limit_by_phase(const SampledWall& wall);

@@ -38,8 +38,7 @@ constexpr double kPeriodsLate = 32;
 
 /// The worst of the simulated limits.
 struct Edges {
-  double linear = std::numeric_limits<double>::infinity();  // without dry friction and encoder
-                                                            // steps, N/m
+  double linear = std::numeric_limits<double>::infinity();  // without friction and steps, N/m
   double as_is = std::numeric_limits<double>::infinity();   // N/m
   int walls = 0;
 };
@@ -302,9 +301,7 @@ Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, dou
 
 std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
-  if (!scene.arms.front().arm.can_simulate)
-    return warnings;  // its tip mass and damping are
-                      // unknown
+  if (!scene.arms.front().arm.can_simulate) return warnings;  // unknown tip mass and damping
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried =

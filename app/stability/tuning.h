@@ -59,8 +59,7 @@ struct AnswerAges {
 /// Options of a tuning.
 struct TuneOptions {
   double period_spread = 0;  ///< Standard deviation of the loop's period, s.
-  int places_per_side = 2;   ///< Number of places per side of the workspace at which walls are
-                             ///< tried.
+  int places_per_side = 2;   ///< Places per side of the workspace at which walls are tried.
   /// Measured over ROS 2 topics; empty: not included.
   std::optional<AnswerAges> topics = {};
 };

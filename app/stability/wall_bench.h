@@ -61,13 +61,12 @@ struct WallCase {
   bool own_wire = false;              ///< Uses the arm's delays and report rate.
   std::vector<std::int64_t> gaps_ns;  ///< Times between ticks, used cyclically; empty: the period.
   double offset = 0;      ///< Position of the wall or of the spring's middle, from home, m.
-  double kick = 0;        ///< Speed of the free tip after a kick of four ticks, against the
-                          ///< direction, m/s.
+  double kick = 0;        ///< Speed of the tip after a kick of four ticks, against the direction,
+                          ///< m/s.
   double kick_start = 0;  ///< Time of the first of them, s; there is no wall before.
   double pull = 0;        ///< Constant force on the tip against the direction, N.
   double pull_start = 0;  ///< Start of `pull`, s.
-  double hand_from = 0, hand_to = 0;    ///< Start and end of the motion of the hand's target, from
-                                        ///< home, m.
+  double hand_from = 0, hand_to = 0;    ///< Motion of the hand's target, from home, m.
   double hand_start = 0, hand_end = 0;  ///< Times of that start and end, s.
   double duration = 1;                  ///< s
   double give_up = 0.1;                 ///< Ends the run if the tip is this far from the middle, m.

@@ -45,9 +45,9 @@ inline constexpr double kQuietSteps = 5;  ///< See kQuietAtRest.
 /// the device had no fault.
 bool comes_to_rest(const WallTouch& touch, double quiet);
 
-/// Returns the stiffest wall on which the tip comes to rest (`comes_to_rest`), and on all softer
-/// ones tried (`raised_edge`), N/m, between a tenth and some ten times `guess`, to 1 %.
-/// `trial.stiffness` is ignored. Fails like `press_on_wall`.
+/// Returns the stiffest wall on which the tip comes to rest (`comes_to_rest`), as on all softer
+/// ones tried (`raised_edge`), N/m, to 1 %. The search is between a tenth and some ten times
+/// `guess`. `trial.stiffness` is ignored. Fails like `press_on_wall`.
 driver::Result<double> simulated_edge(const scene::ArmFile& arm, WallTrial trial, double guess,
                                       double quiet);
 
