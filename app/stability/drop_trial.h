@@ -29,8 +29,8 @@ struct Bounce {
 
 /// Lets the tip fall and measures its first bounce from its true motion, through the whole loop in
 /// virtual time: arm, wire, device and gate, without an energy stage. Fails if a point is out of
-/// reach, on a fault, or if there is no bounce because the tip does not fall or does not leave the
-/// wall. Real-time: never from the servo thread.
+/// reach or on a fault. Also fails if there is no bounce, because the tip does not fall or does not
+/// leave the wall. Real-time: never from the servo thread.
 driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& trial);
 
 }  // namespace thimble::stability

@@ -23,7 +23,7 @@ struct WallTrial {
 /// Result of a trial.
 struct WallTouch {
   double oscillation = 0;         ///< True tip in the last 0.2 s, peak to peak, m.
-  double oscillation_before = 0;  ///< The same 0.4 s earlier, m.
+  double oscillation_before = 0;  ///< The same in the interval 0.4 s earlier, m.
   double force_max = 0;           ///< Largest sent force, N.
   double energy_given = 0;        ///< Maximum net energy that the motors truly gave the tip, J.
   double force_rms = 0;           ///< Sent force about its mean, in the last 0.2 s, N.

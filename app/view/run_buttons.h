@@ -26,7 +26,7 @@ inline constexpr std::array kRunKeys = {RunKey{"B", "begin anew, from the first 
 /// the reason.
 class RunButtons {
  public:
-  /// Draws them in two lines. To be called between ImGui's NewFrame and Render.
+  /// Draws the buttons in two lines. Call between ImGui's NewFrame and Render.
   void draw(session::SharedReader& reader);
   /// Handles a key (a GLFW_KEY_...), if it is one of these. As above: `shift` and `ctrl` are held
   /// down.

@@ -104,7 +104,7 @@ driver::Result<void> check_course(const RunOptions& options, const session::RunA
 }
 
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms) {
-  // A person who watches or moves the hand needs real time, unless another clock is chosen.
+  // Watching or moving the hand needs real time, unless another clock is chosen.
   const bool for_a_person = options.for_a_person();
   const bool wall = options.clock.empty() ? options.ros.asked : options.clock == "wall";
   const bool by_key = options.hold_to_run == "key";

@@ -17,9 +17,9 @@
 
 namespace thimble::report {
 
-/// Data for the page of a run that a session does not keep: poses of moving objects, events of its
-/// arms, and the outline of a run of which the session keeps only every n-th tick. It observes the
-/// run's ticks.
+/// Data for the page of a run that a session does not keep: poses of moving objects and events of
+/// its arms. If the session keeps only every n-th tick, also the outline of the run. It observes
+/// the run's ticks.
 class RunPage {
  public:
   /// Observes a session whose arm is open and which has had no tick; it must outlive the run.

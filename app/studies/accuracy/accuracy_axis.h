@@ -36,7 +36,7 @@ struct AccuracyPoint {
 struct AccuracyLine {
   std::string name;                  ///< Without spaces.
   std::string title;                 ///< In words, for legends.
-  std::optional<double> order = {};  ///< Slope of error over knob that theory asks for.
+  std::optional<double> order = {};  ///< Theoretical slope of error over knob.
   bool exact = false;                ///< Its error should be at rounding level at every point.
   bool apart = false;                ///< Its points are separate methods, each with a name.
   std::vector<AccuracyPoint> points = {};

@@ -38,7 +38,7 @@ struct FrictionMeasures {
   double rest_held = 0;    ///< Mean held force in that time.
   double creep_force = 0;  ///< While the hand creeps at 1 mm/s.
   double creep_mean = 0;   ///< Mean friction in that time.
-  double slow_mean = 0;    ///< The same at 5 mm/s.
+  double slow_mean = 0;    ///< Mean friction at 5 mm/s.
   double tremor_force = 0;  ///< The hand at rest, with a tremor of 300 um.
   stability::RigRun stop;   ///< The run of the stop, for pictures.
 };

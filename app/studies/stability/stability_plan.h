@@ -29,18 +29,18 @@ enum class StabilityPart {
   kLinearMap,     ///< a: stiffness, b: damping -> growth rate of the linear arm, 1/s.
   kArmMap,        ///< a: stiffness, b: damping -> final oscillation without energy stage, m.
   kLinearEdge,    ///< b: damping -> largest stiffness of the linear arm, N/m.
-  kArmEdge,       ///< b: damping -> the same of the arm without energy stage.
-  kGuardedEdge,   ///< b: damping -> the same of the complete arm, with the gate's energy stage.
-  kDiagonalEdge,  ///< b: damping -> kArmEdge along the diagonal.
+  kArmEdge,       ///< b: damping -> largest stiffness of the arm without energy stage, N/m.
+  kGuardedEdge,   ///< b: damping -> largest stiffness of the arm with the gate's energy stage, N/m.
+  kDiagonalEdge,  ///< b: damping -> as kArmEdge, along the diagonal.
   kRestitution,   ///< a: stiffness, b: damping, c: period s, d: delay s -> mean, minimum, maximum.
   kCycle,  ///< a: sigma, b: beta, c: start in counts, d: delay in periods -> oscillation in counts.
   kRateEdge,    ///< c: period s, d: delay s -> largest stiffness of an arm with b = 1.
-  kDelayEdge,   ///< c: period s, d: delay s -> the same.
-  kLateEdge,    ///< a: fraction of ticks that are three periods late -> the same.
-  kSpreadEdge,  ///< a: spread of the period -> the same.
+  kDelayEdge,   ///< c: period s, d: delay s -> as kRateEdge.
+  kLateEdge,    ///< a: fraction of ticks that are three periods late -> as kRateEdge.
+  kSpreadEdge,  ///< a: spread of the period -> as kRateEdge.
   kStepEdge,    ///< a: encoder step m -> largest stiffness that comes to rest, with the hand.
   kLagEdge,     ///< a: lag of the amplifiers s -> largest stiffness of an arm with b = 1.
-  kCableEdge    ///< a: stiffness of the cable at the tip N/m, b: its damping -> the same.
+  kCableEdge    ///< a: stiffness of the cable at the tip N/m, b: its damping -> as kLagEdge.
 };
 
 /// One cell of the study's sweep.

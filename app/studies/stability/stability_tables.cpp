@@ -380,7 +380,7 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
   for (const auto& [part, name] : {std::pair(StabilityPart::kLagEdge, "agreement.lag_with_"),
                                    {StabilityPart::kCableEdge, "agreement.cable_with_"}}) {
     const auto edges = part_of(rows, part);
-    if (edges.empty()) continue;  // no joint of this arm moves the tip along a line alone
+    if (edges.empty()) continue;  // no joint of this arm moves the tip along a line by itself
     judge(std::string(name) + "law", worst_error(edges, &StabilityRow::law, kAll), "<= 5");
     judge(std::string(name) + "exact_map", worst_error(edges, &StabilityRow::exact, kAll), "<= 5");
   }

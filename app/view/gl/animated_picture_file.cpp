@@ -61,7 +61,8 @@ Bytes pack(const Bytes& numbers, int picture_width, const Part& part) {
   return packed;
 }
 
-/// Returns the smallest part outside of which two pictures are equal; one pixel if they are equal.
+/// Returns the smallest part that contains all differences of two pictures; one pixel if they are
+/// equal.
 Part difference(const Bytes& before, const Bytes& now, int width, int height) {
   Part part{width, height, 0, 0};
   int right = -1;

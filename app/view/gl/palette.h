@@ -35,7 +35,7 @@ struct ThemeColours {
 };
 
 /// Returns the colours of a theme. In the dark theme, text has a contrast of at least 11 to 1 to
-/// both backgrounds, quiet text of 6 to 1 (WCAG 2.1 asks 7 and 4.5).
+/// both backgrounds, and quiet text one of 6 to 1. WCAG 2.1 asks 7 and 4.5.
 constexpr ThemeColours colours_of(Theme theme) {
   if (theme == Theme::kDark) {
     return {colour_of(0x161B21), colour_of(0x262D35), colour_of(0x55616E), colour_of(0xE8ECF0),

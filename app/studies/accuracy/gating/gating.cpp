@@ -107,7 +107,7 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   GatingReport report;
   report.force = seen.force_rms;
   report.decisions = decide((*session)->scene(), seen);
-  // Omits each effect alone, whatever was decided, to check the rule.
+  // Omits one effect at a time, whatever was decided, to check the rule.
   for (GateDecision& one : report.decisions) {
     if (!one.changes) continue;
     const auto rows = trace_of(
