@@ -41,7 +41,7 @@ driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& ch
 
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration) {
   ChosenArm chosen;
-  std::string left;  // boards that may be arms
+  std::string left;  // boards of unknown kind
   if (choice.device != "sim") {
     const auto plugged_in = driver::find_arms();
     auto real = scene::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(),

@@ -12,48 +12,50 @@
 
 namespace thimble::cli {
 
-/// Which arm a command is about, as the user said it.
+/// The arm of a command, as the user chose it.
 struct ArmChoice {
   std::string device = "auto";
   std::string arm_file;
   std::string firmware;
-  /// Whether the simulated arm is taken where no arm is plugged in; if not, only by --device sim.
+  /// Whether the simulated arm is used if no arm is plugged in. If false, only --device sim selects
+  /// it.
   bool simulates_unasked = true;
-  bool no_real_time = false;  ///< Push a real arm although the loop gets no real-time priority.
+  bool no_real_time = false;  ///< Apply forces with a real arm without real-time priority.
 
   /// Adds --device, --arm and --firmware to a command.
   void add_options(CLI::App& command);
-  /// Adds --no-real-time to a command that pushes.
+  /// Adds --no-real-time to a command that applies forces.
   void add_real_time_option(CLI::App& command);
 };
 
-/// The arm that a choice means.
+/// The arm that a choice selects.
 struct ChosenArm {
-  scene::ArmFile file;                       ///< Of a real arm with its calibration, if wanted.
-  std::filesystem::path path;                ///< Where `file` was read.
-  std::vector<std::string> told;             ///< Which file a real arm has and why.
-  std::optional<driver::FoundArm> real_arm;  ///< empty: the simulated one
+  scene::ArmFile file;                       ///< Arm file. For a real arm it includes the
+                                             ///< calibration, if wanted.
+  std::filesystem::path path;                ///< Path of `file`.
+  std::vector<std::string> told;             ///< Which file a real arm uses, and why.
+  std::optional<driver::FoundArm> real_arm;  ///< empty: the simulated arm
   std::string name;                          ///< FoundArm::name, or "sim"
 };
 
-/// Finds the arm that a choice means and reads its file: a plugged one if there is one, with its
-/// calibration unless it is chosen `for_calibration`; else the simulated one of --arm. The error
-/// says what to do. Real-time: never from the servo thread.
+/// Finds the arm that a choice selects and reads its file. A plugged arm comes first, with its
+/// calibration unless it is chosen `for_calibration`; otherwise the simulated arm of --arm is used.
+/// The error says what to do. Real-time: never from the servo thread.
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration);
 
-/// Fails, before an arm is opened, if it is real and the loop gets no real-time priority, as `run`
-/// does; --no-real-time allows it. Real-time: never from the servo thread.
+/// Fails if the arm is real and the loop gets no real-time priority, as `run` does, before an arm
+/// is opened. --no-real-time allows it. Real-time: never from the servo thread.
 driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& chosen);
 
-/// Returns the exit code of a command whose arm could not be resolved: wrong arguments or a wrong
-/// file if the arm is simulated, else no device.
+/// Returns the exit code of a command whose arm could not be resolved: bad input for a simulated
+/// arm, otherwise no device.
 ExitCode exit_code_of(const ArmChoice& refused);
 
-/// Says on the first and the last line that an arm is simulated, so that nobody takes what was
-/// found for the arm on the desk.
+/// Prints on the first and the last line that an arm is simulated, so that results are not mistaken
+/// for those of a real arm.
 class SimulatedNote {
  public:
-  /// Prints the first line if `arm` is simulated. `kept` names what is not kept ("calibration").
+  /// Prints the first line if `arm` is simulated. `kept` names what is not saved ("calibration").
   SimulatedNote(const ChosenArm& arm, const char* kept);
   ~SimulatedNote();
   SimulatedNote(const SimulatedNote&) = delete;

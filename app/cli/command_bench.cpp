@@ -29,7 +29,7 @@ int run_bench(const BenchOptions& options) {
   output::OutputPlan plan;
   plan.write_folder("--out", options.out, {"figures.json"});
   if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto scene = scene::find_scene(options.scene);  // the default has not been looked for
+  const auto scene = scene::find_scene(options.scene);  // the default was not resolved yet
   if (!scene) return complain(scene.error(), kExitBadInput);
   const scene::Quality quality =
       scene::quality_named(options.quality).value_or(scene::Quality::kNormal);

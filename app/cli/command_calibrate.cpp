@@ -24,12 +24,12 @@
 namespace thimble::cli {
 namespace {
 
-/// Where the simulated hand goes: each pose is reached after a second and held for a second.
+/// The path of the simulated hand: it reaches each pose after a second and holds it for a second.
 std::vector<std::pair<double, Eigen::Vector3d>> simulated_hand(const Eigen::Vector3d& p_home) {
   std::vector<std::pair<double, Eigen::Vector3d>> way{{0, p_home}};
   for (int axis = 0; axis < 3; ++axis) {
     const double begin = 2 + 4 * axis;
-    // Only moves that a vintage arm can make from its home pose.
+    // Only motions that a vintage arm can make from its home pose.
     const Eigen::Vector3d there = p_home + 0.04 * Eigen::Vector3d::Unit(axis);
     way.emplace_back(begin, p_home);
     way.emplace_back(begin + 1, there);
@@ -43,7 +43,7 @@ Eigen::Vector3d home_of(const scene::ArmFile& file) {
   return file.p_WB + file.R_WB * driver::make_arm(file.protocol, file.model)->pose({}).p_BT;
 }
 
-/// Waits for the user's word; kExitDone once it is there.
+/// Waits for the user to press Enter; kExitDone once it is pressed.
 int wait_for_word() {
   std::fflush(stdout);
   const std::atomic<bool>& stop = scene::catch_interrupts();
@@ -56,14 +56,14 @@ int wait_for_word() {
   return complain({"Nobody is at the terminal, so nothing was done."}, kExitBadInput);
 }
 
-/// Returns how the library's calibration went.
+/// Prints the result of the library's calibration.
 int tell_calibrated(const driver::Result<void>& done, const std::string& name) {
   if (!done) return complain(done.error(), kExitFault);
   scene::print_format("Done. Check it: thimble feel-check --device %s\n", name.c_str());
   return kExitDone;
 }
 
-/// Calibrates a Touch as its library asks, once the user has done his part.
+/// Calibrates a Touch by its library, after the user has done the manual step.
 int let_library_calibrate(const std::string& name) {
   const auto library = driver::hd::library();
   if (!library) return complain(library.error(), kExitNoDevice);
@@ -74,8 +74,7 @@ int let_library_calibrate(const std::string& name) {
   return tell_calibrated(driver::hd::calibrate(*library), name);
 }
 
-/// Lets an arm of Force Dimension's find its zero by itself, once the user has said that it may
-/// move.
+/// Lets an arm of Force Dimension find its zero, after the user has agreed to the motion.
 int let_find_zero(const std::string& name) {
   const auto library = driver::dhd::library();
   if (!library) return complain(library.error(), kExitNoDevice);
@@ -112,7 +111,7 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
-  // Zero force throughout: the limit is only what the device asks for.
+  // The force is zero throughout. The limit is only needed to open the device.
   auto bench = bringup::BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
   if (!bench) return complain(bench.error(), kExitNoDevice);
 

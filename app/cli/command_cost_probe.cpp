@@ -55,7 +55,7 @@ int probe(const ProbeOptions& options) {
 
 void add_cost_probe_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("cost-probe", "Run strokes of one cost subject");
-  command->group("");  // for `thimble study cost`, not for people
+  command->group("");  // internal: for `thimble study cost`
   auto options = std::make_shared<ProbeOptions>();
   command->add_option("SUBJECT", options->subject)->required();
   command->add_option("STROKES", options->strokes)->required()->check(CLI::Range(1, 100000));

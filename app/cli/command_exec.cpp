@@ -44,13 +44,13 @@ struct Asked {
   compat::ExecOptions options;
   std::vector<std::string> arms, devices;
   std::string clock = "wall";
-  std::string serve;  // "haply", or nothing
+  std::string serve;  // "haply", or empty
   std::uint16_t port = compat::haply::kPort;
   RosArguments ros;
   std::string hold_to_run;
 };
 
-/// Reads the options of the topics, if there are to be any.
+/// Reads the options of the topics, if topics are wanted.
 driver::Result<void> take_topics(RosArguments ros, compat::ExecOptions& options) {
   if (!ros.asked) return {};
   if (auto fits = check_ros_arguments(ros); !fits) return fits;
@@ -65,10 +65,10 @@ driver::Result<void> take_topics(RosArguments ros, compat::ExecOptions& options)
   return {};
 }
 
-/// The variable that names the service's port to programs of ours, as they read it.
+/// The environment variable with the service's port; clients of Thimble read it.
 constexpr const char* kPortVariable = "THIMBLE_HAPLY_PORT";
 
-/// Joins the lists of --arm and --device: the first of each is the program's first arm.
+/// Joins the lists of --arm and --device: the first of each describes the program's first arm.
 std::vector<compat::ExecArm> arms_of(const Asked& asked) {
   std::vector<compat::ExecArm> arms(
       std::max<std::size_t>({1, asked.arms.size(), asked.devices.size()}));
@@ -77,8 +77,8 @@ std::vector<compat::ExecArm> arms_of(const Asked& asked) {
   return arms;
 }
 
-/// Returns the environment of the program: ours, with our libraries in front, the arms' address,
-/// and the port of the service, if there is one.
+/// Returns the environment of the program: this process's, with our libraries first, the arms'
+/// address, and the port of the service, if there is one.
 std::vector<std::string> environment(const fs::path& libraries, const std::string& address,
                                      const compat::haply::Service* service) {
   std::vector<std::string> variables;
@@ -114,7 +114,8 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
   const auto variable_list = pointers(variables);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // We let some signals be (outlive_trouble_with_files); the program decides for itself.
+  // Restores the default actions of the signals that this process ignores
+  // (outlive_trouble_with_files).
   sigset_t own;
   sigemptyset(&own);
   sigaddset(&own, SIGPIPE);
@@ -127,8 +128,8 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
   return status;
 }
 
-/// Serves the program until it ends, and returns how it did (waitpid). Who interrupts us ends the
-/// forces first, then the program.
+/// Serves the program until it ends, and returns its status (waitpid). An interrupt ends first the
+/// forces, then the program.
 int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
   constexpr std::int64_t kLook_ns = 20'000'000;
   constexpr auto kPatience = std::chrono::milliseconds(500);
@@ -149,14 +150,14 @@ int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop)
   }
 }
 
-/// Serves programs that come by themselves, until the user or a viewer ends it.
+/// Serves programs started separately, until the user or a viewer ends it.
 void serve_all(compat::ArmServer& server, const std::atomic<bool>& stop) {
   constexpr std::int64_t kLook_ns = 20'000'000;
   while (!stop.load() && !server.ended_by_viewer()) server.step(kLook_ns);
   server.end();
 }
 
-/// Ends the service: who waits there for an arm gets its answer first.
+/// Ends the service. A client that still waits for an arm gets its answer first.
 void end(compat::haply::Service& service, compat::ArmServer& server) {
   constexpr std::int64_t kLook_ns = 1'000'000;
   service.leave();
@@ -175,7 +176,7 @@ int exit_code_of(const compat::ArmServer& server, int status, bool stopped) {
   return server.any_fault() ? kExitFault : kExitDone;
 }
 
-/// Makes the service and opens its arms; `code`: of the error.
+/// Makes the service and opens its arms; `code`: exit code for the error.
 driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked& asked,
                                                                      compat::ArmServer& server,
                                                                      ExitCode& code) {
@@ -194,7 +195,7 @@ driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked
   return service;
 }
 
-/// Tells what a program that opened no arm may lack.
+/// Prints a possible reason why a program opened no arm.
 void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
   scene::logger().warn(
       "{} opened no arm. It found libraries of its own (ldd, rpath), or it is written for none "
@@ -265,7 +266,7 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   }
   if (service) end(*service, server);
   server.end();
-  // What the program printed is its own; so this goes to standard error.
+  // Standard output belongs to the program, so this goes to standard error.
   session::print(stderr, "{}", server.report());
   if (service && service->programs() == 0) {
     scene::logger().warn("No program came to ws://localhost:{}.", service->port());
@@ -342,7 +343,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
                     "Use a real arm though the loop gets no real-time priority");
   command->callback([asked, command, &exit_code] {
     const auto words = command->remaining();
-    // What stands before PROGRAM is an option of ours.
+    // A word with a dash before PROGRAM is an option of this command.
     exit_code = !words.empty() && words.front().starts_with('-') && words.front() != "--"
                     ? complain({unknown_word(*command, words.front())}, kExitBadInput)
                     : run_program(*asked, words);

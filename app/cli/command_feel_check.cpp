@@ -20,7 +20,7 @@
 namespace thimble::cli {
 namespace {
 
-/// Reads the arm with zero force, and tells how well its reports arrive.
+/// Reads the arm with zero force, and prints statistics of its reports.
 int listen_to(bringup::BenchArm& bench, double duration, const std::atomic<bool>& stop) {
   const bringup::Listened heard = bringup::listen(bench, duration, stop);
   scene::print_format("%s\n", heard.text().c_str());
@@ -30,8 +30,8 @@ int listen_to(bringup::BenchArm& bench, double duration, const std::atomic<bool>
   return heard.good() ? kExitDone : kExitFault;
 }
 
-/// Keeps that a real arm passed, so that `thimble run` gives it its whole force; takes back what an
-/// earlier check said of one that failed.
+/// Saves that a real arm passed, so that `thimble run` allows its full force. If it failed, removes
+/// the result of an earlier check.
 driver::Result<void> keep_result(const ChosenArm& chosen, const std::string& firmware,
                                  bool passed) {
   if (!passed) return scene::forget_passed(chosen.name);
@@ -81,7 +81,7 @@ int check_arm(const ArmChoice& choice, double listen) {
     };
     return (*bench)->hold(done, stop) && key == session::EnterKey::kPressed;
   };
-  // A simulated hand feels what is true.
+  // The simulated hand answers from the true force.
   const bringup::Question question = [&](const std::string& what) -> std::optional<bool> {
     if (person) return says_yes(what, stop);
     constexpr double kFelt = 0.1;  // N
@@ -102,7 +102,7 @@ int check_arm(const ArmChoice& choice, double listen) {
                        passed ? "passed"
                        : all  ? "left"
                               : "failed");
-  // A check that was left says nothing.
+  // A check that was left early changes nothing.
   if (chosen->real_arm && (passed || !all)) {
     if (const auto kept = keep_result(*chosen, choice.firmware, passed); !kept) {
       return complain(kept.error(), kExitTrouble);

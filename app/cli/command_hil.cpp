@@ -62,7 +62,7 @@ void print(const hil::HilResult& result) {
   std::fflush(stdout);
 }
 
-/// Returns the prompt of a person, or of a simulated hand, which does what is asked.
+/// Returns the prompt for a person, or for a simulated hand, which follows every request.
 bringup::Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
   return [person, &stop](const std::string& what) {
     scene::print_format("%s%s\n", what.c_str(), person ? " Press Enter to begin." : "");
@@ -80,7 +80,7 @@ bringup::Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
 /// check has been running. Real-time: never from the servo thread.
 class SuiteClock {
  public:
-  /// `timeout` (s): 0 is none.
+  /// `timeout`, s; 0: none.
   SuiteClock(const std::atomic<bool>& interrupted, double timeout)
       : interrupted_(interrupted), timeout_(timeout), thread_([this] { run(); }) {}
   ~SuiteClock() {
@@ -91,9 +91,9 @@ class SuiteClock {
   SuiteClock& operator=(const SuiteClock&) = delete;
 
   const std::atomic<bool>& stop() const { return stop_; }
-  /// Returns whether the time was over before the suite was.
+  /// Returns whether the suite was stopped by its timeout.
   bool timed_out() const { return timed_out_.load(); }
-  /// Notes that a check begins.
+  /// Records the start of a check.
   void begin(std::string name) {
     const std::lock_guard lock(mutex_);
     name_ = std::move(name);
@@ -139,9 +139,9 @@ class SuiteClock {
   std::thread thread_;
 };
 
-/// The files of a suite. They are written as soon as it begins and after each check, so that
-/// however the program ends no older result is left in their place. A pipe or a device keeps what
-/// was written to it: it gets the last text alone.
+/// The result files of a suite. They are written at its start and after each check, so that no
+/// older result remains if the program ends early. A pipe or a device gets only the last text,
+/// because earlier output cannot be replaced.
 class HilFiles {
  public:
   HilFiles(const HilCommand& command, hil::HilRecord record)
@@ -149,8 +149,8 @@ class HilFiles {
 
   hil::HilRecord& record() { return record_; }
 
-  /// Writes the results until now; each check beyond them did not run, and `why`. `last`: no other
-  /// text follows.
+  /// Writes the results so far. Each remaining check is marked as not run, with the reason `why`.
+  /// `last`: no other text follows.
   driver::Result<void> write(const std::vector<hil::HilResult>& results, const std::string& why,
                              bool last) const {
     const auto all = hil::with_not_run(results, command_.options, why);
@@ -272,7 +272,7 @@ int run_hil(HilCommand command) {
   if (auto bench = rig.open(hil::TipHold::kFree); !bench) {
     return files.end_early(bench.error(), kExitNoDevice);
   }
-  // Nobody pulls the cable of a simulated arm.
+  // The cable of a simulated arm cannot be pulled.
   if (!chosen->real_arm) options.replug = false;
   driver::Result<void> written;
   hil::HilListener listener;

@@ -45,8 +45,9 @@ struct IdentifyCommand {
   bool write_bad_fit = false;
 };
 
-// Of the time of a motion, so that seven places take as long as one, and both motions of 60 s with
-// them three minutes; and the least, s [chosen: the mass of light arms is known to 0.2 % then].
+// Duration of a motion divided by that of one place: seven places take about as long as one motion,
+// and together with both motions of 60 s three minutes. And the minimum at one place, s [chosen: it
+// gives the mass of light arms to 0.2 %].
 constexpr double kPlaceShare = 12, kPlaceSecondsLeast = 2;
 
 std::string today() {
@@ -58,12 +59,12 @@ std::string today() {
   return text;
 }
 
-/// Says how motion is ended.
+/// Returns how the user stops the motion.
 const char* how_to_stop(bool terminal) {
   return terminal ? "any key ends it" : "Ctrl-C ends it";
 }
 
-/// Says that the tip goes about.
+/// Returns the sentence that announces the motion of the tip.
 std::string led_text(const bringup::IdentifyOptions& options) {
   if (options.places == 0) return "";
   return fmt::format(
@@ -71,7 +72,7 @@ std::string led_text(const bringup::IdentifyOptions& options) {
       options.places, options.place_seconds);
 }
 
-/// Opens a real arm and asks for what the motion needs; the arm is idle meanwhile.
+/// Opens a real arm and asks for what the motion needs. The arm is idle meanwhile.
 driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& chosen,
                                                              const IdentifyCommand& command,
                                                              bool loaded,
@@ -103,14 +104,14 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
   return bench;
 }
 
-/// Says whether a real arm passed its feel check as it is: what asks for more than that check may
-/// needs an arm of which signs and watchdog are known.
+/// Returns whether the feel check of a real arm is valid, and reports if not. Larger forces than
+/// those of that check need known signs and watchdog.
 bool checked(const ChosenArm& chosen, const std::string& firmware) {
   const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
   return scene::has_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
 }
 
-/// Writes the motion with the bare tip as a recording, for `thimble twin`.
+/// Writes the motion without a known mass as a recording, for `thimble twin`.
 driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& path,
                                   const std::vector<driver::TickRecord>& ticks, bool replace) {
   const auto file = scene::find_arm_file(chosen.path.string());
@@ -127,8 +128,8 @@ driver::Result<void> write_motion(const ChosenArm& chosen, const std::string& pa
   return session::write_recording(path, info, ticks, replace);
 }
 
-/// Writes what was found into the new file, if the user says so. A bad fit is kept only if that was
-/// asked for by name.
+/// Writes the result into the new file, if the user agrees. A bad fit is saved only if that was
+/// requested explicitly.
 int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup::Identified& found,
          bool writes, const std::atomic<bool>& stop) {
   const bool bad = !found.against.empty();
@@ -173,7 +174,7 @@ int identify_arm(IdentifyCommand command) {
   if (auto right = bringup::check_forces(chosen->file, command.options); !right) {
     return complain(right.error(), kExitBadInput);
   }
-  // Who names the file, or answers, says that it is to be written.
+  // --output, --yes or an answer at the terminal requests the file.
   const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
   if (auto free = bringup::check_new_file(command.output); writes && !free) {
@@ -189,14 +190,14 @@ int identify_arm(IdentifyCommand command) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::leave_rather_than_stop();
   const scene::LeavingGuard guard;
-  // A person needs time to let go of the mass.
+  // Gives a person time to let go of the mass.
   if (chosen->real_arm) command.options.lead = 4;
   command.options.link = true;
   command.options.place_seconds =
       std::max(kPlaceSecondsLeast, command.options.seconds / kPlaceShare);
   std::optional<KeyStop> keys;
   const bringup::OpenBench open = [&](bool loaded) {
-    keys.reset();  // Enter begins, and is no key that stops
+    keys.reset();  // Enter begins the motion, so it must not stop it
     auto bench = chosen->real_arm ? open_real(*chosen, command, loaded, stop)
                                   : bringup::simulated_bench(
                                         chosen->file, loaded ? command.options.known_mass : 0,
@@ -211,7 +212,7 @@ int identify_arm(IdentifyCommand command) {
   };
   std::vector<driver::TickRecord> ticks;
   if (!command.record.empty()) {
-    // Room at once: a real arm's ticks wait for nobody.
+    // Allocates in advance: no allocation during a real arm's ticks.
     ticks.reserve(static_cast<std::size_t>(1000 * (command.options.seconds + 10)));
     command.options.watch = [&ticks](const driver::TickRecord& tick) { ticks.push_back(tick); };
   }

@@ -13,8 +13,8 @@
 namespace thimble::cli {
 namespace {
 
-/// Makes text safe for roff: dashes that stay dashes, no line that begins as a request, and lists
-/// without blanks that can be broken behind their commas.
+/// Escapes text for roff: dashes remain dashes, no line begins as a request, and lists without
+/// blanks can be broken after commas.
 std::string roff(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -41,11 +41,11 @@ void print_options(const CLI::App& command) {
 
 void print_commands(const CLI::App& above, const std::string& prefix) {
   for (const CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_group().empty()) continue;  // not for people
+    if (command->get_group().empty()) continue;  // internal command
     const std::string name = prefix + command->get_name();
     scene::print_format(".SS %s\n%s\n", roff(name).c_str(),
                         roff(command->get_description()).c_str());
-    if (command->get_help_ptr() == nullptr) {  // of another program, which has its options
+    if (command->get_help_ptr() == nullptr) {  // command of another program with the options
       scene::print_format("%s\n", roff(command->get_footer()).c_str());
       continue;
     }
@@ -79,7 +79,7 @@ void print_manual(const CLI::App& program, const std::string& name, const std::s
 void add_manual_command(CLI::App& app, int& exit_code, const std::string& name,
                         const std::string& about) {
   CLI::App* command = app.add_subcommand("manual", "Print the manual page (roff)");
-  command->group("");  // for the installation, not for people
+  command->group("");  // for the installation; hidden
   command->callback([&app, &exit_code, name, about] {
     print_manual(app, name, about);
     exit_code = kExitDone;

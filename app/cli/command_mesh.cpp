@@ -34,7 +34,7 @@ struct MeshOptions {
   std::string picture;
   std::string repair;
   std::string json;
-  double thicken = 0;  // the file's unit; 0: leave open what is
+  double thicken = 0;  // in the file's unit; 0: keep open meshes open
 };
 
 using Json = nlohmann::ordered_json;
@@ -55,8 +55,8 @@ void print(const render::MeshFindings& found) {
   if (found.touchable()) scene::print_format("  volume      %.4g\n", found.volume);
 }
 
-// From which size on a mesh without a unit is likely to count in mm: what `run` reports for the
-// largest reach of the shipped arms, m.
+// Size from which a mesh without a unit is probably in mm, m: `run` reports it for the largest
+// reach of the shipped arms.
 constexpr double kLargeForArms = scene::kReachesReported * 0.2;
 
 // Prints which parts of a mesh overlap or touch.
@@ -67,7 +67,7 @@ void print_touching(const render::TriangleMesh& mesh, Json& json) {
   if (!parts.empty()) scene::print_format("  note        %s\n", parts.c_str());
 }
 
-// Returns whether a mesh can be touched, and if not, why.
+// Prints whether a mesh can be touched, and if not, why.
 int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   json["touchable"] = true;
   json["turned_on_load"] = 0;
@@ -87,7 +87,7 @@ int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& f
     return kExitDone;
   }
   json["touchable"] = false;
-  // A surface with one side only shows no other fault than edges wound two ways.
+  // A one-sided surface has only faults of orientation.
   const bool only_winding =
       std::all_of(found.faults.begin(), found.faults.end(), [](const render::MeshFault& fault) {
         return fault.kind == render::MeshFault::Kind::kFlippedEdge ||
@@ -103,7 +103,7 @@ void print(const std::vector<render::RepairChange>& changes) {
   }
 }
 
-// Makes thin bodies of what is open. Returns what was done, as a sentence.
+// Thickens open parts into thin bodies. Returns a sentence that describes the change.
 std::string thicken(render::TriangleMesh& mesh, double thickness, Json& json) {
   render::ThickenedMesh thick = render::thicken_sheets(mesh, thickness);
   mesh = std::move(thick.mesh);
@@ -112,7 +112,7 @@ std::string thicken(render::TriangleMesh& mesh, double thickness, Json& json) {
   return render::describe(thick.report, "(file's unit)");
 }
 
-// Says how a mesh that cannot be touched could be, by trying it out.
+// Tries the repairs on a mesh that cannot be touched, and prints which one helps.
 void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
   json["remedy"] = {{"options", nullptr}};
@@ -171,7 +171,7 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& j
   return verdict;
 }
 
-// Tells what a page file is; its triangles are looked at one page at a time, if at all.
+// Describes a page file; its triangles are checked one page at a time, if at all.
 int tell_pages(const MeshOptions& options, Json& json) {
   const auto pages = render::PageFile::open(options.file);
   if (!pages) return complain(pages.error(), kExitBadInput);
@@ -269,11 +269,11 @@ int tell_mesh(const MeshOptions& options, Json& json) {
   return verdict;
 }
 
-// Describes the mesh on the terminal and, if the user wants it, in a file.
+// Describes the mesh on the terminal and optionally in a file.
 int describe_mesh(const MeshOptions& options) {
   Json json;
   const int verdict = tell_mesh(options, json);
-  // Without findings (bad arguments, a file that cannot be read) no file is written.
+  // Without findings (bad arguments, an unreadable file) no file is written.
   if (options.json.empty() || !json.contains("touchable")) return verdict;
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (auto saved = output::write_file(options.json, output::kJson, text); !saved) {
@@ -306,7 +306,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       ->needs("--repair");
   add_mesh_page_command(*command, exit_code);
   add_mesh_generate_command(*command, exit_code);
-  // A word that a command below does not take would be taken as FILE, in silence.
+  // Otherwise a word that a sub-command rejects would be parsed as FILE without an error.
   command->parse_complete_callback([command, options] {
     if (!command->get_subcommands().empty() && !options->file.empty()) {
       throw CLI::ExtrasError({options->file});

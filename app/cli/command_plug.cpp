@@ -46,8 +46,8 @@ struct PlugOptions {
   std::string firmware, faults, control, trace;
 };
 
-/// Hands the device to the kernel from a thread of its own, because the server answers meanwhile;
-/// again whenever it is plugged in again.
+/// Attaches the device to the kernel in a separate thread, because the server must answer
+/// meanwhile. Repeats this whenever the device is plugged in again.
 class KernelAttachment {
  public:
   KernelAttachment(std::uint16_t port, std::string bus_id)
@@ -58,7 +58,7 @@ class KernelAttachment {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Begins, unless an attempt is under way.
+  /// Starts an attempt, unless one is pending.
   void begin() {
     if (busy_.load()) return;
     if (thread_.joinable()) thread_.join();
@@ -86,7 +86,7 @@ class KernelAttachment {
   std::atomic<bool> busy_{false}, failed_{false};
 };
 
-/// Writes what was true of the arm in each frame in which a packet moved, as tests want it.
+/// Writes the true state of the arm in each frame in which a packet moved, for tests.
 class TruthTrace {
  public:
   explicit TruthTrace(output::OutputFile output)
@@ -152,7 +152,7 @@ void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) 
   std::fflush(stdout);
 }
 
-/// Returns a file whose arm can be put on a board of the shelf.
+/// Returns the arm file at `path`; fails if its arm cannot be simulated.
 driver::Result<scene::ArmFile> simulated_file(const std::string& path) {
   auto file = scene::load_arm(path);
   if (file && !file->can_simulate) {
@@ -198,7 +198,7 @@ int plug(const PlugOptions& options) {
   std::optional<TruthTrace> trace;
   if (!options.trace.empty()) {
     auto output = output::OutputFile::open(options.trace, output::kMotionTrace);
-    // It has its name from the beginning: it is read while the arm is plugged in.
+    // The file is published at once, because it is read while the arm is plugged in.
     auto named = output ? output->publish() : driver::Result<void>(output.error());
     if (!named) return complain(named.error(), kExitBadInput);
     trace.emplace(std::move(output).value());
@@ -209,7 +209,7 @@ int plug(const PlugOptions& options) {
   }
   say_what_to_do(**server, options);
 
-  // Set by Ctrl-C, or when the kernel refused.
+  // Set by Ctrl-C, or when the kernel refused the device.
   const std::atomic<bool>& interrupted = scene::catch_interrupts();
   std::atomic<bool> stop{false};
   KernelAttachment attachment((*server)->port(), (*server)->bus_id());
@@ -241,7 +241,7 @@ int plug(const PlugOptions& options) {
   return attachment.failed() ? kExitTrouble : kExitDone;
 }
 
-/// Returns what is wrong with the name of a simulated USB arm; "" if there is one.
+/// Returns why the name of a simulated USB arm is invalid; "" if it is valid.
 std::string check_arm_name(const std::string& name) {
   std::vector<std::string> names;
   for (const usb::ShelfEntry& entry : usb::kShelf) names.emplace_back(entry.name);

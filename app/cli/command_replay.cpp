@@ -39,7 +39,8 @@ struct ReplayOptions {
   std::string csv;
 };
 
-/// Tells a recording from a text: by the first byte of an HDF5 file [HDF5 file format, superblock].
+/// Distinguishes a recording from a text by the first byte of an HDF5 file [HDF5 file format,
+/// superblock].
 bool is_recording(const std::string& file) {
   const std::string first = driver::read_head(file, 1);
   return first.empty() || first.front() == '\x89';
@@ -66,7 +67,7 @@ void print_comparison(const std::string& file, const session::TrajectoryComparis
       compared.contact_disagrees);
 }
 
-/// Lets the probe of a trajectory file touch a scene.
+/// Touches a scene along the probe positions of a trajectory file.
 int replay_probe(const ReplayOptions& options) {
   if (!options.page.empty()) {
     return complain({"--page plays recordings; of a trajectory write one first, by --record FILE."},
@@ -93,7 +94,7 @@ int replay_probe(const ReplayOptions& options) {
   return kExitDone;
 }
 
-/// Lets the positions of a ROS bag touch a scene.
+/// Touches a scene along the positions of a ROS bag.
 int replay_a_bag(const ReplayOptions& options) {
   const std::string& file = options.files.front();
   if (options.scene.empty())
@@ -121,7 +122,7 @@ int replay_a_bag(const ReplayOptions& options) {
   return written ? kExitDone : complain(written.error(), kExitTrouble);
 }
 
-/// Says how the forces of one hand compare with the recorded ones.
+/// Prints how the forces of one hand compare with the recorded ones.
 void print_replay(const std::string& file, const session::Replay& replay) {
   const session::ReplayComparison& compared = replay.compared;
   session::print(stdout, "{}: {} ticks of {} by the recorded hand; ", file, compared.ticks,
@@ -135,8 +136,8 @@ void print_replay(const std::string& file, const session::Replay& replay) {
   }
 }
 
-/// Prints why forces differ from the recorded ones. Returns false if there is no reason for it:
-/// then the run cannot be repeated although it should.
+/// Prints why forces differ from the recorded ones. Returns false if no reason is known: then the
+/// run should have been repeatable but was not.
 bool print_reason(const session::Recording& recording, const std::string& scene) {
   const auto repeatable = session::check_repeatable(recording, scene);
   if (!repeatable) {

@@ -51,20 +51,20 @@
 namespace thimble::cli {
 namespace {
 
-/// Prints on standard output, unless the user wants errors only.
+/// Prints on standard output, unless --quiet is set.
 template <class... Args>
 void report(fmt::format_string<Args...> format, Args&&... args) {
   if (scene::talk() == scene::Talk::kQuiet) return;
   session::print(stdout, format, std::forward<Args>(args)...);
 }
 
-/// Prints sentences, a line each.
+/// Prints sentences, one per line.
 void tell(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) report("{}\n", sentence);
-  std::fflush(stdout);  // before a person is asked something
+  std::fflush(stdout);  // before the user is asked a question
 }
 
-/// Ends the recording and tells where it is; who asked for one shall hear of what it lacks.
+/// Ends the recording and prints its path, and what it lacks if a recording was requested.
 ExitCode end_recording(session::Session& session, const std::string& asked) {
   const auto recorded = session.end_recording();
   if (!recorded) return complain(recorded.error(), kExitTrouble);
@@ -75,7 +75,7 @@ ExitCode end_recording(session::Session& session, const std::string& asked) {
   return kExitDone;
 }
 
-/// Writes the files that were asked for of a run that is over.
+/// Writes the requested files of a finished run.
 driver::Result<void> write_files(const session::Session& session,
                                  const driver::RealTimeGrant& grant, const RunOptions& options,
                                  report::RunPage* page, int object) {
@@ -86,7 +86,7 @@ driver::Result<void> write_files(const session::Session& session,
     report("Report and pictures: {}\n", options.report);
   }
   if (page != nullptr) {
-    // The pictures are there; a page less is no trouble.
+    // The pictures are written; a missing page is no error.
     const auto file = std::filesystem::path(options.report) / "index.html";
     const auto written = page->write(grant, file);
     if (!written)
@@ -103,14 +103,14 @@ driver::Result<void> write_files(const session::Session& session,
   return {};
 }
 
-/// What stands beside a run, and is asked for its part after it. It ends before the session does.
+/// Helpers that run alongside a session and are queried afterwards. Destroyed before the session.
 struct RunSides {
-  std::shared_ptr<ros2::SteppedClock> clock;          // of a run that is stepped, or null
-  std::vector<std::unique_ptr<ros2::RosRun>> topics;  // of each arm
+  std::shared_ptr<ros2::SteppedClock> clock;          // clock of a stepped run, otherwise null
+  std::vector<std::unique_ptr<ros2::RosRun>> topics;  // one per arm
   std::unique_ptr<report::RunPage> page;
 };
 
-/// Puts the topics of all arms onto the wire.
+/// Opens the topics of all arms.
 driver::Result<void> open_topics(session::Session& session, const ros2::RosOptions& options,
                                  RunSides& sides) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
@@ -121,8 +121,8 @@ driver::Result<void> open_topics(session::Session& session, const ros2::RosOptio
   return {};
 }
 
-/// Opens the arm of a session that is ready and runs it to its end. `guard` stands while an arm may
-/// hold a force or a recording is not closed.
+/// Opens the arm of a session that is ready and runs it to its end. `guard` is set while an arm may
+/// hold a force or a recording is open.
 ExitCode run_session(session::Session& session, session::ServoThread& servo,
                      session::ViewerRequestHandler* desk, const RunOptions& options,
                      RunSides& sides, std::optional<scene::LeavingGuard>& guard,
@@ -163,7 +163,7 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   return kExitDone;
 }
 
-/// Names what the n-th run of a command records: touch.h5, touch-2.h5.
+/// Returns the file name for the recording of the n-th run of a command: touch.h5, touch-2.h5.
 std::string numbered(const std::string& file, int number) {
   if (file.empty() || number == 1) return file;
   const std::filesystem::path path(file);
@@ -172,20 +172,20 @@ std::string numbered(const std::string& file, int number) {
   return (path.parent_path() / name).string();
 }
 
-/// One command: what stays from run to run where a run is begun anew.
+/// State of one command across restarts of its run.
 struct RunCourse {
   RunOptions& options;
   const session::RunArms& arms;
   const std::atomic<bool>& stop;
   session::SessionOptions asked;
-  std::shared_ptr<ros2::SteppedClock> clock;  // of a run that is stepped, or null
-  std::optional<session::NextRun> next;       // what comes after it, where anything may
+  std::shared_ptr<ros2::SteppedClock> clock;  // clock of a stepped run, otherwise null
+  std::optional<session::NextRun> next;       // prepares the next run, if restarts are allowed
   std::unique_ptr<session::ViewerProcess> viewer;
-  int number = 1;         // of the run
-  std::string recording;  // of this one
+  int number = 1;         // number of the current run
+  std::string recording;  // file of the current run
 };
 
-/// Returns the object whose mesh is saved, -1 for all.
+/// Returns the object whose mesh is saved; -1 for all.
 driver::Result<int> find_saved(const session::Session& session, const RunOptions& options) {
   if (options.save_object.empty()) return -1;
   if (const auto object = session.find_object(options.save_object)) return *object;
@@ -195,7 +195,7 @@ driver::Result<int> find_saved(const session::Session& session, const RunOptions
                        suggestion(options.save_object, names)};
 }
 
-/// Prepares what comes next, unseen and unrecorded while the run before goes on.
+/// Prepares the next run without viewers and recording, while the current one continues.
 driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunCourse& course,
                                                                const std::filesystem::path& scene) {
   session::SessionOptions asked = course.asked;
@@ -207,7 +207,8 @@ driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunCourse& 
   return prepared;
 }
 
-/// Lets what was prepared take the place of a run that is over, whose name is never without a run.
+/// Starts the recording of the prepared run and takes over the shared name of the run before it.
+/// The name is never without a run.
 driver::Result<void> begin_next(RunCourse& course, session::Session& session,
                                 session::Session& before) {
   if (!course.asked.record.empty()) {
@@ -223,13 +224,13 @@ driver::Result<void> begin_next(RunCourse& course, session::Session& session,
   return session.share(course.asked, before.shared());
 }
 
-/// Runs a session that is prepared to its end, and writes and prints what is asked for, unless
-/// `then` comes after it.
+/// Runs a prepared session to its end. Writes and prints the requested results, unless another run
+/// `then` follows.
 ExitCode run_one(RunCourse& course, session::Session& session,
                  std::unique_ptr<session::Session>& then) {
   const RunOptions& options = course.options;
   const bool first = course.number == 1;
-  // Whoever leaves before the run leaves a recording that is whole, with no tick in it.
+  // An early exit leaves a valid recording without ticks.
   const auto leave = [&session](ExitCode code) {
     if (const auto ended = session.end_recording(); !ended) complain(ended.error(), kExitTrouble);
     return code;
@@ -268,10 +269,10 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   const std::atomic<bool>& end = next != nullptr ? next->ended() : course.stop;
   const ExitCode ran = run_session(session, servo, desk.get(), options, sides, guard, end);
   if (ran != kExitDone) return leave(ran);
-  // The touch went on, whatever became of the recording.
+  // A failure of the recording does not end the run.
   const ExitCode recorded = end_recording(session, course.recording);
-  // Zero force is out and the recording closed; who is impatient may kill what follows. Not so
-  // where the arm took no zero.
+  // From here Ctrl-C may kill the process: zero force is sent and the recording is closed. Not so
+  // if the arm did not accept zero force.
   const scene::WritingGuard writing;
   if (zero_assured(session)) guard.reset();
   if (desk) desk->close();
@@ -313,7 +314,7 @@ int run_scene(RunOptions& options) {
   }
   tell(arms->told);
 
-  // All that takes time comes before the arm is opened: an open arm is served in every millisecond.
+  // All slow work comes before the arm is opened: an open arm is served every millisecond.
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (arms->real()) scene::leave_rather_than_stop();
   output::OutputPlan outputs;
@@ -348,7 +349,7 @@ std::string first_sentence(const std::string& text) {
   return end == std::string::npos ? text : text.substr(0, end + 1);
 }
 
-/// Prints what is known by name, and ends the program: there is nothing to run.
+/// Prints the shipped scenes and arms, and ends the program.
 void list_shipped() {
   const auto print = [](const char* title, const std::vector<scene::ShippedFile>& files) {
     session::print(stdout, "{}:\n", title);

@@ -50,7 +50,7 @@ struct ShotOptions {
   bool all_colours = false;
 };
 
-/// Reads WIDTHxHEIGHT; false if it is none, or no picture.
+/// Reads WIDTHxHEIGHT; false if the text is no size or the size is no picture's.
 bool read_size(const std::string& text, int& width, int& height) {
   int used = 0;
   return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 &&
@@ -60,7 +60,7 @@ bool read_size(const std::string& text, int& width, int& height) {
 
 constexpr double kDegree = 0.017453292519943295;  // rad
 
-/// Turns the camera that was framed as the user asked: yaw and pitch, and how much closer.
+/// Turns the framed camera by the user's yaw and pitch, and changes its distance.
 void turn(view::Camera& camera, const std::vector<double>& wanted) {
   camera.yaw = wanted[0] * kDegree;
   camera.pitch = 0;
@@ -92,7 +92,7 @@ std::string wrong_ending(const ShotOptions& options) {
   return {};
 }
 
-/// Writes the pictures as the file's ending says, and tells what was written.
+/// Writes the pictures in the format given by the file's ending, and prints what was written.
 int write_animation(const std::vector<view::Picture>& pictures, const ShotOptions& options) {
   const double frame_time = 1 / options.pace;
   const bool film = view::is_film(options.animate);
@@ -109,10 +109,10 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
   return kExitDone;
 }
 
-/// Returns how the times that are to be drawn miss the scene; empty if they do not.
+/// Returns an error if the times to be drawn are outside of the scene's duration; empty if not.
 std::string beyond_the_end(const ShotOptions& options) {
   const auto scene = scene::load_scene(options.scene, {.arm = options.arm_file});
-  if (!scene) return {};  // whoever plays it tells why
+  if (!scene) return {};  // the caller that plays the scene reports the error
   for (const auto& [option, time] :
        {std::pair{"--at", options.at.value_or(0)}, {"--until", options.until}}) {
     if (time <= scene->duration) continue;
@@ -177,7 +177,7 @@ int take_shot(const ShotOptions& options) {
   }
   const bool animated = !options.animate.empty();
   std::vector<double> times = {at};
-  // Rounding must not add a picture at the very end.
+  // Rounding must not add a picture at the end.
   const double pictures_wanted = (options.until - at) * options.pace - 1e-6;
   for (int i = 1; animated && i < pictures_wanted; ++i) times.push_back(at + i / options.pace);
   session.duration = times.back() + 0.1;

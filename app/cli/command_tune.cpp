@@ -31,7 +31,7 @@ struct TuneCommand {
   std::uint32_t domain = 0;
 };
 
-/// Measures how far this computer's periods spread while it only waits, s.
+/// Measures the standard deviation of this computer's periods with an empty loop, s.
 double measured_spread(double rate, double duration) {
   driver::WallClock clock;
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / rate));
@@ -62,7 +62,7 @@ int tune_scene(const TuneCommand& command) {
                      "known. Add one (app/arms/vintage_phantom.yaml shows the form)."},
                     kExitBadInput);
   }
-  // What is wrong with a mesh is wrong for its stiffness too.
+  // Errors of a mesh also apply here.
   const auto objects = scene::SceneObjects::build(*scene);
   if (!objects) return complain(objects.error(), kExitBadInput);
   for (const std::string& note : (*objects)->notes())

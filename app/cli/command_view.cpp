@@ -26,8 +26,8 @@
 namespace thimble::cli {
 namespace {
 
-// How long the run that takes the place of one that ends is waited for: it is prepared by then, and
-// what was recorded is closed. Chosen.
+// Maximum time to wait for the next run when a run ends: it is already prepared, and only the
+// recording has to be closed. Chosen.
 constexpr std::chrono::seconds kNextRunMost{10};
 
 struct ViewOptions {
@@ -35,7 +35,7 @@ struct ViewOptions {
   bool list = false;
   bool text = false;
   bool web = false;
-  std::uint16_t port = 0;  // 0: one that is free
+  std::uint16_t port = 0;  // 0: any free port
   bool follow = false;
   std::vector<std::string> turn;
   bool pause = false, resume = false, stop = false, restart = false;
@@ -46,9 +46,9 @@ struct ViewOptions {
   std::string save_as;
   std::string record;
   bool record_stop = false;
-  double seconds = 0;  // 0: without an end
+  double seconds = 0;  // 0: no limit
 
-  /// Returns the run that is watched; empty: the newest.
+  /// Returns the name of the run; empty: the newest.
   std::string run() const { return shown.empty() ? "" : shown.front(); }
   bool asks() const {
     return !turn.empty() || pause || resume || stop || !record.empty() || record_stop || restart ||
@@ -80,7 +80,7 @@ int list_runs() {
   return kExitDone;
 }
 
-/// Asks for what concerns the course of the run.
+/// Sends the requests that change the course of the run: speed, loop, steps, scene, restart.
 driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions& options) {
   if (options.speed) {
     if (auto asked = reader.ask_speed(*options.speed); !asked) return asked;
@@ -89,7 +89,7 @@ driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions
     if (auto asked = reader.ask_loop(options.loop == "on"); !asked) return asked;
   }
   if (options.steps > 0) {
-    // Who has just asked for the pause means the ticks after it.
+    // After a pause request, the ticks meant are those after the pause.
     for (int i = 0;
          i < 200 && reader.pause_asked() && reader.state() == session::RunState::kRunning; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -105,7 +105,7 @@ driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions
   return options.restart ? reader.ask_restart() : driver::Result<void>();
 }
 
-/// Writes the knobs of a run as they are, and tells where to.
+/// Writes the current knobs of a run into a scene file, and prints its path.
 int save(const session::SharedReader& reader, const ViewOptions& options) {
   const auto saved =
       session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
@@ -114,7 +114,7 @@ int save(const session::SharedReader& reader, const ViewOptions& options) {
   return kExitDone;
 }
 
-/// Asks a run for everything, once.
+/// Sends all requests to a run, once.
 driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& options) {
   for (const std::string& order : options.turn) {
     if (auto turned = session::turn_knob(reader, order); !turned) return turned;
@@ -128,14 +128,13 @@ driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& 
   return {};
 }
 
-/// Asks for everything, and of the run that comes next once more where the one that is there ends
-/// meanwhile.
+/// Sends all requests. If the run ends meanwhile, sends them once more to the next run.
 int ask(const ViewOptions& options) {
   const auto latest = std::chrono::steady_clock::now() + kNextRunMost;
   std::string run = options.run();
   for (bool first = true;; first = false) {
     auto attached = session::SharedReader::attach(run);
-    if (!attached && options.stop && !first) return kExitDone;  // it has ended by itself
+    if (!attached && options.stop && !first) return kExitDone;  // the run has already ended
     if (!attached) return complain(attached.error(), kExitBadInput);
     session::SharedReader& reader = **attached;
     run = reader.name();
@@ -168,7 +167,7 @@ void print_line(const session::SharedReader& reader) {
   std::fflush(stdout);
 }
 
-/// Tells of a run once a second, without a screen.
+/// Prints the state of a run once a second, without a window.
 int tell(const ViewOptions& options) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
@@ -236,7 +235,7 @@ int serve(const ViewOptions& options) {
   return exit_code;
 }
 
-/// Tells a recording from the name of a run, which is no path and has no ending.
+/// Distinguishes a recording from the name of a run, which is no path and has no ending.
 bool is_recording(const std::string& shown) {
   return shown.find('/') != std::string::npos || std::filesystem::path(shown).has_extension();
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-// The argument library, which takes seconds to read.
+// The argument library; its header is slow to compile.
 namespace CLI {
 class App;
 }
@@ -15,15 +15,15 @@ class RunAttachment;
 
 namespace thimble::cli {
 
-/// Opens windows until they are closed, or for so many seconds if they are above 0, and gives the
-/// exit code; empty where there are none.
+/// Opens windows until the user closes them, or for the given seconds if they are above 0, and
+/// returns the exit code; empty in a program without windows.
 struct ShowWindow {
   std::function<int(session::RunAttachment& runs, double seconds)> runs;
   std::function<int(const std::vector<std::string>& files, double seconds)> recordings;
 };
 
 // One function per command of the program (commands.inc). Each adds its sub-command with options
-// and help to `app`; when the user chose it, its exit code (exit_code.h) is left in `exit_code`.
+// and help to `app`. The command writes its exit code (exit_code.h) to `exit_code`.
 #define THIMBLE_COMMAND(function, part, name, about) \
   void add_##function##_command(CLI::App& app, int& exit_code);
 #define THIMBLE_SUBCOMMAND THIMBLE_COMMAND
@@ -31,29 +31,28 @@ struct ShowWindow {
 #undef THIMBLE_COMMAND
 #undef THIMBLE_SUBCOMMAND
 
-/// `thimble view RUN`: shows a run that goes on in another process, by `show_window` or as text, or
-/// a recording.
+/// `thimble view RUN`: shows a run of another process, by `show_window` or as text, or a recording.
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window);
-/// Returns whether `thimble view` has a window: without the package thimble-viewer it has none.
+/// Returns whether `thimble view` has a window; the package thimble-viewer adds it.
 bool has_window();
-/// `thimble study stability`: measures where walls are stable.
+/// `thimble study stability`: measures the region of stable walls.
 void add_stability_options(CLI::App& command, int& exit_code);
 /// `thimble study trouble`: touches random scenes.
 void add_trouble_options(CLI::App& command, int& exit_code);
-/// `thimble study accuracy`: what accuracy costs in time.
+/// `thimble study accuracy`: measures accuracy and computing time.
 void add_accuracy_options(CLI::App& command, int& exit_code);
-/// `thimble study gating SCENE`: which effects a scene could do without.
+/// `thimble study gating SCENE`: finds effects that a scene does not need.
 void add_gating_options(CLI::App& command, int& exit_code);
 
-/// `thimble manual`: prints the manual page of a program, which the installation keeps. `name`: of
-/// the page; `about`: what the program is for.
+/// `thimble manual`: prints the manual page of a program, for the installation. `name`: name of the
+/// page; `about`: purpose of the program.
 void add_manual_command(CLI::App& app, int& exit_code, const std::string& name,
                         const std::string& about);
 
 struct Part;
 
-/// Adds a command of a part that is not in this program. If the part's program is there, it gets
-/// the command line; otherwise the command answers with how to get the part. One without `about` is
+/// Adds a command of a part that this program lacks. If the part's program is installed, it gets
+/// the command line; otherwise the command prints how to get the part. A command without `about` is
 /// not added.
 void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
                         const std::string& about, const Part& part);

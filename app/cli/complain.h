@@ -5,8 +5,8 @@
 
 namespace thimble::cli {
 
-/// Says on the terminal and in the log what keeps a command from going on, and returns `exit_code`
-/// for it to end with. Real-time: never from the servo thread.
+/// Prints and logs the error that ends a command, and returns `exit_code`. Real-time: never from
+/// the servo thread.
 ExitCode complain(const driver::Error& error, ExitCode exit_code);
 
 }  // namespace thimble::cli

@@ -9,7 +9,7 @@
 namespace thimble::cli {
 namespace {
 
-/// Makes the file of a name: what `find` finds, or its error.
+/// Converts a name to the path that `find` finds, or its error.
 template <class Find>
 CLI::Validator file_by(Find find, const char* kind) {
   return CLI::Validator(

@@ -6,14 +6,14 @@
 
 namespace thimble::cli {
 
-/// Adds the scene that a command is about: a file, or a name that `thimble run --list` knows,
-/// of which `scene` becomes the file. Real-time: never from the servo thread.
+/// Adds the scene of a command: a file, or a name from `thimble run --list`. `scene` becomes the
+/// path of the file. Real-time: never from the servo thread.
 CLI::Option* add_scene_option(CLI::App& command, std::string& scene,
                               const std::string& name = "SCENE",
                               const std::string& about = "Scene file (YAML)");
 
-/// Adds --arm: an arm file, or a name that `thimble run --list` knows, of which `arm_file` becomes
-/// the file. Real-time: never from the servo thread.
+/// Adds --arm: an arm file, or a name from `thimble run --list`. `arm_file` becomes the path of the
+/// file. Real-time: never from the servo thread.
 CLI::Option* add_arm_option(CLI::App& command, std::string& arm_file, const std::string& about);
 CLI::Option* add_arm_option(CLI::App& command, std::filesystem::path& arm_file,
                             const std::string& about);

@@ -19,10 +19,10 @@ struct LogOptions {
   }
 };
 
-/// Lets a command leave the options that it does not know to the program.
+/// Makes commands pass options that they do not know to the program.
 void fall_through(CLI::App& above) {
   for (CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_prefix_command()) continue;  // it takes anything, and does nothing with it
+    if (command->get_prefix_command()) continue;  // it passes all words to another program
     command->fallthrough();
     fall_through(*command);
   }

@@ -1,4 +1,4 @@
-// `thimble`: the commands of commands.inc. Those of parts with a program of their own are there
+// `thimble`: the commands of commands.inc. Parts with a separate program have their commands there
 // (parts/).
 #include "cli/commands.h"
 #include "cli/parts/program.h"

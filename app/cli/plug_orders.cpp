@@ -14,7 +14,7 @@
 namespace thimble::cli {
 namespace {
 
-/// Carries out what the hand is told: `off`, `on`, or how far it goes from where it began.
+/// Executes a command of the hand: `off`, `on`, or its position relative to the start.
 bool obey_hand(Plugged& plugged, const std::string& words) {
   if (words == "off" || words == "on") {
     plugged.arm.hold_tip(words == "on");
@@ -95,7 +95,7 @@ OrderPipe::~OrderPipe() {
 
 bool OrderPipe::open(const std::string& path) {
   path_ = path;
-  // Open for writing too, so that the pipe stays open when a writer leaves.
+  // Also open for writing, so that the pipe stays open when a writer closes it.
   if (mkfifo(path.c_str(), 0600) != 0) return false;
   file_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
   struct stat status {};

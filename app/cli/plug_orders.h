@@ -9,26 +9,26 @@
 
 namespace thimble::cli {
 
-/// A plugged arm as a script orders it about: faults of the plug, what the hand on it does, and
-/// what is fixed to its tip.
+/// A plugged simulated arm that a script controls: faults of the plug, motion of the hand on it,
+/// and the mass on its tip.
 struct Plugged {
   device_sim::usb::FaultyDevice& device;
   device_sim::usb::UsbArm& arm;
-  Eigen::Vector3d p_BH{0, 0, 0};             ///< Where the hand began, m.
-  std::optional<Eigen::Vector3d> gravity_B;  ///< m/s^2; none: nothing says where down is.
+  Eigen::Vector3d p_BH{0, 0, 0};             ///< Start of the hand, m.
+  std::optional<Eigen::Vector3d> gravity_B;  ///< m/s^2; none: the direction of gravity is unknown.
 };
 
-/// Carries out one line of a script: a fault (parse_fault), `heal`, `hand X Y Z`, `hand off`,
-/// `hand on` or `mass KG`. A mistake is told and changes nothing; returns whether there was none.
-/// Real-time: never from the servo thread.
+/// Executes one line of a script: a fault (parse_fault), `heal`, `hand X Y Z`, `hand off`, `hand
+/// on` or `mass KG`. An invalid line is reported and changes nothing. Returns whether the line is
+/// valid. Real-time: never from the servo thread.
 bool obey(Plugged& plugged, const std::string& line);
 
-/// Carries out a whole file of them, up to the first mistake. Real-time: never from the servo
+/// Executes a file of such lines, up to the first invalid one. Real-time: never from the servo
 /// thread.
 bool obey_file(Plugged& plugged, const std::string& path);
 
-/// A named pipe that takes such lines while the arm is plugged in. Real-time: never from the servo
-/// thread.
+/// A named pipe that accepts such lines while the arm is plugged in. Real-time: never from the
+/// servo thread.
 class OrderPipe {
  public:
   OrderPipe() = default;
@@ -36,9 +36,9 @@ class OrderPipe {
   OrderPipe& operator=(const OrderPipe&) = delete;
   ~OrderPipe();
 
-  /// Makes the pipe; fails if something of that name is there. It is removed with this.
+  /// Makes the pipe; fails if a file of that name exists. The destructor removes the pipe.
   bool open(const std::string& path);
-  /// Carries out what has come since the last call, if it is open.
+  /// Executes the lines received since the last call, if the pipe is open.
   void poll(Plugged& plugged);
 
  private:

@@ -27,8 +27,8 @@ using Counts = py::array_t<std::uint32_t, py::array::c_style | py::array::forcec
 using Places = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Seeds = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
 
-/// Many runs of one scene as Python holds them. One thread at a time, which Python's own lock does
-/// not see to while they step: a second one gets a sentence.
+/// Many runs of one scene, held by Python. Only one thread may use it, and the GIL is released
+/// during a step, so a second thread gets an error.
 class HeldBatch {
  public:
   HeldBatch(RunOptions options, std::size_t count) {
@@ -44,8 +44,8 @@ class HeldBatch {
   std::size_t size() const { return batch_->size(); }
   const session::Session& first() const { return batch_->run(0); }
 
-  /// Runs `ticks` (n,) ticks of each, after its hand was led to its row of `hands` (n, 3; m), and
-  /// returns the newest tick of each and which hands the arms reach.
+  /// Moves each hand to its row of `hands` (n, 3; m), then runs `ticks` (n,) ticks of each. Returns
+  /// the newest tick of each, and which hands the arms can reach.
   py::tuple step(const Counts& ticks, const py::object& hands) {
     const auto count = static_cast<py::ssize_t>(size());
     if (ticks.size() != count) throw ArgumentError("ticks: expected one number for each run.");
@@ -63,7 +63,7 @@ class HeldBatch {
     return py::make_tuple(array_of(batch_->newest()), reached);
   }
 
-  /// Begins some of the runs anew, each by its seed.
+  /// Restarts some of the runs, each with its seed.
   void restart(const Counts& which, const Seeds& seeds) {
     if (which.size() != seeds.size()) throw ArgumentError("seeds: expected one for each run.");
     alone([&] {
@@ -93,7 +93,7 @@ class HeldBatch {
   }
 
   std::unique_ptr<session::SessionBatch> batch_;
-  bool busy_ = false;  // guarded by Python's own lock
+  bool busy_ = false;  // guarded by the GIL
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace thimble::python {
 
-/// Makes the classes Meshes and Batch known to Python: what runs share, and many runs of one scene
+/// Registers the Python classes Meshes and Batch: meshes shared by runs, and many runs of one scene
 /// stepped by one call.
 void bind_batch(pybind11::module_& core);
 

@@ -28,7 +28,7 @@ namespace {
 
 using driver::TickRecord;
 
-/// A run with the law that Python gave it, if it did.
+/// A run with its Python law, if any.
 struct HeldRun {
   explicit HeldRun(const RunOptions& options, const py::object& own_law)
       : run((py::gil_scoped_release(), std::make_unique<SceneRun>(options))) {
@@ -55,20 +55,20 @@ struct HeldRun {
     if (law) law->rethrow();
   }
 
-  std::optional<driver::ForceLaw> scene_law;  // while there is a law in its place
+  std::optional<driver::ForceLaw> scene_law;  // while another law replaces it
   std::unique_ptr<OwnLaw> law;
   std::unique_ptr<SceneRun> run;
 };
 
-/// Returns the run that a Python object holds; null while it is being made.
+/// Returns the run held by a Python object; null during construction.
 HeldRun* held_by(PyObject* self) {
   auto* instance = reinterpret_cast<py::detail::instance*>(self);
-  if (!instance->simple_layout) return nullptr;  // its memory is not laid out yet
+  if (!instance->simple_layout) return nullptr;  // its memory is not initialised yet
   const py::detail::value_and_holder value = instance->get_value_and_holder();
   return value.holder_constructed() ? value.value_ptr<HeldRun>() : nullptr;
 }
 
-/// Lets the garbage collector see the law of a run: laws often refer to what holds the run, and
+/// Shows the law of a run to the garbage collector: laws often refer to the owner of the run, and
 /// such a cycle would never be freed.
 py::custom_type_setup collected() {
   return py::custom_type_setup([](PyHeapTypeObject* heap_type) {
@@ -79,7 +79,7 @@ py::custom_type_setup collected() {
       const HeldRun* held = held_by(self);
       return held != nullptr && held->law ? held->law->traverse(visit, arg) : 0;
     };
-    // The collector may run while the run ends, without Python's lock, and may not see it then.
+    // Stops tracking first: the collector may run while the run ends without the GIL.
     type->tp_dealloc = [](PyObject* self) {
       PyObject_GC_UnTrack(self);
       py::detail::pybind11_object_dealloc(self);
@@ -143,7 +143,7 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
   return py::make_tuple(vertices, triangles);
 }
 
-/// Returns the number of an arm that Python names by it.
+/// Returns the index of an arm given by Python.
 std::size_t arm_of(const HeldRun& held, std::size_t arm) {
   if (arm >= held.run->session().arms()) throw ArgumentError("The scene has no such arm.");
   return arm;
@@ -163,15 +163,15 @@ void turn(HeldRun& held, const std::string& name, double value) {
   if (!turned) throw ArgumentError(turned.error().message);
 }
 
-/// Returns the stability warnings of a run's scene. They depend on its text, the arm's and the rate
-/// alone and take 12 ms to find, so those of the last scenes are kept: a script runs one scene
-/// often.
+/// Returns the stability warnings of a run's scene. They depend only on its text, the arm's and the
+/// rate, and take 12 ms to compute. The last scenes are cached, because scripts often run one scene
+/// repeatedly.
 std::vector<std::string> warnings_of(const HeldRun& held) {
   constexpr std::size_t kMost = 64;                             // scenes
-  static std::map<std::string, std::vector<std::string>> kept;  // guarded by Python's own lock
+  static std::map<std::string, std::vector<std::string>> kept;  // guarded by the GIL
   const scene::Scene& scene = held.run->session().scene();
   const session::RecordingInfo info = held.run->session().recording_info();
-  // More arms are of files, and a real arm of a calibration, that the text does not tell.
+  // The text contains neither the files of further arms nor the calibration of a real arm.
   if (scene.arms.size() > 1 || info.device != "sim" || info.scene_text.empty()) {
     return stability::stability_warnings(scene);
   }
@@ -201,7 +201,7 @@ py::list figures_of(HeldRun& held, std::size_t arm) {
   return figures;
 }
 
-/// Returns what is asked for of the topics of ROS 2: None, True, or a dict.
+/// Parses the argument for the ROS 2 topics: None, True, or a dict.
 std::optional<ros2::RosWords> topics_of(const py::object& asked) {
   if (asked.is_none() || (py::isinstance<py::bool_>(asked) && !asked.cast<bool>())) return {};
   ros2::RosWords words;

@@ -1,5 +1,5 @@
-// Python's module thimble._core: what of the program Python can reach. Everything that a person
-// calls has its name and its words in thimble/__init__.py.
+// Python's module thimble._core: the functions available to Python. The public names and their
+// documentation are in thimble/__init__.py.
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
@@ -32,7 +32,7 @@ namespace py = pybind11;
 namespace thimble::python {
 namespace {
 
-/// Returns a name of the file system as Python has it, whatever its bytes are (os.fsdecode).
+/// Returns a file name as Python represents it, whatever its bytes are (os.fsdecode).
 py::str file_text(const std::string& name) {
   return py::reinterpret_steal<py::str>(
       PyUnicode_DecodeFSDefaultAndSize(name.data(), static_cast<py::ssize_t>(name.size())));
@@ -71,9 +71,9 @@ py::tuple workspace_of(const SimulatorSession& session) {
   return py::make_tuple(box.min_W, box.max_W);
 }
 
-/// Steps arms one after the other, each with its row of `forces` (n, 3; N), after all hands were
-/// led to their rows of `hands` (n, 3; m), if given. If one arm does not reach its point, no hand
-/// is led and no arm is stepped.
+/// Moves all hands to their rows of `hands` (n, 3; m), if given, then steps the arms one after the
+/// other, each with its row of `forces` (n, 3; N). If one arm cannot reach its point, no hand moves
+/// and no arm is stepped.
 py::array step_all(const std::vector<SimulatorSession*>& arms, const Rows& forces,
                    const std::optional<Rows>& hands) {
   const auto hand_of = [&hands](std::size_t i) -> Eigen::Vector3d {

@@ -16,7 +16,7 @@ namespace py = pybind11;
 namespace thimble::python {
 namespace {
 
-/// Three numbers that Python answered with.
+/// Returns three numbers returned by Python.
 Eigen::Vector3d force_of(const py::object& answer) {
   const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
   if (!force || force.ndim() != 1 || force.shape(0) != 3) {
@@ -29,14 +29,14 @@ Eigen::Vector3d force_of(const py::object& answer) {
   return {force.at(0), force.at(1), force.at(2)};
 }
 
-/// Lets a command ask for the force of a law of Python's, of which no storage is known; but for one
-/// that is the scene's own.
+/// Replaces the command by the force of a Python law, whose stored energy is unknown, unless it is
+/// the scene's own force.
 void answer_with(const Eigen::Vector3d& f_W, driver::ForceCommand& command) noexcept {
   if (f_W == command.f_T_W) return;
   command.f_T_W = command.f_program_W = f_W;
 }
 
-/// An exception of Python that may be raised again, any number of times.
+/// A Python exception that can be raised repeatedly.
 class KeptError {
  public:
   void keep(const py::error_already_set& error) {
@@ -46,7 +46,7 @@ class KeptError {
   }
   explicit operator bool() const { return static_cast<bool>(type_); }
   [[noreturn]] void raise() const {
-    // PyErr_Restore takes the references that it gets.
+    // PyErr_Restore takes ownership of its references.
     PyErr_Restore(py::object(type_).release().ptr(), py::object(value_).release().ptr(),
                   py::object(trace_).release().ptr());
     throw py::error_already_set();
@@ -105,7 +105,7 @@ class PythonLaw final : public OwnLaw {
   }
 
  private:
-  py::object law_;  // a function; null once the garbage collector has cleared it
+  py::object law_;  // a function; null after the garbage collector has cleared it
   SceneRun& run_;
   KeptError error_;
 };
@@ -123,13 +123,13 @@ class CompiledLaw final : public OwnLaw {
 
   void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept override {
     const Eigen::Vector3d wanted = command.f_T_W;
-    // A function that leaves early has set no force, and what is no number is none for the gate.
+    // A function that returns early sets no force, and the gate treats NaN as no force.
     command.f_T_W.setConstant(std::numeric_limits<double>::quiet_NaN());
     function_(1e-9 * static_cast<double>(state.time_ns), state.p_WT.data(), state.v_WT.data(),
               wanted.data(), command.f_T_W.data(), data_);
     if (command.f_T_W != wanted) command.f_program_W = command.f_T_W;
   }
-  // What is kept is part of the function: it is visited, and cleared with the run alone.
+  // The kept objects are part of the function: they are visited, but cleared only with the run.
   int traverse(visitproc visit, void* arg) override {
     Py_VISIT(kept_.ptr());
     return 0;
@@ -138,7 +138,7 @@ class CompiledLaw final : public OwnLaw {
  private:
   Function function_;
   void* data_;
-  py::object kept_;  // what must live as long: the compiled function, the data
+  py::object kept_;  // objects that must live as long: the compiled function, the data
 };
 
 }  // namespace

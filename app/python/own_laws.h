@@ -11,27 +11,27 @@
 
 namespace thimble::python {
 
-/// A force law in place of the scene's, on the virtual clock: there a tick may last as long as it
-/// likes.
+/// A force law that replaces the scene's in virtual time, where the duration of a tick is
+/// unlimited.
 class OwnLaw {
  public:
   virtual ~OwnLaw() = default;
 
-  /// Throws what went wrong in the law, each time that it is called.
+  /// Throws the error of the law, on each call.
   virtual void rethrow() {}
-  /// Visits the Python objects that the law holds, for the garbage collector (tp_traverse).
+  /// Visits the Python objects held by the law, for the garbage collector (tp_traverse).
   virtual int traverse(visitproc visit, void* arg) = 0;
-  /// Drops those of them that may be part of a cycle (tp_clear): the run is unreachable.
+  /// Drops the objects that may be part of a cycle (tp_clear): the run is unreachable.
   virtual void clear() {}
-  /// Finds the force of a tick; `command` is the scene's own.
+  /// Computes the force of a tick; `command` is the scene's.
   virtual void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept = 0;
 };
 
-/// Makes the law that Python gave, a function of a tick or, of a compiled one, (address, data,
-/// what keeps them alive).
-/// Of a Python function whatever goes wrong in it is zero force, the end of the run, and that error
-/// to whoever ran it. A compiled one cannot raise: a force that it leaves unset is no number, which
-/// the gate answers with zero force and a fault.
+/// Makes a law from a Python function of a tick, or from a compiled function: (address, data,
+/// objects to keep alive).
+/// An exception of a Python function causes zero force and ends the run, and is raised in the code
+/// that runs it. A compiled function cannot raise: a force that it does not set is NaN, for which
+/// the gate sends zero force and sets a fault.
 std::unique_ptr<OwnLaw> make_law(const pybind11::object& law, SceneRun& run);
 
 }  // namespace thimble::python

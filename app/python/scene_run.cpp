@@ -18,8 +18,8 @@ namespace {
 constexpr int kTicksBetweenQuestions = 1024;  // 1 ms of work in virtual time; chosen
 constexpr double kSecondsMax = 86400;         // as in `thimble run --duration`
 
-/// Makes of a flag a claim that ends with the scope: two Python threads, or a force law that steps
-/// its own run, may not be in one session.
+/// Sets a flag until the end of the scope: two Python threads, or a force law that steps its own
+/// run, may not use one session at once.
 class Claim {
  public:
   explicit Claim(bool& busy) : busy_(busy) {
@@ -34,7 +34,7 @@ class Claim {
   bool& busy_;
 };
 
-/// Says on stderr, where a program's warnings go, on which terms a real arm is used.
+/// Prints the conditions for a real arm to stderr, like other warnings of a program.
 void tell(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) {
     scene::logger().warn("{}", sentence);
@@ -80,7 +80,7 @@ session::SessionOptions session_options(const RunOptions& options) {
                                                               .unchecked = options.unchecked}));
     tell(asked.terms->told);
   }
-  if (asked.real_arm) {  // asked on a thread that goes again, before the arm is opened
+  if (asked.real_arm) {  // requested on a temporary thread, before the arm is opened
     const auto allowed =
         session::check_real_time(session::ServoThread(true).grant(), options.no_real_time);
     if (!allowed) throw ThimbleError(allowed.error().message + " In Python: no_real_time=True.");

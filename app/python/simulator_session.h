@@ -13,26 +13,26 @@
 
 namespace thimble::python {
 
-/// A simulated arm without a scene, in virtual time: whoever holds it says the force of each tick,
-/// which goes through the same gate and wire as any other. Throws ThimbleError with a sentence for
-/// the user. Real-time: never from the servo thread, all of it.
+/// A simulated arm without a scene, in virtual time. The caller sets the force of each tick, which
+/// passes the same gate and wire as any other. Throws ThimbleError with a sentence for the user.
+/// Real-time: never from the servo thread, all of it.
 class SimulatorSession {
  public:
   /// Opens the arm of a file or name, held by a hand at `p_WH` (m), ready for forces.
   SimulatorSession(const std::string& arm, const Eigen::Vector3d& p_WH, double rate,
                    std::uint64_t seed);
 
-  /// Leads the hand to a point (m, world) from now on. False, and it stays, where the arm does not
-  /// reach it.
+  /// Moves the target of the hand to a point (m, world). If the arm cannot reach it, returns false
+  /// and changes nothing.
   bool lead(const Eigen::Vector3d& p_WH) noexcept { return device_->simulation().lead(p_WH); }
-  /// Returns whether `lead` can lead the hand to a point (m, world).
+  /// Returns whether the arm can reach a point (m, world).
   bool reaches(const Eigen::Vector3d& p_WH) const noexcept {
     return device_->simulation().reaches(p_WH);
   }
-  /// Runs one tick with a force on the hand (N, world). Returns what it was: the tip as the driver
-  /// saw it when the tick began, and the force that went to the motors.
+  /// Runs one tick with a force on the hand (N, world). Returns its record: the tip as read by the
+  /// driver at the start of the tick, and the force sent to the motors.
   const driver::TickRecord& step(const Eigen::Vector3d& f_T_W) noexcept;
-  /// Lets forces through again after a fault.
+  /// Enables forces again after a fault.
   void activate();
   /// Returns whether the force is off because of a fault.
   bool in_fault() const { return device_->device().fault() != driver::Fault::kNone; }
@@ -40,7 +40,7 @@ class SimulatorSession {
   /// Returns the arm on both sides of the wire.
   const scene::SimulatedDevice& device() const { return *device_; }
 
-  // The loop's law and sink. Real-time: safe.
+  // Law and sink of the loop. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState&) noexcept {
     driver::ForceCommand command;
     command.f_T_W = command.f_program_W = f_T_W_;

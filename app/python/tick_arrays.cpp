@@ -46,8 +46,8 @@ py::dtype make_tick_type() {
   return py::dtype(names, formats, offsets, sizeof(TickRecord));
 }
 
-/// Returns numpy's type of a tick: the columns of a recording, by the same names. Made once, and
-/// never let go: Python is gone when C++ would do that.
+/// Returns numpy's type of a tick: the columns of a recording, with the same names. It is made once
+/// and never destroyed, because Python ends before C++ destructors run.
 const py::dtype& tick_type() {
   static const auto* const type = new py::dtype(make_tick_type());
   return *type;

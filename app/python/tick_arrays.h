@@ -10,11 +10,11 @@
 
 namespace thimble::python {
 
-/// Copies ticks into an array of Python's own, whose type has the columns of a recording.
+/// Copies ticks into a new numpy array, whose type has the columns of a recording.
 pybind11::array array_of(std::span<const driver::TickRecord> ticks);
 /// Copies one tick, as an item of such an array.
 pybind11::object one(const driver::TickRecord& tick);
-/// Returns what was run as a dict, by the names that recordings have.
+/// Returns the description of a run as a dict, with the names of recordings.
 pybind11::dict info_of(const session::RecordingInfo& info);
 
 }  // namespace thimble::python

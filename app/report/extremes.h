@@ -6,8 +6,8 @@
 
 namespace thimble::report {
 
-/// The least and the most of each of some columns, with the rows at which they were. A row is known
-/// by a `Place`: its index, or the row itself. Values that are NaN are passed over.
+/// The minimum and the maximum of each of several columns, with the rows at which they occur. A
+/// `Place` identifies a row: its index, or the row itself. NaN values are ignored.
 /// Real-time: safe, if copies of a Place are.
 template <std::size_t kColumns, class Place = std::size_t>
 class Extremes {
@@ -17,7 +17,7 @@ class Extremes {
   /// Forgets all rows.
   void clear() noexcept { empty_ = true; }
 
-  /// Looks at a row. Of equal values the first counts.
+  /// Takes a row. Of equal values the first counts.
   void take(const Values& values, const Place& place) noexcept {
     if (empty_) {
       empty_ = false;
@@ -37,10 +37,10 @@ class Extremes {
     }
   }
 
-  /// Returns the places of the least and of the most of each column, in their order; a place may
-  /// occur several times. Precondition of this and the next: a row was taken.
+  /// Returns the places of the minimum and of the maximum of each column, in their order; a place
+  /// may occur several times. Precondition of this and the next: a row was taken.
   const std::array<Place, 2 * kColumns>& places() const noexcept { return places_; }
-  /// Returns how far apart the least and the most of a column are; NaN if it has no number.
+  /// Returns the difference of a column's maximum and minimum; NaN if it has no number.
   double range(std::size_t column) const noexcept { return max_[column] - min_[column]; }
 
  private:

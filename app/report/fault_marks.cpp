@@ -17,13 +17,14 @@ using Kind = render::MeshFault::Kind;
 
 enum class Sign { kLine, kCircle, kDiamond, kSquare };
 
-// Is how one kind is drawn. One hue per family, apart for colour-blind eyes too [M Okabe and Ito]:
-// holes vermilion, more than two triangles purple, winding blue, no area black, repeated green.
+// Appearance of one kind. One hue per family, distinguishable by colour-blind people [M Okabe and
+// Ito]: holes vermilion, more than two triangles purple, winding blue, no area black, repeated
+// green.
 struct Look {
   Kind kind;
   Sign sign;
   const char* ink;
-  const char* pale;  // where the mesh hides it
+  const char* pale;  // if hidden by the mesh
   const char* one;
   const char* many;
 };
@@ -43,14 +44,14 @@ constexpr std::array<Look, 7> kLooks{
      {Kind::kInsideOut, Sign::kSquare, "#0072b2", "#94bfd9", "part inside out",
       "parts inside out"}}};
 
-constexpr double kPiece = 0.01;  // of the longest side: an edge is hidden piece by piece
+constexpr double kPiece = 0.01;  // of the longest side: edges are hidden piece by piece
 constexpr int kPiecesMax = 100;
 
-// A few short edges are lost on a picture: up to so many get a ring around each.
+// A few short edges are hard to find on a picture: up to this number, each gets a ring.
 constexpr std::size_t kRingedMax = 12;
-constexpr double kRingedPieces = 5;  // longer than so many pieces a line is seen without
+constexpr double kRingedPieces = 5;  // a longer line (in pieces) is visible without a ring
 
-// gnuplot's point types.
+// Returns gnuplot's point type.
 int point_type(Sign sign) {
   switch (sign) {
     case Sign::kCircle:
@@ -75,7 +76,7 @@ bool is_ringed(const Look& look, const MeshFault& fault) {
   return look.sign == Sign::kLine && fault.count <= kRingedMax;
 }
 
-// Collects points and lines as seen in one view, what is hidden apart from what is not.
+// Collects points and lines in one view, hidden and visible ones separately.
 class Blocks {
  public:
   Blocks(const MeshView& view, double tolerance, double piece)
@@ -132,7 +133,7 @@ void add_place(const render::FaultPlace& place, const render::TriangleMesh& mesh
   if (points.size() == 3) blocks.add_line(points[2], points[0]);
 }
 
-// Finds how far the vertices of a place lie apart.
+// Returns the largest distance of a fault's vertices.
 double fault_size(const render::FaultPlace& place, const render::TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const std::int32_t v : place) {
@@ -199,7 +200,7 @@ std::string fault_clauses(const render::MeshFindings& found, const std::string& 
 }
 
 std::string fault_legend(const render::MeshFindings& found, double x, double y) {
-  constexpr double kCharacter = 0.0071;  // of the picture's width, on average in this font
+  constexpr double kCharacter = 0.0071;  // of the picture's width, mean width in this font
   std::ostringstream commands;
   int id = 100;
   for (const Look& look : kLooks) {

@@ -7,7 +7,7 @@
 
 namespace thimble::report {
 
-/// Returns figures as `write_figures` writes them.
+/// Returns figures as JSON, in the format of `write_figures`.
 nlohmann::ordered_json figures_json(const std::vector<Figure>& figures);
 
 }  // namespace thimble::report

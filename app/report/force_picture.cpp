@@ -12,15 +12,15 @@ namespace thimble::report {
 namespace {
 
 constexpr std::size_t kBucketsMax = 1500;  // about one per pixel of a panel's width
-constexpr double kVisible = 0.02;          // of the largest force: a line's width in the panel
+constexpr double kVisible = 0.02;          // of the maximum force: the width of a line in the panel
 
-// What of a row is plotted over time.
+// Returns the values of a row that are plotted over time.
 std::array<double, 3> plotted(const driver::TickRecord& row) {
   return {length_of(row.f_wanted_W), length_of(row.f_sent_W), row.depth};
 }
 
-// Writes time, wanted force, sent force and depth. Long runs are cut into buckets of which the
-// rows with the least and the most of each stay, so that no peak is lost.
+// Returns time, requested force, sent force and depth as text. Long runs are divided into buckets
+// that keep the rows with the minimum and maximum of each value, so that no peak is lost.
 std::string table(std::span<const driver::TickRecord> rows) {
   std::ostringstream text;
   text.precision(7);
@@ -77,7 +77,7 @@ driver::Result<void> draw_force_and_depth(std::span<const driver::TickRecord> ro
       wanted_max = std::max(wanted_max, length_of(row.f_wanted_W));
     }
   }
-  // A requested force far beyond the limit must not flatten what was felt.
+  // A requested force far beyond the limit must not flatten the curve of the sent force.
   const double force_top = 1.12 * std::max(force_max, std::min(wanted_max, 2 * force_max));
   const double depth_top = 1.12e3 * depth_max;
   const std::string title = (touched ? "Force and depth: " : "Force: ") + info.title;

@@ -23,8 +23,8 @@ constexpr const char* kMissingMessage =
 
 enum class RunEnd { kGood, kMissing, kBad };
 
-// Runs `gnuplot argument` in `folder`, with `input` to read and its messages going to `log`. No
-// shell is involved, so folder names may hold any character.
+// Runs `gnuplot argument` in `folder`, with standard input `input` and its messages to `log`. No
+// shell is used, so folder names may contain any character.
 RunEnd run_gnuplot(const std::string& argument, int input, const std::string& folder,
                    const std::string& log) {
   posix_spawn_file_actions_t actions;
@@ -65,14 +65,14 @@ bool has_gnuplot() {
 
 namespace {
 
-/// Returns a string as gnuplot writes it.
+/// Quotes a string for gnuplot.
 std::string quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted.append(c == '\'' ? "''" : std::string(1, c));
   return quoted + "'";
 }
 
-/// Returns the script that draws a plot to two files.
+/// Returns the script that draws a plot into two files.
 std::string script_of(const Plot& plot, const std::string& png, const std::string& svg) {
   const std::string size = std::to_string(plot.width) + "," + std::to_string(plot.height);
   const std::array<std::pair<std::string, std::string>, 2> terminals{
@@ -88,7 +88,7 @@ std::string script_of(const Plot& plot, const std::string& png, const std::strin
   return script;
 }
 
-/// Lets gnuplot run a script, which it gets as its input.
+/// Runs gnuplot with a script as its standard input.
 RunEnd draw(const std::string& script, const std::string& folder, const std::string& log) {
   const int input = memfd_create("plot", MFD_CLOEXEC);
   if (input < 0) return RunEnd::kBad;
@@ -126,7 +126,7 @@ driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& fo
     return driver::Error{"gnuplot could not draw " + plot.name + " in " + folder.string() +
                          (said.empty() ? "." : ": " + said)};
   }
-  // Warnings (an empty range, a bad font) do not fail a run; they stay in the log.
+  // Warnings (an empty range, a bad font) do not fail a run; they remain in the log.
   std::error_code status;
   if (said.empty()) std::filesystem::remove(folder / log_name, status);
   if (auto done = png->commit(); !done) return done;

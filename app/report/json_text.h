@@ -9,7 +9,7 @@
 namespace thimble::report {
 
 /// Returns JSON as text: on one line, or with `indent` blanks for each level. Names come from files
-/// and may hold any byte; what is not UTF-8 is replaced.
+/// and may contain any byte; invalid UTF-8 is replaced.
 template <class Json>
 std::string json_text(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

@@ -8,10 +8,10 @@
 
 namespace thimble::report {
 
-/// Returns the findings of a mesh as an object: counts, box, area, faults with kind and count.
+/// Returns the findings of a mesh as a JSON object: counts, box, area, faults with kind and count.
 nlohmann::ordered_json mesh_json(const render::MeshFindings& found);
 
-/// Returns the changes of a repair as a list of objects with kind and count.
+/// Returns the changes of a repair as a JSON list of objects with kind and count.
 nlohmann::ordered_json changes_json(const std::vector<render::RepairChange>& changes);
 
 }  // namespace thimble::report

@@ -13,22 +13,23 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kSupersampling = 2;
-constexpr int kGrazing = kSupersampling;  // samples around a point that must be hidden too: a pixel
+constexpr int kGrazing = kSupersampling;  // samples around a point that must be hidden, too: a
+                                          // pixel
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-// Light and matte, so that a coloured line stands out on it: shades run from kDark to kLight only.
+// Light and matte, so that coloured lines are visible on it: shades are between kDark and kLight.
 constexpr double kDark = 0.56;
 constexpr double kLight = 0.93;
-constexpr float kOutlineShade = 0.72F;  // of what it is drawn on
-constexpr double kOutlineStep = 0.02;   // of the extent: a depth step that shows as an outline
-constexpr double kSmoothCosine = 0.7;   // a corner turned by more than 45 degrees is an edge
-constexpr double kTintRed = 0.985;      // a trace of blue keeps grey from looking like paper
+constexpr float kOutlineShade = 0.72F;  // of the shade below it
+constexpr double kOutlineStep = 0.02;   // of the extent: minimum depth step drawn as an outline
+constexpr double kSmoothCosine = 0.7;   // a corner of more than 45 degrees is an edge
+constexpr double kTintRed = 0.985;      // a slight blue tint distinguishes grey from paper
 constexpr double kTintBlue = 1.02;
 
 }  // namespace
 
 struct MeshView::Corner {
-  Vector2d uv;  // samples
+  Vector2d uv;  // in samples
   double w = 0;
   double shade = 0;
 };
@@ -71,7 +72,7 @@ MeshView::MeshView(const render::TriangleMesh& mesh_W, const ViewDirection& dire
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d& smooth = normals[static_cast<std::size_t>(triangle[i])];
       Vector3d n_W = smooth.dot(flat) > kSmoothCosine ? smooth : flat;
-      if (flat.dot(direction.w_W) < 0) n_W = -n_W;  // a mesh inside out is still seen
+      if (flat.dot(direction.w_W) < 0) n_W = -n_W;  // an inverted mesh is still visible
       const double lit = std::max(0.0, n_W.dot(light));
       corner[i] = {(project(p_W[i]) - origin_) / pitch_, direction.w_W.dot(p_W[i]),
                    kDark + (kLight - kDark) * lit};

@@ -11,37 +11,38 @@
 
 namespace thimble::report {
 
-/// A direction to look from, orthographically: axes of the picture in the world. World: x
-/// towards the user, y to the user's right, z up.
+/// An orthographic view: axes of the picture in the world. World: x towards the user, y to the
+/// user's right, z up.
 struct ViewDirection {
   std::string_view name;
   std::string_view u_label, v_label;  ///< World axes along the picture's sides.
   Eigen::Vector3d u_W, v_W, w_W;      ///< Right, up, and towards the eye; unit vectors.
-  double v_sign = 1;                  ///< -1 if the world's axis `v_label` runs down the picture.
+  double v_sign = 1;                  ///< -1 if the world's axis `v_label` points down.
 };
 
-/// Lists what the user sees from the front, what is seen from the left, and from above.
+/// Returns the views from the front (the user's), from the left, and from above.
 const std::array<ViewDirection, 3>& view_directions();
 
-/// One shaded picture of a mesh on white, and how deep it is at each pixel.
+/// One shaded picture of a mesh on white, with the depth of each pixel.
 class MeshView {
  public:
-  /// Draws the mesh (m) as seen in a square window of side `extent` (m, > 0) about `center_W`, with
+  /// Draws the mesh (m) in a square window of side `extent` (m, > 0) about `center_W`. It has
   /// `pixels` pixels a side (> 0), each the mean of 2 x 2 samples.
   /// Real-time: never from the servo thread.
   MeshView(const render::TriangleMesh& mesh_W, const ViewDirection& direction,
            const Eigen::Vector3d& center_W, double extent, int pixels);
 
-  /// Returns the pixels, three bytes (red, green, blue) each, rows from below, columns from the
-  /// left.
+  /// Returns the pixels, three bytes (red, green, blue) each, rows from the bottom, columns from
+  /// the left.
   const std::vector<std::uint8_t>& rgb() const noexcept { return rgb_; }
   int pixels() const noexcept { return pixels_; }
 
-  /// Returns where a point falls in the picture: right and up, m in the world's axes u and v.
+  /// Returns the position of a point in the picture: right and up, m along the world's axes u and
+  /// v.
   Eigen::Vector2d project(const Eigen::Vector3d& p_W) const;
 
-  /// Returns whether the mesh stands more than `tolerance` (m) before the point and a pixel around
-  /// it: what lies on a face that is seen edge-on is not hidden.
+  /// Returns whether the mesh is more than `tolerance` (m) in front of the point and of a pixel
+  /// around it: a point on a face seen edge-on is not hidden.
   bool hides(const Eigen::Vector3d& p_W, double tolerance) const;
 
  private:
@@ -51,16 +52,16 @@ class MeshView {
   void shrink();
 
   ViewDirection direction_;
-  Eigen::Vector2d origin_;  // of the window's lower left corner, m
-  double pitch_ = 0;        // of samples, m
-  int samples_ = 0;         // per side
+  Eigen::Vector2d origin_;  // lower left corner of the window, m
+  double pitch_ = 0;        // distance of samples, m
+  int samples_ = 0;         // number per side
   int pixels_ = 0;
-  std::vector<float> depth_;  // towards the eye, m; -infinity where nothing is
+  std::vector<float> depth_;  // towards the eye, m; -infinity: background
   std::vector<float> shade_;  // 0 black to 1 white
   std::vector<std::uint8_t> rgb_;
 };
 
-/// Finds the box around a mesh's vertices; empty for a mesh without any.
+/// Returns the bounding box of a mesh's vertices; empty for a mesh without vertices.
 Eigen::AlignedBox3d box_of(const render::TriangleMesh& mesh);
 
 }  // namespace thimble::report

@@ -18,24 +18,23 @@ using Eigen::Vector3d;
 
 constexpr int kPixels = 760;  // of a view's side; a panel is about 500 wide in the PNG
 constexpr std::size_t kPointsMax = 4000;
-constexpr double kHiddenBy = 0.01;  // of the extent: the tip lies in the surface, not behind it
-// A body that gives way is drawn as it was: a dent in a face that is turned to the eye hides
-// nothing.
+constexpr double kHiddenBy = 0.01;  // of the extent: the tip is in the surface, not behind it
+// Deformable bodies are drawn undeformed: a dent in a face towards the eye hides nothing.
 constexpr double kDentHiddenBy = 0.1;  // of the extent
 constexpr double kTurnedToEye = 0.3;   // cosine between the force on the hand and the line of sight
-constexpr double kMarkHiddenBy = 0.004;  // of the extent: marks lie in the surface to rounding
+constexpr double kMarkHiddenBy = 0.004;  // of the extent: marks are in the surface to rounding
 
-// The picture's layout, pixels. The panels take what the labels leave.
+// The picture's layout, pixels. The panels get the space left by the labels.
 constexpr double kWidth = 1800;
-constexpr double kEdge = 18;        // free around everything
-constexpr double kNameHeight = 30;  // of an axis's name
-constexpr double kTicGap = 18;      // between a panel and the numbers beside it
-constexpr double kBelow = 97;       // numbers and the name below a panel
-constexpr double kColours = 22;     // width of the colour scale, and its distance to the panel
-constexpr double kRow = 44;         // of a line of words
+constexpr double kEdge = 18;        // margin
+constexpr double kNameHeight = 30;  // height of an axis name
+constexpr double kTicGap = 18;      // between a panel and its numbers
+constexpr double kBelow = 97;       // for numbers and the axis name below a panel
+constexpr double kColours = 22;     // width of the colour scale, and its distance from the panel
+constexpr double kRow = 44;         // height of a line of text
 
-// Viridis by van der Walt and Smith (CC0), at nine even steps; its light end is left out, for
-// yellow is lost on light grey.
+// Viridis by van der Walt and Smith (CC0), at nine even steps; without its light end, because
+// yellow is invisible on light grey.
 constexpr const char* kPalette =
     "set palette defined (0 '#440154', 0.125 '#472d7b', 0.25 '#3b528b', 0.375 '#2c728e', "
     "0.5 '#21918c', 0.625 '#28ae80', 0.75 '#5ec962', 0.875 '#addc30', 1 '#dce319')\n";
@@ -51,8 +50,8 @@ Vector3d to_vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Shows the whole mesh and what of the path is near it: a far start would make the mesh tiny. What
-// is touched may move away with the tip, further.
+// Returns a window with the whole mesh and the near part of the path: with a far start the mesh
+// would be tiny. The margin is larger for an object that moves with the tip.
 Window window_of(const render::TriangleMesh& mesh, std::span<const driver::TickRecord> rows) {
   const Eigen::AlignedBox3d mesh_box = box_of(mesh);
   const double side = std::max(mesh_box.sizes().maxCoeff(), 1e-9);
@@ -71,20 +70,20 @@ struct PanelText {
   std::string unit;
   double unit_scale = 1;
   double force_max = 0;                          // N; 0: no path, no colours
-  const render::MeshFindings* faults = nullptr;  // null: none to mark
+  const render::MeshFindings* faults = nullptr;  // null: no marks
 };
 
-/// Where one panel stands, pixels from the lower left corner, and what it shows.
+/// Position of one panel, pixels from the lower left corner, and its range.
 struct Panel {
   const ViewDirection* direction = nullptr;
-  Eigen::Vector2d low{0, 0}, high{0, 0};  // in the unit of its axes
+  Eigen::Vector2d low{0, 0}, high{0, 0};  // in the unit of the axes
   double left = 0;                        // pixels
   std::string u_tics, v_tics;
-  double room = 0;  // pixels that the numbers on its left take
+  double room = 0;  // width of the numbers on its left, pixels
 };
 
-// Writes the path as seen from one side: u, v, force; blank lines end a stretch. Three blocks:
-// free air, hidden by the mesh, and in sight.
+// Returns the path in one view as text: u, v, force; blank lines end a stretch. Three blocks: free
+// air, hidden by the mesh, visible.
 std::string path_table(std::span<const driver::TickRecord> rows, const MeshView& view,
                        const Panel& panel, double extent, double scale) {
   enum PathPart { kFree, kHidden, kSeen };
@@ -113,10 +112,10 @@ std::string path_table(std::span<const driver::TickRecord> rows, const MeshView&
   return text;
 }
 
-/// Where everything stands, pixels.
+/// Positions of everything, pixels.
 struct Layout {
   double height = 0;
-  double side = 0;  // of a panel
+  double side = 0;  // side of a panel
   std::array<Panel, 3> panels;
   NamedTics force;
 
@@ -125,8 +124,7 @@ struct Layout {
   double top() const { return kBelow + side; }
 };
 
-/// Gives numbers and names their places first, so that none meets another whatever they are; the
-/// panels get the rest.
+/// Places numbers and names first, so that they never overlap; the panels get the remaining space.
 Layout lay_out(const Window& window, const PanelText& say, bool with_faults) {
   Layout layout;
   const bool with_path = say.force_max > 0;
@@ -154,7 +152,7 @@ Layout lay_out(const Window& window, const PanelText& say, bool with_faults) {
   for (Panel& panel : layout.panels) {
     panel.left = left + panel.room;
     left = panel.left + layout.side;
-    // Numbers side by side need room for the widest.
+    // Numbers in a row need room for the widest.
     int count = 6;
     NamedTics u = named_tics(panel.low.x(), panel.high.x(), 1, count);
     while (count > 1 && u.width + kTicGap > layout.side / (count + 1)) {
@@ -166,7 +164,7 @@ Layout lay_out(const Window& window, const PanelText& say, bool with_faults) {
   return layout;
 }
 
-/// Puts the title, and at its right what the lines are.
+/// Returns commands for the title and the key of the lines at its right.
 std::string headings(const Layout& layout, const PanelText& say, bool with_faults) {
   const double y = layout.y(layout.height - kEdge - kRow / 2);
   double right = kWidth - kEdge;
@@ -201,7 +199,7 @@ std::string headings(const Layout& layout, const PanelText& say, bool with_fault
   return c.str();
 }
 
-/// Sets the frame of a panel: where it stands, its numbers and names.
+/// Returns commands for the frame of a panel: position, numbers and names.
 std::string frame(const Panel& panel, const Layout& layout, const std::string& unit) {
   std::ostringstream c;
   c << "set lmargin at screen " << number(layout.x(panel.left)) << "\nset rmargin at screen "
@@ -220,7 +218,7 @@ std::string frame(const Panel& panel, const Layout& layout, const std::string& u
   return c.str();
 }
 
-/// Sets the scale of the forces' colours, right of all panels.
+/// Returns commands for the colour scale of the forces, right of all panels.
 std::string colour_scale(const Layout& layout) {
   const double left = layout.panels[2].left + layout.side + kColours;
   std::ostringstream c;
@@ -272,7 +270,7 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
       if (auto done = write_text(marks, folder / (stem + ".dat")); !done) return done;
       c << fault_clauses(*say.faults, stem + ".dat");
     }
-    // The headings are drawn with the first panel.
+    // Only the first panel draws the headings.
     c << "\nunset label 1\nunset label 2\nunset label 3\nunset arrow\n";
     if (with_faults) c << end_of_legend(*say.faults);
     ++index;
@@ -303,7 +301,7 @@ driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
   if (ending != ".png" && ending != ".svg") {
     return driver::Error{picture.string() + ": a picture's name must end in .png or .svg."};
   }
-  // Data and script go to a folder of their own, so that only the picture is left behind.
+  // Data and script go to a temporary folder, so that only the picture remains.
   std::string pattern = (std::filesystem::temp_directory_path() / "thimble-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {
     return driver::Error{"Cannot make a temporary folder like " + pattern + "."};

@@ -17,8 +17,8 @@ struct Range {
   bool logarithmic = false;
 };
 
-// Bars need a range that holds everything; durations that spread over more than one power of ten
-// are only readable on a logarithmic axis.
+// A linear range must contain all values. Durations over more than one power of ten need a
+// logarithmic axis.
 Range range_of(const session::Histogram& histogram, double at_least_from, double at_least_to) {
   const double low = std::min(1e-3 * static_cast<double>(histogram.min_ns()), at_least_from);
   const double high = std::max(1e-3 * static_cast<double>(histogram.max_ns()), at_least_to);
@@ -65,7 +65,7 @@ std::string percentiles(const session::Histogram& histogram) {
          "    longest " + in_us(static_cast<double>(histogram.max_ns())) + "  µs";
 }
 
-// Names 1, 2 and 5 in each power of ten; over many powers there is room for the ones only.
+// Returns tics at 1, 2 and 5 of each power of ten; over many powers only at 1.
 std::string logarithmic_tics(const Range& range) {
   const bool many = range.high > 1e4 * range.low;
   std::string tics;
@@ -81,7 +81,8 @@ std::string logarithmic_tics(const Range& range) {
   return "set xtics (" + tics + ")\nset mxtics 1\n";
 }
 
-// One panel from `bottom` to `top` of the picture; 0.001 stands for 99.9 % and so on.
+// Returns commands for one panel from `bottom` to `top` of the picture; 0.001 means 99.9 % and so
+// on.
 std::string panel(const session::Histogram& histogram, const Range& range, const std::string& file,
                   const std::string& heading, double bottom, double top, const char* ink) {
   std::ostringstream c;
@@ -108,7 +109,7 @@ driver::Result<void> draw_period_histogram(const PictureInfo& info,
                                            const std::filesystem::path& folder) {
   const double nominal = 1e6 * info.period;
   const Range range = range_of(*info.period_times, 0.95 * nominal, 1.05 * nominal);
-  // On a virtual clock nobody may have measured the work: then there is nothing to show.
+  // In virtual time, computing times may not have been measured; then nothing is shown.
   const bool with_work = info.work_times->max_ns() > 0;
   if (auto done = write_text(bars(*info.period_times, range), folder / "data/period.dat"); !done) {
     return done;
@@ -116,7 +117,7 @@ driver::Result<void> draw_period_histogram(const PictureInfo& info,
   std::ostringstream c;
   c << quiet_style() << "set multiplot\nunset key\nset lmargin at screen 0.085\n"
     << "set rmargin at screen 0.975\nset ylabel 'ticks' textcolor rgb '" << kInk << "'\n";
-  // The heading is drawn with the first panel, which clears labels of its own only.
+  // The first panel draws the heading; clearing its labels does not affect later ones.
   const std::string heading_label =
       "set label 9 " + quote("Pace of the loop: " + info.title) +
       " at screen 0.085, screen 0.955 font ',22' noenhanced textcolor rgb '" + kInk + "'\n";

@@ -11,10 +11,10 @@
 
 namespace thimble::report {
 
-// What the pictures share: colours, quoting, contact intervals; and one function per picture.
+// Shared parts of the pictures: colours, quoting, contact intervals; and one function per picture.
 
-/// The ink of the pictures. Force is blue and depth orange: apart for colour-blind eyes too
-/// [M Okabe and Ito].
+/// Colour of text and lines. Force is blue and depth orange, which colour-blind people can
+/// distinguish [M Okabe and Ito].
 inline constexpr const char* kInk = "#30343b";
 inline constexpr const char* kFaintInk = "#8a919c";
 inline constexpr const char* kGridInk = "#e4e7eb";
@@ -22,37 +22,38 @@ inline constexpr const char* kForceInk = "#0072b2";
 inline constexpr const char* kDepthInk = "#d55e00";
 inline constexpr const char* kContactFill = "#eef3f8";
 
-/// Quotes a text for gnuplot, which then takes it as it is.
+/// Quotes a text for gnuplot, without interpretation.
 std::string quote(const std::string& text);
 
-/// Returns a number the way gnuplot reads it.
+/// Returns a number in gnuplot's syntax.
 std::string number(double value);
 
-/// Sets borders, tics and grid to the quiet style of all pictures.
+/// Returns commands for borders, tics and grid in the common style.
 std::string quiet_style();
 
-/// Finds a tic distance (1, 2 or 5 times a power of ten) that cuts `range` (> 0) in about `count`.
+/// Returns a tic distance (1, 2 or 5 times a power of ten) that divides `range` (> 0) into about
+/// `count` parts.
 double tic_step(double range, int count);
 
-/// Numbers along an axis.
+/// Tics with their labels.
 struct NamedTics {
-  std::string list;  ///< As gnuplot's `set xtics` takes it.
-  double width = 0;  ///< Of the widest number, pixels.
+  std::string list;  ///< Argument of gnuplot's `set xtics`.
+  double width = 0;  ///< Width of the widest label, pixels.
 };
 
 /// Returns the multiples of a tic distance from `low` to `high` (> low), about `count` of them,
-/// each written times `sign`.
+/// each labelled with its value times `sign`.
 NamedTics named_tics(double low, double high, double sign, int count);
 
-/// Returns how wide a text (UTF-8) in the pictures' font of so many points is at most about,
-/// pixels.
+/// Returns an approximate upper bound of the width of a text (UTF-8) in the pictures' font of this
+/// size, pixels.
 double text_width(const std::string& text, double points = 17);
 
-/// Returns the text, its end cut off (…) where it is wider than `pixels` in a font of so many
-/// points.
+/// Returns the text, truncated with an ellipsis (…) if it is wider than `pixels` in a font of
+/// `points`.
 std::string fitted(const std::string& text, double pixels, double points);
 
-/// Finds the intervals of contact, s from the first row; gaps shorter than `gap` (s) are closed.
+/// Returns the intervals of contact, s from the first row; gaps shorter than `gap` (s) are closed.
 std::vector<std::pair<double, double>> contact_intervals(std::span<const driver::TickRecord> rows,
                                                          double gap);
 
@@ -72,7 +73,7 @@ driver::Result<void> draw_path_on_mesh(std::span<const driver::TickRecord> rows,
                                        const render::TriangleMesh& mesh_W, const PictureInfo& info,
                                        const std::filesystem::path& folder);
 
-/// Draws how regular the loop was.
+/// Draws histograms of the loop's periods.
 driver::Result<void> draw_period_histogram(const PictureInfo& info,
                                            const std::filesystem::path& folder);
 

@@ -45,7 +45,7 @@ NamedTics named_tics(double low, double high, double sign, int count) {
   const double step = tic_step(high - low, count);
   NamedTics tics{"(", 0};
   for (double k = std::ceil(low / step); k * step <= high; ++k) {
-    const std::string words = number(k == 0 ? 0 : sign * k * step);  // no -0
+    const std::string words = number(k == 0 ? 0 : sign * k * step);  // avoids -0
     tics.list += (tics.list.size() > 1 ? ", '" : "'") + words + "' " + number(k * step);
     tics.width = std::max(tics.width, text_width(words));
   }
@@ -57,7 +57,7 @@ double text_width(const std::string& text, double points) {
   // DejaVu Sans: digits are 0.64 em wide, words 0.6 on average; 72 points are 96 pixels [measured].
   constexpr double kCharacter = 0.64 * 96 / 72;
   const auto characters = std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // the first byte of one
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // the first byte of a character
   });
   return kCharacter * points * static_cast<double>(characters);
 }
@@ -65,7 +65,7 @@ double text_width(const std::string& text, double points) {
 std::string fitted(const std::string& text, double pixels, double points) {
   std::string cut = text;
   while (!cut.empty() && text_width(cut + (cut.size() < text.size() ? "…" : ""), points) > pixels) {
-    cut.pop_back();  // only a letter's first byte has a width, so whole letters go
+    cut.pop_back();  // only a character's first byte has a width, so remove whole characters
   }
   return cut.size() < text.size() ? cut + "…" : text;
 }
@@ -114,7 +114,7 @@ driver::Result<void> draw_pictures(std::span<const driver::TickRecord> rows,
       if (auto done = draw_path_on_mesh(rows, mesh_W, info, folder); !done) return done;
     }
   }
-  if (info.virtual_time) return {};  // every tick comes as asked, and none takes time
+  if (info.virtual_time) return {};  // virtual time: exact periods, no computing times
   PictureInfo complete = info;
   session::Histogram period;
   session::Histogram work;

@@ -49,7 +49,7 @@ Json to_json(const session::RunFigures& report) {
   json["rate_Hz"] = {{"asked", report.rate_asked}, {"reached", run.rate()}};
   json["period"] = to_json(run.period());
   json["lateness"] = to_json(run.lateness());
-  // On the virtual clock no time passes within a tick.
+  // In virtual time, a tick has no duration.
   if (!report.virtual_time) json["tick_time"] = to_json(run.work());
   json["contact"] = {{"touch_downs", run.contacts()},        {"lost", report.lost_contacts},
                      {"interruptions", run.interruptions()}, {"time_s", run.contact_time()},

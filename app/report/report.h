@@ -7,8 +7,8 @@
 
 namespace thimble::report {
 
-/// Writes report.json and figures.json into the folder, which is made if need be. Fails, naming the
-/// file, if that cannot be done. Real-time: never from the servo thread.
+/// Writes report.json and figures.json into the folder, which is created if necessary. The error
+/// names the file. Real-time: never from the servo thread.
 driver::Result<void> write_report(const session::RunFigures& report,
                                   const std::filesystem::path& folder);
 

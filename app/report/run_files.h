@@ -11,16 +11,16 @@
 
 namespace thimble::report {
 
-/// Returns the names of what `write_run_files` and the page of a run write in a folder.
+/// Returns the names of the files that `write_run_files` and the page of a run write into a folder.
 std::vector<std::string> run_file_names();
 
-/// Writes what a run that is over leaves in `folder`: report.json and figures.json (write_report),
-/// the pictures (draw_pictures) and, of a scene that was dented, dent.png; of several arms into a
-/// folder each, by their names. `grant`: what the kernel granted the servo's thread. Fails, naming
-/// the file, if that cannot be done. Real-time: never from the servo thread.
+/// Writes the files of a finished run into `folder`: report.json and figures.json (write_report),
+/// the pictures (draw_pictures) and, if the scene was dented, dent.png. With several arms, each
+/// gets a folder with its name. `grant`: the priority that the kernel granted to the servo thread.
+/// The error names the file. Real-time: never from the servo thread.
 ///
-/// The pictures are drawn of the ticks of `page`, which is finished, if it is not null, else of
-/// those that the session keeps.
+/// The pictures show the ticks of `page`, which is finished, if it is not null, otherwise those
+/// kept by the session.
 driver::Result<void> write_run_files(const session::Session& session,
                                      const driver::RealTimeGrant& grant,
                                      const std::filesystem::path& folder,

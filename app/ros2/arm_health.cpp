@@ -10,7 +10,7 @@ namespace thimble::ros2 {
 ArmHealth health_of(const driver::TickRecord& tick) {
   if (tick.fault != driver::Fault::kNone) {
     std::string message(driver::describe(tick.fault));
-    // The fault is the first reason; the arm can be pulled afterwards.
+    // The fault is the first cause; the arm may be unplugged later.
     if (tick.link == driver::LinkState::kLost && tick.fault != driver::Fault::kTransportLost) {
       message += " The arm is gone from the wire now.";
     }

@@ -7,7 +7,7 @@
 
 namespace thimble::ros2 {
 
-/// How an arm is, as ROS 2 tells it (diagnostic_msgs/DiagnosticStatus).
+/// Health of an arm for ROS 2 (diagnostic_msgs/DiagnosticStatus).
 struct ArmHealth {
   /// OK, WARN and ERROR of DiagnosticStatus [S ros2/common_interfaces, DiagnosticStatus.msg].
   enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
@@ -18,8 +18,8 @@ struct ArmHealth {
   friend bool operator==(const ArmHealth&, const ArmHealth&) = default;
 };
 
-/// Returns how the arm was in a tick: in fault; without forces; with a motor near its heat limit;
-/// or well. Real-time: never from the servo thread.
+/// Returns the health of the arm in a tick: in fault; without forces; with a motor near its heat
+/// limit; or OK. Real-time: never from the servo thread.
 ArmHealth health_of(const driver::TickRecord& tick);
 
 }  // namespace thimble::ros2

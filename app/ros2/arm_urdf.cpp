@@ -9,10 +9,10 @@
 namespace thimble::ros2 {
 namespace {
 
-constexpr double kThick = 0.006;  // m, radius of the links' picture [chosen]
-constexpr double kTip = 0.008;    // m, of the tip's
+constexpr double kThick = 0.006;  // m, drawn radius of the links [chosen]
+constexpr double kTip = 0.008;    // m, drawn radius of the tip
 
-/// Returns roll, pitch and yaw of a rotation as URDF turns: R = Rz(yaw) Ry(pitch) Rx(roll).
+/// Returns roll, pitch and yaw of a rotation in URDF's convention: R = Rz(yaw) Ry(pitch) Rx(roll).
 Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
   return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
@@ -37,13 +37,13 @@ class Writer {
         prefix_, frame_word(world), prefix_, numbers(arm.p_WB), numbers(rpy));
   }
 
-  /// A link that is a bar from its joint to `end` (m, in its frame); nothing is drawn of one
-  /// without a length.
+  /// Writes a link that is a bar from its joint to `end` (m, in its frame); a bar without length is
+  /// not drawn.
   void bar(const char* name, const Eigen::Vector3d& end) {
     const double length = end.norm();
     text_ += fmt::format("  <link name=\"{}{}\">\n", prefix_, name);
     if (length > 0) {
-      // A cylinder stands along z.
+      // A cylinder has its axis along z.
       const Eigen::Vector3d way = end / length;
       const double pitch = std::atan2(std::hypot(way.x(), way.y()), way.z());
       text_ += visual(fmt::format("<cylinder radius=\"{}\" length=\"{}\"/>", kThick, length),
@@ -52,7 +52,7 @@ class Writer {
     text_ += "  </link>\n";
   }
 
-  /// A joint that the arm has an encoder for: number from 0.
+  /// Writes a joint with an encoder; `number` from 0.
   void joint(int number, const char* parent, const char* child, const Eigen::Vector3d& p,
              const Eigen::Vector3d& axis) {
     const driver::MotorDrive& drive = arm_.model.drives[static_cast<std::size_t>(number)];
@@ -63,7 +63,7 @@ class Writer {
         -kTurn, kTurn, std::abs(drive.ratio * drive.torque_constant) * drive.current_max, kFast);
   }
 
-  /// A joint that turns back by what joint2 turns.
+  /// Writes a joint that compensates the rotation of joint2.
   void level_joint(const char* parent, const char* child, const Eigen::Vector3d& p,
                    const Eigen::Vector3d& axis) {
     begin_joint(prefix_ + "level", parent, child, p, axis);
@@ -79,8 +79,7 @@ class Writer {
         fmt::format("  <link name=\"{}tip\">\n{}", prefix_,
                     visual(fmt::format("<sphere radius=\"{}\"/>", kTip), {0, 0, 0}, {0, 0, 0}));
     if (mass > 0) {
-      // Of a ball of the size that is drawn: a mass without inertia is refused by those who
-      // compute.
+      // Inertia of a ball of the drawn size: some programs reject a mass without inertia.
       const double inertia = 0.4 * mass * kTip * kTip;
       text_ += fmt::format(
           "    <inertial>\n      <mass value=\"{0:.6g}\"/>\n      <inertia ixx=\"{1:.6g}\" "
@@ -96,7 +95,7 @@ class Writer {
   std::string take() && { return std::move(text_) + "</robot>\n"; }
 
  private:
-  static constexpr double kTurn = 3.1416;  // rad: no arm file names the stops of single joints
+  static constexpr double kTurn = 3.1416;  // rad: arm files contain no limits of single joints
   static constexpr double kFast = 20;      // rad/s, faster than any hand [chosen]
 
   static std::string numbers(const Eigen::Vector3d& v) {

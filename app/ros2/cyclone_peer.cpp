@@ -1,4 +1,4 @@
-// The module thimble-ros2.so: a run's presence on the wire by Cyclone DDS.
+// The module thimble-ros2.so: a run's peer by Cyclone DDS.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -16,7 +16,7 @@
 namespace thimble::ros2 {
 namespace {
 
-/// How often the newest tick is looked for: twice as often as arms tick.
+/// Period of the check for a new tick: half that of an arm's tick.
 constexpr dds_duration_t kLook_ns = DDS_USECS(500);
 
 class CyclonePeer final : public RosPeer {
@@ -59,7 +59,7 @@ class CyclonePeer final : public RosPeer {
     }
   }
 
-  /// Returns how far the clock of the stamps is ahead of the run's.
+  /// Returns the difference of the stamps' clock to the run's.
   std::int64_t world_minus_run_ns() const {
     if (options_.stepped) return 0;
     const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -67,7 +67,7 @@ class CyclonePeer final : public RosPeer {
            channel_.clock->now_ns();
   }
 
-  /// Publishes the newest tick, if there is one; returns whether there was.
+  /// Publishes the newest tick, if there is one; returns whether there was one.
   bool publish_newest() {
     if (!channel_.tick->load(record_) || record_.tick == shown_) return false;
     shown_ = record_.tick;
@@ -77,8 +77,8 @@ class CyclonePeer final : public RosPeer {
     return true;
   }
 
-  /// Waits for the ticks that were permitted, and tells of the last of them; again now and then,
-  /// for those who came since. That they are done is told once all arms have.
+  /// Waits for the permitted ticks and publishes the last of them, repeatedly for later readers.
+  /// The end of a step is published after all arms have published it.
   void publish_steps() {
     constexpr std::chrono::milliseconds kLook(20), kAgain(100);
     const std::uint64_t done = channel_.steps->wait_for_ticks(kLook);
@@ -96,7 +96,7 @@ class CyclonePeer final : public RosPeer {
   const RosOptions options_;
   const RosScene scene_;
   RosChannel& channel_;
-  DdsDomain domain_;  // outlives what is in it
+  DdsDomain domain_;  // must outlive its entities
   dds_entity_t participant_ = 0, waitset_ = 0;
   std::unique_ptr<DdsWriters> writers_;
   std::unique_ptr<MessageTaker> taker_;
@@ -108,7 +108,7 @@ class CyclonePeer final : public RosPeer {
   std::thread thread_;
 };
 
-/// Begins a peer; where it cannot, says so and returns null.
+/// Starts a peer. On failure, writes the error and returns null.
 template <class Peer>
 RosPeer* begun(std::unique_ptr<Peer> peer, std::uint32_t domain, char* error, std::size_t size) {
   if (const dds_return_t status = peer->begin(); status < 0) {

@@ -14,7 +14,7 @@
 namespace thimble::ros2 {
 namespace {
 
-/// A domain of this process that stays on this computer.
+/// A local-only domain of this process.
 struct OpenDomain {
   dds_entity_t entity = 0;
   int users = 0;
@@ -29,12 +29,12 @@ std::map<std::uint32_t, OpenDomain>& domains() {
   return all;
 }
 
-// Participants of this computer find each other by multicast over the loopback interface.
+// Participants of this computer discover each other by multicast over the loopback interface.
 constexpr const char* kHere =
     "<CycloneDDS><Domain id=\"any\"><General><Interfaces>"
     "<NetworkInterface name=\"lo\" multicast=\"true\"/>"
     "</Interfaces></General></Domain></CycloneDDS>";
-// The same without any announcement.
+// The same without announcements.
 constexpr const char* kHereUnseen =
     "<CycloneDDS><Domain id=\"any\"><General>"
     "<Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"
@@ -58,8 +58,8 @@ std::set<int> datagram_sockets() {
   return found;
 }
 
-/// Lets a socket of IPv4 drop all that was not sent from this computer's loopback addresses; the
-/// kernel itself drops those that come from outside. Returns whether it does.
+/// Makes an IPv4 socket drop all packets not sent from this computer's loopback addresses; the
+/// kernel itself drops such addresses from outside. Returns whether it succeeded.
 bool hear_this_computer_only(int socket) {
   constexpr std::uint32_t kSource = static_cast<std::uint32_t>(SKF_NET_OFF) + 12;  // RFC 791
   std::array<sock_filter, 5> program{{

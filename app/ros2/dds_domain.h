@@ -5,10 +5,10 @@
 
 namespace thimble::ros2 {
 
-/// A peer's use of a DDS domain. What stays on this computer is bound to it twice: Cyclone DDS is
-/// configured to use the loopback interface only, and its sockets, which it opens on all interfaces
-/// all the same, drop whatever was not sent from 127.0.0.0/8. Peers of one process share a domain,
-/// which is closed with the last of them. Real-time: never from the servo thread, all of it.
+/// A peer's use of a DDS domain. Local-only traffic is enforced twice: Cyclone DDS is configured to
+/// use only the loopback interface, and its sockets, which it opens on all interfaces nevertheless,
+/// drop all packets not sent from 127.0.0.0/8. Peers of one process share a domain, which is closed
+/// with the last of them. Real-time: never from the servo thread, all of it.
 class DdsDomain {
  public:
   DdsDomain() = default;
@@ -16,8 +16,9 @@ class DdsDomain {
   DdsDomain(const DdsDomain&) = delete;
   DdsDomain& operator=(const DdsDomain&) = delete;
 
-  /// Opens the domain as the options ask. Returns an error of DDS, or 0. With RosReach::kNetwork
-  /// Cyclone's own configuration counts (CYCLONEDDS_URI); otherwise that is ignored.
+  /// Opens the domain according to the options. Returns an error of DDS, or 0. With
+  /// RosReach::kNetwork Cyclone's own configuration applies (CYCLONEDDS_URI); otherwise it is
+  /// ignored.
   dds_return_t open(const RosOptions& options);
 
  private:

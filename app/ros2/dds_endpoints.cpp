@@ -7,25 +7,25 @@
 namespace thimble::ros2 {
 namespace {
 
-/// What an endpoint promises or asks for.
+/// Quality of service of an endpoint.
 struct Quality {
   bool reliable = true;
   LateReaders late = LateReaders::kHearNothing;
-  int depth = 10;  // messages that are kept
+  int depth = 10;  // number of messages kept
 };
 
 using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 
 Qos make_qos(const dds_topic_descriptor_t& type, const Quality& quality) {
   Qos qos(dds_create_qos(), dds_delete_qos);
-  // No time for which a writer waits: one that has too many readers to hear drops what is old.
+  // The writer never waits: it drops old messages if readers are too slow.
   dds_qset_reliability(
       qos.get(), quality.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_durability(qos.get(), quality.late == LateReaders::kHearTheLast
                                      ? DDS_DURABILITY_TRANSIENT_LOCAL
                                      : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, quality.depth);
-  // As rmw_dds_common writes it.
+  // In the format of rmw_dds_common.
   if (const std::string_view hash = type_hash(type.m_typename); !hash.empty()) {
     const std::string data = "typehash=" + std::string(hash) + ";";
     dds_qset_userdata(qos.get(), data.data(), data.size());

@@ -8,8 +8,8 @@
 
 namespace thimble::ros2 {
 
-// What the writers put messages together from. DDS reads a message while it is written and does not
-// change it, though its types in C have no const.
+// Helpers that compose messages. DDS reads a message while it is written and does not change it,
+// although its C types have no const.
 
 /// Refers to a text, which must outlive the message.
 inline char* dds_text(const std::string& s) noexcept {
@@ -27,12 +27,12 @@ inline geometry_msgs_msg_dds__Vector3_ dds_vector(const std::array<double, 3>& v
   return {v[0], v[1], v[2]};
 }
 
-/// Returns a rotation, which comes as w, x, y, z.
+/// Converts a rotation from w, x, y, z.
 inline geometry_msgs_msg_dds__Quaternion_ dds_quaternion(const std::array<double, 4>& q) noexcept {
   return {q[1], q[2], q[3], q[0]};
 }
 
-/// Returns a time (ns) as seconds and the rest.
+/// Converts a time (ns) to seconds and nanoseconds.
 inline builtin_interfaces_msg_dds__Time_ stamp_of(std::int64_t ns) noexcept {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   return {static_cast<std::int32_t>(ns / kSecond_ns), static_cast<std::uint32_t>(ns % kSecond_ns)};

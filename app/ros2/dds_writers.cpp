@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// The Omni's drivers tell their state in millimetres [S bharatm11/Geomagic_Touch_ROS_Drivers
+/// The Omni's drivers publish their state in millimetres [S bharatm11/Geomagic_Touch_ROS_Drivers
 /// omni_state.cpp, units "mm"].
 std::array<double, 3> in_mm(const std::array<double, 3>& v) {
   return {1e3 * v[0], 1e3 * v[1], 1e3 * v[2]};
@@ -67,8 +67,8 @@ std_msgs_msg_dds__Header_ DdsWriters::header(const std::string& frame) const {
   return {stamp_, dds_text(frame)};
 }
 
-// A reader that is too slow loses messages; that is no trouble of the run, so nobody asks what
-// dds_write returns.
+// A reader that is too slow loses messages. This does not concern the run, so the result of
+// dds_write is ignored.
 void DdsWriters::publish(const driver::TickRecord& record, const session::ScenePoses& poses,
                          std::int64_t time_ns) {
   stamp_ = stamp_of(time_ns);
@@ -105,7 +105,7 @@ void DdsWriters::publish_joints(const driver::TickRecord& record) {
 geometry_msgs_msg_dds__Quaternion_ DdsWriters::rotation_of_tip(
     const driver::TickRecord& record) const {
   const driver::TipQuaternion& q = record.q_WT;
-  if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) return {0, 0, 0, 1};  // not known
+  if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) return {0, 0, 0, 1};  // unknown
   return dds_quaternion(to_style(options_.style, std::array<double, 4>{q[0], q[1], q[2], q[3]}));
 }
 
@@ -145,7 +145,7 @@ void DdsWriters::publish_frames(const driver::TickRecord& record,
 }
 
 void DdsWriters::publish_buttons(const driver::TickRecord& record) {
-  constexpr std::size_t kButtons = 2;  // as on the styluses that there are
+  constexpr std::size_t kButtons = 2;  // as on existing styluses
   std::array<std::int32_t, kButtons> buttons{};
   for (std::size_t i = 0; i < kButtons; ++i) buttons[i] = record.buttons >> i & 1;
   std::array<float, 1> axes{record.gripper};
@@ -175,7 +175,7 @@ void DdsWriters::publish_state(const driver::TickRecord& record) {
 }
 
 void DdsWriters::publish_health(const driver::TickRecord& record, std::int64_t time_ns) {
-  // Once a second, as programs of ROS tell it [chosen], and when it changes.
+  // Once a second, as is usual in ROS [chosen], and when it changes.
   const ArmHealth health = health_of(record);
   if (health == told_ && time_ns - told_ns_ < kSecond_ns) return;
   told_ = health;

@@ -11,19 +11,19 @@
 
 namespace thimble::ros2 {
 
-/// The topics that a run is published on. Not thread-safe.
+/// The writers of a run's topics. Not thread-safe.
 class DdsWriters {
  public:
-  /// Makes a writer for each topic. Nothing of them is destroyed here: the participant takes all
-  /// with it. The options and the scene must outlive it.
+  /// Makes a writer for each topic. The participant owns the writers and destroys them. The options
+  /// and the scene must outlive this.
   DdsWriters(dds_entity_t participant, const RosOptions& options, const RosScene& scene);
   /// Returns the first error of DDS; 0: none.
   dds_return_t error() const noexcept { return error_; }
 
-  /// Publishes one tick, with its time in ns: of the world since 1970, or of a run that is stepped.
+  /// Publishes one tick with its time, ns: since 1970, or that of a stepped run.
   void publish(const driver::TickRecord& record, const session::ScenePoses& poses,
                std::int64_t time_ns);
-  /// Says that a step is done, after so many ticks in all.
+  /// Reports the end of a step; `ticks` is the total number of ticks.
   void tell_step(std::uint64_t ticks);
 
  private:
@@ -46,9 +46,9 @@ class DdsWriters {
   dds_return_t error_ = 0;
   builtin_interfaces_msg_dds__Time_ stamp_{};
   dds_entity_t joints_, pose_, twist_, wrench_, buttons_, tf_, health_;
-  dds_entity_t state_ = 0, clock_ = 0, stepped_ = 0;  // 0: there is none
+  dds_entity_t state_ = 0, clock_ = 0, stepped_ = 0;  // 0: no such topic
   SceneWriter objects_;
-  ArmHealth told_;  // of the arm's health, and when, ns
+  ArmHealth told_;  // last published health of the arm, and its time, ns
   std::int64_t told_ns_ = -kLongAgo_ns;
   std::uint16_t buttons_told_ = 0;
   std::vector<char*> joint_names_;

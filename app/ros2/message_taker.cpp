@@ -20,7 +20,7 @@ MessageTaker::MessageTaker(dds_entity_t participant, const RosOptions& options, 
     : options_(options), channel_(channel) {
   const RosNames& names = ros_names(options.style);
   const bool omni = options.style == RosStyle::kOmni;
-  // In real time an old force is of no use; in steps each one counts.
+  // In real time an old force is useless; in a stepped run each message counts.
   const auto reader = [&](const dds_topic_descriptor_t& type, const char* name) {
     const std::string topic = dds_topic_name(options, name);
     return kept(options.stepped ? make_reliable_reader(participant, type, topic, kTaken)
@@ -58,7 +58,7 @@ dds_return_t MessageTaker::attach(dds_entity_t waitset) const {
 
 void MessageTaker::take(std::int64_t world_minus_run_ns) {
   world_minus_run_ns_ = world_minus_run_ns;
-  // The steps first, so that what arrived before them is there; they are permitted last.
+  // Steps are taken first and permitted last, so that messages that arrived before them count.
   if (steps_ > 0) take_all<std_msgs_msg_dds__UInt64_>(steps_);
   if (forces_ > 0) {
     const bool found = options_.style == RosStyle::kOmni
@@ -77,7 +77,7 @@ void MessageTaker::take(std::int64_t world_minus_run_ns) {
   if (steps_ > 0) channel_.steps->permit(step_asked_);
 }
 
-/// Returns whether a good one was among what has come; the newest stands then.
+/// Returns whether a valid message has arrived; the newest is kept.
 template <class Message>
 bool MessageTaker::take_all(dds_entity_t reader) {
   std::array<void*, kTaken> samples{};
@@ -140,7 +140,7 @@ bool MessageTaker::judge(const geometry_msgs_msg_dds__PoseStamped_& message) {
 
 bool MessageTaker::judge(const std_msgs_msg_dds__UInt64_& message) {
   step_asked_ = std::max<std::uint64_t>(step_asked_, message.data);
-  return false;  // each one counts; none is skipped
+  return false;  // each message counts; none is skipped
 }
 
 }  // namespace thimble::ros2

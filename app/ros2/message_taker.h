@@ -10,20 +10,22 @@
 
 namespace thimble::ros2 {
 
-/// Takes the messages that come for a run, judges them, and hands the newest good one of each kind
-/// on. In a run that is stepped, what its writer knows to have arrived before it asks for a step
-/// counts in that step. Not thread-safe.
+/// Takes the messages for a run, checks them, and passes on the newest valid one of each kind. In a
+/// stepped run, a message counts in a step if its writer knows that it arrived before the step was
+/// requested. Not thread-safe.
 class MessageTaker {
  public:
-  /// Makes a reader for each topic that the options ask for. The options and the channel must
-  /// outlive it; the participant takes the readers with it.
+  /// Makes a reader for each requested topic. The options and the channel must outlive it; the
+  /// participant owns and destroys the readers.
   MessageTaker(dds_entity_t participant, const RosOptions& options, RosChannel& channel);
   /// Returns the first error of DDS; 0: none.
   dds_return_t error() const noexcept { return error_; }
-  /// Wakes a set of waiters when a message has come. Returns an error of DDS, or 0.
+  /// Attaches the readers to a waitset, which wakes when a message arrives. Returns an error of
+  /// DDS, or 0.
   dds_return_t attach(dds_entity_t waitset) const;
 
-  /// Takes all that has come. `world_minus_run_ns`: from the run's clock to that of the stamps.
+  /// Takes all messages that have arrived. `world_minus_run_ns`: difference between the stamps'
+  /// clock and the run's.
   void take(std::int64_t world_minus_run_ns);
 
  private:
@@ -40,7 +42,7 @@ class MessageTaker {
   const RosOptions& options_;
   RosChannel& channel_;
   dds_return_t error_ = 0;
-  dds_entity_t forces_ = 0, places_ = 0, steps_ = 0;  // 0: nobody listens
+  dds_entity_t forces_ = 0, places_ = 0, steps_ = 0;  // 0: no such reader
   std::int64_t world_minus_run_ns_ = 0;
   std::uint64_t step_asked_ = 0;
   RosWrench wrench_;

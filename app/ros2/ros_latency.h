@@ -9,11 +9,11 @@
 
 namespace thimble::ros2 {
 
-/// Measures how old the positions are that forces answer when another program computes them: runs a
-/// scene on its simulated arm for `duration` s of the world's time, under topics of its own, with
-/// an answering program (EchoPeer) at the other end. A position's age goes from the tick that read
-/// it to the tick that sends the force which answers it. Nothing is felt: the forces are zero. The
-/// error says what to do. Real-time: never from the servo thread.
+/// Measures the age of positions when another program computes the forces. Runs a scene on its
+/// simulated arm for `duration` s of wall-clock time, under separate topics, with an answering
+/// program (EchoPeer) at the other end. The age is the time from the tick that reads a position to
+/// the tick that sends the force computed from it. The forces are zero. The error says what to do.
+/// Real-time: never from the servo thread.
 driver::Result<session::Histogram> measure_ros_latency(const std::string& scene,
                                                        const std::string& arm_file,
                                                        std::uint32_t domain, double duration);

@@ -13,7 +13,7 @@
 namespace thimble::ros2 {
 namespace {
 
-/// Returns the file that this code is in: the program, or a module of Python's.
+/// Returns the file with this code: the program, or a Python module.
 std::filesystem::path own_file() {
   std::error_code status;
   Dl_info about{};
@@ -25,12 +25,12 @@ std::filesystem::path own_file() {
   return std::filesystem::read_symlink("/proc/self/exe", status);
 }
 
-/// Returns the module's file beside this program, installed or in a build tree; empty if there is
+/// Returns the module's file next to this program, installed or in a build tree; empty if there is
 /// none.
 std::filesystem::path module_file() {
   std::error_code status;
   const std::filesystem::path folder = own_file().parent_path();
-  // Of Python's module: ../../ros2 in a build tree, and ../../../../bin where it is installed.
+  // For the Python module: ../../ros2 in a build tree, and ../../../../bin if installed.
   const std::string installed = THIMBLE_ROS2_INSTALLED;
   for (const std::filesystem::path& place :
        {folder / "ros2", folder / "../ros2", folder / "../../ros2", folder / "../../app/ros2",
@@ -42,10 +42,10 @@ std::filesystem::path module_file() {
   return {};
 }
 
-/// What the module brings.
+/// The functions of the module.
 struct RosModule {
   RosModuleOpen open = nullptr;  // makes a peer
-  RosModuleEcho echo = nullptr;  // makes one that answers
+  RosModuleEcho echo = nullptr;  // makes an answering peer
 };
 
 driver::Result<RosModule> load_module() {
@@ -61,7 +61,7 @@ driver::Result<RosModule> load_module() {
     return driver::Error{fmt::format("{} cannot be loaded: {}. Install the package libddsc0debian.",
                                      file.string(), dlerror())};
   }
-  // It is never unloaded: the library of DDS has threads that outlast a peer.
+  // Never unloaded: threads of the DDS library outlive a peer.
   const auto* version = static_cast<const char*>(dlsym(module, kRosModuleVersion));
   void* open = dlsym(module, kRosModuleOpen);
   void* echo = dlsym(module, kRosModuleEcho);
@@ -74,7 +74,8 @@ driver::Result<RosModule> load_module() {
   return RosModule{reinterpret_cast<RosModuleOpen>(open), reinterpret_cast<RosModuleEcho>(echo)};
 }
 
-/// Has the module make a peer: `make` is one of its functions, and what it takes before the error.
+/// Calls a function of the module that makes a peer; `make` takes the given arguments and the
+/// buffer for an error.
 template <class Make, class... Arguments>
 driver::Result<std::unique_ptr<RosPeer>> made_by_module(Make RosModule::*make,
                                                         Arguments&... arguments) {

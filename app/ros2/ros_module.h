@@ -7,22 +7,22 @@
 
 namespace thimble::ros2 {
 
-/// Fails if the module is not there, cannot be loaded, or is of another version; the error says
-/// what to install. Real-time: never from the servo thread.
+/// Fails if the module is missing, cannot be loaded, or has another version; the error says what to
+/// install. Real-time: never from the servo thread.
 driver::Result<void> check_ros_module();
 
-/// Puts a run onto the wire by the module of the package thimble-ros2, which is loaded now: no
-/// other part of Thimble needs a library of DDS. `channel` must outlive the peer. The error says
-/// what to install. Real-time: never from the servo thread.
+/// Publishes a run by the module of the package thimble-ros2, which is loaded now, so that no other
+/// part of Thimble needs a DDS library. `channel` must outlive the peer. The error says what to
+/// install. Real-time: never from the servo thread.
 driver::Result<std::unique_ptr<RosPeer>> open_ros_peer(const RosOptions& options,
                                                        const RosScene& scene, RosChannel& channel);
 
-/// Begins to answer the poses of a run with forces of nothing, stamped as they were, as another
-/// program would (EchoPeer). As above.
+/// Starts to answer the poses of a run with zero forces, stamped as the poses, as another program
+/// would (EchoPeer). As above.
 driver::Result<std::unique_ptr<RosPeer>> open_ros_echo(const RosOptions& options);
 
-/// The name by which the module is found, and what it is: it writes an error of at most `size`
-/// bytes and returns null, or a peer. Versions must be the same, for both sides know RosChannel.
+/// Symbols of the module. Its functions return a peer, or write an error of at most `size` bytes
+/// and return null. Versions must be equal, because both sides use RosChannel.
 constexpr const char* kRosModuleVersion = "thimble_ros2_version";
 constexpr const char* kRosModuleOpen = "thimble_ros2_open";
 constexpr const char* kRosModuleEcho = "thimble_ros2_echo";

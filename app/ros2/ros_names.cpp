@@ -62,7 +62,7 @@ std::array<double, 3> from_style(RosStyle style, const std::array<double, 3>& v)
 
 std::array<double, 4> to_style(RosStyle style, const std::array<double, 4>& q_W) noexcept {
   if (style != RosStyle::kOmni) return q_W;
-  // A quarter turn back about z, before it: (c, 0, 0, -c) q with c = sqrt(1/2).
+  // A quarter turn back about z, applied first: (c, 0, 0, -c) q with c = sqrt(1/2).
   constexpr double c = std::numbers::sqrt2 / 2;
   const auto& [w, x, y, z] = q_W;
   return {c * (w + z), c * (x + y), c * (y - x), c * (z - w)};

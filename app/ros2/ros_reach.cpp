@@ -20,7 +20,7 @@ driver::Result<RosReach> ros_reach(bool network) {
   constexpr const char* kLocal = "ROS_LOCALHOST_ONLY";
   constexpr const char* kRange = "ROS_AUTOMATIC_DISCOVERY_RANGE";
   const std::string local = value_of(kLocal), range = value_of(kRange);
-  std::string narrowed;  // by what
+  std::string narrowed;  // the variable
   if (!local.empty() && local != "0" && local != "1") {
     return driver::Error{fmt::format("{}: expected 0 or 1, found \"{}\".", kLocal, local)};
   }

@@ -5,9 +5,9 @@
 
 namespace thimble::ros2 {
 
-/// Returns how far the topics of a run go: to this computer only, unless `network` asks for more.
-/// The variables of ROS 2 (ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE) can only narrow that;
-/// where they contradict `network`, or have a value that ROS 2 does not know, the error says so.
+/// Returns the visibility of a run's topics: only this computer, unless `network` requests more.
+/// The variables of ROS 2 (ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE) can only narrow it.
+/// The error reports a variable that contradicts `network` or has a value unknown to ROS 2.
 driver::Result<RosReach> ros_reach(bool network);
 
 }  // namespace thimble::ros2

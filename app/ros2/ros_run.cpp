@@ -46,7 +46,7 @@ driver::Result<std::unique_ptr<RosRun>> RosRun::open(session::Session& session,
     run->law_ = std::make_unique<WrenchLaw>(run->channel_, session.own_law(), options,
                                             device.gate().limits());
   }
-  // The peer first: where there is no module, the session stays as it was.
+  // The peer first: if the module is missing, the session remains unchanged.
   auto peer = open_ros_peer(run->options_, ros_scene(session, run->options_, arm), run->channel_);
   if (!peer) return peer.error();
   run->peer_ = std::move(peer).value();
@@ -63,14 +63,14 @@ bool RosRun::watches_ticks() const noexcept {
 }
 
 void RosRun::take(const driver::TickRecord& record) noexcept {
-  // Often enough for eyes: 60 times a second at 1 kHz.
+  // Enough for display: 60 times a second at 1 kHz.
   constexpr std::uint64_t kTicksPerPose = 16;
   if (poses_ != nullptr && (options_.stepped || record.tick % kTicksPerPose == 0)) {
     channel_.poses.store(poses_->now());
   }
   if (options_.lead_hand) {
     RosHandPlace place;
-    constexpr int kAttempts = 4;  // a writer that was stopped must not hold a tick up
+    constexpr int kAttempts = 4;  // an interrupted writer must not delay a tick
     if (channel_.hand.load(place, kAttempts) && place.number != places_taken_) {
       places_taken_ = place.number;
       if (!session_.lead_hand({place.p_W[0], place.p_W[1], place.p_W[2]})) ++places_refused_;

@@ -12,15 +12,15 @@
 
 namespace thimble::ros2 {
 
-/// A session's run as ROS 2 topics. In its tick the servo's thread looks for a force and for a
-/// place of the hand, where they are asked for, and keeps the poses of what moves now and then; all
-/// else is on the peer's thread.
+/// A session's run as ROS 2 topics. In a tick, the servo thread checks for a new force and hand
+/// target, if they are enabled, and stores the poses of moving objects at intervals. The peer's
+/// thread does the rest.
 class RosRun final : public session::TickObserver {
  public:
-  /// Puts the topics of one arm of a session onto the wire; of several arms each is a run of its
-  /// own, under its name, and the first tells of the objects. Precondition: the arm is open and no
-  /// tick has run. The session must outlive the run. `clock`: the session's own, of a run that is
-  /// stepped; else null. The error says what to do. Real-time: never from the servo thread.
+  /// Opens the topics of one arm of a session. Each of several arms has topics under its name, and
+  /// the first publishes the objects. Precondition: the arm is open and no tick has run. The
+  /// session must outlive this. `clock`: the session's clock in a stepped run, otherwise null. The
+  /// error says what to do. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<RosRun>> open(session::Session& session,
                                                       const RosOptions& options,
                                                       std::size_t arm = 0,
@@ -29,12 +29,12 @@ class RosRun final : public session::TickObserver {
   /// Takes one tick. Real-time: safe.
   void take(const driver::TickRecord& record) noexcept override;
 
-  /// Returns what there is to say of the topics after a run: a line each, what was wrong with
-  /// messages by name and number.
+  /// Returns a report on the topics after a run, one line each: problems of messages by name and
+  /// number.
   std::string report() const;
-  /// Returns what came and went so far. Any thread.
+  /// Returns the counters so far. Any thread.
   const RosCounts& counts() const noexcept { return channel_.counts; }
-  /// Returns the law of the forces that come; null if none is listened for.
+  /// Returns the law of the received forces; null if there is none.
   const WrenchLaw* law() const noexcept { return law_.get(); }
 
  private:
@@ -47,13 +47,13 @@ class RosRun final : public session::TickObserver {
   bool ends_tick_ = true;  // the arm is the last that the loop serves in a tick
   std::uint64_t places_taken_ = 0;
   std::uint64_t places_refused_ = 0;
-  const session::PoseRecord* poses_ = nullptr;  // null: nothing moves
+  const session::PoseRecord* poses_ = nullptr;  // null: no object moves
   std::unique_ptr<WrenchLaw> law_;
-  std::unique_ptr<RosPeer> peer_;  // ends before the channel does
+  std::unique_ptr<RosPeer> peer_;  // must end before the channel
 };
 
-/// Returns the options for one arm of a session: of several each has its name in the namespace and
-/// in the frame of its tip.
+/// Returns the options for one arm of a session. With several arms, each has its name in the
+/// namespace and in the frame of its tip.
 RosOptions options_of_arm(const session::Session& session, const RosOptions& options,
                           std::size_t arm);
 

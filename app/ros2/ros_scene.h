@@ -8,9 +8,9 @@
 
 namespace thimble::ros2 {
 
-/// Returns what the topics tell of one arm of a session and, with the first arm, of the objects;
-/// those that are fields or on the disk have no mesh and are left out. Precondition: the arm is
-/// open. Real-time: never from the servo thread.
+/// Returns the constant data of one arm of a session for its topics; the first arm includes the
+/// objects. Fields and meshes on disk are omitted, because they have no mesh in memory.
+/// Precondition: the arm is open. Real-time: never from the servo thread.
 RosScene ros_scene(const session::Session& session, const RosOptions& options, std::size_t arm);
 
 }  // namespace thimble::ros2

@@ -13,52 +13,52 @@
 
 namespace thimble::ros2 {
 
-/// How far a run in virtual time may go, and how far it is: the topics permit ticks, the run does
-/// them and waits, and the topics of each arm tell of them. Never of a run on a real arm. Any
+/// Synchronises a run in virtual time with its topics: the topics permit ticks, the run computes
+/// them and waits, and the topics of each arm publish them. Never for a run on a real arm. Any
 /// thread.
 class RosSteps {
  public:
-  /// Says that there are the topics of so many arms; before any of them tells.
+  /// Sets the number of arms with topics; call it before any of them publishes.
   void expect(std::size_t arms) {
     const std::scoped_lock lock(mutex_);
     told_.assign(arms, 0);
   }
-  /// Lets the run go on until so many ticks are done in all; nothing if it may already.
+  /// Permits ticks up to the total number `ticks`; does nothing if they are already permitted.
   void permit(std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
     permitted_ = std::max(permitted_, ticks);
     changed_.notify_all();
   }
-  /// Says that so many ticks are done in all.
+  /// Reports that a total of `ticks` ticks are done.
   void done(std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
     done_ = ticks;
     if (done_ >= permitted_) changed_.notify_all();
   }
-  /// Waits until a tick is permitted that is not done, at most for `longest`. Returns whether one
-  /// is.
+  /// Waits until a permitted tick is not yet done, at most for `longest`. Returns whether there is
+  /// one.
   bool wait_for_permit(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, longest, [this] { return permitted_ > done_; });
   }
-  /// Waits until all that is permitted is done, at most for `longest`. Returns how many ticks are
+  /// Waits until all permitted ticks are done, at most for `longest`. Returns the number of ticks
   /// done.
   std::uint64_t wait_for_ticks(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, longest, [this] { return done_ >= permitted_; });
     return done_;
   }
-  /// Returns whether all that was permitted is done.
+  /// Returns whether all permitted ticks are done.
   bool idle() {
     const std::scoped_lock lock(mutex_);
     return done_ >= permitted_;
   }
-  /// Says that the topics of an arm have told of so many ticks.
+  /// Reports that the topics of an arm have published a total of `ticks` ticks.
   void tell(std::size_t arm, std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
     told_[arm] = ticks;
   }
-  /// Returns whether the topics of all arms have told of so many ticks.
+  /// Returns whether the topics of all arms have published a total of `ticks` ticks.
   bool all_told(std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
     return *std::min_element(told_.begin(), told_.end()) >= ticks;
@@ -72,8 +72,8 @@ class RosSteps {
 };
 
 /// Virtual time in which a tick waits until it is permitted, or the run is stopped. The same steps
-/// do the same each time, on a machine of any load. Never for a real arm, for which no tick may
-/// wait.
+/// give the same result, whatever the load of the machine. Never for a real arm, for which no tick
+/// may wait.
 class SteppedClock final : public driver::Clock {
  public:
   /// `stop` must outlive it.
@@ -87,7 +87,7 @@ class SteppedClock final : public driver::Clock {
     }
     if (time_ns > now_ns_.load()) now_ns_.store(time_ns);
   }
-  /// Returns what permits the ticks.
+  /// Returns the object that permits the ticks.
   RosSteps& steps() noexcept { return steps_; }
 
  private:

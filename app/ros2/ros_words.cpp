@@ -18,8 +18,8 @@ bool word(std::string_view text) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-/// Returns whether this is a name as ROS 2 writes them: words of letters, digits and "_", each
-/// after a slash.
+/// Returns whether a text is a ROS 2 namespace: words of letters, digits and "_", each after a
+/// slash.
 bool name_space(std::string_view text) {
   while (!text.empty()) {
     if (text.front() != '/') return false;

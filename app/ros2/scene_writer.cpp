@@ -34,14 +34,14 @@ void SceneWriter::tell_objects(dds_entity_t writer) {
   std::vector<visualization_msgs_msg_dds__Marker_> markers;
   for (std::size_t i = 0; i < count; ++i) {
     const RosObject& object = scene_.objects[i];
-    if (object.corners_B.empty()) continue;  // a field, or on the disk
+    if (object.corners_B.empty()) continue;  // a field, or a mesh on disk
     points[i].reserve(object.corners_B.size());
     for (const auto& [x, y, z] : object.corners_B) points[i].push_back({x, y, z});
     visualization_msgs_msg_dds__Marker_ marker{};
     marker.header.frame_id = dds_text(frames_[i]);
     marker.ns = dds_text(object.name);
     marker.type = kTriangleList;
-    // A frame that moves has the axes of the style already.
+    // A moving frame already has the axes of the style.
     marker.pose.orientation =
         dds_quaternion(object.moves ? kNotTurned : to_style(options_.style, kNotTurned));
     marker.scale = {1, 1, 1};

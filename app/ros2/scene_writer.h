@@ -10,17 +10,16 @@
 
 namespace thimble::ros2 {
 
-/// Tells what is touched: the objects of a scene as markers, once and to all who come later, each
-/// in a frame that moves with it. Not thread-safe.
+/// Publishes the objects of a scene as markers, once and for all later readers, each in a frame
+/// that moves with it. Not thread-safe.
 class SceneWriter {
  public:
-  /// Makes the writer and tells of the objects. The options and the scene must outlive it.
+  /// Makes the writer and publishes the objects. The options and the scene must outlive it.
   SceneWriter(dds_entity_t participant, const RosOptions& options, const RosScene& scene);
   /// Returns the first error of DDS; 0: none.
   dds_return_t error() const noexcept { return error_; }
 
-  /// Returns where the frames of the objects that move are, for /tf; they refer to this and to
-  /// `header`.
+  /// Returns the frames of the moving objects, for /tf; they refer to this object and to `header`.
   std::vector<geometry_msgs_msg_dds__TransformStamped_> frames(
       const session::ScenePoses& poses, const std_msgs_msg_dds__Header_& header) const;
 
@@ -29,7 +28,7 @@ class SceneWriter {
 
   const RosOptions& options_;
   const RosScene& scene_;
-  std::vector<std::string> frames_;  // of each object; the world's where it stands still
+  std::vector<std::string> frames_;  // of each object; the world's frame if it does not move
   dds_return_t error_ = 0;
 };
 

@@ -5,7 +5,7 @@
 namespace thimble::ros2 {
 namespace {
 
-/// A writer that was stopped in the middle of writing must not hold a tick up.
+/// A writer interrupted during a write must not delay a tick.
 constexpr int kAttempts = 4;
 
 void count(std::atomic<std::uint64_t>& counter) noexcept {
@@ -30,7 +30,7 @@ driver::ForceCommand WrenchLaw::operator()(const driver::DeviceState& state) noe
   if (!stale_) {
     opened_ = opening_ > 0 ? std::min(1.0, opened_ + state.dt / opening_) : 1.0;
   }
-  // Without the scene's force its springs are not pressed either, for the gate's account of energy.
+  // Without the scene's force, its springs store no energy for the gate's balance.
   if (replace_) command = {};
   if (!stale_) {
     const Eigen::Vector3d f_W = opened_ * f_asked_W_;
@@ -51,13 +51,13 @@ void WrenchLaw::take(std::int64_t time_ns) noexcept {
       stale_ = false;
     }
     taken_ = newest.number;
-    // A stamp from before the run or ahead of it is of another clock.
+    // A stamp before the start of the run or in the future belongs to another clock.
     if (newest.answers_ns > 0 && newest.answers_ns <= time_ns) {
       ages_.add(time_ns - newest.answers_ns);
     }
     taken_ns_ = std::min(time_ns, newest.time_ns);
     f_asked_W_ = Eigen::Map<const Eigen::Vector3d>(newest.f_W.data());
-    // stableNorm: the square of a huge force is no number any more.
+    // stableNorm, because the square of a huge force overflows.
     if (const double length = f_asked_W_.stableNorm(); length > force_limit_) {
       f_asked_W_ *= force_limit_ / length;
       count(cut_);

@@ -12,12 +12,12 @@
 
 namespace thimble::ros2 {
 
-/// The force that comes by a topic, as a force law before the gate: added to the scene's, or in its
-/// place. It runs on the servo's thread, which waits for nobody.
+/// The force received by a topic, as a force law before the gate, added to the scene's or instead
+/// of it. It runs on the servo thread, which never waits.
 ///
-/// A force is cut to the limit, counts for `stale_ns` from when it came, and is zero then, at once,
-/// until a new one comes: within the gate's `reopen`, or `soft_start` if the pause was longer than
-/// the arm's watchdog. The first opens within `soft_start`.
+/// A force is limited and counts for `stale_ns` after its arrival. It then becomes zero at once,
+/// until a new one arrives. The new one rises within the gate's `reopen`, or `soft_start` if the
+/// pause was longer than the arm's watchdog. The first rises within `soft_start`.
 class WrenchLaw {
  public:
   /// Takes the channel and the scene's law, which must outlive it, and the limits of the arm's
@@ -28,15 +28,15 @@ class WrenchLaw {
   /// Returns the force of a tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept;
 
-  /// Lets the scene's law prepare itself (driver::ForceLaw::prepare). Real-time: safe.
+  /// Prepares the scene's law (driver::ForceLaw::prepare). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept { scene_.prepare(expected); }
 
-  /// Returns how often a force grew stale. Any thread.
+  /// Returns how often a force exceeded its maximum age. Any thread.
   std::uint64_t stalls() const noexcept { return stalls_.load(std::memory_order_relaxed); }
-  /// Returns how many forces were cut to the limit. Any thread.
+  /// Returns how many forces were limited. Any thread.
   std::uint64_t cut() const noexcept { return cut_.load(std::memory_order_relaxed); }
-  /// Returns how old the positions were that forces answered, by their stamps, when the arm first
-  /// got them. After the run.
+  /// Returns the ages of the positions, by the stamps of the forces, when the arm first got each
+  /// force. After the run.
   const session::Histogram& ages() const noexcept { return ages_; }
 
  private:
@@ -53,7 +53,7 @@ class WrenchLaw {
   std::int64_t taken_ns_ = 0;
   bool stale_ = true;
   double opened_ = 0;   // 0 to 1
-  double opening_ = 0;  // s that this takes
+  double opening_ = 0;  // duration of the opening, s
   std::atomic<std::uint64_t> stalls_{0};
   std::atomic<std::uint64_t> cut_{0};
   session::Histogram ages_;

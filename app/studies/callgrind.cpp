@@ -53,7 +53,7 @@ bool run_callgrind(const std::vector<std::string>& options,
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) break;
     if (ended < 0 && errno != EINTR) return false;
-    if (scene::stop_asked()) kill(child, SIGKILL);  // it keeps nothing that could be lost
+    if (scene::stop_asked()) kill(child, SIGKILL);  // it has no data to lose
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;

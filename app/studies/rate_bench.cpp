@@ -16,7 +16,7 @@ namespace {
 constexpr double kOften = 0.999;         // of all ticks
 constexpr double kStiffnessFelt = 0.08;  // [PHYSICS 6: stiffness error]
 
-// Lets the scene run at another rate: what knows the time of a tick is told.
+// Changes the rate of a scene, including the parts that depend on the duration of a tick.
 void change_rate(scene::Scene& scene, double rate) {
   scene.rate = rate;
   for (scene::SceneObject& object : scene.objects) {

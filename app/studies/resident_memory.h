@@ -4,14 +4,14 @@
 
 namespace thimble::studies {
 
-/// Returns how much memory this process holds, bytes; all 0 where the kernel does not say.
+/// Memory of this process, bytes; all 0 if the kernel does not report it.
 struct ResidentMemory {
-  std::size_t now = 0;   ///< In memory now, the program's own code and mapped files included.
-  std::size_t most = 0;  ///< The most there ever was.
+  std::size_t now = 0;   ///< Resident memory now, including the program's code and mapped files.
+  std::size_t most = 0;  ///< The maximum so far.
 };
 
-/// Reads /proc/self/status. What the kernel keeps of files that were read is not counted: it gives
-/// that up by itself. Real-time: never from the servo thread.
+/// Reads /proc/self/status. The kernel's page cache of read files is not included: the kernel frees
+/// it when needed. Real-time: never from the servo thread.
 ResidentMemory resident_memory();
 
 }  // namespace thimble::studies

@@ -20,12 +20,12 @@ constexpr std::int32_t kPatchAcross = 16;
 constexpr std::int32_t kPatchSquares = kPatchAround * kPatchAcross;
 static_assert(2 * kPatchSquares == render::kPageTriangles);
 
-/// What the ring needs to know of one angle: itself and its waves.
+/// Precomputed values of one angle: its sine and cosine, and those of its waves.
 struct Turn {
   double cosine, sine, wave_cosine, wave_sine;
 };
 
-/// The place of (row, column) in a table that is stored row by row.
+/// Returns the index of (row, column) in a table stored row by row.
 std::size_t index(std::int32_t row, std::int32_t columns, std::int32_t column) noexcept {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
          static_cast<std::size_t>(column);
@@ -54,7 +54,8 @@ Vector3d point_at(const BumpyRing& ring, const Turn& u, const Turn& v) noexcept 
   return {out * u.cosine, out * u.sine, tube * v.sine};
 }
 
-// The cross product of the derivatives, in the frame that turns with u: (outwards, along u, z).
+// Returns the cross product of the derivatives, in the frame that rotates with u: (outwards, along
+// u, z).
 Vector3d normal_at(const BumpyRing& ring, const Turn& u, const Turn& v) noexcept {
   const double tube = tube_at(ring, u, v);
   const double bump = ring.tube_radius * ring.amplitude;
@@ -66,14 +67,14 @@ Vector3d normal_at(const BumpyRing& ring, const Turn& u, const Turn& v) noexcept
   return {u.cosine * n.x() - u.sine * n.y(), u.sine * n.x() + u.cosine * n.y(), n.z()};
 }
 
-// Puts the bits of a number two places apart.
+// Inserts a zero bit between the bits of a number.
 std::uint64_t spread(std::uint64_t v) noexcept {
   std::uint64_t spread = 0;
   for (unsigned bit = 0; bit < 16; ++bit) spread |= ((v >> bit) & 1u) << (3 * bit);
   return spread;
 }
 
-/// Numbers the triangles of a ring: which page a patch is, and which place a square has in it.
+/// Numbers the triangles of a ring: the page of a patch, and the place of a square within it.
 class RingNumbers {
  public:
   RingNumbers(const BumpyRing& ring, const RingGrid& grid)
@@ -103,7 +104,7 @@ class RingNumbers {
       page_of_patch_[static_cast<std::size_t>(patch_of_page_[page])] =
           static_cast<std::int32_t>(page);
     }
-    // Within a patch the bits of both places are interleaved, those around first.
+    // Within a patch the bits of both indices are interleaved, those around the ring first.
     for (std::int32_t i = 0; i < kPatchAround; ++i) {
       for (std::int32_t j = 0; j < kPatchAcross; ++j) {
         std::int32_t place = 0;
@@ -124,8 +125,8 @@ class RingNumbers {
     return patch_of_page_[static_cast<std::size_t>(page)] % patches_across_ * kPatchAcross;
   }
 
-  /// Returns the number of square (i, j)'s triangle: the one below its diagonal, or above. Squares
-  /// one beyond an end are those at the other end.
+  /// Returns the number of square (i, j)'s triangle: the one below its diagonal, or above. Indices
+  /// wrap around by one.
   std::int32_t triangle(std::int32_t i, std::int32_t j, bool above) const {
     i = (i + grid_.around) % grid_.around;
     j = (j + grid_.across) % grid_.across;
@@ -134,7 +135,7 @@ class RingNumbers {
            2 * place(i % kPatchAround, j % kPatchAcross) + (above ? 1 : 0);
   }
 
-  /// Returns which place square (i, j) of a patch has in its page.
+  /// Returns the place of square (i, j) of a patch in its page.
   std::int32_t place(std::int32_t i, std::int32_t j) const {
     return place_[index(i, kPatchAcross, j)];
   }
@@ -146,13 +147,13 @@ class RingNumbers {
   std::array<std::int32_t, kPatchSquares> place_{};
 };
 
-/// A corner as records hold it.
+/// A corner in the format of records.
 struct Corner {
   std::array<std::int32_t, 3> position;
   std::uint32_t normal;
 };
 
-/// Fills in everything but the neighbours.
+/// Returns a record without the neighbours.
 render::PackedTriangle record_of(const Corner& a, const Corner& b, const Corner& c) {
   const std::array<const Corner*, 3> corners{&a, &b, &c};
   render::PackedTriangle record{};
@@ -177,7 +178,7 @@ Vector3d BumpyRing::normal(double u, double v) const noexcept {
 
 RingGrid ring_grid(const BumpyRing& ring, std::int64_t triangles) {
   const double squares = std::max(static_cast<double>(triangles) / 2, 1.0);
-  const double ratio = ring.ring_radius / ring.tube_radius;  // of the two ways round
+  const double ratio = ring.ring_radius / ring.tube_radius;  // of the two directions
   const auto patches = [](double cells, std::int32_t per_patch) {
     return per_patch * std::max(1, static_cast<std::int32_t>(std::lround(cells / per_patch)));
   };
@@ -191,7 +192,7 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
   auto writer = render::PageFileWriter::create(file, lattice, grid.triangle_count());
   if (!writer) return writer.error();
   const RingNumbers numbers(ring, grid);
-  // Both ends of a patch compute a corner they share from the same numbers: to the bit.
+  // Patches compute a shared corner from the same numbers, so the results are bit-identical.
   const std::vector<Turn> around = turns(grid.around, ring.waves_around);
   const std::vector<Turn> across = turns(grid.across, ring.waves_across);
   constexpr std::int32_t kCornersAcross = kPatchAcross + 1;
@@ -227,7 +228,7 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
                                    numbers.triangle(gi - 1, gj, false)};
       }
     }
-    // What a touch tells of: there is no other file that it could be counted in.
+    // Numbers in the file that contacts report; there is no other file with numbers.
     for (std::size_t i = 0; i < page.size(); ++i) {
       page[i].flags =
           static_cast<std::uint32_t>(number * render::kPageTriangles + static_cast<std::int32_t>(i))

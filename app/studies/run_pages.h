@@ -9,20 +9,20 @@
 
 namespace thimble::studies {
 
-/// The runs behind a study's figures, to be looked at: a page of each in the study's folder, and an
-/// index.html there that lists and links them. Real-time: never from the servo thread.
+/// The runs behind a study's figures, for viewing: a page of each in the study's folder, and an
+/// index.html that lists and links them. Real-time: never from the servo thread.
 class RunPages {
  public:
-  /// Bytes of all pages together, after which no further one is written. [chosen: ten minutes of
-  /// touch, and what mail still takes]
+  /// Total bytes of all pages after which no further one is written. [chosen: ten minutes of touch,
+  /// and small enough for mail]
   static constexpr std::uintmax_t kBytesMost = 25'000'000;
 
-  /// Lists runs in `folder`, which is there, under `title`; `words` say below it what they are.
+  /// Lists runs in the existing `folder` under `title`; `words` describe them.
   RunPages(std::filesystem::path folder, const std::string& title, const std::string& words);
 
-  /// Runs `scene` as `options` say, on the virtual clock, writes NAME.html, and lists it with
-  /// `words`. Where there is no page, because the scene is refused or what pages are made of is not
-  /// installed, the list says why. The error says which file cannot be written.
+  /// Runs `scene` with `options` in virtual time, writes NAME.html, and lists it with `words`. If
+  /// there is no page, because the scene is rejected or a library of the pages is not installed,
+  /// the list gives the reason. The error names a file that cannot be written.
   driver::Result<void> add(const std::filesystem::path& scene, const std::string& name,
                            const std::string& words, const session::SessionOptions& options = {});
   /// Lists a file of the folder with `words`, without a page.

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kStiffness = 1000;  // N/m, as in PHYSICS 3
 constexpr double kHalf = 0.015;      // m, of the square
-// Arrows per row and column: with different numbers none lies where two wedges meet.
+// Arrows per row and column: with different numbers none is where two wedges meet.
 constexpr int kColumns = 8, kRows = 7;
 constexpr double kForceMax = 8.5;  // N, of a PHANTOM [PHYSICS 0]
 
@@ -29,7 +29,7 @@ driver::DeviceState at(const Vector3d& p_WT) {
   return state;
 }
 
-/// Finds the force at a place that is reached on the straight way from another.
+/// Returns the force at a position reached in a straight line from another.
 template <class Contact>
 Vector3d force_after(const Contact& contact, const Vector3d& from, const Vector3d& to) {
   render::ContactForceLaw touch{contact, render::SpringDamper{kStiffness, 0}};
@@ -37,8 +37,8 @@ Vector3d force_after(const Contact& contact, const Vector3d& from, const Vector3
   return touch(at(to)).f_T_W;
 }
 
-/// Presses a tip through a plate; tells the largest force before it is pushed on to the back, or 0
-/// if that does not happen up to kForceMax.
+/// Presses a tip through a plate. Returns the largest force before it passes to the back, or 0 if
+/// it does not up to kForceMax.
 template <class Contact>
 double pops_at(const Contact& contact, double half_thickness) {
   render::ContactForceLaw touch{contact, render::SpringDamper{kStiffness, 0}};

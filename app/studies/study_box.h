@@ -8,8 +8,8 @@
 
 namespace thimble::studies {
 
-/// Draws the paper's Fig. 2 from the force laws themselves: the force over a square in both forms
-/// of the box; and finds at which force a thin plate lets the tip through. Writes box.csv and a
+/// Draws the paper's Fig. 2 from the force laws: the force over a square for both forms of the box.
+/// Also measures the force at which a thin plate lets the tip through. Writes box.csv and a
 /// picture. Real-time: never from the servo thread.
 driver::Result<std::vector<session::Figure>> study_box(const std::filesystem::path& folder);
 

@@ -22,17 +22,17 @@ namespace thimble::studies {
 namespace {
 
 using Eigen::Vector3d;
-using Force = std::function<Vector3d(const Vector3d&)>;  // N, of a place in W, m
+using Force = std::function<Vector3d(const Vector3d&)>;  // N, at a position in W, m
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kStiffness = 800;    // N/m, the vintage arm's declared limit [DEVICES 3]
 constexpr double kDepth = 0.002;      // m
 constexpr double kSpeed = 0.05;       // m/s, a calm stroke [chosen]
 constexpr double kRate = 1000;        // Hz
-constexpr int kTicks = 4000;          // lines of 0.25 Hz, on which all that is asked for falls
+constexpr int kTicks = 4000;          // lines of 0.25 Hz, which include all expected frequencies
 constexpr double kEncoder = 0.00003;  // m [PHYSICS 0]
 
-/// One line that the force must hold, as the settings ask for it.
+/// One expected line of the force, from the settings.
 struct Line {
   double frequency = 0;  // Hz
   double amplitude = 0;  // N
@@ -45,7 +45,7 @@ struct Subject {
   double band_end = 0;  // Hz; 0: lines only
 };
 
-/// Gives the force of a textured wall, for places that are in contact from the first.
+/// Returns the force of a textured wall, for positions that are always in contact.
 template <class Stage>
 Force wall_with(const Stage& stage) {
   return [stage](const Vector3d& p_W) {
@@ -70,7 +70,7 @@ render::Sines::Settings three_waves(render::TextureForm form) {
   settings.waves = {
       {.amplitude = 0.0001, .wavelength = 0.004, .direction = {1, 0, 0}, .phase = 0.3},
       {.amplitude = 0.00003, .wavelength = 0.001, .direction = {1, 0, 0}, .phase = 1.1},
-      // Aslant: felt along x as a wave longer by 1 / cos 60 degrees.
+      // Oblique: along x its wavelength is longer by 1 / cos 60 degrees.
       {.amplitude = 0.00001,
        .wavelength = 0.00025,
        .direction = {1, std::numbers::sqrt3, 0},
@@ -78,7 +78,7 @@ render::Sines::Settings three_waves(render::TextureForm form) {
   return settings;
 }
 
-/// A picture of sine stripes, 16 pixels each.
+/// Returns a picture of sine stripes, 16 pixels each.
 render::HeightMap::Settings stripes(render::TextureForm form) {
   std::vector<float> values;
   values.reserve(16);
@@ -115,7 +115,7 @@ std::vector<Subject> subjects(render::TextureForm form) {
                  {},
                  kSpeed * std::numbers::sqrt2 / rough.wavelength});
   const auto map = stripes(form);
-  // The spline rounds a sine of 16 pixels off by this much.
+  // The spline attenuates a sine of 16 pixels by this factor.
   const double kept = (4 + 2 * std::cos(kTurn / 16)) / 6;
   all.push_back({"height_map",
                  "a picture of sine stripes 2 mm apart, 16 pixels each",
@@ -124,8 +124,8 @@ std::vector<Subject> subjects(render::TextureForm form) {
   return all;
 }
 
-/// Finds the amplitudes of the push (along z) while sliding along x, one per line of the spectrum.
-/// Noise, which has no lines, is seen through Hann's window.
+/// Returns the amplitudes of the normal force (along z) while sliding along x, one per line of the
+/// spectrum. For noise, which has no lines, Hann's window is used.
 std::vector<double> spectrum_of(const Force& force, double step, bool noise) {
   std::vector<std::complex<double>> push;
   for (int k = 0; k < kTicks; ++k) {
@@ -150,7 +150,7 @@ double at_frequency(const std::vector<double>& spectrum, double frequency) {
   return spectrum[static_cast<std::size_t>(std::lround(frequency * kTicks / kRate))];
 }
 
-/// Finds the work around a closed way below the surface, as a share of what goes in and out.
+/// Returns the work around a closed path below the surface, as a fraction of the work in and out.
 double work_around(const Force& force) {
   constexpr int kSteps = 20000;
   double work = 0, gross = 0;
@@ -200,7 +200,7 @@ std::string lines_csv(const std::vector<Measured>& all) {
 }
 
 std::string panel(const Measured& one, std::size_t index, std::size_t count) {
-  // A spectrum spreads over many decades; below a millinewton nobody feels it.
+  // A spectrum spans many decades; below a millinewton it cannot be felt.
   constexpr double kFloor = 1e-5;
   std::ostringstream data;
   data << "$asked" << index << " << EOD\n";

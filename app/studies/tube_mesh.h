@@ -7,8 +7,8 @@
 
 namespace thimble::studies {
 
-/// Makes a closed tube of `around` by `across` quadrilaterals, each of two triangles. `point(u, v)`
-/// tells where the surface is at the angles u around the ring and v around its tube (rad).
+/// Returns a closed tube of `around` by `across` quadrilaterals, each of two triangles. `point(u,
+/// v)` returns the surface point at the angles u around the ring and v around its tube (rad).
 /// Real-time: never from the servo thread.
 template <class Point>
 render::TriangleMesh tube_mesh(std::int32_t around, std::int32_t across, const Point& point) {

@@ -10,15 +10,15 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kSteepest = 1.5;  // rad: short of straight up and down, where "up" is not known
+constexpr double kSteepest = 1.5;  // rad: just below vertical, where "up" is undefined
 
-// How the eye stands if nothing else asks for more: a little to the user's right and above, like
-// someone who looks over the user's shoulder.
+// Default direction: a little to the user's right and above, like someone who looks over the user's
+// shoulder.
 constexpr double kYaw = 0.55;
 constexpr double kPitch = 0.42;
-constexpr double kMargin = 1.12;  // of the box, so that nothing stands at the picture's rim
+constexpr double kMargin = 1.12;  // margin around the box at the picture's border
 
-/// Adds an arm's tip, and where the arrow of its force ends.
+/// Adds an arm's tip and the end of its force arrow.
 void add_touch(const DrawnScene& scene, const driver::TickRecord& tick,
                std::vector<Eigen::Vector3d>& points) {
   const Eigen::Map<const Eigen::Vector3d> p_WT(tick.p_WT.data());
@@ -99,7 +99,7 @@ void Camera::zoom(double factor) {
 }
 
 std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnMoment& moment) {
-  constexpr std::size_t kEnough = 4000;  // vertices show what shape a mesh has
+  constexpr std::size_t kEnough = 4000;  // vertices are enough to frame a mesh
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].endless) continue;
@@ -114,7 +114,7 @@ std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnM
   for (const DrawnArm& other : moment.others) add_touch(scene, other.tick, points);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& point : points) box.extend(point);
-  // A field has no size: the tip alone would fill the picture.
+  // Minimum size of the framed box: a field has no size, so the tip would fill the picture.
   constexpr double kLeast = 0.1;  // m
   if (box.isEmpty()) box.extend(Eigen::Vector3d(0, 0, 0));
   if (box.sizes().maxCoeff() < kLeast) {
@@ -131,7 +131,7 @@ Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect) 
   Camera camera;
   camera.yaw = kYaw;
   camera.pitch = kPitch;
-  // A touch that would be hidden is turned to the front, part of the way.
+  // Turns the camera part of the way towards a touch that would be hidden.
   const Eigen::Map<const Eigen::Vector3d> n_W(moment.tick.n_W.data());
   if (moment.tick.in_contact && n_W.head<2>().norm() > 0.35) {
     const double away = std::remainder(std::atan2(n_W.y(), n_W.x()) - kYaw, 2 * std::numbers::pi);
@@ -145,8 +145,8 @@ Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect) 
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& point : points) box.extend(point);
   camera.p_WTarget = box.center();
-  // The least distance at which each point is inside all four sides of the picture; then again
-  // with the target moved to the middle of what is seen.
+  // Finds the smallest distance at which each point is inside all four sides of the picture. Then
+  // repeats it with the target moved to the middle of the visible points.
   for (int round = 0; round < 4; ++round) {
     const Eigen::Vector3d forward = camera.towards_eye();
     camera.distance = 0.02;

@@ -12,7 +12,7 @@
 namespace thimble::view {
 namespace {
 
-/// Returns whether a mesh is flat: it stands for a plane, which has no end.
+/// Returns whether a mesh is flat: then it represents a plane.
 bool is_flat(const render::TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);

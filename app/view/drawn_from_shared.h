@@ -8,8 +8,8 @@
 
 namespace thimble::view {
 
-/// Returns what of a described scene is drawn and stays the same. Real-time: never from the servo
-/// thread, as below.
+/// Returns the constant part of a shared scene for drawing. Real-time: never from the servo thread,
+/// as below.
 DrawnScene drawn_scene_of(const session::SharedScene& scene);
 
 /// Returns the rods of an arm in the pose of a tick, from its base to its tip.

@@ -9,7 +9,7 @@ Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
                                   const Eigen::AlignedBox2f& casters, const Eigen::Vector2i& size) {
   const Eigen::AlignedBox2i whole(Eigen::Vector2i::Zero(), size);
   if (casters.isEmpty()) return {};
-  // Where the light's map, -1 to 1, is met on the ground.
+  // Transform from the light's map, -1 to 1, to the ground.
   const Eigen::Matrix2f map_from_ground = shadow_from_world.topLeftCorner<2, 2>();
   const Eigen::Vector2f map_at_middle =
       shadow_from_world.block<2, 1>(0, 3) + ground_height * shadow_from_world.block<2, 1>(0, 2);
@@ -21,11 +21,11 @@ Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
         ground_from_map * ((2 * corner.array() - 1).matrix() - map_at_middle);
     const Eigen::Vector4f clip =
         view_projection * Eigen::Vector4f(at.x(), at.y(), ground_height, 1);
-    constexpr float kBeforeEye = 1e-4F;  // m: nearer, a corner's pixel is beyond all numbers
+    constexpr float kBeforeEye = 1e-4F;  // m: closer, the pixel of a corner overflows
     if (!(clip.w() > kBeforeEye)) return whole;
     seen.extend(Eigen::Vector2f(clip.head<2>() / clip.w()));
   }
-  // A pixel more on each side: the corners are rounded.
+  // One pixel more on each side, because the corners are rounded.
   const Eigen::Array2f pixels = size.cast<float>().array();
   const Eigen::Array2f most = pixels + 1;
   const auto pixel = [&](const Eigen::Vector2f& at) -> Eigen::Array2f {

@@ -7,10 +7,11 @@
 
 namespace thimble::view {
 
-/// Returns the part of a picture outside of which the ground lies in no shadow: pixels from the
-/// lower left of the scene's part (`size`, pixels), whole ones. It is empty where nothing casts
-/// shadows, and all of the picture where the ground below them goes behind the eye.
-/// `casters`: of the light's map, 0 to 1, all that casts shadows and what a soft rim reaches.
+/// Returns a box of the picture that contains all shadows on the ground: whole pixels from the
+/// lower left of the scene's part (`size`, pixels). It is empty if nothing casts shadows, and the
+/// whole picture if the ground below the casters extends behind the eye.
+/// `casters`: box of all that casts shadows in the light's map, 0 to 1, including the width of soft
+/// shadow edges.
 Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
                                   const Eigen::Matrix4f& shadow_from_world, float ground_height,
                                   const Eigen::AlignedBox2f& casters, const Eigen::Vector2i& size);

@@ -13,7 +13,7 @@
 namespace thimble::view {
 namespace {
 
-/// The unit a knob is read in: one for all its values, so that it does not change on the way.
+/// The display unit of a knob: one for all its values, so that it does not change during a drag.
 ReadUnit unit_of(const session::SharedScene::Knob& knob) {
   ReadUnit unit = read_unit(knob.unit, std::max(std::abs(knob.least), std::abs(knob.most)));
   if (unit.name == nullptr) unit.name = knob.unit.c_str();
@@ -26,13 +26,13 @@ bool knob_slider(const session::SharedScene::Knob& knob, double& value) {
   const ReadUnit unit = unit_of(knob);
   const double least = knob.least / unit.size;
   const double most = knob.most / unit.size;
-  // What reaches over more than two powers of ten is turned by its logarithm. There ImGui takes for
-  // zero what is below a unit of the format's last digit: so it has digits enough for the least.
+  // A range of more than two powers of ten gets a logarithmic slider. ImGui rounds values below the
+  // last digit of the format to zero, so the format has enough digits for the smallest.
   const bool wide = least > 0 && most > 100 * least;
   const int digits = wide ? std::max(4, static_cast<int>(std::ceil(1 - std::log10(least)))) : 4;
   const std::string format = "%." + std::to_string(digits) + "g";
   double shown = value / unit.size;
-  // The value stands above; in the slider it is seen only while it is typed.
+  // The value is above the slider. In the slider it is shown only while it is typed.
   const bool typed = ImGui::TempInputIsActive(ImGui::GetID("##value"));
   if (!typed) ImGui::PushStyleColor(ImGuiCol_Text, 0);
   const bool turned = ImGui::SliderScalar(
@@ -68,7 +68,7 @@ void draw_knobs(session::SharedReader& reader) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(knob.name.c_str());
     ImGui::PopTextWrapPos();
-    // At the right end, where no digit moves another; below a name that leaves no room.
+    // At the right end, where changing digits move nothing; below a name that is too long.
     const float end = ImGui::GetCursorPosX() + width;
     if (name_width + text_width + ImGui::GetFontSize() < width) ImGui::SameLine();
     ImGui::SetCursorPosX(end - text_width);

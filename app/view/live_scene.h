@@ -7,17 +7,17 @@
 
 namespace thimble::view {
 
-/// Turns what a run shares into what is drawn.
+/// Converts the shared data of a run to a moment to draw.
 class LiveScene {
  public:
   /// Keeps the reader, which must outlive this. Real-time: never from the servo thread.
   explicit LiveScene(const session::SharedReader& reader);
 
-  /// Returns what does not change.
+  /// Returns the constant part of the scene.
   const DrawnScene& scene() const { return scene_; }
 
-  /// Brings a moment to what is newest; what the run has not told stays as it is. Tells whether
-  /// there was a tick at all.
+  /// Updates a moment to the newest state; data that the run has not shared stays unchanged.
+  /// Returns whether there was a tick at all.
   bool update(DrawnMoment& moment);
 
  private:

@@ -7,12 +7,12 @@
 namespace thimble::view {
 namespace {
 
-// Below this a micrometre or a millinewton is what is read. Chosen: one more digit than the larger
+// Below this, the unit is a micrometre or a millinewton. Chosen: one digit more than the larger
 // unit shows.
 constexpr double kMicrometres = 1e-4;  // m
 constexpr double kMillinewtons = 0.1;  // N
 
-/// Writes a number in six characters.
+/// Returns a number in six characters.
 std::string six(double value, int digits, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:6.{}f} {}", value, digits, unit)
                               : fmt::format("     - {}", unit);

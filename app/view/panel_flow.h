@@ -8,16 +8,16 @@
 
 namespace thimble::view {
 
-/// Returns a colour as text of the current style is written in it.
+/// Returns a colour adapted for text in the current style.
 ImVec4 shown_colour(const Colour& colour);
 
-/// Puts the things of a panel one after the other, and on the next line where the room ends. To be
-/// used between ImGui's NewFrame and Render.
+/// Places the items of a panel in lines, and starts a new line if there is no room. Use between
+/// ImGui's NewFrame and Render.
 class Flow {
  public:
-  /// To be called before each; `width` in pixels.
+  /// Call before each item; `width` in pixels.
   void next(float width);
-  /// Writes a value so that its end stays where it is: there is room for `widest`.
+  /// Draws a value right-aligned, with room for `widest`.
   void value(const Colour& colour, const std::string& text, const char* widest);
 
  private:

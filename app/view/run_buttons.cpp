@@ -1,7 +1,7 @@
 #include "view/run_buttons.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -15,9 +15,9 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kFaster = 1.25;  // of one press of a key
+constexpr double kFaster = 1.25;  // factor of one key press
 
-/// Draws a button, grey where `why` says why it does nothing; returns whether it was pressed.
+/// Draws a button, which is grey if `why` says why it is disabled; returns whether it was pressed.
 bool button(Flow& flow, const char* label, const char* what, const std::string& why) {
   flow.next(ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x);
   ImGui::BeginDisabled(!why.empty());
@@ -94,7 +94,7 @@ void RunButtons::draw(session::SharedReader& reader) {
   const std::string no_speed = reader.why_no_speed();
   ImGui::BeginDisabled(!no_speed.empty());
   double speed = reader.speed_asked();
-  // Beside the slider: its grip would cover it.
+  // Next to the slider, because its grip would cover the text.
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
   flow.next(ImGui::CalcTextSize("speed 0.00").x + gap + 2 * ImGui::GetFrameHeight());
   ImGui::AlignTextToFramePadding();

@@ -8,12 +8,12 @@
 
 namespace thimble::view {
 
-/// One key of the window that concerns the run's course, and what it does.
+/// One key of the window that controls the run, and its effect.
 struct RunKey {
   const char* key;
   const char* does;
 };
-/// For the help.
+/// Listed in the help.
 inline constexpr std::array kRunKeys = {RunKey{"B", "begin anew, from the first tick"},
                                         RunKey{"N", "paused: next tick; shift: 10, ctrl: 100"},
                                         RunKey{"L", "begin anew whenever the run ends"},
@@ -21,17 +21,17 @@ inline constexpr std::array kRunKeys = {RunKey{"B", "begin anew, from the first 
                                         RunKey{"O", "another scene"},
                                         RunKey{"K", "save the knobs as a scene"}};
 
-/// The buttons by which a person chooses the run's course: to begin anew, by single ticks, its
-/// speed, another scene, and the scene with its knobs as they are. What a run refuses (one with a
-/// physical arm, say) is grey, and says why.
+/// The buttons that control the run: restart, single ticks, speed, another scene, saving the scene
+/// with its knobs. A button that the run refuses (for example, with a real arm) is grey and shows
+/// the reason.
 class RunButtons {
  public:
-  /// Draws them in two lines. To be called between ImGui's NewFrame and Render.
+  /// Draws the buttons in two lines. Call between ImGui's NewFrame and Render.
   void draw(session::SharedReader& reader);
-  /// Does what a key asks for (a GLFW_KEY_...), if it is one of these. As above: `shift` and `ctrl`
-  /// are held down.
+  /// Handles a key (a GLFW_KEY_...), if it is one of these. As above: `shift` and `ctrl` are held
+  /// down.
   void take_key(int key, bool shift, bool ctrl, session::SharedReader& reader);
-  /// Returns what a person must be told of what was just done, once; empty: nothing.
+  /// Returns the message about the last action, once; empty: none.
   std::string take_told();
 
  private:
@@ -43,12 +43,12 @@ class RunButtons {
   std::string told_;
 };
 
-/// Returns what the run counts, in a line: ticks that passed in a pause are told apart, and are not
-/// missed.
+/// Returns the counters of the run as a line. Ticks that passed in a pause are listed separately
+/// and do not count as missed.
 std::string counted(const session::SharedReader::Counters& counters);
 
-/// Says in a small box what the last button does, and its key, while the mouse rests on it. `why`
-/// it does nothing now stands below; empty: it does.
+/// Shows a tooltip with the effect and the key of the last button while the mouse is over it. `why`
+/// is added if the button is disabled; empty: it is enabled.
 void explain(const char* what, const std::string& why = {});
 
 }  // namespace thimble::view

@@ -33,7 +33,7 @@ bool RunFollower::step(double dt) {
   if (!ring_.empty()) {
     head_.set_span(ring_.oldest(), ring_.newest());
     head_.step(dt);
-    // Who stands still does so at a moment that is kept, so that what is said of it is so.
+    // A stopped head is at a kept moment, so that the displayed time is that of the picture.
     if (!head_.live() && !head_.plays()) head_.settle(ring_.beside(head_.time(), 0));
     if (!head_.live()) ring_.show(head_.time(), *then_);
   }

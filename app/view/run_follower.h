@@ -13,8 +13,8 @@
 
 namespace thimble::view {
 
-/// Keeps the newest moment of the runs that are watched, one after the other, and those of the last
-/// minute to look back at. Real-time: never from the servo thread.
+/// Keeps the newest moment of the runs that are followed, one after the other, and the moments of
+/// the last minute. Real-time: never from the servo thread.
 class RunFollower final : public TouchSource {
  public:
   /// Keeps `runs`, which must outlive this.
@@ -40,7 +40,8 @@ class RunFollower final : public TouchSource {
   session::RunAttachment& runs_;
   std::unique_ptr<LiveScene> live_;
   std::unique_ptr<DrawnMoment> newest_ = std::make_unique<DrawnMoment>();
-  std::unique_ptr<DrawnMoment> then_ = std::make_unique<DrawnMoment>();  // that is looked back at
+  // the kept moment that is shown
+  std::unique_ptr<DrawnMoment> then_ = std::make_unique<DrawnMoment>();
   bool has_moment_ = false;
   MomentRing ring_;
   PlayHead head_ = PlayHead::of_run();
@@ -49,7 +50,7 @@ class RunFollower final : public TouchSource {
   std::uint64_t serial_ = 0;
   std::vector<driver::TickRecord> ticks_;
   std::string notice_;
-  std::vector<std::string> about_;  // none
+  std::vector<std::string> about_;  // empty: no description
 };
 
 }  // namespace thimble::view

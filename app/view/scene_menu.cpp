@@ -20,7 +20,7 @@ bool is_scene(const fs::path& file) {
     const YAML::Node node = YAML::Load(scene::text_of(file));
     return node.IsMap() && node["objects"] && (node["hand"] || node["arms"]);
   } catch (const YAML::Exception&) {
-    return true;  // half written, say: whoever chooses it is told what is wrong with it
+    return true;  // may be half written; choosing it reports the error
   }
 }
 
@@ -34,7 +34,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, missing);
 }
 
-/// Draws a list under a title; returns the one that was clicked, or null.
+/// Draws a list below a title; returns the item that was clicked, or null.
 const SceneChoice* draw_list(const char* title, const std::vector<SceneChoice>& scenes,
                              const std::string& current) {
   if (scenes.empty()) return nullptr;

@@ -8,8 +8,8 @@ namespace thimble::view {
 namespace {
 
 constexpr double kTurn = 4.0;        // rad for a drag over the scene's height
-constexpr double kZoom = 1.12;       // of one step of the wheel
-constexpr double kWheelPush = 1e-3;  // m of the hand along the line of sight, each step
+constexpr double kZoom = 1.12;       // factor of one step of the wheel
+constexpr double kWheelPush = 1e-3;  // m along the line of sight, per step of the wheel
 
 }  // namespace
 
@@ -31,8 +31,8 @@ void SceneMouse::begin(const Eigen::Vector3d& p_WT, bool hand_first) {
   }
 }
 
-// Where the ray through the mouse meets the plane across the line of sight through the grip, minus
-// where the ray through the place of the click did.
+// Moves the hand in the plane through the grip across the line of sight: by the distance of the
+// rays through the mouse and through the click.
 void SceneMouse::lead(const Camera& camera, const ScreenPart& part) {
   const ImGuiIO& io = ImGui::GetIO();
   p_WGrip_ -= kWheelPush * static_cast<double>(io.MouseWheel) * camera.towards_eye();

@@ -7,24 +7,24 @@
 
 namespace thimble::view {
 
-/// Where the mouse wants the hand.
+/// Target of the hand from the mouse.
 struct HandWish {
   Eigen::Vector3d p_WH{0, 0, 0};  ///< m
   bool holds = false;
 };
 
-/// Turns what the mouse does over the scene into a camera's way, and into the hand's.
+/// Converts mouse input over the scene to motion of the camera and of the hand.
 ///
-/// Left: turn about the scene; right, middle or left with shift: move along; wheel: nearer and
-/// farther. The other left (with control, or without if the mouse is the hand) leads the hand in a
-/// plane across the line of sight; the wheel then pushes it along that line.
+/// Left: orbit the scene; right, middle or left with shift: pan; wheel: zoom. Left with control
+/// (without, if the mouse moves the hand) moves the hand in a plane across the line of sight; the
+/// wheel then pushes it along that line.
 class SceneMouse {
  public:
-  /// Looks at the mouse. `p_WT` is the tip (m), `part` where the scene is on the screen, and
-  /// `hand_first` says which left leads the hand. To be called between ImGui's NewFrame and Render.
+  /// Reads the mouse. `p_WT` is the tip (m), `part` the scene's part of the screen. `hand_first`:
+  /// left moves the hand without control. Call between ImGui's NewFrame and Render.
   void step(Camera& camera, const Eigen::Vector3d& p_WT, const ScreenPart& part, bool hand_first);
 
-  /// Returns where the hand shall be.
+  /// Returns the target of the hand.
   const HandWish& hand() const { return hand_; }
 
  private:
@@ -34,8 +34,8 @@ class SceneMouse {
 
   Drag drag_ = Drag::kNone;
   HandWish hand_;
-  Eigen::Vector3d p_WGrip_{0, 0, 0};  // where the hand was taken, with the wheel's way, m
-  Eigen::Vector2d grip_{0, 0};        // pixel from which it moves
+  Eigen::Vector3d p_WGrip_{0, 0, 0};  // where the hand was taken, plus the wheel's push, m
+  Eigen::Vector2d grip_{0, 0};        // pixel at which the drag began
 };
 
 }  // namespace thimble::view

@@ -14,7 +14,7 @@
 namespace thimble::view {
 namespace {
 
-constexpr std::size_t kFewTriangles = 1500;  // so many can be told from each other in a picture
+constexpr std::size_t kFewTriangles = 1500;  // that can be distinguished in a picture
 constexpr GLuint kViewBinding = 0;
 
 void set(const GlProgram& program, const char* name, const Eigen::Matrix4f& value) {
@@ -25,17 +25,17 @@ void set(const GlProgram& program, const char* name, const Eigen::Matrix3f& valu
   glUniformMatrix3fv(program.at(name), 1, GL_FALSE, value.data());
 }
 
-/// `more`: what covers of it, or its gloss, the share of the light's mirror image.
+/// `more`: opacity, or gloss as a fraction of the mirror image of the light.
 void set_paint(const GlProgram& program, const Colour& colour, float more) {
   glUniform4f(program.at("paint"), colour[0], colour[1], colour[2], more);
 }
 
-/// Returns which marks an object has: 1 for dots, 2 for lines (gl/shaders.cpp).
+/// Returns the marks of an object: 1 for dots, 2 for lines (gl/shaders.cpp).
 int marks_on(const DrawnObject& object) {
   return (object.texture.empty() ? 0 : 1) + (object.friction.empty() ? 0 : 2);
 }
 
-/// Returns whether a plane's mesh is level, so that it can be drawn as the ground.
+/// Returns whether a plane's mesh is horizontal, so that it can be drawn as the ground.
 bool is_level(const render::TriangleMesh& mesh) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const auto& vertex) {
     return std::abs(vertex.z() - mesh.vertices[0].z()) < 1e-9;
@@ -49,7 +49,7 @@ ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
   for (const GlProgram* program : programs_.all()) {
     const GLuint block = glGetUniformBlockIndex(**program, "View");
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(**program, block, kViewBinding);
-    // As the canvas binds them; the shadows' map is texture 0.
+    // Numbers of the textures that the canvas binds; the shadow map is texture 0.
     glUseProgram(**program);
     glUniform1i(program->at("shadow_texels"), 4);
     glUniform1i(program->at("normals"), 1);
@@ -69,7 +69,7 @@ ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
     box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-0.06), Eigen::Vector3d::Constant(0.06));
   light_centre_ = box.center();
   light_radius_ = std::clamp(0.5 * box.diagonal().norm() + 0.05, 0.08, 0.5);
-  ground_height_ = box.min().z() - 2e-4;  // so that what stands on it does not flicker
+  ground_height_ = box.min().z() - 2e-4;  // so that objects on it do not flicker
   if (floor_object_ >= 0) {
     ground_height_ = scene_.objects[static_cast<std::size_t>(floor_object_)].mesh.vertices[0].z();
   }
@@ -127,8 +127,8 @@ void ScenePainter::set_view(const Camera& camera, Theme theme, const std::vector
       add_caster(shadow, solid.model, solids_.model(solid.kind).box(), casters);
     }
   }
-  // And what of the map a sample reaches: 3.2 pixels, one more for the mean of four, and two that
-  // it is asked off the surface.
+  // Plus the reach of a sample in the map: 3.2 pixels, one more for the mean of four, and two for
+  // the offset from the surface.
   const Eigen::Vector2f reach = Eigen::Vector2f::Constant(8.0F / ShadowMap::kPixels);
   if (!casters.isEmpty()) {
     casters = Eigen::AlignedBox2f(casters.min() - reach, casters.max() + reach);
@@ -143,7 +143,7 @@ void ScenePainter::set_view(const Camera& camera, Theme theme, const std::vector
 
 void ScenePainter::paint_shadows(const std::vector<Solid>& solids) {
   glUseProgram(*programs_.shadow);
-  // Pushed back a little, or surfaces would cast shadows on themselves.
+  // A depth offset, so that surfaces do not cast shadows on themselves.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2.5F, 6.0F);
   std::vector<bool> still(models_.size());
@@ -153,7 +153,7 @@ void ScenePainter::paint_shadows(const std::vector<Solid>& solids) {
   last_places_ = places_;
   changed_.assign(models_.size(), false);
   const bool any_still = std::find(still.begin(), still.end(), true) != still.end();
-  // What has moved was taken out at once, so that those that are kept are as they were.
+  // Moving objects were removed at once, so the kept ones are unchanged.
   if (any_still && still != kept_) {
     shadow_map_.begin_kept();
     for (std::size_t i = 0; i < models_.size(); ++i) {
@@ -184,7 +184,7 @@ void ScenePainter::paint_shadow(std::size_t object) {
   glDisable(GL_CULL_FACE);
 }
 
-// Twice what a pixel of the light's map covers, m.
+// Returns twice the size of a pixel of the light's map, m.
 float ScenePainter::shadow_offset() const {
   return static_cast<float>(2 * 2 * light_radius_ / ShadowMap::kPixels);
 }
@@ -237,7 +237,7 @@ void ScenePainter::paint_solids(const std::vector<Solid>& solids) {
 
 void ScenePainter::paint_light(const PaintChoice& choice) {
   glBindVertexArray(*nothing_);
-  // Which pixels have a surface is told by the depths, before a shader runs.
+  // The depth test selects the pixels with a surface before a shader runs.
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_EQUAL);
   glUseProgram(*programs_.backdrop);
@@ -260,7 +260,7 @@ void ScenePainter::paint_pixels(const PaintChoice& choice, Canvas& canvas) {
     glUniform1i(program.at("lowest"), canvas.strip());
     glDrawArrays(GL_TRIANGLES, 0, 3);
   };
-  // The first marks by its depth the pixels that the second goes over.
+  // The first program marks by depth the pixels that the second one smooths.
   glDepthFunc(GL_ALWAYS);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   go_over(programs_.edges);
@@ -281,7 +281,7 @@ void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
     if (!solid.shines_through) continue;
     set(programs_.plain, "model", solid.model);
     set_paint(programs_.plain, solid.colour, 0.55F);
-    // The front only, so that nothing is covered twice.
+    // Front faces only, so that nothing is blended twice.
     glEnable(GL_CULL_FACE);
     solids_.model(solid.kind).draw_mesh();
     glDisable(GL_CULL_FACE);
@@ -319,11 +319,11 @@ void ScenePainter::paint_ground(const PaintChoice& choice, const Canvas& canvas)
     set_shadows(program, choice);
     glUniform1f(program.at("grid_strength"), choice.grid ? 1.0F : 0.0F);
     glUniform1i(program.at("marks"), marks);
-    // Its depth counts, so that what is below it is not outlined above.
+    // Writes depth, so that edges below the ground are not drawn over it.
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   };
   if (marks > 0) return paint(programs_.ground_marked);
-  // Asking for shadows is most of its work: only where one can be.
+  // Shadow lookups are most of its work, so they are limited to the box with shadows.
   paint_apart(
       canvas, choice.shadows ? ground_shadow_ : Eigen::AlignedBox2i(),
       [&] { paint(programs_.ground); }, [&] { paint(programs_.ground_open); });

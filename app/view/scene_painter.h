@@ -19,31 +19,31 @@
 
 namespace thimble::view {
 
-/// Says whether polygons are outlined.
+/// Whether polygons are outlined.
 enum class Edges {
-  kAuto,  ///< Where they are few enough to be seen one by one.
+  kAuto,  ///< If they are few enough to be distinguished.
   kOff,
   kOn,
 };
 
 /// How dents are drawn.
 enum class DentNormals {
-  kSplit,  ///< New corners keep what was shown at their place (DentSurface).
-  kNaive,  ///< As any mesh is: each vertex has the mean of its polygons. To compare.
+  kSplit,  ///< New corners keep the shading of their place (DentSurface).
+  kNaive,  ///< As for any mesh: each vertex has the mean normal of its polygons. For comparison.
 };
 
-/// How a scene is drawn.
+/// Options of drawing.
 struct PaintChoice {
   Shading shading = Shading::kPhong;
   Edges edges = Edges::kAuto;
   DentNormals dent_normals = DentNormals::kSplit;
   bool shadows = true;
-  /// Smooth edges, and soft rims of shadows of 16 samples, else 4.
+  /// Smooth edges, and soft shadow edges of 16 samples instead of 4.
   bool fine = true;
   bool grid = true;
   bool fields = false;    ///< Forces of the scene's fields, as arrows.
-  bool trail = false;     ///< Where the tip was in the last seconds, coloured by force.
-  bool surfaces = false;  ///< Marks on what has a texture or friction.
+  bool trail = false;     ///< The tip's path of the last seconds, coloured by force.
+  bool surfaces = false;  ///< Marks on textures and friction.
   Theme theme = Theme::kLight;
   MarkChoice marks;
 };
@@ -57,8 +57,8 @@ class ScenePainter {
 
   const DrawnScene& scene() const { return scene_; }
 
-  /// Paints the picture onto the canvas, pixels and all. Gives the labels, which are text and not
-  /// painted here.
+  /// Paints the picture onto the canvas, including the pixels. Returns the labels, which are text
+  /// and not painted here.
   std::vector<Label> paint(const DrawnMoment& moment, const Camera& camera,
                            const PaintChoice& choice, Canvas& canvas);
 
@@ -83,25 +83,25 @@ class ScenePainter {
   DrawnScene scene_;
   ScenePrograms programs_;
   std::vector<SurfaceModel> models_;
-  std::vector<std::shared_ptr<const render::TriangleMesh>> shapes_;  // as they are in models_
-  std::unique_ptr<SurfaceModel> naive_;  // of the object that is bent, if it is drawn so
+  std::vector<std::shared_ptr<const render::TriangleMesh>> shapes_;  // the shapes in models_
+  std::unique_ptr<SurfaceModel> naive_;  // of the bent object, for DentNormals::kNaive
   std::size_t naive_object_ = 0;
   SolidModels solids_;
-  std::vector<Eigen::Matrix4f> places_;  // of the objects in this picture
-  Eigen::AlignedBox2i ground_shadow_;    // of this picture, pixels: elsewhere the ground has none
+  std::vector<Eigen::Matrix4f> places_;  // poses of the objects in this picture
+  Eigen::AlignedBox2i ground_shadow_;    // box with all shadows on the ground, pixels
   GlBuffer view_block_;
   GlVertexArray nothing_;
   PaneModel panes_;
   ColouredModel field_, trail_;
-  double field_strongest_ = -1;  // N, of the scale that the field has been coloured by
+  double field_strongest_ = -1;  // N, end of the scale of the current field's colours
   ShadowMap shadow_map_;
-  std::vector<Eigen::Matrix4f> last_places_;  // when shadows were drawn last
-  std::vector<bool> changed_;                 // of the objects: bent or shaped since then
-  std::vector<bool> kept_;                    // those whose shadows are kept
+  std::vector<Eigen::Matrix4f> last_places_;  // poses at the last drawing of shadows
+  std::vector<bool> changed_;                 // objects bent or shaped since then
+  std::vector<bool> kept_;                    // objects in the kept shadow map
   Eigen::Vector3d light_centre_{0, 0, 0};
-  double light_radius_ = 0.2;         // m: what is nearer to the centre casts shadows
+  double light_radius_ = 0.2;         // m: objects closer to the centre cast shadows
   double ground_height_ = 0;          // m
-  std::ptrdiff_t floor_object_ = -1;  // the object that is the ground: a level plane
+  std::ptrdiff_t floor_object_ = -1;  // the object drawn as the ground: a level plane
 };
 
 }  // namespace thimble::view

@@ -1,7 +1,7 @@
 #include "view/screen.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -41,7 +41,7 @@ driver::Result<std::unique_ptr<Screen>> Screen::open() {
   if (screen->window_ == nullptr) return driver::Error{"No window: " + glfw_words() + "."};
   glfwMakeContextCurrent(screen->window_);
   glfwSwapInterval(1);
-  // Heard one by one, so that none is lost where pictures take long.
+  // By callback, so that no key is lost while drawing is slow.
   glfwSetWindowUserPointer(screen->window_, screen.get());
   glfwSetKeyCallback(screen->window_, [](GLFWwindow* window, int key, int, int action, int) {
     auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));

@@ -10,28 +10,28 @@ struct GLFWwindow;
 
 namespace thimble::view {
 
-/// The window with its OpenGL and ImGui; all go with it. Real-time: never from the servo thread.
+/// The window with its OpenGL and ImGui contexts. Real-time: never from the servo thread.
 class Screen {
  public:
-  /// The error says why there is none.
+  /// Opens a window; the error says why it cannot.
   static driver::Result<std::unique_ptr<Screen>> open();
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
   ~Screen();
 
   GLFWwindow* window() { return window_; }
-  /// Returns how much larger than usual everything is to be.
+  /// Returns the scale of text and panel; 1 is the usual size.
   float scale() const { return scale_; }
-  /// Returns the keys pressed since it was asked last, but those typed into a field.
+  /// Returns the keys pressed since the last call, except those typed into a field.
   std::vector<int> take_keys();
 
-  /// Scales text and panel by this from now on; 0: as the monitor is.
+  /// Sets the scale of text and panel; 0: that of the monitor.
   void set_scale(double wanted) { wanted_scale_ = static_cast<float>(wanted); }
-  /// Begins a picture of ImGui: takes what mouse and keys did.
+  /// Begins a picture of ImGui and takes the input of mouse and keys.
   void begin(Theme theme);
-  /// Draws what was asked of ImGui since.
+  /// Draws the ImGui content since `begin`.
   void end();
-  /// Reads what the window shows.
+  /// Reads the content of the window.
   Picture read();
 
  private:

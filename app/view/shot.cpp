@@ -15,7 +15,7 @@
 namespace thimble::view {
 namespace {
 
-/// An observer that looks at a run tick by tick, on its virtual clock.
+/// An observer that sees a run tick by tick, on its virtual clock.
 class Watcher final : public session::TickObserver {
  public:
   explicit Watcher(std::function<void(const driver::TickRecord&)> look) : look_(std::move(look)) {}
@@ -25,13 +25,13 @@ class Watcher final : public session::TickObserver {
   std::function<void(const driver::TickRecord&)> look_;
 };
 
-/// Runs a session that has not begun; its last observer is `look`.
+/// Runs a session that has not begun; `look` is its last observer.
 void watch(session::Session& session, std::function<void(const driver::TickRecord&)> look) {
   Watcher watcher(std::move(look));
   if (session.add_observer(watcher)) session.run();
 }
 
-/// Sizes are chosen for a picture as high as this.
+/// Returns the scale of text, whose sizes are chosen for a picture of this height.
 float scale_of(int height) {
   return std::clamp(static_cast<float>(height) / 640, 0.7F, 4.0F);
 }
@@ -83,7 +83,7 @@ void PlayedScene::play(const std::vector<double>& times, const Look& look) {
       ++next;
     }
   });
-  (void)session_->end_recording();  // whoever reads it finds out what it lacks
+  (void)session_->end_recording();  // a reader of the file detects what it lacks
 }
 
 driver::Result<double> strongest_moment(const std::filesystem::path& scene,
@@ -92,7 +92,7 @@ driver::Result<double> strongest_moment(const std::filesystem::path& scene,
   if (!session) return session.error();
   const auto period_ns = static_cast<double>((*session)->setup().period_ns());
   const double duration = static_cast<double>((*session)->setup().ticks()) * period_ns * 1e-9;
-  double most = 0.05;  // N: less is hardly felt
+  double most = 0.05;  // N: weaker forces are hardly felt
   double time = duration / 2;
   watch(**session, [&](const driver::TickRecord& record) {
     const auto& f = record.f_sent_W;

@@ -1,7 +1,7 @@
 #include "view/side_panel.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
 #include <imgui.h>
@@ -21,7 +21,7 @@
 namespace thimble::view {
 namespace {
 
-/// One key and what it does.
+/// One key and its effect.
 struct Key {
   const char* key;
   const char* does;
@@ -55,7 +55,7 @@ void toggle_record(session::SharedReader& reader) {
   }
 }
 
-/// Draws what a tick was: force, depth, and what is wrong; `words` say when.
+/// Draws the data of a tick: force, depth, and faults; `words` describe its time.
 void draw_tick(const driver::TickRecord& tick, const std::string& words) {
   ImGui::PushTextWrapPos(0);
   const auto& f = tick.f_sent_W;
@@ -76,7 +76,7 @@ void draw_tick(const driver::TickRecord& tick, const std::string& words) {
   if (tick.fault != driver::Fault::kNone) {
     ImGui::TextColored(shown_colour(kForceColour), "%s",
                        std::string(driver::describe(tick.fault)).c_str());
-    // The fault is the first reason; the arm can be pulled afterwards.
+    // The fault is the first cause; the arm may be unplugged later.
     if (tick.link == driver::LinkState::kLost && tick.fault != driver::Fault::kTransportLost) {
       ImGui::TextColored(shown_colour(kForceColour), "The arm is gone from the wire.");
     }
@@ -143,7 +143,7 @@ void draw_plots(TouchSource& source, PlotPanel& panel, float height) {
   if (const auto asked = panel.draw(source.plots(), time, height)) source.head().go(*asked);
 }
 
-// `of_a_run`: it has a hand that a mouse may lead.
+// `of_a_run`: has a hand that the mouse can move.
 void draw_looks(const DrawnScene& scene, bool of_a_run, ViewChoice& choice) {
   PaintChoice& paint = choice.paint;
   Flow flow;
@@ -180,7 +180,7 @@ void draw_status(const session::SharedReader& reader, const ViewNotes& notes) {
   ImGui::PopTextWrapPos();
 }
 
-/// What the panel holds below its head, in a child each that is scrolled where it must be.
+/// The content of the panel below its head; each part is a child window that can scroll.
 class Parts {
  public:
   Parts(TouchSource& source, ViewChoice& choice) : source_(source), choice_(choice) {}
@@ -217,16 +217,16 @@ class Parts {
     ImGui::EndTabBar();
   }
 
-  /// Returns whether all parts have room below each other.
+  /// Returns whether all parts fit below each other.
   bool fit(float height) const {
     return height > (kPlotLines + kKnobLines) * ImGui::GetFontSize() + looks_height() +
                         4 * ImGui::GetStyle().ItemSpacing.y;
   }
 
  private:
-  // In lines of text: four plots that can be read, two knobs. Chosen by looking.
+  // In lines of text: four readable plots, two knobs. Chosen by looking.
   static constexpr float kPlotLines = 15;
-  static constexpr float kPlotLinesLeast = 11;  // where they are alone
+  static constexpr float kPlotLinesLeast = 11;  // in a tab
   static constexpr float kKnobLines = 7;
 
   void plots_in(float height) { draw_plots(source_, choice_.plots, height); }
@@ -236,7 +236,7 @@ class Parts {
     content();
     ImGui::EndChild();
   }
-  /// Returns how high the switches are, about: 75 characters and 13 boxes, line by line.
+  /// Returns the approximate height of the switches: 75 characters and 13 boxes, line by line.
   static float looks_height() {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float all =
@@ -264,7 +264,7 @@ void draw_parts(TouchSource& source, ViewChoice& choice) {
 }  // namespace
 
 float panel_width(float window_width, float scale) {
-  constexpr float kWidth = 380;  // chosen: four switches beside each other
+  constexpr float kWidth = 380;  // chosen: four switches in a row
   return std::min(kWidth * scale, 0.5F * window_width);
 }
 
@@ -273,7 +273,7 @@ void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNote
   session::SharedReader* const reader = source.reader();
   ImGui::SetNextWindowPos({part.x, part.y});
   ImGui::SetNextWindowSize({part.width, part.height});
-  // Scrolled where even tabs have no room.
+  // Scrolls if even tabs do not fit.
   ImGui::Begin("panel", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
@@ -370,7 +370,7 @@ void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
       choice.close = true;
       break;
     case GLFW_KEY_SPACE:
-      // Held to have forces (Content::hold_key), it pauses nothing.
+      // If the space bar is the enabling input (Content::hold_key), it does not pause.
       if (reader != nullptr && !reader->scene().hold_by_key)
         reader->ask_pause(!reader->pause_asked());
       break;

@@ -42,7 +42,7 @@ void write_rimmed(const ScreenPlace& at, Theme theme, const Colour& colour,
 
 void set_text_style(float scale, Theme theme) {
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // leaves no files about
+  io.IniFilename = nullptr;  // writes no file
   const float size = std::round(kFontSize * scale);
   io.Fonts->Clear();
   if (std::filesystem::exists(kFont)) {
@@ -66,7 +66,7 @@ void set_text_style(float scale, Theme theme) {
   style.WindowPadding = {14, 14};
   style.ItemSpacing = {8, 7};
   style.FramePadding = {8, 4};
-  // Steps from the window's background towards the text, tinted with the blue of what can be moved.
+  // Steps from the window's background towards the text, tinted blue for movable parts.
   const Colour window = mix(colours.sky, colours.ground, 0.2F);
   const auto towards = [&](float text, float blue) {
     return vec(mix(mix(window, colours.text, text), kDepthColour, blue));
@@ -92,7 +92,7 @@ void set_text_style(float scale, Theme theme) {
 }
 
 Theme shown_theme() {
-  // Text is pale on the dark theme.
+  // Text is pale in the dark theme.
   return ImGui::GetStyleColorVec4(ImGuiCol_Text).x > 0.5F ? Theme::kDark : Theme::kLight;
 }
 
@@ -102,7 +102,7 @@ void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme 
   for (const Label& label : labels) {
     if ((label.p_W - camera.p_WEye()).dot(camera.towards_eye()) >= 0) continue;
     const Eigen::Vector2f at = camera.pixel(label.p_W, part.width, part.height).cast<float>();
-    // To the left or right, where the scene says there is room: above stands the arm.
+    // To the left or right, where there is room: the arm is above.
     const double side = label.away_W.dot(camera.right());
     const Eigen::Vector2f away(side < -0.05 ? -1.0F : 1.0F, 0);
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());

@@ -11,11 +11,11 @@ struct ImGuiContext;
 
 namespace thimble::view {
 
-/// Gives text, panels and plots of the current ImGui context their looks, `scale` times as large as
-/// on a usual screen (1 for 96 pixels an inch). Real-time: never from the servo thread.
+/// Sets the style of text, panels and plots of the current ImGui context, `scale` times the usual
+/// size (1 for 96 pixels an inch). Real-time: never from the servo thread.
 void set_text_style(float scale, Theme theme = Theme::kLight);
 
-/// Returns the theme that the looks of the current ImGui context are of.
+/// Returns the theme of the current ImGui context.
 Theme shown_theme();
 
 /// A part of a window or picture, in pixels from the upper left corner.
@@ -23,12 +23,13 @@ struct ScreenPart {
   float x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Writes labels beside their places, with a pale rim so that they are read on anything; none
-/// leaves the part of the screen. To be called between ImGui's NewFrame and Render.
+/// Draws labels next to their places, with a pale outline that makes them readable on any
+/// background. Labels stay within the part of the screen. Call between ImGui's NewFrame and Render.
 void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme theme,
                   const ScreenPart& part);
 
-/// Writes one line at the lower left of a part: what scene it is, and how wide the grid.
+/// Draws one line at the lower left of a part, with the name of the scene and the width of the
+/// grid.
 void write_caption(const std::string& text, Theme theme, const ScreenPart& part);
 
 /// A place on the screen, pixels from the upper left corner.
@@ -36,14 +37,14 @@ struct ScreenPlace {
   float x = 0, y = 0;
 };
 
-/// Writes one line from its upper left corner on, with a rim of the background's colour.
+/// Draws one line of text from its upper left corner, with an outline in the background's colour.
 void write_rimmed(const ScreenPlace& at, Theme theme, const Colour& colour,
                   const std::string& text);
 
-/// Fills a part with one colour, behind everything else that is written there later.
+/// Fills a part with one colour; later content is drawn over it.
 void fill_part(const ScreenPart& part, const Colour& colour);
 
-/// ImGui without a window, to write on pictures.
+/// ImGui without a window, for text on pictures.
 class PictureText {
  public:
   /// Precondition: a context of OpenGL 3.3 is current, and outlives this.
@@ -52,9 +53,9 @@ class PictureText {
   PictureText& operator=(const PictureText&) = delete;
   ~PictureText();
 
-  /// Begins a picture of this size, pixels. Until `end` all text goes there.
+  /// Begins a picture of this size, pixels. Until `end`, all text goes to it.
   void begin(int width, int height);
-  /// Draws what was asked for since onto the framebuffer that is bound.
+  /// Draws the text since `begin` onto the bound framebuffer.
   void end();
 
  private:

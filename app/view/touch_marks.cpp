@@ -10,7 +10,7 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kThinnest = 0.05;    // N: less than this no hand feels in the arm's own friction
+constexpr double kThinnest = 0.05;    // N: a hand cannot feel less within the arm's own friction
 constexpr double kLeastAlong = 0.02;  // N RMS: less is not felt [PHYSICS 6]
 
 using Point = Eigen::Vector3d;
@@ -23,12 +23,12 @@ Point point(const std::array<double, 3>& p) {
 struct OneArm {
   const driver::TickRecord& tick;
   const std::vector<DrawnRod>& rods;
-  bool bent;  ///< What it touches is dented, so that its tip lies on the surface.
+  bool bent;  ///< The touched object is dented, so that the tip is on its surface.
 };
 
 void add_arm(const OneArm& moment, TouchMarks& marks) {
-  // As thick as the tubes of such arms, m; the last piece ends in a thin stem, as the rod that
-  // carries a thimble does, so that it hides little of what is touched.
+  // Typical radius of an arm's tubes, m. The last piece ends in a thin stem, like the rod of a
+  // thimble, so that it hides little of the object.
   constexpr double kTube = 0.0026;
   constexpr double kJoint = 0.0042;
   constexpr double kStem = 0.0009;
@@ -50,8 +50,8 @@ void add_arm(const OneArm& moment, TouchMarks& marks) {
   }
 }
 
-// The stylus that a gimbal holds: a pen along its x from the tip on, with a button on its z side,
-// so that a roll is seen.
+// Adds the stylus of a gimbal: a pen along its x from the tip, with a button on its z side that
+// makes a roll visible.
 void add_stylus(const OneArm& moment, TouchMarks& marks) {
   constexpr double kPoint = 0.012, kLength = 0.11, kWidth = 0.0045, kButton = 0.0022;  // m
   const Point tip = point(moment.tick.p_WT);
@@ -65,8 +65,7 @@ void add_stylus(const OneArm& moment, TouchMarks& marks) {
       ball(tip + 3 * kPoint * along + kWidth * R_WT.col(2), kButton, kTipColour));
 }
 
-/// Returns where the touch is seen: the proxy on a stiff surface; on one that is bent, where the
-/// tip has taken it.
+/// Returns the visible point of contact: the proxy on a stiff surface; on a dented one, the tip.
 Point touched_point(const OneArm& moment) {
   return point(moment.tick.in_contact && !moment.bent ? moment.tick.p_WP : moment.tick.p_WT);
 }
@@ -86,8 +85,8 @@ void add_force(const DrawnScene& scene, const OneArm& moment, double thick, Touc
   marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), kForceColour});
 }
 
-// The normal as a thin arrow of one length, and what of the force lies along the surface (friction,
-// textures) as one of the force's scale.
+// Adds the normal as a thin arrow of fixed length, and the tangential force (friction, textures) at
+// the scale of the force.
 void add_contact(const DrawnScene& scene, const OneArm& moment, double thick, TouchMarks& marks) {
   const Point n = point(moment.tick.n_W);
   const Point from = touched_point(moment);
@@ -123,7 +122,7 @@ void add_tip(const OneArm& moment, double thick, TouchMarks& marks) {
   marks.solids.push_back(link);
 }
 
-/// Finds the triangle beside another's edge; -1 if there is none.
+/// Returns the triangle on the other side of an edge; -1 if there is none.
 std::ptrdiff_t beside(const render::TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
   const auto& c = mesh.triangles[triangle];
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -136,8 +135,8 @@ std::ptrdiff_t beside(const render::TriangleMesh& mesh, std::size_t triangle, st
   return -1;
 }
 
-// The active triangle and, through each of its edges, the plane half way between its own side and
-// its neighbour's, as far in as the triangle is wide.
+// Adds the active triangle and, through each of its edges, the plane half way between its own side
+// and its neighbour's, to a depth of the triangle's width.
 void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMarks& marks) {
   const auto object = static_cast<std::size_t>(moment.tick.object);
   const auto triangle = static_cast<std::size_t>(moment.tick.feature);
@@ -182,7 +181,7 @@ double size_of(const DrawnScene& scene) {
     if (object.endless) continue;
     for (const Point& vertex : object.mesh.vertices) box.extend(vertex);
   }
-  constexpr double kLeast = 0.06;  // m: about a hand's play
+  constexpr double kLeast = 0.06;  // m: typical motion of a hand
   constexpr double kMost = 0.3;
   return box.isEmpty() ? kLeast : std::clamp(box.diagonal().norm(), kLeast, kMost);
 }

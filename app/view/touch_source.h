@@ -10,38 +10,38 @@
 
 namespace thimble::view {
 
-/// What a window shows over time: runs that go on, or a recording. Real-time: never from the servo
+/// The content of a window over time: live runs or a recording. Real-time: never from the servo
 /// thread.
 class TouchSource {
  public:
   virtual ~TouchSource() = default;
 
-  /// Brings the moment to what is to be shown after `dt` s of a person's time. Returns whether
-  /// another touch was taken, so that all must be drawn anew.
+  /// Updates the moment after `dt` s of wall-clock time. Returns whether another touch was loaded,
+  /// so that everything must be drawn again.
   virtual bool step(double dt) = 0;
 
   /// Returns the run, which may have ended; null if there is none, as in a recording.
   virtual session::SharedReader* reader() = 0;
-  /// Returns what is drawn. Precondition: `has_scene`; as for the moment.
+  /// Returns the scene to draw. Precondition: `has_scene`; as for the moment.
   virtual const DrawnScene& scene() const = 0;
   virtual const DrawnMoment& moment() const = 0;
   virtual bool has_scene() const = 0;
   /// Returns whether there was a tick so far.
   virtual bool has_moment() const = 0;
   virtual const Plots& plots() const = 0;
-  /// Returns why nothing moves; empty if it does.
+  /// Returns why nothing moves; empty if something does.
   virtual const std::string& notice() const = 0;
-  /// Returns what pictures of it are named by.
+  /// Returns the name used for its pictures.
   virtual std::string name() const = 0;
 
-  /// Returns where in time one looks.
+  /// Returns the position in time.
   virtual PlayHead& head() = 0;
-  /// Returns when the moment is that lies `steps` single steps after the one looked at, s: of a
-  /// recording ticks, of a run pictures that are kept.
+  /// Returns the time (s) of the moment `steps` single steps after the shown one. A step is a tick
+  /// of a recording, or a kept picture of a run.
   virtual double beside(int steps) const = 0;
-  /// Returns what of the time is kept, in a sentence.
+  /// Returns a sentence about the kept time.
   virtual std::string kept() const = 0;
-  /// Returns what a recording is and what it does not know, a sentence each; none of a run.
+  /// Returns sentences that describe a recording and what it lacks; empty for a run.
   virtual const std::vector<std::string>& about() const = 0;
 };
 

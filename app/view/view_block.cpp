@@ -20,7 +20,7 @@ Eigen::Vector3f linear(const Colour& colour) {
 }
 
 Eigen::Matrix4f shadow_from_world(const LitPlace& place) {
-  // The light looks along -z of its own frame, straight, at a square about the scene.
+  // The light is directional, along -z of its own frame, on a square about the scene.
   Eigen::Matrix4d shadow = Eigen::Matrix4d::Identity();
   const Eigen::Vector3d z = towards_light();
   const Eigen::Vector3d x = Eigen::Vector3d::UnitZ().cross(z).normalized();

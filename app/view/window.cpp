@@ -1,7 +1,7 @@
 #include "view/window.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ namespace {
 constexpr double kFrame = 1.0 / 60;  // s
 constexpr double kMessageSeconds = 4;
 
-/// Names a picture by run and time.
+/// Returns the file name of a picture, from run and time.
 std::string picture_name(const std::string& run) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -45,15 +45,15 @@ std::string picture_name(const std::string& run) {
   return "thimble-" + (run.empty() ? "view" : run) + text;
 }
 
-/// Returns whether the processor draws in place of a graphics card: then a picture as fine as can
-/// be takes 1.6 times as long as need be (tests/bench/view_bench).
+/// Returns whether the renderer is software instead of a graphics card: then a picture of best
+/// quality takes 1.6 times as long as necessary (tests/bench/view_bench).
 bool software_draws() {
   const auto* words = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   const std::string name = words == nullptr ? "" : words;
   return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
 }
 
-/// The window's content from picture to picture.
+/// The window's content across pictures.
 class Content {
  public:
   Content(Screen& screen, TouchSource& source, const WindowChoice& choice)
@@ -71,7 +71,7 @@ class Content {
   /// Draws one picture into the window.
   driver::Result<void> draw(double frame_time);
   bool wants_to_close() const { return choice_.close; }
-  /// Returns whether nothing moves by itself: there is no run, or it has ended, and nothing plays.
+  /// Returns whether nothing moves by itself: there is no live run, and nothing plays.
   bool still() {
     return !source_.head().plays() &&
            (source_.reader() == nullptr || source_.reader()->state() == session::RunState::kEnded);
@@ -95,10 +95,10 @@ class Content {
   HandPanel hand_;
   bool led_ = false;
   std::vector<int> keys_;  // pressed since the last picture
-  double frame_time_ = 0;  // s, of the last picture
+  double frame_time_ = 0;  // of the last picture, s
   TouchThread felt_;
   bool felt_follows_ = false;
-  std::string shown_file_;  // the scene's, of the run that is shown
+  std::string shown_file_;  // scene file of the run that is shown
   ViewChoice choice_;
   ViewNotes notes_;
   std::chrono::steady_clock::time_point message_until_{};
@@ -116,8 +116,8 @@ void Content::take_picture() {
   tell(written ? "Picture: " + file : written.error().message);
 }
 
-// The mouse has the hand while it drags; what else leads it takes it anew afterwards. Who looks at
-// a moment that was leads nothing.
+// The mouse has priority while it drags; another source starts the hand again afterwards. While a
+// moment of the past is shown, no input moves the hand.
 void Content::lead_hand(const ScreenPart& part) {
   session::SharedReader& run = *source_.reader();
   const bool live = source_.head().live();
@@ -141,15 +141,15 @@ void Content::lead_hand(const ScreenPart& part) {
   }
 }
 
-// The arrows are the hand's where the keyboard leads it now, else those of the time.
+// Returns whether the arrow keys move the hand; otherwise they move the time.
 bool Content::arrows_lead() const {
   session::SharedReader* const reader = source_.reader();
   return reader != nullptr && reader->scene().hand_by_mouse && source_.head().live() &&
          hand_.input().source() == HandSource::kKeyboard;
 }
 
-/// Reports that the space bar is held where the run needs it. GLFW releases all keys of a window
-/// that loses the focus.
+/// Reports that the space bar is held, if it is the run's enabling input. GLFW releases all keys of
+/// a window that loses the focus.
 void Content::hold_key() {
   session::SharedReader* const reader = source_.reader();
   if (reader == nullptr || !reader->scene().hold_by_key) return;
@@ -195,7 +195,8 @@ void Content::begin_run(session::SharedReader& run, bool again) {
   }
   if (!felt_follows_) felt_.follow(run.name());
   felt_follows_ = true;
-  notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();  // which has opened it
+  // The run started this window.
+  notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();
 }
 
 driver::Result<void> Content::draw(double frame_time) {
@@ -205,7 +206,7 @@ driver::Result<void> Content::draw(double frame_time) {
     if (!programs) return programs.error();
     painter_ = std::make_unique<ScenePainter>(source_.scene(), std::move(programs).value());
     session::SharedReader* const reader = source_.reader();
-    // A scene that is begun anew is seen from where it was seen.
+    // A restart of the same scene keeps the camera.
     const std::string file = reader != nullptr ? reader->scene().file : std::string();
     const bool again = !file.empty() && file == shown_file_;
     if (!again) choice_.frame = true;
@@ -266,9 +267,9 @@ driver::Result<void> show(TouchSource& source, const WindowChoice& choice) {
     }
     if (over) break;
     glfwSwapBuffers(window);
-    // Waiting for a run takes no processor; the mouse and the keys wake it.
+    // Waiting for a run needs no CPU; input wakes it.
     if (content.still()) glfwWaitEventsTimeout(0.25);
-    // Where the screen does not set the pace (a remote one, say), this does.
+    // Limits the rate if the screen does not (a remote one, for example).
     const double rest = kFrame - (glfwGetTime() - now);
     if (rest > 0.002) std::this_thread::sleep_for(std::chrono::duration<double>(rest - 0.001));
   }

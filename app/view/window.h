@@ -11,23 +11,23 @@
 
 namespace thimble::view {
 
-/// What a window begins with, and when it closes by itself, for tests.
+/// Initial state of a window, and when it closes by itself, for tests.
 struct WindowChoice {
-  HandSource hand = HandSource::kMouse;  ///< Leads the simulated hand, where a run lets a viewer.
+  HandSource hand = HandSource::kMouse;  ///< Source of the hand, if the run lets a viewer move it.
   FeltChoice felt;
-  double ui_scale = 0;  ///< Of text and panel; 0: the monitor's.
+  double ui_scale = 0;  ///< Scale of text and panel; 0: that of the monitor.
   Theme theme = Theme::kLight;
-  double seconds = 0;        ///< Closes after so long; 0: when the user closes it.
-  std::string last_picture;  ///< PNG of the whole window, written before it closes so; empty: none.
-  double at = -1;  ///< Of a recording: second at which it stands still at first; below 0: it plays.
+  double seconds = 0;        ///< Closes after this time, s; 0: when the user closes it.
+  std::string last_picture;  ///< PNG of the window before it closes by itself; empty: none.
+  double at = -1;  ///< Time of a recording at which it is stopped at first, s; below 0: it plays.
 };
 
-/// Opens a window on the runs that are watched and shows them until it is closed. Where there is no
-/// run, or it has ended, the window says so and takes the next. The runs never notice.
+/// Opens a window on the followed runs and shows them until it is closed. If there is no run, or it
+/// has ended, the window says so and shows the next one. The runs are not affected.
 /// The error says why there is no window. Real-time: never from the servo thread.
 driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice);
 
-/// Opens a window that plays a recording until it is closed; `file` names it. The error says why
+/// Opens a window that plays a recording until it is closed; `file` is its name. The error says why
 /// there is no window. Real-time: never from the servo thread.
 driver::Result<void> show_recording(const RecordingView& recording, const std::string& file,
                                     const WindowChoice& choice);

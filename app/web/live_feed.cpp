@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kStepsPerFigures = 10;  // three times a second [chosen: that can be read]
+constexpr int kStepsPerFigures = 10;  // three times a second [chosen: readable]
 
 void fill_up(std::string& bytes, char with) {
   bytes.resize((bytes.size() + 7) / 8 * 8, with);
@@ -39,7 +39,7 @@ std::string update_of(Json json, const report::PageBlock& block) {
   return bytes;
 }
 
-// One dent, as a page of a run that is over has many (page_dents).
+// Adds one dent, in the form of the dents of a stored page (page_dents).
 void add_dent(const render::BodyPatch& patch, double t, report::PageBlock& block) {
   const auto points_of =
       static_cast<std::uint16_t>(patch.triangle_count > 0 ? patch.point_count : 0);
@@ -303,7 +303,7 @@ std::string LiveFeed::base(std::uint64_t lost) const {
 std::string LiveFeed::message(Place& place) const {
   std::string bytes;
   if (!place.begun || place.next < oldest_) {
-    // What comes before all updates was lost for a page that has been told of ticks before.
+    // A page that has received ticks before has lost those before the oldest update.
     bytes = base(place.begun ? forgotten_ticks_ - place.ticks : 0);
     place = {.next = oldest_, .ticks = forgotten_ticks_, .begun = true};
   }

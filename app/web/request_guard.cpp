@@ -15,7 +15,7 @@ constexpr const char* kWrongToken =
     "The token is not right; open the address that `thimble view --web` has printed.";
 constexpr const char* kNothingElse = "There is nothing else here.";
 
-// Takes as long for a token that is nearly right as for any other.
+// Compares in constant time: the duration does not depend on how many characters match.
 bool same(std::string_view a, std::string_view b) {
   unsigned different = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < b.size(); ++i) {

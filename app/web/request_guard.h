@@ -8,29 +8,31 @@
 
 namespace thimble::web {
 
-/// Who may see a page that is served on this computer: who knows its token, and no web page of
-/// anybody else, whatever name it has given our address (DNS rebinding). Real-time: never from the
-/// servo thread.
+/// Access control of the local web server. A request needs the token. Web pages of other origins
+/// are refused, whatever name they have given our address (DNS rebinding). Real-time: never from
+/// the servo thread.
 class RequestGuard {
  public:
-  /// What a request names of itself; empty: it does not.
+  /// The fields of a request that are checked; empty: absent.
   struct Request {
-    std::string_view target;  ///< Path and query, as the request has them.
-    std::string_view host;    ///< Its Host.
-    std::string_view origin;  ///< Its Origin: the page that asks, which every browser names.
-    /// Its X-Thimble-Token, which no page of somebody else's can send without being asked first.
+    std::string_view target;  ///< Path and query of the request.
+    std::string_view host;    ///< Header `Host`.
+    std::string_view origin;  ///< Header `Origin`: origin of the page; every browser sends it.
+    /// Header `X-Thimble-Token`. A page of another origin cannot send it without a preflight
+    /// request.
     std::string_view token{};
   };
 
-  /// Makes a token out of 128 bits of the kernel's (getrandom). The error says that it gave none.
+  /// Makes a token of 128 random bits from the kernel (getrandom). Fails if the kernel returns
+  /// none.
   static driver::Result<RequestGuard> make();
 
-  /// Returns 32 digits of hexadecimal.
+  /// Returns the token as 32 hexadecimal digits.
   const std::string& token() const noexcept { return token_; }
-  /// Returns what is wrong with a request for `path` on `port`, as a sentence; empty: nothing.
+  /// Returns why a request for `path` on `port` is refused, as a sentence; empty: it is allowed.
   std::string refuse(const Request& request, std::string_view path, std::uint16_t port) const;
-  /// Returns what is wrong with a request that would change something: as above, but it names its
-  /// Origin, and its token stands in a header and not in its address.
+  /// Returns why a request that changes something is refused. In addition to the checks of
+  /// `refuse`, it needs an Origin, and its token must be in a header and not in the URL.
   std::string refuse_change(const Request& request, std::string_view path,
                             std::uint16_t port) const;
 

@@ -7,10 +7,10 @@
 
 namespace thimble::web {
 
-/// Asks of a run what a page asks, by the same requests as the window and `thimble view RUN`:
-/// "pause", "resume", "restart", "step N" or "turn KNOB=VALUE". The error says why the run cannot
-/// (a physical arm is not begun anew, say), that it hears nothing any more, or that these are no
-/// such words. Real-time: never from the servo thread.
+/// Sends a command of a page to the run, through the same requests as the window and `thimble view
+/// RUN`. Commands: "pause", "resume", "restart", "step N" or "turn KNOB=VALUE". The error says that
+/// the run refuses and why, that it no longer answers, or that the command is unknown. For example,
+/// a run with a real arm does not restart. Real-time: never from the servo thread.
 driver::Result<void> steer_run(session::SharedReader& reader, std::string_view request);
 
 }  // namespace thimble::web

@@ -14,13 +14,13 @@
 
 namespace thimble::web {
 
-/// One connection: it asks for one thing and gets it, the page or what the page is told.
+/// One connection. It makes one request and gets the page, or the updates of a page.
 class Visitor {
   using tcp = boost::asio::ip::tcp;
   using error_code = boost::system::error_code;
 
  public:
-  /// A connection that sends at most `said_most` bytes at a time over WebSocket.
+  /// A connection that accepts at most `said_most` bytes per message over WebSocket.
   Visitor(boost::asio::io_context& io, std::size_t said_most) : stream_(io) {
     parser_.body_limit(kBodyMost);
     stream_.read_message_max(said_most);
@@ -30,23 +30,23 @@ class Visitor {
   Visitor& operator=(const Visitor&) = delete;
 
   tcp::socket& socket() { return stream_.next_layer().socket(); }
-  /// Returns whether nothing of it is under way any more.
+  /// Returns whether no operation of it is pending.
   bool done() const noexcept { return under_way_ == 0; }
-  /// Returns whether it has been disconnected by this side.
+  /// Returns whether this side has disconnected it.
   bool is_cut() const noexcept { return cut_; }
-  /// Returns whether it is a page that is told what goes on.
+  /// Returns whether it is a page that gets updates.
   bool is_page() const noexcept { return open_ && !closing_; }
-  /// Returns whether it has been sent all that there is.
+  /// Returns whether everything was sent to it.
   bool has_all(const LiveFeed* feed) const noexcept {
     return !sending_ && (feed == nullptr || !feed->has_message(place_));
   }
 
-  /// Reads what it asks for; `answer` is called then, once.
+  /// Reads the request, then calls `answer` once.
   template <class Answer>
   void begin(Answer answer) {
     error_code ignored;
     socket().set_option(tcp::no_delay(true), ignored);
-    // What waits for a slow reader waits here, where it is counted, and not in the kernel.
+    // Keeps data for a slow reader in this process, where it is counted, and not in the kernel.
     socket().set_option(boost::asio::socket_base::send_buffer_size(LiveFeed::kMessageBytes),
                         ignored);
     stream_.next_layer().expires_after(kPatience);
@@ -68,20 +68,20 @@ class Visitor {
     boost::beast::http::async_write(stream_.next_layer(), response_,
                                     [this](const error_code&, std::size_t) {
                                       --under_way_;
-                                      // Whoever is refused may still be speaking; the answer shall
-                                      // reach him.
+                                      // A refused client may still be sending; closing only our
+                                      // side lets the answer reach it.
                                       error_code ignored;
                                       socket().shutdown(tcp::socket::shutdown_send, ignored);
                                       cut();
                                     });
   }
 
-  /// Becomes a page that is told what goes on.
+  /// Makes it a page that gets updates.
   void open() {
     stream_.next_layer().expires_never();
     stream_.set_option(boost::beast::websocket::stream_base::timeout{
         .handshake_timeout = kPatience,
-        .idle_timeout = std::chrono::seconds(30),  // a browser answers for its page; chosen
+        .idle_timeout = std::chrono::seconds(30),  // browsers answer pings by themselves; chosen
         .keep_alive_pings = true});
     ++under_way_;
     stream_.async_accept(parser_.get(), [this](const error_code& failed) {
@@ -92,13 +92,13 @@ class Visitor {
     });
   }
 
-  /// Sends what is new; a page that is slow gets it with what comes meanwhile.
+  /// Sends the new updates. A slow page gets several at once.
   void tell(const LiveFeed& feed) {
     if (!is_page() || sending_ || !feed.has_message(place_)) return;
     send(feed.message(place_));
   }
-  /// Closes it with a code and a word of why, once it has what is being sent, however slow it is.
-  /// It is told nothing from now on.
+  /// Closes the connection with a code and a reason, once the current message is sent. No update is
+  /// sent after this call.
   void close(boost::beast::websocket::close_code why, const char* words) {
     if (!open_ || closing_) return;
     closing_ = true;
@@ -116,8 +116,8 @@ class Visitor {
 
  private:
   static constexpr auto kPatience =
-      std::chrono::seconds(5);                    // with who connects and does not go on; chosen
-  static constexpr std::size_t kBodyMost = 1024;  // bytes of a request's: a knob's name; chosen
+      std::chrono::seconds(5);                    // for a client that sends no request; chosen
+  static constexpr std::size_t kBodyMost = 1024;  // bytes: a command with a knob's name; chosen
 
   void send(std::string bytes) {
     message_ = std::move(bytes);
@@ -130,7 +130,7 @@ class Visitor {
                           if (failed) cut();
                         });
   }
-  // Whatever a page says is read and forgotten, so that its closing is seen.
+  // Reads and discards what a page sends, so that its closing is detected.
   void listen() {
     ++under_way_;
     stream_.async_read(buffer_, [this](const error_code& failed, std::size_t) {

@@ -1,4 +1,4 @@
-// In place of the server where the library that it is made with was missing.
+// Replaces the server in builds without its library.
 #include "web/web_server.h"
 
 namespace thimble::web {

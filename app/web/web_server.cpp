@@ -28,8 +28,8 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kConnectionsMost = 64;  // with those that are refused; chosen
-constexpr std::size_t kCutMost = 64;          // more, of those that are just ending; chosen
+constexpr std::size_t kConnectionsMost = 64;  // including refused ones; chosen
+constexpr std::size_t kCutMost = 64;          // additional connections that are closing; chosen
 
 std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
@@ -46,7 +46,7 @@ class WebServer::Parts {
     cut_all();
   }
 
-  /// Begins to listen.
+  /// Starts to listen.
   driver::Result<void> begin(std::uint16_t port) {
     const auto listens = driver::listen_on_loopback(
         acceptor_, port, "Choose another one (--port), or none: then a free one is taken.");
@@ -66,7 +66,8 @@ class WebServer::Parts {
   void step() {
     serve_for(kStep);
     if (runs_.step()) {
-      // Pages of the run before load themselves anew; who came before there was one waits for this.
+      // Pages of the previous run must reload. Pages that connected before the first run wait for
+      // it.
       for (Visitor& visitor : visitors_) {
         if (feed_) visitor.close(websocket::close_code::service_restart, "another run");
       }
@@ -99,7 +100,7 @@ class WebServer::Parts {
   }
 
  private:
-  // All that is under way ends now, and calls back into visitors that are still there.
+  // Ends all pending operations; their callbacks use visitors, which still exist here.
   void cut_all() {
     for (Visitor& visitor : visitors_) visitor.cut();
     io_.restart();
@@ -126,8 +127,8 @@ class WebServer::Parts {
     });
   }
 
-  /// Returns whether a visitor may come: no program of another user, and not one too many. If all
-  /// places are taken, the one that has asked for nothing the longest gives up its own.
+  /// Returns whether a connection is accepted: from the same user, and within the limit. If the
+  /// limit is reached, the oldest connection that is no page is closed.
   bool may_come(Visitor& visitor) {
     if (!driver::distrust_of_peer(visitor.socket().native_handle()).empty()) return false;
     visitors_.remove_if([](const Visitor& one) { return one.done(); });
@@ -136,7 +137,7 @@ class WebServer::Parts {
       return !one.is_page() && !one.is_cut();
     });
     if (oldest != visitors_.end()) oldest->cut();
-    // Those that are cut are still there until they have learned of it.
+    // A closed connection exists until its pending operations have ended.
     return visitors_.size() < kConnectionsMost + kCutMost;
   }
 
@@ -188,9 +189,9 @@ class WebServer::Parts {
     response.set(http::field::content_type, type);
     response.set(http::field::cache_control, "no-store");
     response.set("X-Content-Type-Options", "nosniff");
-    response.set("Referrer-Policy", "no-referrer");  // its address holds the token
+    response.set("Referrer-Policy", "no-referrer");  // the URL contains the token
     response.set("Cross-Origin-Resource-Policy", "same-origin");
-    // The rest of what the page may do stands in the page itself.
+    // The page itself contains the other directives.
     response.set("Content-Security-Policy", "frame-ancestors 'none'");
     return response;
   }
@@ -210,7 +211,7 @@ class WebServer::Parts {
   RequestGuard guard_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
-  std::list<Visitor> coming_;  // the one that is waited for
+  std::list<Visitor> coming_;  // the connection to be accepted next
   std::list<Visitor> visitors_;
   std::optional<LiveFeed> feed_;
   std::uint16_t port_ = 0;

@@ -10,22 +10,23 @@
 
 namespace thimble::web {
 
-/// Serves the page of a run that goes on to browsers on this computer: over HTTP the page, over
-/// WebSocket what it is told (LiveFeed). Who has not the token, or asks for a page of somebody
-/// else's, is refused with a sentence (RequestGuard). What pages say over WebSocket is not listened
-/// to; what they ask of the run comes by POST and goes the way of all viewers (steer_run). All of
-/// it goes on in the thread that calls `step`, and reaches the run by SharedReader
-/// alone. Real-time: never from the servo thread.
+/// Serves the page of a live run to browsers on this computer: the page over HTTP, its updates over
+/// WebSocket (LiveFeed). Requests without the token or from other origins are refused with a
+/// sentence (RequestGuard). Messages of pages over WebSocket are ignored. Commands to the run come
+/// by POST and use the same requests as all viewers (steer_run). All work is done in the thread
+/// that calls `step`, which accesses the run only through SharedReader. Real-time: never from the
+/// servo thread.
 class WebServer {
  public:
-  /// Between two updates: 30 a second. [chosen: what a screen shows of a touch]
+  /// Time between two updates: 30 a second. [chosen: what a screen shows of a touch]
   static constexpr std::chrono::milliseconds kStep{33};
-  /// Pages at a time. [chosen]
+  /// Maximum number of pages at a time. [chosen]
   static constexpr std::size_t kPagesMost = 16;
-  /// Bytes of what a page may say; longer ones end its connection. [chosen: they need say nothing]
+  /// Maximum bytes of a message from a page; longer ones end its connection. [chosen: pages need to
+  /// send nothing]
   static constexpr std::size_t kSaidMost = 1024;
 
-  /// Listens on a port of 127.0.0.1; 0: one that is free. Keeps `runs`, which must outlive it. The
+  /// Listens on a port of 127.0.0.1; 0: any free port. Keeps `runs`, which must outlive it. The
   /// error says what to do.
   static driver::Result<std::unique_ptr<WebServer>> listen(session::RunAttachment& runs,
                                                            std::uint16_t port);
@@ -33,14 +34,14 @@ class WebServer {
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// Returns the address to open, with its token.
+  /// Returns the URL to open, with the token.
   std::string address() const;
   std::uint16_t port() const noexcept;
-  /// Returns how many pages are connected.
+  /// Returns the number of pages that are connected.
   std::size_t pages() const noexcept;
-  /// Serves for kStep, then looks what is new and tells the pages.
+  /// Serves for kStep, then sends what is new to the pages.
   void step();
-  /// Tells the pages the rest of a run that is over, for `most` at most, and closes all
+  /// Sends the rest of a run that is over to the pages, for at most `most`, and closes all
   /// connections.
   void leave(std::chrono::milliseconds most);
 

@@ -16,9 +16,9 @@ void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
   if (!program.empty()) {
     CLI::App* command = app.add_subcommand(name, about);
     command->prefix_command();
-    command->set_help_flag();  // the help is that of the part's program
+    command->set_help_flag();  // the part's program prints the help
     command->footer("See " + std::string(part.package) + "(1).");
-    // Before the options of this program are complete, and the log of the other begins.
+    // Before this program checks its options and opens the log.
     command->preparse_callback([program](std::size_t) {
       throw CLI::RuntimeError(start_part(program).message, kExitTrouble);
     });

@@ -1,5 +1,5 @@
-// The commands of parts that this program lacks (THIMBLE_LACKS_PART): each starts the program of
-// its part, or answers with how to get it.
+// The commands of parts that this program lacks (THIMBLE_LACKS_PART). Each starts the program of
+// its part, or prints how to get it.
 #include "cli/commands.h"
 #include "cli/parts/part.h"
 

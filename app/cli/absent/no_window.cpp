@@ -1,4 +1,4 @@
-// The window is in the program thimble-viewer: without it `thimble view` shows runs as text and in
+// The window is in the program thimble-viewer. Without it, `thimble view` shows runs as text and in
 // a browser.
 #include "cli/commands.h"
 #include "cli/parts/part.h"

@@ -104,7 +104,7 @@ driver::Result<void> check_course(const RunOptions& options, const session::RunA
 }
 
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms) {
-  // A person who watches or leads does so in real time, unless he says otherwise.
+  // Watching or moving the hand needs real time, unless another clock is chosen.
   const bool for_a_person = options.for_a_person();
   const bool wall = options.clock.empty() ? options.ros.asked : options.clock == "wall";
   const bool by_key = options.hold_to_run == "key";
@@ -133,7 +133,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.hand_by_mouse = options.by_viewer();
   asked.hand_by_program = options.by_topic();
   asked.homed = options.homed;
-  asked.hold = *session::hold_named(options.hold_to_run);  // which has been checked
+  asked.hold = *session::hold_named(options.hold_to_run);  // checked before
   asked.several_arms = true;
   asked.quality = options.quality;
   asked.budget = options.budget;
@@ -194,7 +194,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
           [](const std::string& text) {
             char* end = nullptr;
             const double seconds = std::strtod(text.c_str(), &end);
-            // Written so that NaN is refused.
+            // Rejects NaN, too.
             const bool good =
                 end != text.c_str() && *end == 0 && seconds >= 1e-3 && seconds <= 86400;
             return good ? std::string() : "expected 0.001 to 86400 seconds, found " + text;

@@ -14,11 +14,11 @@
 
 namespace thimble::cli {
 
-/// What `thimble run` is asked for.
+/// The options of `thimble run`.
 struct RunOptions {
   std::string scene;
   std::vector<std::string> devices = {"sim"};
-  std::string clock;  // empty: as suits
+  std::string clock;  // empty: chosen automatically
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   std::string report;
@@ -33,7 +33,7 @@ struct RunOptions {
   bool view = false, no_view = false;
   bool sound = false, rumble = false;
   bool loop = false;
-  std::optional<bool> reload;   // as suits
+  std::optional<bool> reload;   // none: chosen automatically
   std::optional<double> speed;  // times real time
   std::string quality = "normal";
   std::optional<double> budget;  // ns
@@ -41,20 +41,20 @@ struct RunOptions {
   bool unchecked = false;
   bool homed = false;
   bool no_real_time = false;
-  std::string hold_to_run;  // empty: nothing is held
+  std::string hold_to_run;  // empty: no enabling input
   RosArguments ros;
 
-  /// Returns whether a person leads the simulated hand in the viewer.
+  /// Returns whether a person moves the simulated hand in the viewer.
   bool by_viewer() const { return hand != "path" && !by_topic(); }
-  /// Returns whether a topic of ROS 2 leads it.
+  /// Returns whether a topic of ROS 2 moves the simulated hand.
   bool by_topic() const { return hand == "topic"; }
-  /// Returns whether a topic of ROS 2 moves the time on.
+  /// Returns whether a topic of ROS 2 advances the time.
   bool stepped() const { return ros.asked && clock == "virtual"; }
   /// Returns whether a person watches a simulated arm's run.
   bool for_a_person() const { return view || by_viewer(); }
   /// Returns whether the run ends when its window is closed.
   bool ends_with_window() const { return by_viewer() || (view && loop); }
-  /// Returns whether the run begins anew when its scene's file changes.
+  /// Returns whether the run restarts when its scene file changes.
   bool reloads() const { return reload.value_or(for_a_person()); }
 };
 
@@ -64,19 +64,19 @@ void add_hold_option(CLI::App& command, std::string& hold);
 /// Adds the arguments of `thimble run`. The options must outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);
 
-/// Fails if the options do not go together, with what to write instead.
+/// Fails if the options contradict each other; the error says what to write instead.
 driver::Result<void> check_run_options(RunOptions& options);
 
-/// Fails if the arms have no course that can be chosen: one that is begun anew, or has a pace.
+/// Fails if an option that restarts or paces the run cannot be used with these arms.
 driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms);
 
-/// Returns what the session is asked for. The options must outlive it.
+/// Returns the session's options. `options` must outlive them.
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms);
 
-/// Returns whether a window shows the run.
+/// Returns which viewer shows the run.
 session::ViewerChoice viewer_choice(const RunOptions& options);
 
-/// Returns what `thimble view` is told besides the run's name.
+/// Returns the arguments of `thimble view` in addition to the run's name.
 std::vector<std::string> viewer_arguments(const RunOptions& options);
 
 }  // namespace thimble::cli

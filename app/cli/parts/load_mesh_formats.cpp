@@ -1,6 +1,6 @@
-// The readers by Assimp in programs whose package does not depend on that library: they are those
-// of the module thimble-mesh-formats.so, loaded at the first use. Linked before thimble_render,
-// whose own are left out then.
+// The Assimp readers for programs whose package does not depend on that library. They are in the
+// module thimble-mesh-formats.so, which is loaded at the first use. This is linked before
+// thimble_render and replaces its readers.
 #include <dlfcn.h>
 #include <pthread.h>
 
@@ -18,7 +18,7 @@ namespace thimble::render {
 namespace {
 
 // Held while the module is loaded, so that no process is forked meanwhile: a child that reads a
-// mesh would wait for the loader's lock for ever.
+// mesh would wait forever for the loader's lock.
 std::mutex loading;
 [[maybe_unused]] const int held_by_fork =
     pthread_atfork([] { loading.lock(); }, [] { loading.unlock(); }, [] { loading.unlock(); });
@@ -38,7 +38,7 @@ driver::Result<const cli::MeshFormats*> load_formats(const std::string& ending) 
     return driver::Error{file.string() + " cannot be loaded: " + dlerror() +
                          ". Install the package thimble-mesh-formats again."};
   }
-  // It is never unloaded: its functions may be called again.
+  // Never unloaded: its functions may be called again.
   const auto* formats =
       static_cast<const cli::MeshFormats*>(dlsym(module, cli::kMeshFormatsSymbol));
   if (formats == nullptr || std::strcmp(formats->version, THIMBLE_VERSION) != 0) {

@@ -59,14 +59,14 @@ int run(int argc, char** argv, const Program& program) {
   }
   try {
     auto words = without_separator(app, {argv + 1, argv + argc});
-    std::reverse(words.begin(), words.end());  // as the library takes them
+    std::reverse(words.begin(), words.end());  // the library takes them in reverse order
     app.parse(std::move(words));
   } catch (const CLI::Success& stop) {  // --help, --version, --list
     std::ostringstream out, wrong;
     app.exit(stop, out, wrong);
     scene::write_text(stdout, out.str());
     return kExitDone;
-  } catch (const CLI::RuntimeError& error) {  // a part's program does not start
+  } catch (const CLI::RuntimeError& error) {  // a part's program did not start
     return complain({error.what()}, kExitTrouble);
   } catch (const CLI::ParseError& error) {
     return complain({usage_error(app, error)}, kExitBadInput);
@@ -74,8 +74,8 @@ int run(int argc, char** argv, const Program& program) {
   return exit_code;
 }
 
-/// Returns the exit code of a program that has printed all it had to, or that of trouble if what it
-/// printed is lost. A reader that has gone (`| head`) has seen all it wanted.
+/// Returns the exit code of a program that has printed all its output, or kExitTrouble if output
+/// was lost. A closed reader (`| head`) is no error.
 int with_output(int exit_code) {
   const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
   struct stat output {};
@@ -92,7 +92,7 @@ int run_program(int argc, char** argv, const Program& program) {
   if (!output::open_standard_streams()) return kExitTrouble;
   scene::outlive_trouble_with_files();
   keep_arguments(argv);
-  // Every exception ends here, so that destructors run and the arm is left with zero force.
+  // Catches every exception, so that destructors run and the arm is left with zero force.
   try {
     return with_output(run(argc, argv, program));
   } catch (const std::exception& trouble) {

@@ -11,10 +11,10 @@ namespace thimble::cli {
 /// Adds a command (commands.h).
 using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
-/// A program: `thimble`, or that of a part, which `thimble` starts.
+/// A program: `thimble`, or the program of a part, which `thimble` starts.
 struct Program {
-  const char* name;   ///< Of its manual page.
-  const char* about;  ///< What it is for, without a full stop.
+  const char* name;   ///< Name of its manual page.
+  const char* about;  ///< Purpose, without a full stop.
   std::vector<AddCommand> commands;
 };
 

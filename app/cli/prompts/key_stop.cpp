@@ -8,12 +8,12 @@
 namespace thimble::cli {
 namespace {
 
-constexpr int kLook_ms = 20;  // [chosen: shorter than anybody notices]
+constexpr int kLook_ms = 20;  // [chosen: too short to be noticed]
 
 }  // namespace
 
 bool has_terminal() {
-  // What runs in the background would be stopped by a look at the terminal's keys.
+  // A background process that accesses the terminal would be stopped.
   return isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp();
 }
 
@@ -23,7 +23,7 @@ KeyStop::KeyStop() {
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   keys.c_cc[VMIN] = 1;
   keys.c_cc[VTIME] = 0;
-  // What was typed before it was asked for stops nothing.
+  // Discards keys typed before.
   if (tcsetattr(STDIN_FILENO, TCSAFLUSH, &keys) != 0) return;
   listener_ = std::thread([this] { listen(); });
 }
@@ -40,7 +40,7 @@ void KeyStop::listen() {
     pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (poll(&terminal, 1, kLook_ms) <= 0 || !has_terminal()) continue;
     char key = 0;
-    // A terminal that is gone stops it as well: nobody is there to do it.
+    // A closed terminal stops the program too, because no key can stop it any more.
     pressed_.store(read(STDIN_FILENO, &key, 1) == 1);
     scene::ask_to_stop();
     return;

@@ -7,10 +7,10 @@
 
 namespace thimble::cli {
 
-/// Stops the program by any key while it exists, as Ctrl-C does: for motion that a person watches.
-/// It listens only to a terminal in whose foreground the program is. Keys are then not shown and
-/// need no Enter; Ctrl-C and its like stay what they are. The terminal is as before when it is
-/// gone. Real-time: never from the servo thread.
+/// Makes any key stop the program while this object exists, as Ctrl-C does, for motion that a
+/// person watches. It listens only if the program is in the foreground of a terminal. Keys are not
+/// echoed and need no Enter; Ctrl-C and similar keys are unchanged. The destructor restores the
+/// terminal. Real-time: never from the servo thread.
 class KeyStop {
  public:
   KeyStop();
@@ -18,7 +18,7 @@ class KeyStop {
   KeyStop(const KeyStop&) = delete;
   KeyStop& operator=(const KeyStop&) = delete;
 
-  /// Returns whether there is a terminal that it listens to.
+  /// Returns whether it listens to a terminal.
   bool listens() const { return listener_.joinable(); }
   /// Returns whether a key was pressed.
   bool pressed() const { return pressed_.load(); }
@@ -31,7 +31,7 @@ class KeyStop {
   std::thread listener_;
 };
 
-/// Returns whether standard input is a terminal in whose foreground this program is.
+/// Returns whether standard input is a terminal and this program is in its foreground.
 bool has_terminal();
 
 }  // namespace thimble::cli

@@ -12,7 +12,7 @@ namespace thimble::cli {
 bool says_yes(const std::string& question, const std::atomic<bool>& stop) {
   scene::print_format("%s [y/N] ", question.c_str());
   std::fflush(stdout);
-  constexpr int kAnswer_ms = 50;  // a signal does not end a read by itself
+  constexpr int kAnswer_ms = 50;  // a signal does not interrupt a read by itself
   while (!stop.load()) {
     pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (poll(&terminal, 1, kAnswer_ms) <= 0) continue;

@@ -5,8 +5,8 @@
 
 namespace thimble::cli {
 
-/// Asks the person at the terminal, and returns whether the answer begins with y. Anything else, an
-/// input that ends and `stop` are no. Real-time: never from the servo thread.
+/// Asks the person at the terminal, and returns whether the answer begins with y. Any other answer,
+/// the end of input, and `stop` mean no. Real-time: never from the servo thread.
 bool says_yes(const std::string& question, const std::atomic<bool>& stop);
 
 }  // namespace thimble::cli

@@ -24,8 +24,8 @@ int run_study(const studies::Study& study, const std::filesystem::path& folder) 
 
 using AddOptions = void (*)(CLI::App& command, int& exit_code);
 
-/// Returns the function that gives a study its own options and runs it. Throws std::out_of_range
-/// for a study that has none: a fault of this table, which every run of the command shows.
+/// Returns the function that adds a study's options and runs it. Throws std::out_of_range for a
+/// study without one: an error in this table, which shows in every run of the command.
 AddOptions options_of(const studies::Study& study) {
   static const std::map<std::string_view, AddOptions> table{{"accuracy", add_accuracy_options},
                                                             {"gating", add_gating_options},

@@ -16,7 +16,7 @@
 namespace thimble::cli {
 namespace {
 
-/// What every study by a sweep asks for.
+/// Options of every study that uses a sweep.
 struct SweepChoice {
   std::string out;
   int jobs = 0;
@@ -33,8 +33,8 @@ struct SweepChoice {
   }
 };
 
-/// Runs a study by a sweep, alone or as one of the processes that mpirun started; the process that
-/// leads writes the figures.
+/// Runs a study by a sweep, in a single process or as one of the processes that mpirun started. The
+/// leading process writes the figures.
 template <class Run>
 int run_by_sweep(const SweepChoice& choice, const Run& run) {
   const std::atomic<bool>& stop = scene::catch_interrupts();

@@ -9,8 +9,8 @@
 
 namespace thimble::cli {
 
-/// Writes a study's figures to figures.json in its folder, prints them as a table, where they are
-/// and `where_to_look` in it, and in the last line what misses its goal. Returns the exit code:
+/// Writes a study's figures to figures.json in its folder and prints them as a table. Prints the
+/// place of the file, `where_to_look`, and in the last line the unmet goals. Returns the exit code:
 /// that of unmet figures, or of a file that could not be written. Real-time: never from the servo
 /// thread.
 ExitCode end_study(const std::vector<session::Figure>& figures, const std::filesystem::path& folder,

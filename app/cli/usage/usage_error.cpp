@@ -15,13 +15,13 @@
 namespace thimble::cli {
 namespace {
 
-/// Returns how a command is called: "thimble study friction".
+/// Returns the words that call a command: "thimble study friction".
 std::string call_of(const CLI::App& command) {
   const CLI::App* above = command.get_parent();
   return (above != nullptr ? call_of(*above) + " " : "") + command.get_name();
 }
 
-/// Returns the innermost command that was named.
+/// Returns the innermost command on the command line.
 const CLI::App& named_command(const CLI::App& program) {
   const CLI::App* command = &program;
   for (;;) {
@@ -31,11 +31,11 @@ const CLI::App& named_command(const CLI::App& program) {
   }
 }
 
-/// Returns the commands that a person may write behind this one.
+/// Returns the commands that a user may write after this one.
 std::vector<std::string> commands_below(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
-    // Option groups have no name; commands without a group are for the program itself.
+    // Option groups have no name; commands without a group are internal.
     if (!below->get_name().empty() && !below->get_group().empty()) {
       names.push_back(below->get_name());
     }
@@ -43,7 +43,7 @@ std::vector<std::string> commands_below(const CLI::App& command) {
   return names;
 }
 
-/// Adds the options of a command and of its option groups, by the names that a person writes.
+/// Adds the names of the options of a command and of its option groups.
 void add_option_names(const CLI::App& command, std::vector<std::string>& names) {
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -66,8 +66,8 @@ std::string without_dashes(const std::string& option) {
   return option.substr(std::min(option.find_first_not_of('-'), option.size()));
 }
 
-/// Returns " Did you mean --duration?", or nothing. Dashes do not make options alike: -z is as far
-/// from -h as any letter, and -duration is --duration.
+/// Returns " Did you mean --duration?", or nothing. Dashes do not count: -z is no closer to -h than
+/// any other letter, and -duration matches --duration.
 std::string option_suggestion(const std::string& option, const std::vector<std::string>& known) {
   std::vector<std::string> names;
   for (const std::string& one : known) names.push_back(without_dashes(one));
@@ -113,13 +113,13 @@ std::vector<std::string> split(std::string_view text, std::string_view by) {
   }
 }
 
-/// What an option takes, as far as the library's name of its type says.
+/// What an option accepts, as far as the library's type name shows.
 struct Expectation {
   std::string words;                 ///< "a number from 0 to 1"; empty: any text.
-  std::vector<std::string> choices;  ///< The words that it takes, if it takes words.
+  std::vector<std::string> choices;  ///< The accepted words, if it accepts words.
 };
 
-/// Reads the library's description of one check; empty if it is none of the known ones.
+/// Parses the library's description of one check; empty for unknown checks.
 Expectation expectation_of_check(std::string_view check, const std::string& number) {
   while (check.starts_with('(') && check.ends_with(')')) check = check.substr(1, check.size() - 2);
   const auto either = split(check, ") OR (");
@@ -161,7 +161,7 @@ Expectation expectation_of(const CLI::Option& option) {
   return {.words = number, .choices = {}};
 }
 
-/// Returns an option by the name that the library gives it, from a command or one above.
+/// Returns an option by the library's name of it, from a command or one above.
 const CLI::Option* find_option(const CLI::App& command, const std::string& name) {
   for (const CLI::App* one = &command; one != nullptr; one = one->get_parent()) {
     if (const CLI::Option* option = one->get_option_no_throw(name)) return option;
@@ -169,7 +169,7 @@ const CLI::Option* find_option(const CLI::App& command, const std::string& name)
   return nullptr;
 }
 
-/// Returns the value of an option that the library speaks of in a message.
+/// Returns the value of an option that a message of the library names.
 std::string value_in(const CLI::Option& option, std::string_view message) {
   const auto& given = option.results();
   for (const std::string& value : given) {
@@ -185,7 +185,7 @@ std::string expected_for(const CLI::Option& option, const std::string& value) {
                      suggestion(value, expected.choices));
 }
 
-/// Returns the sentence for a value that a check of an option refused with `message`.
+/// Returns the sentence for a value that a check of an option rejected with `message`.
 std::string refused_value(const CLI::Option* option, const std::string& name,
                           const std::string& message) {
   const auto full = [&name](std::string sentence) {
@@ -201,14 +201,14 @@ std::string refused_value(const CLI::Option* option, const std::string& name,
     return full(value +
                 (message[0] == 'F' ? " is a folder; name a file" : " is a file; name a folder"));
   }
-  // Checks of our own have a sentence; the library's have a description instead.
+  // Our checks return a sentence; the library's return a description.
   const bool ours = message.find("expected ") != std::string::npos ||
                     message.find("there is no ") != std::string::npos;
   if (ours || expectation_of(*option).words.empty()) return full(message);
   return expected_for(*option, value);
 }
 
-/// Returns the sentence for an argument that has to be given.
+/// Returns the sentence for a missing argument.
 std::string missing(const CLI::App& command, const CLI::Option* option, const std::string& name) {
   std::string text = name + " is missing.";
   if (option != nullptr && option->get_positional() && name == "SCENE") {
@@ -217,7 +217,7 @@ std::string missing(const CLI::App& command, const CLI::Option* option, const st
   return text + see_help(command);
 }
 
-/// Returns the sentence for a command that lacks what must stand behind it.
+/// Returns the sentence for a command without its required sub-command or arguments.
 std::string incomplete(const CLI::App& command) {
   const auto known = commands_below(command);
   return fmt::format("`{}` needs a command behind it: {}.{}", call_of(command), joined(known),
@@ -230,7 +230,7 @@ std::string before(const std::string& message, std::string_view text) {
   return end == std::string::npos ? std::string() : message.substr(0, end);
 }
 
-/// Returns whether all of a text is a number of a type, in decimal form.
+/// Returns whether the whole text is a decimal number of the type.
 template <class Number>
 bool is_decimal(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -240,8 +240,8 @@ bool is_decimal(std::string_view text) {
   return status == std::errc() && end == last && std::isfinite(static_cast<double>(number));
 }
 
-/// Returns whether a text is what an option of a type takes: a finite number, or a whole one that
-/// fits.
+/// Returns whether a text is valid for an option of a type: a finite number, or an integer within
+/// range.
 bool is_number_of(std::string_view type, std::string_view text) {
   if (type == "UINT") return is_decimal<std::uint64_t>(text);
   return type == "INT" ? is_decimal<std::int64_t>(text) : is_decimal<double>(text);
@@ -301,7 +301,7 @@ std::string unknown_word(const CLI::App& command, const std::string& word) {
 std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = named_command(program);
   const std::string message = error.what();
-  if (!command.get_prefix_command()) {  // such a command leaves its words to another program
+  if (!command.get_prefix_command()) {  // a prefix command passes its words to another program
     for (const std::string& word : program.remaining(true)) {
       if (word != "--") return unknown_word(command, word);
     }

@@ -20,19 +20,20 @@
 namespace thimble::compat::arms {
 namespace {
 
-constexpr std::int64_t kLook_ns = 100'000'000;  // how often a waiter looks after the other side
-constexpr std::int64_t kPeriod_ns = 1'000'000;  // paces a loop whose arm is gone
+constexpr std::int64_t kLook_ns = 100'000'000;  // time after which a waiter checks that the other
+                                                // side is alive
+constexpr std::int64_t kPeriod_ns = 1'000'000;  // paces a loop whose arm has ended
 constexpr std::int64_t kOpening_ns = 120'000'000'000;  // a person may have to agree to forces
 
-/// What this process knows of an arm that it has open.
+/// This process's state of an arm that it has open.
 struct OwnArm {
-  std::mutex mutex;                          // of writers: a snapshot has one
-  std::atomic<int> opened{0};                // how often
-  std::uint64_t number = 0;                  // of the force written last
-  std::atomic<const char*> leader{nullptr};  // the thread whose waits alone move time on
+  std::mutex mutex;                          // for writers: a snapshot allows one
+  std::atomic<int> opened{0};                // number of openings
+  std::uint64_t number = 0;                  // number of the last force
+  std::atomic<const char*> leader{nullptr};  // the only thread whose waits advance time
 };
 
-// Never destroyed: threads of the program may still ask while it exits.
+// Never destroyed: threads of the program may use it while it exits.
 std::array<OwnArm, kArmsMost>& own_arms() {
   static auto& all = *new std::array<OwnArm, kArmsMost>;
   return all;
@@ -47,7 +48,7 @@ std::mutex& opening() {
   return only;
 }
 
-/// Returns what no other thread has.
+/// Returns an address that is unique to this thread.
 const char* this_thread() noexcept {
   static thread_local const char own_byte = 0;
   return &own_byte;
@@ -57,7 +58,7 @@ bool is_number(int arm) noexcept {
   return arm >= 0 && arm < kArmsMost;
 }
 
-/// Returns the channel of an arm that is open here; null if it is not.
+/// Returns the channel of an arm opened here; null if it is not open.
 ArmChannel* channel_of(int arm) noexcept {
   if (!is_number(arm) || own(arm).opened.load(std::memory_order_acquire) == 0) return nullptr;
   Channel* channel = open_channel();
@@ -68,7 +69,7 @@ bool is_server_alive() noexcept {
   return driver::is_byte_locked(channel_file(), kServerByte);
 }
 
-/// Waits by the wall's time.
+/// Sleeps in wall-clock time.
 void wait_ns(std::int64_t duration_ns) noexcept {
   timespec left{duration_ns / 1'000'000'000, duration_ns % 1'000'000'000};
   while (nanosleep(&left, &left) != 0 && errno == EINTR) {
@@ -92,10 +93,10 @@ std::string text_of(const std::array<char, N>& text) {
   return {text.data(), strnlen(text.data(), N)};
 }
 
-/// Lets an arm whose ticks wait for the program go on until `ticks` of them are over.
+/// Permits ticks of an arm that wait for the program, up to number `ticks`.
 void permit(ArmChannel& arm, std::uint32_t ticks) noexcept {
   std::uint32_t permitted = arm.permitted.load();
-  // Counted around: the later one is less than half the numbers ahead.
+  // Comparison with wrap-around: the later number is less than half the range ahead.
   while (static_cast<std::int32_t>(ticks - permitted) > 0) {
     if (!arm.permitted.compare_exchange_weak(permitted, ticks)) continue;
     wake_all(arm.permitted);
@@ -103,7 +104,7 @@ void permit(ArmChannel& arm, std::uint32_t ticks) noexcept {
   }
 }
 
-/// Returns an arm that is open here and whose ticks wait for the program, from `first` on; -1:
+/// Returns the first arm from `first` that is opened here and whose ticks wait for the program; -1:
 /// none.
 int paced_arm(int first = 0) noexcept {
   for (int arm = first; arm < kArmsMost; ++arm) {
@@ -116,8 +117,8 @@ int paced_arm(int first = 0) noexcept {
   return -1;
 }
 
-/// Waits until a loop has done what `done` looks at. False, after a period of sleep, if the loop
-/// is over or its process gone.
+/// Waits until `done` returns true for a loop. If the loop or its process has ended, returns false
+/// after a sleep of one period.
 template <class Done>
 bool wait_until(int number, Done done) noexcept {
   Channel* channel = open_channel();
@@ -140,11 +141,11 @@ bool wait_until(int number, Done done) noexcept {
   return reached;
 }
 
-/// Makes an arm this program's own, before anything is written of it: of two programs that ask at
-/// once one gets it, and the other one changes nothing.
+/// Claims an arm for this program before it writes anything of the arm. Of two programs that do so
+/// at once, one gets it and the other changes nothing.
 bool win(int number, const ArmChannel& arm) noexcept {
   constexpr std::int64_t kPause_ns = 10'000'000;
-  constexpr int kLooks = 200;  // 2 s: the server closes the arm of a program that has just died
+  constexpr int kLooks = 200;  // 2 s: the server closes a dead program's arm meanwhile
   for (int look = 0; look < kLooks; ++look) {
     if (!driver::lock_byte(channel_file(), kFirstOwnerByte + number)) return false;
     if (arm.state.load() == ChannelState::kClosed) return true;
@@ -159,11 +160,11 @@ void give_up(int number) noexcept {
   driver::unlock_byte(channel_file(), kFirstOwnerByte + number);
 }
 
-/// Asks the server for an arm that this program has won, and waits for its answer: empty, or what
-/// is wrong.
+/// Requests an arm claimed by this program from the server, and waits for its answer: empty, or the
+/// problem.
 std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
   copy_text(arm.face, face);
-  // Settings of an earlier program do not count.
+  // Settings of an earlier program are reset.
   arm.enabled.store(0);
   arm.watchdog_ns.store(0);
   arm.speed_limit.store(0);
@@ -239,14 +240,14 @@ bool close(int arm) noexcept {
   if (own(arm).opened.fetch_sub(1) > 1) return true;
   shared->enabled.store(0);
   if (shared->state.exchange(ChannelState::kLeaving) == ChannelState::kEnded) {
-    shared->state.store(ChannelState::kClosed);  // its run is over: nobody need end it
+    shared->state.store(ChannelState::kClosed);  // its run has ended by itself
     give_up(arm);
     return true;
   }
   Channel* channel = open_channel();
   channel->requests.fetch_add(1);
   wake_all(channel->requests);
-  // The same arm may be opened again at once; so it waits until it is free.
+  // Waits until the arm is free, because the same arm may be opened again at once.
   while (shared->state.load() == ChannelState::kLeaving && is_server_alive()) {
     wait_while(shared->state, ChannelState::kLeaving, kLook_ns);
   }
@@ -301,7 +302,7 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept {
     const std::lock_guard lock(own_arm.mutex);
     channel->force.store({.asked = asked, .number = ++own_arm.number});
   }
-  // Written so that NaN counts.
+  // NaN counts as nonzero.
   const auto acts = [](double value) { return !(value == 0); };
   if (std::any_of(asked.torque_W.begin(), asked.torque_W.end(), acts)) {
     open_channel()->torques_asked.fetch_add(1, std::memory_order_relaxed);

@@ -7,80 +7,82 @@
 
 namespace thimble::compat {
 
-/// The arms of `thimble exec`, as the libraries that stand in for others' reach them: the only way
-/// from a face to an arm. The servo loop, the gate and the arm are in the process of `thimble
-/// exec`; what is here reads and writes memory that both share.
+/// Access to the arms of `thimble exec` for the compatibility libraries. It is their only way to an
+/// arm. The servo loop, the gate and the arm are in the process of `thimble exec`; these functions
+/// read and write memory shared with it.
 ///
-/// One for the whole process, used by all of its threads. No function throws, hangs or crashes,
-/// whatever it is given: an arm that is not open gives false, zeros, or nothing. Nothing of it is
-/// for our servo thread; reading and asking for a force take no system call.
+/// One instance per process, used by all of its threads. No function throws, hangs or crashes,
+/// whatever its arguments are. For an arm that is not open, functions return false, zeros or
+/// nothing. Not for the servo thread; reading and requesting a force make no system call.
 namespace arms {
 
-/// Returns how many arms may be opened; 0 where the program was not started by `thimble exec`.
+/// Returns how many arms may be opened; 0 if the program was not started by `thimble exec`.
 int count() noexcept;
 
-/// Opens an arm, or opens it once more if it is open, and starts its loop; its force is off until
-/// `enable_force`. `face`: who asks, for the report ("HDAPI"). Returns an empty text, or what is
-/// wrong and what to do. Waits until the arm is there.
+/// Opens an arm, or opens it once more if it is open, and starts its loop. Its force is off until
+/// `enable_force`. `face`: name of the interface for the report ("HDAPI"). Returns an empty text,
+/// or the problem and what to do. Waits until the arm is open.
 std::string open(int arm, const char* face);
-/// Closes an arm as often as it was opened; the last time its force goes to zero and it may be
-/// opened again. Returns false if it was not open.
+/// Closes an arm. After as many calls as `open`, its force goes to zero and it may be opened again.
+/// Returns false if it was not open.
 bool close(int arm) noexcept;
-/// Returns whether an arm is open here.
+/// Returns whether this process has opened an arm.
 bool is_open(int arm) noexcept;
-/// Returns whether its loop runs. False: `thimble exec` is gone or the run has ended.
+/// Returns whether an arm's loop runs. False: `thimble exec` or the run has ended.
 bool is_running(int arm) noexcept;
-/// Returns what an arm is; before it was opened once, what its arm file says (zeros where a real
-/// arm is not chosen yet); zeros beyond `count`. It may not be opened meanwhile by another thread.
+/// Returns the constant properties of an arm. Before the first opening, those of its arm file
+/// (zeros if a real arm is not chosen yet); zeros beyond `count`. No other thread may open the arm
+/// meanwhile.
 const ArmFacts& facts(int arm) noexcept;
-/// Returns the name of an arm that need not be open, as `thimble exec` was given it; empty beyond
+/// Returns the name of an arm as passed to `thimble exec`; the arm need not be open. Empty beyond
 /// `count`.
 std::string name(int arm);
 
-/// Copies what is known after the newest tick. False if the arm is not open; then nothing changes.
+/// Copies the state after the newest tick. False if the arm is not open; then nothing changes.
 bool read(int arm, ArmReading& reading) noexcept;
-/// Waits until a tick after `tick` is over. False, after one period of sleep, if there will be
-/// none.
+/// Waits until a tick after `tick` is over. If there will be none, returns false after a sleep of
+/// one period.
 bool wait_for_tick(int arm, std::uint64_t tick) noexcept;
 
-/// Asks for a force from the next tick on, until it is asked for another one. It must be renewed
-/// at least every `ArmFacts::stall_ns` (or `set_watchdog`), else it counts as zero.
+/// Requests a force from the next tick until the next request. It must be renewed at least every
+/// `ArmFacts::stall_ns` (or `set_watchdog`), otherwise it counts as zero.
 bool ask_force(int arm, const ForceAsked& asked) noexcept;
-/// Waits until a tick has taken the force that was asked for last: what paces the loops of others.
-/// False, after one period of sleep, if there will be none.
+/// Waits until a tick has taken the last requested force. This paces the loop of the program. If
+/// there will be no tick, returns false after a sleep of one period.
 bool wait_until_taken(int arm) noexcept;
 
-/// Says whether ticks that wait for the program wait for the calling thread alone: one that renews
-/// the force by itself, while other threads wait for ticks too. Ends by the same thread.
+/// Sets whether only the calling thread permits ticks that wait for the program: a thread that
+/// renews the force by itself, while other threads wait for ticks too. The same thread must end
+/// this.
 void lead(int arm, bool leads) noexcept;
 
-/// Returns the time that the program lives by, ns since some start: the wall's, or that of the
-/// first open arm where ticks wait for the program (`thimble exec --clock virtual`).
+/// Returns the program's time, ns since some start: wall-clock time, or the time of the first open
+/// arm if ticks wait for the program (`thimble exec --clock virtual`).
 std::int64_t now_ns() noexcept;
-/// Waits by that time.
+/// Sleeps in that time.
 void sleep_ns(std::int64_t duration_ns) noexcept;
 
-/// Lets all force through, the program's and the scene's, or none. Switched on it opens slowly
-/// (soft start). A simulated arm that is in fault, with the cause over, is activated anew; a real
-/// one waits for a person.
+/// Enables or disables all force, the program's and the scene's. After it is enabled, it rises
+/// slowly (soft start). A simulated arm in fault is activated again if the cause is over; a real
+/// one needs a person.
 bool enable_force(int arm, bool enabled) noexcept;
-/// Returns whether force is let through.
+/// Returns whether force is enabled.
 bool force_enabled(int arm) noexcept;
-/// Sets how long a force counts that is not renewed, ns; above the gate's own, or 0: the gate's.
+/// Sets how long a force counts without renewal, ns. Above the gate's limit, or 0: the gate's.
 bool set_watchdog(int arm, std::int64_t watchdog_ns) noexcept;
-/// Sets the speed of the tip (m/s) that is a fault; above the gate's own, or 0: the gate's.
+/// Sets the speed of the tip (m/s) that causes a fault. Above the gate's limit, or 0: the gate's.
 bool set_speed_limit(int arm, double speed) noexcept;
-/// Sets the largest force (N) that this program may ask for; above the gate's own, or 0: the
-/// gate's. A longer one is cut to it.
+/// Sets the maximum force (N) of this program; larger forces are limited to it. Above the gate's
+/// limit, or 0: the gate's.
 bool set_force_limit(int arm, double force) noexcept;
 
-/// Notes that a program has calibrated an arm, as its interface asks. It holds beyond `close`, for
-/// other programs of the same `thimble exec` too.
+/// Records that a program has calibrated an arm, as its interface requires. It remains valid after
+/// `close`, and for other programs of the same `thimble exec`.
 bool mark_calibrated(int arm) noexcept;
-/// Returns whether one has.
+/// Returns whether a program has calibrated an arm.
 bool is_calibrated(int arm) noexcept;
 
-/// Counts a wrong call for the report and keeps the first words of each function.
+/// Counts a wrong call for the report and keeps the first message of each function.
 void wrong_call(const char* function, const char* what) noexcept;
 
 }  // namespace arms

@@ -11,42 +11,42 @@
 
 namespace thimble::compat {
 
-// The memory that `thimble exec` and the program that it started share. It begins as zeros. What
-// one side writes the other only reads, but for counters; all that changes while an arm is open is
-// atomic or a snapshot. Process ids mean nothing across PID namespaces, so each side shows that it
-// lives by a byte of the file that it has locked (byte_lock.h).
+// The memory shared by `thimble exec` and the program that it started. It begins as zeros. Except
+// for counters, only one side writes a value. All values that change while an arm is open are
+// atomic or snapshots. Process ids mean nothing across PID namespaces, so each side shows that it
+// is alive by a locked byte of the file (byte_lock.h).
 
-/// The environment variable that names the memory's file to the program.
+/// The environment variable with the path of the memory's file.
 inline constexpr const char* kChannelVariable = "THIMBLE_EXEC";
 
 /// The byte of the file that `thimble exec` has locked.
 inline constexpr std::int64_t kServerByte = 0;
-/// And on: the bytes of the arms. A program locks an arm's before it writes anything of the arm,
-/// and releases it when it is done with the arm.
+/// First of the bytes of the arms. A program locks an arm's byte before it writes anything of the
+/// arm, and releases it when it is done with the arm.
 inline constexpr std::int64_t kFirstOwnerByte = 16;
 
-/// Where an arm of the channel is in its life.
+/// State of an arm of the channel.
 enum class ChannelState : std::uint32_t {
-  kClosed,   ///< Nobody has it.
-  kWanted,   ///< A program asks for it (written by the program).
+  kClosed,   ///< No program uses it.
+  kWanted,   ///< A program requests it (written by the program).
   kOpen,     ///< Its loop runs.
   kFailed,   ///< It cannot be opened; `trouble` says why.
-  kLeaving,  ///< The program is done with it (written by the program).
-  kEnded,    ///< Its loop is over while the program still has it.
+  kLeaving,  ///< The program has finished with it (written by the program).
+  kEnded,    ///< Its loop has ended while the program still uses it.
 };
 
-/// A force as the program wrote it.
+/// A force written by the program.
 struct ForceWritten {
-  ForceAsked asked;          ///< What is asked.
-  std::uint64_t number = 0;  ///< Grows by one with each; 0: none yet.
+  ForceAsked asked;          ///< The requested force.
+  std::uint64_t number = 0;  ///< Incremented with each; 0: none yet.
 };
 
 /// One arm of the channel.
 struct ArmChannel {
-  std::array<char, 64> name{};                             ///< What `thimble exec` was given.
+  std::array<char, 64> name{};                             ///< Name passed to `thimble exec`.
   std::atomic<ChannelState> state{ChannelState::kClosed};  ///< A futex.
-  std::array<char, 32> face{};                             ///< Which library it uses.
-  std::array<char, 1024> trouble{};                        ///< Of kFailed.
+  std::array<char, 32> face{};                             ///< The compatibility library used.
+  std::array<char, 1024> trouble{};                        ///< Reason of kFailed.
   ArmFacts facts;                                          ///< Written while it is not open.
 
   driver::Snapshot<ArmReading> reading;     ///< Written by the servo.
@@ -54,37 +54,37 @@ struct ArmChannel {
   std::atomic<std::uint32_t> waiting{0};    ///< Threads that wait for a tick.
   std::atomic<std::uint64_t> taken{0};      ///< Number of the newest force that was sent.
   std::atomic<std::uint32_t> paced{0};      ///< Whether ticks wait for the program (virtual time).
-  std::atomic<std::uint32_t> permitted{0};  ///< A futex; up to which of `ticks` they may go on.
+  std::atomic<std::uint32_t> permitted{0};  ///< A futex; `ticks` may rise to this value.
 
   driver::Snapshot<ForceWritten> force;      ///< Written by the program.
-  std::atomic<std::uint32_t> enabled{0};     ///< Whether force is let through.
-  std::atomic<std::uint32_t> enablings{0};   ///< How often it was switched on.
+  std::atomic<std::uint32_t> enabled{0};     ///< Whether force is enabled.
+  std::atomic<std::uint32_t> enablings{0};   ///< How often force was enabled.
   std::atomic<std::int64_t> watchdog_ns{0};  ///< 0: the gate's.
   std::atomic<double> speed_limit{0};        ///< m/s; 0: the gate's.
   std::atomic<double> force_limit{0};        ///< N; 0: the gate's.
-  std::atomic<std::uint32_t> calibrated{0};  ///< Whether a program has asked for it (HDAPI).
+  std::atomic<std::uint32_t> calibrated{0};  ///< Whether a program has calibrated it (HDAPI).
 };
 
-/// A function that was called in a wrong way.
+/// A function that was called wrongly.
 struct WrongCall {
   std::array<char, 64> function{};      ///< Its name.
-  std::array<char, 128> what{};         ///< What was wrong with the first.
-  std::atomic<std::uint64_t> count{0};  ///< How often; 0: this entry is free or not ready.
+  std::array<char, 128> what{};         ///< The problem of the first wrong call.
+  std::atomic<std::uint64_t> count{0};  ///< Wrong calls; 0: the entry is free or not ready.
 };
 
-/// All of it.
+/// The whole channel.
 struct Channel {
-  static constexpr std::size_t kWrongCallsMost = 64;  ///< Functions that are told apart.
+  static constexpr std::size_t kWrongCallsMost = 64;  ///< Functions with separate counts.
 
-  /// channel_layout_hash() (channel_layout.h) once the rest is ready; always first.
+  /// channel_layout_hash() (channel_layout.h) once the rest is ready; always the first member.
   std::atomic<std::uint64_t> layout{0};
   std::int32_t arm_count = 0;              ///< 1 to kArmsMost.
-  std::atomic<std::uint32_t> requests{0};  ///< A futex; grows with each request of the program.
+  std::atomic<std::uint32_t> requests{0};  ///< A futex; incremented with each request.
   std::array<ArmChannel, kArmsMost> arms;
   std::atomic<std::uint32_t> wrong_calls_used{0};
   std::array<WrongCall, kWrongCallsMost> wrong_calls;
-  std::atomic<std::uint64_t> torques_asked{0};   ///< Forces that came with a torque: not felt.
-  std::atomic<std::uint64_t> grippers_asked{0};  ///< The same with a force of the gripper.
+  std::atomic<std::uint64_t> torques_asked{0};   ///< Forces with a torque, which is ignored.
+  std::atomic<std::uint64_t> grippers_asked{0};  ///< Forces with a gripper force, which is ignored.
 };
 
 }  // namespace thimble::compat

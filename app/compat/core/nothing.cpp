@@ -1,1 +1,1 @@
-// The shared libraries of a face are made of its archive; a target needs a source.
+// The shared libraries are made of an archive; a CMake target needs a source.

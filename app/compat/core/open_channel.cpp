@@ -20,17 +20,17 @@ struct Opened {
   std::mutex mutex;
   bool tried = false;
   std::atomic<Channel*> channel{nullptr};
-  std::atomic<int> file{-1};  // of the channel: its locks are this process's
+  std::atomic<int> file{-1};  // file of the channel, with this process's locks
   std::string trouble;
 };
 
-// Never destroyed: threads of the program may still ask while it exits.
+// Never destroyed: threads of the program may use it while it exits.
 Opened& opened() {
   static Opened& only = *new Opened;
   return only;
 }
 
-/// Opens the file of a channel of this user; -1 if it is none. Never waits, whatever the path
+/// Opens the file of a channel of this user; -1 if it is none. Never blocks, whatever the path
 /// names.
 int open_file(const char* path) noexcept {
   const int file = open(path, O_RDWR | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -44,8 +44,8 @@ int open_file(const char* path) noexcept {
   return -1;
 }
 
-/// Returns whether a file holds a channel as this build lays it out. By reading the first word,
-/// before anything else is believed.
+/// Returns whether a file contains a channel with the layout of this build. Reads only the first
+/// word, before it trusts any other.
 bool has_our_layout(int file) noexcept {
   std::uint64_t layout = 0;
   struct stat status {};
@@ -79,7 +79,7 @@ void map_channel(Opened& only) {
     return;
   }
   only.file.store(file);
-  // Whoever made it began the lifetime of what lies there.
+  // The process that made the file began the lifetime of the object in it.
   only.channel.store(std::launder(static_cast<Channel*>(at)), std::memory_order_release);
 }
 

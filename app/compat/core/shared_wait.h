@@ -11,10 +11,10 @@
 
 namespace thimble::compat {
 
-// Waiting for a word of memory that processes share: std::atomic::wait sees one process alone.
+// Waiting on a word of memory shared by processes: std::atomic::wait works only within one process.
 
-/// Waits until `word` is not `old` any more, somebody wakes its waiters, or the time is over.
-/// Real-time: never from the servo thread.
+/// Waits until `word` differs from `old`, its waiters are woken, or the time is over. Real-time:
+/// never from the servo thread.
 template <class Word>
 void wait_while(const std::atomic<Word>& word, Word old, std::int64_t timeout_ns) noexcept {
   static_assert(sizeof(Word) == 4 && std::atomic<Word>::is_always_lock_free);
@@ -22,7 +22,7 @@ void wait_while(const std::atomic<Word>& word, Word old, std::int64_t timeout_ns
   syscall(SYS_futex, &word, FUTEX_WAIT, static_cast<std::uint32_t>(old), &timeout, nullptr, 0);
 }
 
-/// Wakes all that wait for `word`. Real-time: safe; one system call that does not wait.
+/// Wakes all waiters of `word`. Real-time: safe; one system call that does not wait.
 template <class Word>
 void wake_all(const std::atomic<Word>& word) noexcept {
   static_assert(sizeof(Word) == 4);

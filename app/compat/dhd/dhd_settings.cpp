@@ -1,4 +1,4 @@
-// What a program tells an arm: force on and off, angles, masses, limits.
+// Settings of an arm: force on and off, angles, masses, limits.
 #include <cmath>
 #include <numbers>
 
@@ -58,7 +58,7 @@ int dhdEnableForce(unsigned char on, char id) {
     switch_off(*arm, kOffBySoftware);
     return 0;
   }
-  // Whatever was asked for before stays in the past.
+  // Discards earlier requests.
   arms::ask_force(arm->number, {});
   arm->force_sent = false;
   if (!arms::enable_force(arm->number, true)) {
@@ -68,7 +68,7 @@ int dhdEnableForce(unsigned char on, char id) {
   return 0;
 }
 
-// An arm of ours is calibrated before it can be opened: there is nothing to reset or wait for.
+// Our arms are calibrated before they can be opened: there is nothing to reset or wait for.
 int dhdReset(char id) {
   return open_arm("dhdReset", id) ? 0 : -1;
 }
@@ -78,7 +78,7 @@ int dhdWaitForReset(int timeout_ms, char id) {
   return timeout_ms >= 0 ? 0 : fail("dhdWaitForReset", DHD_ERROR_INVALID, "a time below zero");
 }
 
-// No force comes of the next three: what our arms weigh, they carry themselves (README.md).
+// The next three cause no force: our arms support their own weight (README.md).
 int dhdSetGravityCompensation(int on, char id) {
   return set_flag("dhdSetGravityCompensation", id, &OpenArm::gravity, on != DHD_OFF);
 }
@@ -148,7 +148,7 @@ int dhdSetMaxForce(double newtons, char id) {
   if (!std::isfinite(newtons)) {
     return fail("dhdSetMaxForce", DHD_ERROR_INVALID, "not a finite number");
   }
-  // Zero means the gate's own limit to the core: no force at all is one too small to be felt.
+  // Zero would mean the gate's limit, so a limit of zero is a force too small to be felt.
   const double limit = newtons < 0 ? 0 : std::max(newtons, 1e-9);
   if (!arms::set_force_limit(arm->number, limit)) {
     return fail("dhdSetMaxForce", DHD_ERROR_COM, "the run of thimble exec has ended");
@@ -211,7 +211,7 @@ int dhdGetVelocityThreshold(unsigned* speed, char id) {
   return 0;
 }
 
-// What goes round the gate, or round the calibration of the arm, is refused to experts as well.
+// Functions that bypass the gate or the arm's calibration are refused in expert mode, too.
 int dhdPreset(int*, unsigned char, char id) {
   if (!open_arm("dhdPreset", id)) return -1;
   return fail("dhdPreset", DHD_ERROR_NOT_AVAILABLE, "the arm is calibrated by its own file");

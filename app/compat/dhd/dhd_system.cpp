@@ -1,4 +1,4 @@
-// Time, keys and threads of the machine.
+// Time, keys and threads.
 #include <poll.h>
 #include <pthread.h>
 #include <sched.h>
@@ -14,7 +14,7 @@
 
 namespace {
 
-// Keys are told one by one while this lives; the terminal is as before afterwards.
+// Switches the terminal to single keys during its lifetime.
 class KeyByKey {
  public:
   KeyByKey() noexcept {

@@ -1,6 +1,5 @@
-// Names that no program read so far uses: they are there, so that a program that binds them all can
-// be loaded, and answer -1 with DHD_ERROR_NOT_IMPLEMENTED. Whatever a caller hands over is not
-// looked at.
+// Functions that no known program uses. They exist so that a program that binds all functions can
+// be loaded. They ignore their arguments and return -1 with DHD_ERROR_NOT_IMPLEMENTED.
 #include "compat/dhd/last_error.h"
 #include "drdc.h"
 
@@ -9,7 +8,7 @@
     return thimble::compat::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, \
                                       "not answered by Thimble");       \
   }
-// The same where the answer is a real number.
+// The same for functions that return a real number.
 #define THIMBLE_NO_NUMBER(name)                                         \
   double name() {                                                       \
     return thimble::compat::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, \

@@ -1,4 +1,4 @@
-// The functions drd...: an arm that is held and led.
+// The functions drd...: regulation of an arm's position.
 #include <cmath>
 #include <ctime>
 
@@ -11,7 +11,8 @@ using namespace thimble::compat::dhd;
 
 namespace {
 
-// The arm that `id` names, if its regulation runs; else null, and a failed call noted.
+// Returns the arm that `id` names, if its regulation runs. Otherwise returns null and records an
+// error.
 OpenArm* regulated_arm(const char* function, char id) noexcept {
   OpenArm* arm = open_arm(function, id);
   if (!arm) return nullptr;
@@ -20,8 +21,8 @@ OpenArm* regulated_arm(const char* function, char id) noexcept {
   return nullptr;
 }
 
-// A point that the program names, in the world; false, and a failed call noted, where the arm may
-// not be.
+// Converts a point of the program to the world. If it is outside of the arm's workspace, returns
+// false and records an error.
 bool goal_of(const char* function, const OpenArm& arm, const Eigen::Vector3d& p_U,
              Eigen::Vector3d& p_W) noexcept {
   if (!p_U.allFinite()) {
@@ -45,8 +46,8 @@ int move(const char* function, char id, const Eigen::Vector3d& p_U, bool wait) n
   }
   arm->regulator.move_to(p_W);
   if (!wait) return 0;
-  // Three times what the path takes, and a second: something else holds the arm, or it cannot go
-  // on.
+  // Three times the duration of the path, plus a second: something holds the arm, or it cannot move
+  // further.
   const Eigen::Vector3d size = vector_of(arms::facts(arm->number).workspace_max) -
                                vector_of(arms::facts(arm->number).workspace_min);
   const double longest =
@@ -107,7 +108,7 @@ bool drdIsSupported(char id) {
   return open_arm("drdIsSupported", id) != nullptr;
 }
 
-// An arm of ours is calibrated before it can be opened: nothing moves for it.
+// Our arms are calibrated before they can be opened: nothing moves.
 bool drdIsInitialized(char id) {
   return open_arm("drdIsInitialized", id) != nullptr;
 }
@@ -136,7 +137,7 @@ int drdStop(bool leave_force_on, char id) {
   OpenArm* arm = open_arm("drdStop", id);
   if (!arm) return -1;
   arm->regulator.stop();
-  // What drdStop switched off, drdStart or the next force may switch on.
+  // After drdStop switched the force off, drdStart or the next force may switch it on.
   if (!leave_force_on && arm->force == ForceSwitch::kOn) {
     switch_off(*arm, kOffBySoftware);
     arm->force = ForceSwitch::kUntold;
@@ -177,7 +178,7 @@ int drdRegulatePos(bool on, char id) {
   arm->regulator.regulate(on);
   return 0;
 }
-// No motor of ours turns a wrist or closes a gripper: taken, and nothing comes of it.
+// Our arms have no motors for wrist or gripper: accepted without effect.
 int drdRegulateRot(bool, char id) {
   return open_arm("drdRegulateRot", id) ? 0 : -1;
 }

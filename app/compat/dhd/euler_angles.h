@@ -7,7 +7,7 @@
 namespace thimble::compat::dhd {
 
 /// Returns the angles a, b, c (rad) of a rotation R = Rx(a) Ry(b) Rz(c), b between -pi/2 and pi/2.
-/// Where b is a right angle, c is 0. Real-time: safe.
+/// If b is a right angle, c is 0. Real-time: safe.
 inline Eigen::Vector3d euler_angles(const Eigen::Matrix3d& R) noexcept {
   const double sine = std::clamp(R(0, 2), -1.0, 1.0);
   if (std::abs(sine) > 1 - 1e-12)

@@ -1,4 +1,4 @@
-// Forces that a program asks for, and those that it gets.
+// Requested and measured forces.
 #include "compat/dhd/forces.h"
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 namespace thimble::compat::dhd {
 namespace {
 
-constexpr double kVibrationMost = 500;  // Hz: half the ticks of a loop of 1 kHz
+constexpr double kVibrationMost = 500;  // Hz: half the rate of a loop of 1 kHz
 
 std::array<double, 3> array_of(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
 
-// A watchdog that the program asked for holds as on its own arm: the force stays off until it is
-// switched on again. The core's own lets it come back.
+// A watchdog set by the program latches as on the original arm: the force stays off until it is
+// enabled again. The core's own watchdog lets the force return.
 void latch_watchdog(OpenArm& arm, const ArmReading& reading) noexcept {
   if (arm.watchdog != 0 && reading.stalled && arm.force_sent && arm.force == ForceSwitch::kOn) {
     switch_off(arm, kOffByWatchdog);
@@ -42,10 +42,10 @@ int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
   }
   const bool finite = f_W.allFinite() && torque_U.allFinite() && std::isfinite(gripper);
   if (arm.force != ForceSwitch::kOn && finite)
-    f_W.setZero();  // as if the arm's own switch were off
+    f_W.setZero();  // as if the arm's force switch were off
   ForceAsked asked{.f_W = array_of(f_W), .torque_W = array_of(R_WU * torque_U), .gripper = gripper};
   if (!finite) {
-    // The gate latches this: whoever computes such a force does not know what he does.
+    // The gate treats NaN as a fault and latches it: a program with such a force is wrong.
     asked = {.f_W = {std::nan(""), std::nan(""), std::nan("")}};
   }
   if (!arms::ask_force(arm.number, asked)) {
@@ -99,7 +99,7 @@ int put_force(const char* function, char id, std::array<double*, 3> force,
   if (!read_arm(function, *arm, reading)) return -1;
   const Eigen::Vector3d f_U = user_rotation(*arm) * vector_of(reading.f_sent_W);
   for (std::size_t i = 0; i < 3; ++i) *force[i] = f_U[static_cast<Eigen::Index>(i)];
-  // No motor of ours turns a wrist or closes a gripper.
+  // Our arms have no motors for wrist or gripper.
   for (int i = 0; i < rests; ++i) *rest[static_cast<std::size_t>(i)] = 0;
   return 0;
 }

@@ -11,14 +11,14 @@ using namespace thimble::compat::dhd;
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-// Length of a finger, m: an opening of 30 degrees, as clients expect of a gripper (CHAI3D), is then
-// 31 mm wide [chosen].
+// Length of a finger, m: an opening of 30 degrees, as clients expect of a gripper (CHAI3D), then
+// gives a width of 31 mm [chosen].
 constexpr double kFinger = 0.06;
-// A gripper that is less open than this presses the button that it stands in for, m [chosen].
+// A gripper with a smaller opening than this presses its emulated button, m [chosen].
 constexpr double kClosed = 0.005;
 
-// The arm with a gripper that `id` names, and what it told last; null, and a failed call noted, if
-// there is none, or `pointer` is null.
+// Returns the arm with a gripper that `id` names, and its last state. If there is none, or
+// `pointer` is null, returns null and records an error.
 OpenArm* arm_with_gripper(const char* function, char id, const void* pointer,
                           ArmReading& reading) noexcept {
   OpenArm* arm = open_arm(function, id);
@@ -41,7 +41,7 @@ int put_gap(const char* function, char id, double* value, double scale) noexcept
   return 0;
 }
 
-// How fast the gripper opens: between two calls, at least a tick apart.
+// Writes the opening speed of the gripper, between two calls at least a tick apart.
 int put_gap_speed(const char* function, char id, double* value, double scale) noexcept {
   ArmReading reading;
   OpenArm* arm = arm_with_gripper(function, id, value, reading);
@@ -58,7 +58,7 @@ int put_gap_speed(const char* function, char id, double* value, double scale) no
   return 0;
 }
 
-// A finger is half the opening away from the tip, along the stylus' y axis.
+// Writes the position of a finger: half the opening away from the tip, along the stylus' y axis.
 int put_finger(const char* function, char id, double side, double* x, double* y,
                double* z) noexcept {
   ArmReading reading;

@@ -13,14 +13,15 @@ using namespace thimble::compat::dhd;
 
 namespace {
 
-// Below this share of its largest possible value a Jacobian's determinant is that of a pose in
-// which torques make no force [chosen].
+// A pose counts as singular if the Jacobian's determinant is below this fraction of its largest
+// possible value: torques then correspond to no force [chosen].
 constexpr double kSingular = 1e-6;
-// Angles that differ by less are the arm's own now, rad [chosen: below any encoder's step].
+// Angles that differ by less from the arm's current ones are treated as equal, rad [chosen: below
+// any encoder's step].
 constexpr double kSameAngle = 1e-4;
 
-// The arm with joints that `id` names, and what it told last; null, and a failed call noted, if
-// there is none, or a pointer is null.
+// Returns the arm with joints that `id` names, and its last state. If there is none, or a pointer
+// is null, returns null and records an error.
 OpenArm* arm_with_joints(const char* function, char id, bool pointers,
                          ArmReading& reading) noexcept {
   OpenArm* arm = open_arm(function, id);
@@ -109,7 +110,8 @@ int dhdSetJointTorques(double* torques, unsigned char mask, char id) {
   for (int i = 0; i < 3; ++i) {
     if ((mask >> i) & 1) tau[i] = torques[i];
   }
-  // tau = J^T f: the same force at the tip, so that the gate sees all that moves the arm.
+  // tau = J^T f: converts torques to the equivalent force at the tip, so that the gate checks
+  // everything that moves the arm.
   const Eigen::Vector3d f_W = J.transpose().partialPivLu().solve(tau);
   return send_force("dhdSetJointTorques", *arm, user_rotation(*arm) * f_W, {0, 0, 0}, 0);
 }
@@ -141,7 +143,7 @@ int dhdJointAnglesToInertiaMatrix(double* angles, double rows[6][6], char id) {
 int dhdJointAnglesToGravityJointTorques(double* angles, double* torques, unsigned char mask,
                                         char id) {
   constexpr const char* kFunction = "dhdJointAnglesToGravityJointTorques";
-  constexpr double kGravity = 9.80665;  // m/s^2, the standard one
+  constexpr double kGravity = 9.80665;  // m/s^2, standard gravity
   ArmReading reading;
   const OpenArm* arm = arm_with_joints(kFunction, id, angles && torques, reading);
   if (!arm) return -1;

@@ -2,8 +2,8 @@
 
 namespace thimble::compat::dhd {
 
-/// Notes that a call was wrong: the error number for `dhdErrorGetLast` of this thread, and a line
-/// for the report of `thimble exec`. Returns -1, what such a call answers.
+/// Records a wrong call: the error number for `dhdErrorGetLast` of this thread, and a line for the
+/// report of `thimble exec`. Returns -1, the result of such a call.
 int fail(const char* function, int error, const char* what) noexcept;
 
 /// Returns the error number of the last wrong call of this thread; DHD_NO_ERROR if there was none.

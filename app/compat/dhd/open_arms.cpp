@@ -13,18 +13,18 @@ struct Table {
   Table() {
     for (int i = 0; i < kArmsMost; ++i) arms[static_cast<std::size_t>(i)].number = i;
   }
-  std::mutex opening;                   // one opens or closes at a time
-  std::array<OpenArm, kArmsMost> arms;  // an entry for each that `thimble exec` may have
+  std::mutex opening;                   // serialises opening and closing
+  std::array<OpenArm, kArmsMost> arms;  // one entry for each possible arm of `thimble exec`
   std::atomic<int> chosen{-1};
 };
 
-// Never destroyed: a thread of the program may still call while it leaves.
+// Never destroyed: a thread of the program may use it during exit.
 Table& table() noexcept {
   static Table* const kTable = new Table;
   return *kTable;
 }
 
-// What a program told of an arm holds while it is open.
+// A program's settings of an arm are valid while it is open.
 void forget(OpenArm& arm) noexcept {
   arm.force = ForceSwitch::kUntold;
   arm.off_cause = kOffBySoftware;
@@ -47,7 +47,7 @@ void forget(OpenArm& arm) noexcept {
 }  // namespace
 
 OpenArm* open_arm(const char* function, char id) noexcept {
-  // A plain char has no sign on some machines; -1 is meant on all.
+  // Plain char is unsigned on some machines; -1 must work on all.
   int number = static_cast<signed char>(id);
   if (number == -1) {
     number = table().chosen;

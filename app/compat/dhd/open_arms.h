@@ -12,14 +12,14 @@
 
 namespace thimble::compat::dhd {
 
-/// Who said what about the force of an arm.
+/// State of an arm's force: on, off, or never set by the program.
 enum class ForceSwitch : std::uint8_t {
-  kUntold,  ///< Nobody did: the first force that is sent switches it on.
-  kOn,      ///< It is on.
-  kOff,     ///< The program switched it off, or its watchdog did: dhdEnableForce switches it on.
+  kUntold,  ///< Not set: the first force enables it.
+  kOn,      ///< The force is on.
+  kOff,     ///< The program or its watchdog switched it off: dhdEnableForce switches it on.
 };
 
-/// Numbers of what switched a force off, as dhdGetStatus tells them.
+/// Causes of a force that is off, as dhdGetStatus returns them.
 enum ForceOffCause : int {
   kForceOn = 0,
   kOffByVelocity = 2,
@@ -28,14 +28,15 @@ enum ForceOffCause : int {
   kOffByPull = 5,
 };
 
-/// An arm that a program opened, and what it told it. Any thread may read and set its numbers.
+/// An arm that a program opened, with the program's settings. Any thread may read and set its
+/// numbers.
 struct OpenArm {
-  int number = 0;                                        ///< Of the arm, as `arms` counts.
+  int number = 0;                                        ///< Number of the arm in `arms`.
   std::atomic<bool> open{false};                         ///< Between dhdOpen and dhdClose.
-  std::atomic<ForceSwitch> force{ForceSwitch::kUntold};  ///< Who said what.
+  std::atomic<ForceSwitch> force{ForceSwitch::kUntold};  ///< State of its force.
   std::atomic<int> off_cause{kOffBySoftware};            ///< While `force` is kOff.
-  std::atomic<bool> force_sent{false};          ///< A force was asked for since it was switched on.
-  std::atomic<bool> gravity{false};             ///< Taken and told; see README.md.
+  std::atomic<bool> force_sent{false};          ///< A force was requested since it was enabled.
+  std::atomic<bool> gravity{false};             ///< Stored and returned; see README.md.
   std::atomic<bool> brakes{true};               ///< As above.
   std::atomic<bool> emulate_button{false};      ///< A closed gripper is button 0.
   std::atomic<double> effector_mass{0};         ///< kg
@@ -47,29 +48,29 @@ struct OpenArm {
   std::atomic<unsigned char> watchdog{0};       ///< 125 us; 0: the gate's
   std::atomic<double> vibration_frequency{0};   ///< Hz
   std::atomic<double> vibration_amplitude{0};   ///< N
-  std::atomic<std::uint64_t> forces{0};         ///< Forces that were sent.
-  std::mutex gap_mutex;                         ///< Of the three below.
-  double gap_time = 0, gap = 0, gap_speed = 0;  ///< s, m, m/s: of the gripper.
-  std::uint64_t counted_forces = 0;             ///< At the last dhdGetComFreq.
-  std::int64_t counted_ns = 0;                  ///< When that was.
-  Regulator regulator;                          ///< Of the functions drd...
+  std::atomic<std::uint64_t> forces{0};         ///< Number of forces sent.
+  std::mutex gap_mutex;                         ///< For the three below.
+  double gap_time = 0, gap = 0, gap_speed = 0;  ///< s, m, m/s: last state of the gripper.
+  std::uint64_t counted_forces = 0;             ///< Value of `forces` at the last dhdGetComFreq.
+  std::int64_t counted_ns = 0;                  ///< Time of that call.
+  Regulator regulator;                          ///< For the functions drd...
 };
 
-/// Returns an open arm; null, and a failed call noted, if `id` names none.
+/// Returns an open arm. If `id` names none, returns null and records an error.
 OpenArm* open_arm(const char* function, char id) noexcept;
-/// Opens an arm of `thimble exec`; returns its number or -1.
+/// Opens an arm of `thimble exec`; returns its number, or -1.
 int open_number(const char* function, int number) noexcept;
 /// Closes an arm; returns 0 or -1.
 int close_arm(const char* function, char id) noexcept;
-/// Makes an open arm the one that -1 means; returns 0 or -1.
+/// Makes an open arm the default arm, which the id -1 means; returns 0 or -1.
 int choose_arm(const char* function, char id) noexcept;
-/// Returns the number of the arm that -1 means, or -1.
+/// Returns the number of the default arm, or -1.
 int chosen_arm() noexcept;
 
-/// Reads the newest tick of an arm; false, and a failed call noted, if there is none.
+/// Reads the newest tick of an arm. If there is none, returns false and records an error.
 bool read_arm(const char* function, const OpenArm& arm, ArmReading& reading) noexcept;
 
-/// Returns the rotation from the world into the frame that the program sees (U): its base angles.
+/// Returns the rotation from the world to the program's frame (U), from its base angles.
 Eigen::Matrix3d user_rotation(const OpenArm& arm) noexcept;
 /// Returns a vector of a reading.
 inline Eigen::Map<const Eigen::Vector3d> vector_of(const std::array<double, 3>& v) noexcept {
@@ -83,9 +84,9 @@ inline Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) noexcept {
 /// Returns whether dhdEnableExpertMode was called.
 bool expert_mode() noexcept;
 
-/// Switches the force of an arm on if nobody said anything about it. False: it stays off.
+/// Enables the force of an arm if it was never set. False: it stays off.
 bool switch_on_if_untold(OpenArm& arm) noexcept;
-/// Switches the force of an arm off for this cause.
+/// Switches the force of an arm off, for this cause.
 void switch_off(OpenArm& arm, ForceOffCause cause) noexcept;
 
 }  // namespace thimble::compat::dhd

@@ -1,4 +1,4 @@
-// Which arms there are, and which of them are open.
+// The list of arms, and which of them are open.
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -12,7 +12,7 @@ using namespace thimble::compat::dhd;
 
 namespace {
 
-// Programs choose their limits by the type: who knows better says so (THIMBLE_DHD_TYPE).
+// Programs choose their limits by the type; THIMBLE_DHD_TYPE overrides the default.
 int type_of(const char* name) noexcept {
   if (const char* told = std::getenv("THIMBLE_DHD_TYPE")) {
     const long type = std::strtol(told, nullptr, 10);
@@ -25,7 +25,7 @@ int type_of_number(int number) noexcept {
   return type_of(arms::name(number).c_str());
 }
 
-// What an arm has: false, and a failed call noted, where it is not open.
+// Returns a property of an arm. If it is not open, returns false and records an error.
 bool has(const char* function, char id, bool ArmFacts::*what) noexcept {
   const OpenArm* arm = open_arm(function, id);
   return arm && arms::facts(arm->number).*what;
@@ -35,7 +35,7 @@ bool has(const char* function, char id, bool ArmFacts::*what) noexcept {
 
 extern "C" {
 
-void dhdEnableSimulator(bool) {}  // whether arms are simulated is thimble exec's to say
+void dhdEnableSimulator(bool) {}  // `thimble exec` decides whether arms are simulated
 
 int dhdGetDeviceCount(void) {
   return arms::count();
@@ -116,7 +116,7 @@ const char* dhdGetSystemName(char id) {
 }
 
 void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
-  // That of the names and types which are answered (PROVENANCE.md): clients ask for a least one.
+  // The version whose names and types are implemented (PROVENANCE.md): clients require a minimum.
   if (major) *major = 3;
   if (minor) *minor = 17;
   if (release) *release = 5;
@@ -163,7 +163,7 @@ int dhdGetStatus(int status[DHD_MAX_STATUS], char id) {
   return 0;
 }
 
-// Hands, wrists and grippers: those of our arms are told, and no motor moves them.
+// Hands, wrists and grippers: reported as our arms have them; no motor moves them.
 bool dhdIsLeftHanded(char id) {
   return open_arm("dhdIsLeftHanded", id) && false;
 }

@@ -1,4 +1,4 @@
-// Where the tip of an arm is, how it is turned and how fast it moves.
+// Position, orientation and velocity of an arm's tip.
 #include <numbers>
 
 #include "compat/dhd/euler_angles.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// What a program sees of an arm, in its own frame U.
+// State of an arm in the program's frame U.
 struct Pose {
   Eigen::Vector3d p_UT, v_UT, w_UT;
   Eigen::Matrix3d R_UT;
@@ -48,7 +48,7 @@ void put(const Eigen::Matrix3d& R, double (*rows)[3]) noexcept {
   }
 }
 
-// One of the vectors of a pose, or what is made of it.
+// Writes a vector of a pose, or a value derived from it.
 template <class Part>
 int put_part(const char* function, char id, double* x, double* y, double* z, Part part) noexcept {
   Pose pose;

@@ -8,17 +8,19 @@
 namespace thimble::compat::dhd {
 namespace {
 
-// A tracked point counts as reached within this, m, and at less than this speed, m/s [chosen].
+// A tracked point has arrived if it is within this distance of the goal, m, and slower than this,
+// m/s [chosen].
 constexpr double kThere = 1e-5, kAtRest = 1e-3;
-// The same of the tip behind the point, m [chosen: what friction keeps a spring of 400 N/m from].
+// The same for the distance of the tip from the point, m [chosen: the error that friction causes at
+// a spring of 400 N/m].
 constexpr double kTipThere = 2e-3;
 
 Eigen::Vector3d vector_of(const std::array<double, 3>& v) noexcept {
   return {v[0], v[1], v[2]};
 }
 
-// Half of what the maker declares [chosen: room for the hand]. A spring that is felt late gives
-// energy, which the damper takes as long as b > K (T/2 + delay) [PHYSICS 1]; the delay beside the
+// Half of the maker's values [chosen: reserve for the hand]. The force of a delayed spring adds
+// energy, which the damper absorbs if b > K (T/2 + delay) [PHYSICS 1]. The delay in addition to the
 // arm's own is two ticks: one until the program reads, one until its force is taken.
 struct Gains {
   double stiffness, damping;
@@ -116,7 +118,7 @@ void Regulator::advance(double dt) noexcept {
     speed_W_.setZero();
     return;
   }
-  // As fast as it can still be stopped from, and no faster than the bounds say.
+  // The largest speed from which it can still stop, within the bounds.
   const double speed =
       std::min(track_bounds_.speed, std::sqrt(2 * track_bounds_.acceleration * distance));
   Eigen::Vector3d change = -speed_W_;

@@ -11,9 +11,9 @@
 
 namespace thimble::compat::dhd {
 
-/// Holds the tip of an arm at a point by a spring and a damper, and moves that point: the thread of
-/// the functions drd..., which asks for its force as every program does. World frame, SI units.
-/// All functions may be called by any thread; none is for our servo thread.
+/// Holds the tip of an arm at a point by a spring and a damper, and moves that point. It is the
+/// thread of the functions drd..., and requests its force like any program. World frame, SI units.
+/// Any thread may call all functions; none is for the servo thread.
 class Regulator {
  public:
   Regulator() = default;
@@ -21,43 +21,44 @@ class Regulator {
   Regulator(const Regulator&) = delete;
   Regulator& operator=(const Regulator&) = delete;
 
-  /// Starts the thread, which holds the arm where it is. False if no thread can be made.
+  /// Starts the thread, which holds the arm at its current position. False if no thread can be
+  /// made.
   bool start(int arm);
-  /// Ends the thread; the force that it asked for is zero.
+  /// Ends the thread and sets its force to zero.
   void stop() noexcept;
   /// Returns whether the thread runs.
   bool running() const noexcept { return running_; }
 
-  /// Holds the tip where it is, or lets it go and asks for the free force in its place.
+  /// Holds the tip at its current position, or releases it and requests the free force instead.
   void regulate(bool on) noexcept { regulates_ = on; }
   /// Returns whether the tip is held.
   bool regulates() const noexcept { return regulates_; }
-  /// Sets the force (N) while the tip is not held; torque and gripper are counted.
+  /// Sets the force (N) for a released tip; torque and gripper are counted.
   void set_free_force(const ForceAsked& asked) noexcept;
 
-  /// Moves the tip in a straight line to a point (m), in place of what it did.
+  /// Moves the tip in a straight line to a point (m), instead of the current motion.
   void move_to(const Eigen::Vector3d& goal_W) noexcept;
-  /// Lets the tip follow a point (m) that is set again and again.
+  /// Makes the tip follow a point (m) that is set repeatedly.
   void track(const Eigen::Vector3d& goal_W) noexcept;
-  /// Holds the tip where it is.
+  /// Holds the tip at its current position.
   void hold() noexcept;
   /// Returns whether the held point still moves.
   bool moving() const noexcept { return moving_; }
-  /// Follows a tracked point within the bounds, or at once. On by default.
+  /// Sets whether a tracked point is followed within the bounds, or at once. On by default.
   void filter(bool on) noexcept { filters_ = on; }
   /// Returns whether a tracked point is followed within bounds.
   bool filters() const noexcept { return filters_; }
 
   /// Sets the bounds of `move_to`.
   void set_move_bounds(const PathBounds& bounds) noexcept;
-  PathBounds move_bounds() noexcept;  ///< Returns them.
+  PathBounds move_bounds() noexcept;  ///< Returns the bounds of `move_to`.
   /// Sets the bounds of `track`; its jerk is not bounded.
   void set_track_bounds(const PathBounds& bounds) noexcept;
-  PathBounds track_bounds() noexcept;  ///< Returns them.
-  /// Sets which share of the arm's largest force it may use, 0 to 1.
+  PathBounds track_bounds() noexcept;  ///< Returns the bounds of `track`.
+  /// Sets the maximum force as a fraction of the arm's, 0 to 1.
   void set_force_ratio(double ratio) noexcept { force_ratio_ = ratio; }
-  double force_ratio() const noexcept { return force_ratio_; }  ///< Returns it.
-  /// Returns how many ticks it has regulated since it was made.
+  double force_ratio() const noexcept { return force_ratio_; }  ///< Returns that fraction.
+  /// Returns the number of ticks regulated since construction.
   std::uint64_t ticks() const noexcept { return ticks_; }
 
  private:
@@ -67,16 +68,16 @@ class Regulator {
   ForceAsked force(const ArmFacts& facts, const ArmReading& reading, double dt) noexcept;
   void advance(double dt) noexcept;
 
-  std::mutex starting_;  // of start and stop
+  std::mutex starting_;  // for start and stop
   std::thread thread_;
   std::atomic<bool> running_{false}, stop_{false};
   std::atomic<bool> regulates_{true}, filters_{true}, moving_{false};
   std::atomic<double> force_ratio_{1};
   std::atomic<std::uint64_t> ticks_{0};
 
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // for the members below
   Mode mode_ = Mode::kHold;
-  bool hold_here_ = true;  // the next tick tells where
+  bool hold_here_ = true;  // the next tick sets the held point
   Eigen::Vector3d point_W_{0, 0, 0}, speed_W_{0, 0, 0}, goal_W_{0, 0, 0};
   StraightPath path_;
   double path_time_ = 0;

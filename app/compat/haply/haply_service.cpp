@@ -34,13 +34,13 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kMessageMost = 256 * 1024;     // bytes; one of a program has some hundreds
-constexpr std::size_t kProgramsMost = 16;            // at once [chosen]
-constexpr auto kPatience = std::chrono::seconds(1);  // with who connects and does not go on
+constexpr std::size_t kMessageMost = 256 * 1024;     // bytes; typical are some hundreds
+constexpr std::size_t kProgramsMost = 16;            // simultaneous programs [chosen]
+constexpr auto kPatience = std::chrono::seconds(1);  // for a client that sends no request
 constexpr auto kPause = std::chrono::milliseconds(1);
 
-/// Returns whether a program of this computer asks, and not a web page of another: browsers name
-/// the page's origin, programs name none.
+/// Returns whether the client is a program of this computer and not a web page of another: browsers
+/// send the page's origin, programs send none.
 bool is_of_here(std::string_view origin) {
   if (origin.empty()) return true;
   const std::size_t scheme = origin.find("://");
@@ -51,7 +51,7 @@ bool is_of_here(std::string_view origin) {
   return host == "localhost" || host == "127.0.0.1" || host == "[::1]";
 }
 
-/// One program that speaks with the service, on a thread of its own.
+/// One client program, with its own thread.
 class Program {
  public:
   explicit Program(int session) : session_(session) {}
@@ -61,7 +61,7 @@ class Program {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Waits for a program; false if none could be let in.
+  /// Waits for a program; false if none could be accepted.
   bool accept(tcp::acceptor& acceptor) {
     error_code failed;
     acceptor.accept(socket(), failed);
@@ -71,14 +71,14 @@ class Program {
     return true;
   }
 
-  /// Returns why the program is not to be heard, as a phrase; empty: it may be.
+  /// Returns why the program is refused, as a phrase; empty: it is accepted.
   std::string distrust() { return driver::distrust_of_peer(socket().native_handle()); }
 
   void begin(ServedArms& arms) {
     thread_ = std::thread([this, &arms] {
       try {
         serve(arms);
-      } catch (const std::exception&) {  // no memory, say: as if the program had left
+      } catch (const std::exception&) {  // out of memory, say: as after a disconnect
       }
       arms.leave(session_);
       stream_.next_layer().close();
@@ -86,7 +86,7 @@ class Program {
     });
   }
   bool done() const noexcept { return done_.load(std::memory_order_acquire); }
-  /// Closes its connection, which ends what it waits for there. Any thread, while it exists.
+  /// Closes its connection, which ends pending operations. Any thread, while it exists.
   void cut() {
     asio::post(io_, [this] { stream_.next_layer().close(); });
   }
@@ -94,7 +94,7 @@ class Program {
  private:
   tcp::socket& socket() { return stream_.next_layer().socket(); }
 
-  /// Runs one operation to its end; returns whether it succeeded.
+  /// Runs one operation to completion; returns whether it succeeded.
   template <class Begin>
   bool run(Begin&& begin) {
     std::optional<error_code> ended;
@@ -172,7 +172,7 @@ class Service::Listener {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Begins to listen.
+  /// Starts to listen.
   driver::Result<void> begin(std::uint16_t port) {
     const auto listens = driver::listen_on_loopback(
         acceptor_, port, "If Haply's own service runs, stop it, or choose another port (--port).");
@@ -202,7 +202,7 @@ class Service::Listener {
     for (int session = 1; !leaves_.load(std::memory_order_acquire); ++session) {
       std::list<Program> one;
       if (!one.emplace_back(session).accept(acceptor_)) {
-        std::this_thread::sleep_for(kPause);  // too many files are open, say
+        std::this_thread::sleep_for(kPause);  // too many open files, for example
         continue;
       }
       if (const std::string stranger = one.front().distrust(); !stranger.empty()) {
@@ -243,7 +243,7 @@ class Service::Listener {
   tcp::acceptor acceptor_{io_};
   ServedArms arms_;
   std::mutex mutex_;
-  std::list<Program> programs_;  // that are connected
+  std::list<Program> programs_;  // connected programs
   std::atomic<bool> ready_{false}, leaves_{false}, ended_{false};
   std::atomic<int> came_{0}, refused_{0};
   Report report_;

@@ -9,49 +9,48 @@
 
 namespace thimble::compat::haply {
 
-/// Begins the Server line of the stand-in's answer to a program that connects: a driver that looks
-/// for an arm takes it for none.
+/// First word of the Server header in the service's answers: a driver that searches for an arm
+/// recognises that this is no arm.
 inline constexpr const char* kServerName = "Thimble";
 
-/// Where an Inverse3's service listens [S docs.haply.co/inverseSDK].
+/// Port of an Inverse3's service [S docs.haply.co/inverseSDK].
 inline constexpr std::uint16_t kPort = 10001;
 
-/// A WebSocket service on this computer that stands in for an Inverse3's: programs that were
-/// written for one find the arms of `thimble exec` there. It lives in the process of `thimble exec`
-/// and reaches the arms as the libraries that stand in for others' do (core/arm_access.h), by a
-/// thread for each program.
+/// A WebSocket service on this computer that is compatible with an Inverse3's: programs for that
+/// arm find the arms of `thimble exec` there. It runs in the process of `thimble exec` and accesses
+/// the arms like the compatibility libraries (core/arm_access.h), with a thread for each program.
 ///
-/// Only programs of this user and of root on this computer are heard, as the kernel lists the owner
-/// of each connection, and no web page of another: what names a foreign origin is refused. A
-/// message may have 256 KiB. Who says anything that is no message of such a program gets no force
-/// for it. Real-time: never from the servo thread, all of it.
+/// Only programs on this computer that belong to this user or to root are accepted, as the kernel
+/// reports the owner of each connection. Web pages of other origins are refused. A message may have
+/// 256 KiB. Invalid messages cause no force. Real-time: never from the servo thread, all of it.
 class Service {
  public:
   using Report = std::function<void(const std::string& sentence)>;
 
-  /// Listens on a port; 0: one that is free. The channel to the arms must be in use (use_channel)
-  /// until the service is destroyed. Begins by opening all arms, for which whoever serves them has
-  /// to go on with it. `report`, if given, gets a sentence when the first program of another user
-  /// is refused, by a thread of the service. The error says what to do.
+  /// Listens on a port; 0: any free port. The channel to the arms must be in use (use_channel)
+  /// until the service is destroyed. Starts by opening all arms, so the thread that serves the arms
+  /// must continue to do so. `report`, if given, gets a sentence when the first program of another
+  /// user is refused, from a thread of the service. The error says what to do.
   static driver::Result<std::unique_ptr<Service>> listen(std::uint16_t port, Report report = {});
-  /// Leaves, and waits for its threads.
+  /// Closes all connections and waits for the threads.
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Returns where it listens.
+  /// Returns its port.
   std::uint16_t port() const noexcept;
-  /// Returns whether the arms have been opened, or could not be; programs are let in from then on.
+  /// Returns whether opening the arms has finished, with or without success; from then on programs
+  /// are accepted.
   bool ready() const noexcept;
-  /// Returns how many programs have come.
+  /// Returns the number of programs that have connected.
   int programs() const noexcept;
-  /// Returns how many connections were refused because their other end was not held by a process of
-  /// this user or of root.
+  /// Returns the number of connections refused because their other end did not belong to a process
+  /// of this user or of root.
   int refused() const noexcept;
   /// Closes all connections. Any thread.
   void leave();
-  /// Returns whether all its threads are done, after `leave`: until then whoever serves the arms
-  /// has to go on with it.
+  /// Returns whether all its threads have ended, after `leave`. Until then, the arms must still be
+  /// served.
   bool ended() const noexcept;
 
  private:

@@ -62,7 +62,7 @@ bool ServedArms::is_open(int number) {
   return arm.open;
 }
 
-/// Takes what a session asks of an arm; false if it never asked it for a force.
+/// Sets a session's force on an arm; false if the session has never requested a force of it.
 bool ServedArms::push(int number, int session, const std::optional<Eigen::Vector3d>& f_B) {
   Arm& arm = arms_[static_cast<std::size_t>(number)];
   const std::lock_guard lock(arm.mutex);
@@ -70,8 +70,8 @@ bool ServedArms::push(int number, int session, const std::optional<Eigen::Vector
   const bool is_first = before == arm.sessions.end();
   if (!f_B && is_first) return false;
   arm.sessions[session] = {f_B.value_or(Eigen::Vector3d(0, 0, 0)), arms::now_ns()};
-  // A session begins as a program that switches the force on: after a fault of a simulated arm,
-  // too. What others have switched on goes on as it is.
+  // The first request of a session enables the force, also after a fault of a simulated arm. A
+  // force that others have enabled stays as it is.
   ArmReading now;
   const bool off =
       !arms::force_enabled(number) || !arms::read(number, now) || now.fault != driver::Fault::kNone;

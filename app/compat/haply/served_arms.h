@@ -15,23 +15,23 @@
 
 namespace thimble::compat::haply {
 
-/// The arms of `thimble exec` as an Inverse3's service shows them to several programs at once: each
-/// is a session, and an arm gets the sum of what its sessions ask for, as the service adds them up
-/// [S]. A force counts until its session's next message, for the gate's `stall` at most. An arm
-/// without a session that asks for forces has its force off.
+/// The arms of `thimble exec` as an Inverse3's service shows them to several programs at once. Each
+/// program is a session, and an arm gets the sum of the forces of its sessions, as in the original
+/// service [S]. A force counts until its session's next message, for at most the gate's `stall`.
+/// The force of an arm is off until a session requests forces.
 ///
-/// Each message is answered after a tick of every arm that has taken its force; that paces a
-/// program's loop, and in virtual time it is what lets the ticks go on. Any thread, one message of
-/// a session at a time; never from the servo thread.
+/// Each message is answered after a tick of every arm has taken its force. This paces a program's
+/// loop, and permits the ticks in virtual time. Any thread, one message of a session at a time;
+/// never from the servo thread.
 class ServedArms {
  public:
-  /// Opens all arms. Why one cannot be opened stands in the terminal; it is not listed then.
+  /// Opens all arms. If one cannot be opened, prints the reason and omits the arm.
   void open();
-  /// Returns the first message, which tells everything.
+  /// Returns the first message, with the full state.
   std::string greet(int session) { return message(session, true); }
-  /// Does what a message asks for and returns its answer.
+  /// Executes a message and returns its answer.
   std::string answer(int session, std::string_view text);
-  /// Takes the forces of a session away, whose program has left.
+  /// Removes the forces of a session whose program has disconnected.
   void leave(int session);
   /// Closes all arms.
   void close();
@@ -39,12 +39,12 @@ class ServedArms {
  private:
   struct Asked {
     Eigen::Vector3d f_B{0, 0, 0};  // N
-    std::int64_t at_ns = 0;        // on the clock that the program lives by
+    std::int64_t at_ns = 0;        // in the program's time
   };
   struct Arm {
     std::mutex mutex;
     bool open = false;
-    std::map<int, Asked> sessions;  // that have asked for a force
+    std::map<int, Asked> sessions;  // sessions that have requested a force
   };
 
   bool is_open(int number);

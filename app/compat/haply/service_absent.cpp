@@ -2,7 +2,7 @@
 
 #include "compat/haply/haply_service.h"
 
-// In place of the other sources of this folder in a build without Boost.Beast or nlohmann's JSON.
+// Replaces the other sources of this folder in builds without Boost.Beast or nlohmann's JSON.
 
 namespace thimble::compat::haply {
 

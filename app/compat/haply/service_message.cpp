@@ -17,10 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kDegrees = 180 / std::numbers::pi;  // per rad
-constexpr unsigned kGripNumber = 0x8000;             // before the first arm's grip
+constexpr double kDegrees = 180 / std::numbers::pi;  // degrees per rad
+constexpr unsigned kGripNumber = 0x8000;             // number before that of the first arm's grip
 
-/// Returns a member, or null where there is none.
+/// Returns a member, or null if there is none.
 const json& member(const json& object, const char* key) {
   static const json kNothing;
   if (!object.is_object()) return kNothing;
@@ -38,7 +38,7 @@ bool read_vector(const json& from, Eigen::Vector3d& vector) {
   return vector.allFinite();
 }
 
-/// Reads the force of a command; both spellings may stand in it, and mean the same then.
+/// Reads the force of a command. Both keys may be present if they agree.
 bool read_force(const json& command, Eigen::Vector3d& f_B) {
   for (const char* spelling : {"vector", "values"}) {
     const json& told = member(command, spelling);
@@ -47,7 +47,7 @@ bool read_force(const json& command, Eigen::Vector3d& f_B) {
   return false;
 }
 
-/// Commands that an Inverse3 has and that are not stood in for.
+/// Commands of an Inverse3 that are not implemented.
 constexpr const char* kLeftOut[] = {"set_cursor_position", "set_angular_torques",
                                     "set_angular_position", "set_transform"};
 
@@ -90,7 +90,7 @@ Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
 }
 
-/// Returns how fast the joints turn, rad/s; zeros where the arm is stretched or has none.
+/// Returns the joint velocities, rad/s; zeros if the arm is at a singularity or has no joints.
 Eigen::Vector3d joint_speeds(const ArmReading& reading) {
   const Eigen::Matrix3d J_WT = matrix_of(reading.J_WT);
   constexpr double kLeast = 1e-7;  // m^3; an arm of 0.1 m reaches 1e-3 [chosen]
@@ -98,7 +98,7 @@ Eigen::Vector3d joint_speeds(const ArmReading& reading) {
   return J_WT.inverse() * vector_of(reading.v_WT);
 }
 
-/// Returns how the stylus is turned in B: the columns are its own axes.
+/// Returns the orientation of the stylus in B: the columns are its own axes.
 Eigen::Quaterniond turned_B(const ArmReading& reading) {
   const Eigen::Matrix3d R_WT = matrix_of(reading.R_WT);
   Eigen::Matrix3d R_BT;

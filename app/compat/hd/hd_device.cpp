@@ -27,8 +27,8 @@ std::string text_of(const std::array<char, 64>& text) {
   return {text.data()};
 }
 
-/// Returns the arm that a name means: none, "Default Device", one of ours, or a number behind
-/// "PHANToM" as other drivers name theirs; -1 if none.
+/// Returns the arm for a name: none, "Default Device", one of our arms, or a number after "PHANToM"
+/// as in other drivers; -1 if there is none.
 int arm_named(const char* name) {
   const std::string wanted = lower(name == nullptr ? "" : name);
   if (wanted.empty() || wanted == "default device" || wanted == "default phantom") return 0;
@@ -50,7 +50,7 @@ int arm_named(const char* name) {
   return std::atoi(number.c_str()) - 1;
 }
 
-/// Returns the program what became of its force, as errors.
+/// Reports changes of the program's force by the gate as HDAPI errors.
 void look_at_forces(HHD handle, Device& device) noexcept {
   const ArmReading& now = device.frame.now;
   if (now.fault != device.fault_told) {
@@ -72,7 +72,7 @@ void look_at_forces(HHD handle, Device& device) noexcept {
   }
   if (now.link != device.link_reported) {
     device.link_reported = now.link;
-    // An arm can be pulled because of, or after, another fault.
+    // An arm can be unplugged as the cause of a fault, or after another one.
     const bool named_by_fault =
         now.fault == driver::Fault::kTransportLost || now.fault == driver::Fault::kNoReports;
     if (now.link == driver::LinkState::kLost && !named_by_fault) {
@@ -82,13 +82,13 @@ void look_at_forces(HHD handle, Device& device) noexcept {
   if (now.tick == device.frame.last.tick) return;
   if (now.cuts.limited && !device.force_clamping) keep_error(HD_EXCEEDED_MAX_FORCE, handle);
   if (now.cuts.rise_limited) keep_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
-  constexpr double kWarm = 0.8;  // of what the winding bears; the gate's own warning
+  constexpr double kWarm = 0.8;  // of the winding's limit; the gate's own warning
   const bool warm = *std::max_element(now.heat.begin(), now.heat.end()) >= kWarm;
   if (warm && !device.warm_told) keep_error(HD_WARM_MOTORS, handle);
   device.warm_told = warm;
 }
 
-/// Asks for a device's force, with what HDAPI's own switches make of it.
+/// Requests a device's force, after HDAPI's clamping and ramping.
 void send(HHD handle, Device& device) noexcept {
   ForceAsked asked{.f_W = device.frame.f_asked_W, .torque_W = device.frame.torque_asked_W};
   const double length = std::hypot(asked.f_W[0], asked.f_W[1], asked.f_W[2]);
@@ -98,7 +98,7 @@ void send(HHD handle, Device& device) noexcept {
     const double since = 1e-9 * static_cast<double>(device.frame.now.time_ns - device.enabled_ns);
     most = std::min(most, device.ramping_rate * std::max(since, 0.0));
   }
-  // Written so that what is no number goes to the gate as it is.
+  // NaN is passed to the gate unchanged.
   if (most < length) {
     for (double& f : asked.f_W) f *= most / length;
   }
@@ -180,13 +180,13 @@ HHD hdInitDevice(HDstring name) {
   }
   const std::string trouble = arms::open(arm, "HDAPI");
   if (!trouble.empty()) {
-    // The program says "failed to initialise" and no more.
+    // The program itself prints only "failed to initialise".
     std::fprintf(stderr, "thimble: hdInitDevice: %s\n", trouble.c_str());
     keep_wrong_call(HD_COMM_ERROR, __func__, trouble.c_str());
     return HD_INVALID_HANDLE;
   }
   std::unique_lock lock(devices().mutex);
-  if (is_open(handle)) {  // by another thread, meanwhile: one opening is one too many
+  if (is_open(handle)) {  // another thread opened it meanwhile, so this opening is surplus
     lock.unlock();
     arms::close(arm);
     keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is open already");
@@ -247,7 +247,7 @@ void hdBeginFrame(HHD handle) {
     return;
   }
   device.framed_tick = newest.tick + 1;
-  // Two frames in one tick show the same: the frame before stays the one of the tick before.
+  // Two frames in one tick show the same state; the previous frame is then that of the tick before.
   if (newest.tick != frame.now.tick) frame.last = frame.now;
   frame.now = newest;
   frame.open = true;
@@ -290,7 +290,7 @@ void hdUpdateCalibration(HDenum style) {
     keep_wrong_call(HD_INVALID_VALUE, __func__, "no style of calibration has this number");
     return;
   }
-  // Our arms know where they are when they are opened (thimble calibrate).
+  // Our arms are calibrated when they are opened (thimble calibrate).
   arms::mark_calibrated(static_cast<int>(current_device()));
 }
 

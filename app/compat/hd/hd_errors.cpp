@@ -9,11 +9,11 @@
 namespace thimble::compat::hd {
 namespace {
 
-constexpr std::size_t kErrorsMost = 64;  // chosen: a program that asks now and then loses none
+constexpr std::size_t kErrorsMost = 64;  // chosen: enough for rare checks of errors
 
 struct Errors {
   std::mutex mutex;
-  std::deque<HDErrorInfo> all;  // the newest last
+  std::deque<HDErrorInfo> all;  // the newest is last
 };
 
 Errors& errors() {

@@ -4,7 +4,7 @@
 
 namespace thimble::compat::hd {
 
-/// Keeps an error for hdGetError; the oldest goes where there are too many.
+/// Keeps an error for hdGetError; the oldest is discarded if there are too many.
 void keep_error(HDerror error, HHD device, int internal = 0) noexcept;
 
 /// Keeps an error of a wrong call, and counts it for the report of `thimble exec`.

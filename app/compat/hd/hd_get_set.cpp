@@ -1,4 +1,4 @@
-// Capabilities and numbers of the current arm, by all types.
+// Capabilities and numeric parameters of the current arm, for all types.
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -12,7 +12,7 @@
 namespace thimble::compat::hd {
 namespace {
 
-/// Returns a number as another type holds it: rounded, and cut to what it holds.
+/// Converts a number to another type: rounded, and clamped to its range.
 template <class T>
 T as(double value) noexcept {
   if constexpr (std::is_same_v<T, HDboolean>) {
@@ -165,7 +165,7 @@ HDstring hdGetString(HDenum parameter) {
   if (parameter != HD_DEVICE_MODEL_TYPE) return THIMBLE_VERSION;
   const std::lock_guard lock(devices().mutex);
   if (current_open(__func__) == nullptr) return "";
-  // It stays where it is while the arm is open.
+  // Its address is constant while the arm is open.
   return arms::facts(static_cast<int>(current_device())).name.data();
 }
 
@@ -192,7 +192,7 @@ void hdScaleGimbalAngles(HDdouble, HDdouble, HDdouble, HDdouble transform[16]) {
   }
   const std::lock_guard lock(devices().mutex);
   if (current_open(__func__) == nullptr) return;
-  // The angles of our gimbals need no scale: what is given back is the transform as it is.
+  // The angles of our gimbals need no scale: the transform is returned unchanged.
   const std::array<double, 16> now = transform_of(seen(current_device()));
   for (std::size_t i = 0; i < now.size(); ++i) transform[i] = now[i];
 }

@@ -19,7 +19,7 @@ void put_one(double value, Numbers& to) {
   to[0] = value;
 }
 
-/// Joint torques of a force at the tip, N mm: tau = J^T f.
+/// Returns the joint torques of the force at the tip, N mm: tau = J^T f.
 std::array<double, 3> joint_torques(const ArmReading& state) {
   std::array<double, 3> tau{};
   for (std::size_t joint = 0; joint < 3; ++joint) {
@@ -30,8 +30,8 @@ std::array<double, 3> joint_torques(const ArmReading& state) {
   return tau;
 }
 
-/// The force whose joint torques (N m) are given: J^T f = tau, by Cramer's rule. False where the
-/// arm is stretched or has no joints.
+/// Finds the force for given joint torques (N m): J^T f = tau, by Cramer's rule. False if the arm
+/// is at a singularity or has no joints.
 bool force_of_torques(const std::array<double, 9>& J, const std::array<double, 3>& tau,
                       std::array<double, 3>& f) {
   // The rows of J^T are the columns of J.
@@ -60,7 +60,7 @@ std::array<double, 3> first_three(const Numbers& from, double factor = 1) {
   return {factor * from[0], factor * from[1], factor * from[2]};
 }
 
-// How each is read, in the order of the table below.
+// Readers of the parameters, in the order of the table below.
 
 void get_buttons(const Look& look, Numbers& to) {
   put_one(look.state.buttons, to);
@@ -83,8 +83,8 @@ void get_transform(const Look& look, Numbers& to) {
 void get_turning(const Look& look, Numbers& to) {
   put(to_hd(look.state.w_WT), to);
 }
-/// 6 x 6, row by row: mm per rad of the first three joints in the first three rows. Of the gimbal's
-/// axes, and of turning, nothing is known: zeros.
+/// 6 x 6, row by row. The first three rows contain mm per rad of the first three joints. The rest
+/// (gimbal axes, rotation) is unknown: zeros.
 void get_jacobian(const Look& look, Numbers& to) {
   for (std::size_t joint = 0; joint < 3; ++joint) {
     const std::array<double, 3> column =
@@ -119,7 +119,7 @@ void get_workspace(const Look& look, Numbers& to) {
   const std::array<double, 3> most = to_hd(look.facts.workspace_max);
   for (std::size_t i = 0; i < 3; ++i) to[3 + i] = kMillimetres * most[i];
 }
-/// The height of the origin above the table: as if the workspace stood on it.
+/// The height of the origin above the table, as if the workspace were on it.
 void get_tabletop(const Look& look, Numbers& to) {
   put_one(kMillimetres * look.facts.workspace_min[2], to);
 }
@@ -150,8 +150,7 @@ void get_force_max(const Look& look, Numbers& to) {
   put_one(look.facts.force_max, to);
 }
 void get_force_continuous(const Look& look, Numbers& to) {
-  // Where nobody has published it: the largest force. The arm's heat guard knows better, and holds
-  // anyway.
+  // If unknown: the maximum force. The heat guard of the arm protects the motors in any case.
   const double known = look.facts.force_continuous;
   put_one(known > 0 ? known : look.facts.force_max, to);
 }
@@ -175,7 +174,7 @@ void get_joint_references(const Look& look, Numbers& to) {
   put(look.device.joint_references, to);
 }
 
-// How each is set.
+// Writers of the parameters.
 
 HDerror set_force(HHD, Device& device, const Numbers& from) {
   if (!device.frame.open) return HD_FRAME_ERROR;
@@ -195,11 +194,11 @@ HDerror set_joint_torque(HHD, Device& device, const Numbers& from) {
   device.frame.f_asked_W = f;
   return HD_SUCCESS;
 }
-/// No arm of ours drives its gimbal: kept as a torque, which is told of and not felt.
+/// Our arms have no gimbal motors: stored as a torque, which is reported and ignored.
 HDerror set_gimbal_torque(HHD handle, Device& device, const Numbers& from) {
   return set_torque(handle, device, from);
 }
-/// Nothing goes to the motors but through the gate.
+/// Motors are only controlled through the gate.
 HDerror set_motors(HHD, Device&, const Numbers&) {
   return HD_INVALID_OPERATION;
 }
@@ -319,7 +318,7 @@ std::array<double, 3> from_hd(const std::array<double, 3>& v_hd) noexcept {
 }
 
 std::array<double, 16> transform_of(const ArmReading& state) noexcept {
-  // Rows and columns of the rotation both change their axes: the stylus has HDAPI's axes, too.
+  // Rows and columns of the rotation are both converted: the stylus has HDAPI's axes, too.
   constexpr std::size_t kWorld[3] = {1, 2, 0};  // our axis of each of HDAPI's
   std::array<double, 16> transform{};
   for (std::size_t column = 0; column < 3; ++column) {

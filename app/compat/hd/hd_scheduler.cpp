@@ -1,5 +1,5 @@
-// The scheduler: callbacks on a thread of the program's process, once a tick of the arm, the
-// highest priority first. The arm's own loop is in another process and waits for none of them.
+// The scheduler: callbacks on a thread of the program's process, once per tick of the arm, in order
+// of priority. The arm's own loop is in another process and never waits for them.
 #include <HD/hd.h>
 #include <pthread.h>
 #include <sched.h>
@@ -22,8 +22,8 @@ namespace thimble::compat::hd {
 namespace {
 
 constexpr std::size_t kCallbacksMost = 256;  // chosen: programs have two to five
-constexpr HDulong kFullRate = 1000;          // Hz, of our arms
-constexpr int kPriority = 60;                // of the thread, below the arm's own loop
+constexpr HDulong kFullRate = 1000;          // Hz, rate of our arms
+constexpr int kPriority = 60;                // of the thread, below that of the arm's loop
 
 struct Callback {
   HDSchedulerHandle handle = 0;
@@ -31,23 +31,23 @@ struct Callback {
   void* data = nullptr;
   HDushort priority = 0;
   bool running = false;
-  bool leaving = false;  // somebody waits to remove it: it does not begin again
+  bool leaving = false;  // another thread waits to remove it: do not run it again
 };
 
 struct Scheduler {
   std::mutex mutex;
-  std::condition_variable changed;  // a callback is done, or the scheduler stops
-  std::vector<Callback> callbacks;  // by priority, the highest first; the older first of equals
+  std::condition_variable changed;  // signals the end of a callback, or that the scheduler stops
+  std::vector<Callback> callbacks;  // by priority, the highest first; equal ones in order of age
   HDSchedulerHandle next = 1;
   HDulong rate = kFullRate;
   std::thread thread;
   bool running = false;
-  std::shared_ptr<std::atomic<bool>> stop;  // of the thread: one that stopped itself may outlive it
+  std::shared_ptr<std::atomic<bool>> stop;  // of the thread, which may outlive the scheduler
   std::atomic<std::int64_t> tick_began_ns{0};
 };
 
 thread_local bool on_scheduler_thread = false;
-thread_local const std::atomic<bool>* own_stop = nullptr;  // of the scheduler whose thread this is
+thread_local const std::atomic<bool>* own_stop = nullptr;  // flag of the scheduler of this thread
 
 // Never destroyed: the thread may run while the program exits.
 Scheduler& scheduler() {
@@ -72,7 +72,7 @@ void remove(Scheduler& s, HDSchedulerHandle handle) {
   s.changed.notify_all();
 }
 
-/// Adds a callback behind those of its priority; 0 if there is no room. Under the lock.
+/// Adds a callback after those of its priority; 0 if there is no room. Lock required.
 HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDushort priority) {
   if (s.callbacks.size() >= kCallbacksMost) return 0;
   const auto behind = std::find_if(s.callbacks.begin(), s.callbacks.end(),
@@ -82,8 +82,8 @@ HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDusho
   return handle;
 }
 
-/// Runs each callback once. Callbacks may schedule and unschedule, and stop the scheduler: then
-/// none of the others runs.
+/// Runs each callback once. Callbacks may schedule and unschedule callbacks. If one stops the
+/// scheduler, none of the others runs.
 void run_callbacks(Scheduler& s) {
   std::vector<HDSchedulerHandle> due;
   {
@@ -114,7 +114,7 @@ void run_callbacks(Scheduler& s) {
   end_forgotten_frames();
 }
 
-/// Returns the first arm that is open, which sets the pace; -1 if none is.
+/// Returns the first open arm, which sets the pace; -1 if there is none.
 int pacing_arm() {
   const std::lock_guard lock(devices().mutex);
   for (HHD handle = 0; handle < kArmsMost; ++handle) {
@@ -126,7 +126,7 @@ int pacing_arm() {
 void loop(Scheduler& s, const std::atomic<bool>& stop) {
   on_scheduler_thread = true;
   own_stop = &stop;
-  // Refused where the user may not: then it runs with more jitter.
+  // Without the permission, the thread runs with more jitter.
   sched_param parameters{};
   parameters.sched_priority = kPriority;
   pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
@@ -140,11 +140,11 @@ void loop(Scheduler& s, const std::atomic<bool>& stop) {
     }
     const int arm = pacing_arm();
     ArmReading reading;
-    if (arm != paced_by) {  // another arm counts other ticks
+    if (arm != paced_by) {  // another arm has other tick numbers
       paced_by = arm;
       tick = arms::read(arm, reading) ? reading.tick : 0;
     }
-    // It waits a period of its own where no arm is open.
+    // Without an open arm, it sleeps for a period.
     const double every = std::round(arms::facts(arm).rate / static_cast<double>(rate));
     arms::wait_for_tick(arm, tick + static_cast<std::uint64_t>(std::max(every, 1.0)) - 1);
     if (arms::read(arm, reading)) tick = reading.tick;
@@ -157,13 +157,13 @@ void loop(Scheduler& s, const std::atomic<bool>& stop) {
 void end_thread(std::thread& thread) {
   if (!thread.joinable()) return;
   if (thread.get_id() == std::this_thread::get_id()) {
-    thread.detach();  // a callback stops its own scheduler
+    thread.detach();  // a callback stopped its own scheduler
   } else {
     thread.join();
   }
 }
 
-/// Lets no force stand behind a scheduler that has stopped.
+/// Removes all forces when the scheduler has stopped.
 void end_forces() {
   const std::lock_guard lock(devices().mutex);
   for (HHD handle = 0; handle < kArmsMost; ++handle) {
@@ -190,7 +190,7 @@ void hdStartScheduler(void) {
   Scheduler& s = scheduler();
   const std::lock_guard lock(s.mutex);
   if (s.running) return;
-  end_thread(s.thread);  // of a scheduler that stopped itself
+  end_thread(s.thread);  // thread of a scheduler that stopped itself
   s.running = true;
   s.stop = std::make_shared<std::atomic<bool>>(false);
   s.thread = std::thread([&s, stop = s.stop] { loop(s, *stop); });
@@ -212,7 +212,7 @@ void hdStopScheduler(void) {
 }
 
 void hdSetSchedulerRate(HDulong hertz) {
-  // Every tick of the arm, or each second, third and so on.
+  // Every tick of the arm, or every second, third and so on.
   if (hertz == 0 || hertz > kFullRate || kFullRate % hertz != 0) {
     keep_wrong_call(HD_INVALID_VALUE, __func__, "the rate must be 1000 Hz or a whole part of it");
     return;
@@ -243,7 +243,7 @@ void hdScheduleSynchronous(HDSchedulerCallback callback, void* data, HDushort pr
   Scheduler& s = scheduler();
   std::unique_lock lock(s.mutex);
   if (!s.running || on_scheduler_thread) {
-    // Nobody would run it while this thread waits.
+    // The scheduler cannot run it while this thread waits.
     lock.unlock();
     callback(data);
     return;
@@ -269,7 +269,7 @@ void hdUnschedule(HDSchedulerHandle handle) {
     return;
   }
   callback->leaving = true;
-  // What the callback uses may go away once this returns.
+  // The callback's data may be destroyed after this function returns.
   if (!on_scheduler_thread) {
     s.changed.wait(lock, [&] {
       const Callback* found = find(s, handle);

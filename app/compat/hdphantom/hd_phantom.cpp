@@ -1,4 +1,4 @@
-// libhdPhantom.so: CHAI3D's axes are ours.
+// libhdPhantom.so: CHAI3D's axes are the same as ours.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -23,7 +23,7 @@ std::mutex& mutex() {
   return only;
 }
 
-/// What was asked for last: a torque alone keeps the force, and the other way round.
+/// The last requests: a new torque keeps the force, and vice versa.
 std::array<ForceAsked, thimble::compat::kArmsMost>& asked() {
   static auto& all = *new std::array<ForceAsked, thimble::compat::kArmsMost>;
   return all;
@@ -38,7 +38,7 @@ bool any_null(std::initializer_list<const void*> pointers) {
   return std::any_of(pointers.begin(), pointers.end(), [](const void* p) { return p == nullptr; });
 }
 
-/// Copies numbers of the newest tick to where they are wanted; zeros if the arm is not open.
+/// Copies numbers of the newest tick; zeros if the arm is not open.
 template <class Numbers>
 int get(const char* function, int id, std::initializer_list<double*> to,
         Numbers ArmReading::*from) {
@@ -131,7 +131,7 @@ int hdPhantomGetWorkspaceRadius(int id, double* radius) {
   *radius = 0;
   if (id < 0 || id >= arms::count()) return wrong(__func__, "there is no arm of this number");
   const ArmFacts& facts = arms::facts(id);
-  // The ball in the box: as far as the nearest wall.
+  // Radius of the largest ball in the workspace.
   double half = 1;
   for (std::size_t i = 0; i < 3; ++i) {
     half = std::min(half, (facts.workspace_max[i] - facts.workspace_min[i]) / 2);
@@ -144,7 +144,7 @@ int hdPhantomGetType(int id, char* name) {
   if (name == nullptr) return wrong(__func__, "the pointer is null");
   *name = 0;
   if (id < 0 || id >= arms::count()) return wrong(__func__, "there is no arm of this number");
-  const ArmFacts& facts = arms::facts(id);  // shorter than what the caller has room for
+  const ArmFacts& facts = arms::facts(id);  // shorter than the caller's buffer
   std::memcpy(name, facts.name.data(), facts.name.size());
   return kTrue;
 }

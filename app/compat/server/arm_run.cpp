@@ -65,7 +65,7 @@ driver::Result<void> ArmRun::prepare(int number) {
   asked.firmware = options_.firmware;
   asked.record = recording_of(options_.record, index_, number);
   asked.overwrite = options_.overwrite;
-  // Those after the first take the next free number: the program is at work, and cannot be asked.
+  // Later runs use the next free number: the program is running, and the user cannot be asked.
   std::error_code unknown;
   const bool first = index_ == 0 && number == 0;
   for (int next = number; !first && !asked.overwrite && !asked.record.empty() &&
@@ -123,12 +123,12 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   channel_.facts.rate = session_->scene().rate;
   if (const auto& real = session_->setup().real_arm()) name_real(channel_.facts, real->name());
   if (session_->setup().real_arm()) watch_.emplace(*session_);
-  // A program that runs in the same terminal writes there: no line of progress.
+  // No progress line, because the program writes to the same terminal.
   attendance_.emplace(*session_, watch_ ? &*watch_ : nullptr, desk_.get(), false);
   const std::uint32_t ticks = channel_.ticks.load();
   begun_ = true;
   servo_->begin(*session_, stop_);
-  // Whoever opened an arm reads it at once: there is something to read.
+  // A program reads an arm right after it is opened, so wait for the first tick.
   constexpr std::int64_t kSoon_ns = 100'000'000;
   for (int look = 0; look < 20 && channel_.ticks.load() == ticks && !servo_->ended(); ++look) {
     channel_.waiting.fetch_add(1);

@@ -21,30 +21,29 @@
 
 namespace thimble::compat {
 
-/// One arm while a program has it: a session of its own, on a thread of its own, with the program's
-/// force in it. Real-time: never from the servo thread, all of it.
+/// One arm while a program uses it: a session with its own thread and the program's force.
+/// Real-time: never from the servo thread, all of it.
 class ArmRun {
  public:
-  /// Opens arm `index` of the options and begins to run it. `number`: how many runs there were of
-  /// it, for the name of the recording. The error says what to do. `stop`: leaves while a person is
-  /// asked.
+  /// Opens arm `index` of the options and starts to run it. `number`: how many runs it had before,
+  /// for the name of the recording. The error says what to do. `stop` ends a question to the user.
   static driver::Result<std::unique_ptr<ArmRun>> open(const ExecOptions& options, std::size_t index,
                                                       int number, ArmChannel& channel,
                                                       const std::atomic<bool>& stop);
-  /// Ends it, with zero force at the arm.
+  /// Ends the run with zero force.
   ~ArmRun();
   ArmRun(const ArmRun&) = delete;
   ArmRun& operator=(const ArmRun&) = delete;
 
-  /// Looks after it; call it about ten times a second. Tells of a program that hangs.
+  /// Attends to the run; call it about ten times a second. Reports a program that hangs.
   void attend(const std::string& program);
   /// Returns whether a viewer has ended the run.
   bool ended_by_viewer() const noexcept { return desk_ && desk_->ended(); }
-  /// Ends the run with zero force, and returns what there is to say of it: what the gate did, and
-  /// the rest of the usual report.
+  /// Ends the run with zero force, and returns its report: what the gate changed, and the usual
+  /// rest.
   std::string end();
 
-  /// Returns the fault in which it was left; after `end`.
+  /// Returns the last fault; after `end`.
   driver::Fault fault() const noexcept { return session_->device().fault(); }
   /// Returns its session, for tests.
   session::Session& session() noexcept { return *session_; }
@@ -67,7 +66,7 @@ class ArmRun {
   std::unique_ptr<session::ServoThread> servo_;
   std::unique_ptr<ClientForce> client_;
   std::unique_ptr<ReadingPublisher> publisher_;
-  std::unique_ptr<ros2::RosRun> topics_;  // null: not asked for
+  std::unique_ptr<ros2::RosRun> topics_;  // null: no topics
   std::optional<session::ReplugWatches> watch_;
   std::optional<session::RunAttendance> attendance_;
   std::atomic<bool> stop_{false};

@@ -16,7 +16,7 @@
 namespace thimble::compat {
 namespace {
 
-/// Returns what is known of an arm before it is opened.
+/// Returns the properties of an arm before it is opened.
 ArmFacts known_facts(const ExecOptions& options, const ExecArm& arm) {
   if (arm.device != "sim") return {};
   std::filesystem::path file = arm.arm_file;
@@ -95,7 +95,7 @@ void ArmServer::serve(std::size_t index) {
   ArmChannel& shared = channel_->arms[index];
   const ChannelState state = shared.state.load();
   if (state == ChannelState::kClosed) return;
-  // A program that has died asks for nothing any more.
+  // Ignores the request of a program that has died.
   const bool owned = memory_->locked_elsewhere(kFirstOwnerByte + static_cast<std::int64_t>(index));
   if (state == ChannelState::kWanted && owned) {
     open(index);
@@ -107,7 +107,7 @@ void ArmServer::serve(std::size_t index) {
     return;
   }
   if (run == nullptr) {
-    // Its program died before it knew of the answer. Another one may have asked since.
+    // The program died before it read the answer. Another one may have requested the arm since.
     ChannelState left = state;
     if (!owned && shared.state.compare_exchange_strong(left, ChannelState::kClosed)) {
       wake_all(shared.state);

@@ -14,14 +14,14 @@
 
 namespace thimble::compat {
 
-/// What gives a program that was written for another arm ours: it owns the arms' sessions, servo
-/// threads and gates, and does what the libraries that stand in for others' ask for over shared
-/// memory. The program is another process: that it hangs, crashes or leaves takes the force away
-/// and nothing else. Real-time: never from the servo thread, all of it.
+/// Serves arms to a program for another maker's arm. It owns the arms' sessions, servo threads and
+/// gates, and executes the requests of the compatibility libraries from shared memory. The program
+/// is a separate process: if it hangs, crashes or ends, only its force is lost. Real-time: never
+/// from the servo thread, all of it.
 class ArmServer {
  public:
-  /// Makes what is shared; no arm is opened before the program asks. `stop` leaves while a person
-  /// is asked something; it must outlive the server. The error says what to do.
+  /// Makes the shared memory; an arm is opened only on request of the program. `stop` ends a
+  /// question to the user; it must outlive the server. The error says what to do.
   static driver::Result<std::unique_ptr<ArmServer>> make(const ExecOptions& options,
                                                          const std::atomic<bool>& stop);
   /// Ends all runs, with zero force.
@@ -31,29 +31,29 @@ class ArmServer {
 
   /// Returns the value of THIMBLE_EXEC for the program.
   std::string address() const;
-  /// Does what was asked for, waiting up to `wait_ns` for it, and looks after the arms. Call it
-  /// again and again.
+  /// Executes pending requests, waits up to `wait_ns` for one, and attends to the arms. Call it
+  /// repeatedly.
   void step(std::int64_t wait_ns);
   /// Ends all runs; later requests are refused.
   void end();
 
-  /// Returns what there is to say of all runs that are over, and of wrong calls.
+  /// Returns the report on all finished runs and on wrong calls.
   std::string report() const;
   /// Returns whether a run ended, or would have, with a fault.
   bool any_fault() const noexcept { return any_fault_; }
   /// Returns whether a viewer has ended a run.
   bool ended_by_viewer() const noexcept { return ended_by_viewer_; }
-  /// Returns how many arms have been opened.
+  /// Returns the number of arms opened so far.
   int runs() const noexcept { return runs_; }
 
-  /// Returns what is shared, and the run of an arm, null if it is not open: for tests.
+  /// Returns the shared memory, and the run of an arm (null if it is not open), for tests.
   Channel& channel() noexcept { return *channel_; }
   ArmRun* run(std::size_t arm) noexcept { return arms_[arm].run.get(); }
 
  private:
   struct Arm {
     std::unique_ptr<ArmRun> run;
-    int runs = 0;  // that are over
+    int runs = 0;  // finished runs
   };
 
   ArmServer(const ExecOptions& options, const std::atomic<bool>& stop,

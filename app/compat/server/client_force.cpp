@@ -5,7 +5,7 @@
 namespace thimble::compat {
 namespace {
 
-/// A writer that was stopped in the middle of writing must not hold a tick up.
+/// A writer interrupted during a write must not delay a tick.
 constexpr int kAttempts = 4;
 
 double opened_further(double opened, double dt, double opening) noexcept {
@@ -22,7 +22,7 @@ ClientForce::ClientForce(ArmChannel& channel, driver::ForceLaw scene, driver::De
       limits_(device.gate().limits()),
       may_activate_(may_activate),
       enablings_(channel.enablings.load()) {
-  // What a program asked for before this run began counts no more.
+  // Requests from before this run are ignored.
   ForceWritten old;
   if (channel.force.load(old)) taken_ = old.number;
   channel.taken.store(taken_);

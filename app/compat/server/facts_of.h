@@ -8,11 +8,11 @@
 
 namespace thimble::compat {
 
-/// Returns what a program is told of an arm: what its file says, and what it tells of itself; of an
-/// arm that is not open, nothing is known of the latter. Real-time: never from the servo thread.
+/// Returns the properties of an arm: those of its file, and those that the arm itself reports. The
+/// latter are unknown for an arm that is not open. Real-time: never from the servo thread.
 ArmFacts facts_of(const scene::ArmFile& arm, const driver::ArmTraits& traits = {});
 
-/// Says that an arm is real, and what it is known by. Real-time: never from the servo thread.
+/// Marks an arm as real, and sets its name. Real-time: never from the servo thread.
 void name_real(ArmFacts& facts, const std::string& name);
 
 }  // namespace thimble::compat

@@ -27,7 +27,7 @@ driver::Result<std::unique_ptr<FreeScene>> FreeScene::make(const std::string& ar
   close(file);
   std::unique_ptr<FreeScene> scene(new FreeScene(pattern));
   std::ofstream text(scene->file_);
-  // A field of no strength: a scene has one object at least.
+  // A field of strength zero, because a scene needs at least one object.
   text << fmt::format(
       "name: free\n"
       "description: Nothing to touch.\n"

@@ -8,18 +8,18 @@
 
 namespace thimble::compat {
 
-/// A scene in which there is nothing to touch, as a file that lives as long as this: what a program
-/// gets that draws its own world. Real-time: never from the servo thread.
+/// A scene without objects, as a file with the lifetime of this object, for programs that compute
+/// all forces themselves. Real-time: never from the servo thread.
 class FreeScene {
  public:
-  /// Writes it for an arm (name or path; empty: the vintage PHANTOM); the hand rests at the world's
-  /// origin. The error says what to do.
+  /// Writes the file for an arm (name or path; empty: the vintage PHANTOM). The hand rests at the
+  /// world's origin. The error says what to do.
   static driver::Result<std::unique_ptr<FreeScene>> make(const std::string& arm);
   ~FreeScene();
   FreeScene(const FreeScene&) = delete;
   FreeScene& operator=(const FreeScene&) = delete;
 
-  /// Returns the file.
+  /// Returns the path of the file.
   const std::filesystem::path& file() const noexcept { return file_; }
 
  private:

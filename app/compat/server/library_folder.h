@@ -6,10 +6,9 @@
 
 namespace thimble::compat {
 
-/// Returns the folder of the libraries that stand in for others', found from where this program
-/// lies: installed, or in a build tree. It is on nobody's search path, so that the owner of another
-/// maker's arm keeps that maker's library. The error says what to install. Real-time: never from
-/// the servo thread.
+/// Returns the folder of the compatibility libraries, relative to this program: installed, or in a
+/// build tree. It is in no default search path, so that the original vendor libraries remain
+/// usable. The error says what to install. Real-time: never from the servo thread.
 driver::Result<std::filesystem::path> face_folder();
 
 }  // namespace thimble::compat

@@ -17,7 +17,7 @@ void LockstepClock::sleep_until_ns(std::int64_t time_ns) noexcept {
   constexpr std::int64_t kLook_ns = 100'000'000;
   while (!released_.load()) {
     const std::uint32_t permitted = channel_.permitted.load();
-    // Counted around: what is permitted is less than half the numbers ahead.
+    // Comparison with wrap-around: the permitted number is less than half the range ahead.
     if (static_cast<std::int32_t>(permitted - channel_.ticks.load()) > 0) break;
     wait_while(channel_.permitted, permitted, kLook_ns);
   }

@@ -8,7 +8,7 @@
 
 namespace thimble::compat {
 
-/// Copies a text into room that others read, cut where it is too long; it ends with a 0.
+/// Copies a text into shared storage, truncated if too long and terminated by 0.
 template <std::size_t N>
 void put_text(std::array<char, N>& to, std::string_view from) noexcept {
   to.fill(0);

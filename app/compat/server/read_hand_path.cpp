@@ -37,7 +37,7 @@ driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::files
     fields.seekg(0);
     rest.clear();
     fields >> station.time >> station.p_W.x() >> station.p_W.y() >> station.p_W.z();
-    // Written so that NaN is refused.
+    // Rejects NaN, too.
     const bool good = !fields.fail() && !(fields >> rest) && station.time >= 0 &&
                       station.time <= kLatest && station.p_W.cwiseAbs().maxCoeff() <= kFarthest;
     if (!good) {

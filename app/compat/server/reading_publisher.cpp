@@ -59,7 +59,7 @@ void ReadingPublisher::turn(const driver::TickRecord& record) noexcept {
   const Eigen::Matrix3d R_WT = driver::rotation_of(record.q_WT);
   const double dt = 1e-9 * static_cast<double>(record.time_ns - time_ns_);
   if (time_ns_ != 0 && dt > 0) {
-    // The turn of one tick is small: its axis and sine are the odd part of the rotation.
+    // The rotation of one tick is small: its antisymmetric part gives axis and sine.
     const Eigen::Matrix3d turned = R_WT * R_WT_.transpose();
     const Eigen::Vector3d w_W =
         Eigen::Vector3d(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0),

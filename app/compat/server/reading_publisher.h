@@ -11,15 +11,15 @@
 
 namespace thimble::compat {
 
-/// An observer that shows each tick to a program that was written for another arm, and wakes what
-/// waits for it there.
+/// An observer that publishes each tick to a program for another maker's arm, and wakes its waiting
+/// threads.
 class ReadingPublisher final : public session::TickObserver {
  public:
-  /// Takes what it tells of, all of which must outlive it. Real-time: never from the servo thread.
+  /// Takes its sources, all of which must outlive it. Real-time: never from the servo thread.
   ReadingPublisher(ArmChannel& channel, const ClientForce& client, const driver::Device& device,
                    const scene::ArmFile& arm) noexcept;
 
-  /// Takes one tick. Real-time: safe; a system call that does not wait, if somebody waits.
+  /// Takes one tick. Real-time: safe; makes a system call that does not wait, if a thread waits.
   void take(const driver::TickRecord& record) noexcept override;
 
  private:

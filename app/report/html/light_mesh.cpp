@@ -12,7 +12,7 @@
 namespace thimble::report {
 namespace {
 
-// Joins the vertices in each cell of this width (m).
+// Merges the vertices in each cell of this size (m).
 render::TriangleMesh joined(const render::TriangleMesh& mesh, const Eigen::AlignedBox3d& box,
                             double width) {
   std::unordered_map<std::uint64_t, std::int32_t> cells;
@@ -51,7 +51,7 @@ render::TriangleMesh light_mesh(const render::TriangleMesh& mesh, std::size_t tr
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
   const double longest = box.sizes().maxCoeff();
-  // A surface that fills its box like a cube has two triangles for each of 6 n^2 cells.
+  // The surface of a cube has two triangles for each of its 6 n^2 cells.
   double cells = std::max(4.0, std::sqrt(static_cast<double>(triangles_most) / 12));
   for (;;) {
     render::TriangleMesh light = joined(mesh, box, longest / cells);

@@ -12,38 +12,37 @@
 
 namespace thimble::report {
 
-/// The ticks of a run that is too long to keep each of them: those in contact, while there is room,
-/// and of each stretch of all ticks those at which force, asked force, depth, period, computing
-/// time and each coordinate of the tip are least and most. Each has the time since the tick before
-/// it. All memory is there and touched when it is made.
+/// A reduced record of a run that is too long to keep every tick. It keeps the ticks in contact,
+/// while there is room. Of each stretch of all ticks it keeps those with the minimum and maximum of
+/// force, requested force, depth, period, computing time and each coordinate of the tip. Each has
+/// the time since the previous tick. All memory is allocated and touched by the constructor.
 class OutlineTrace final : public session::TickObserver {
  public:
-  /// Ticks that it keeps, 110 MB. [chosen]
+  /// Maximum number of ticks kept, 110 MB. [chosen]
   static constexpr std::size_t kRowsMost = 400'000;
-  /// Ticks in contact that it keeps beyond the outline. [chosen: more than a page shows]
+  /// Maximum number of ticks in contact kept in addition. [chosen: more than a page shows]
   static constexpr std::size_t kTouchRowsMost = 100'000;
 
-  /// Makes room for a run of `expected_ticks` (> 0). Real-time: never from the servo thread.
+  /// Allocates memory for a run of `expected_ticks` (> 0). Real-time: never from the servo thread.
   explicit OutlineTrace(std::uint64_t expected_ticks);
 
-  /// Looks at a tick. Real-time: safe.
+  /// Takes a tick. Real-time: safe.
   void take(const driver::TickRecord& tick) noexcept override;
 
-  /// Brings what was kept into order. After the last tick. Real-time: never from the servo
-  /// thread.
+  /// Sorts the kept ticks. Call after the last tick. Real-time: never from the servo thread.
   void finish();
 
   /// Returns the ticks, oldest first. After `finish`.
   std::span<const driver::TickRecord> ticks() const noexcept { return {ticks_.data(), kept_}; }
-  /// Returns the time since the tick before each, ns. After `finish`.
+  /// Returns the time since the previous tick of each, ns. After `finish`.
   std::span<const std::int64_t> periods_ns() const noexcept { return {periods_ns_.data(), kept_}; }
-  /// Returns how many ticks the run had.
+  /// Returns the number of ticks of the run.
   std::uint64_t seen() const noexcept { return seen_; }
 
  private:
   static constexpr std::size_t kOutlined = 8;
-  /// The first and the last of a stretch, both sides of its first change of contact, and the least
-  /// and the most of each.
+  /// The first and the last tick of a stretch, and the ticks before and after its first change of
+  /// contact; in addition the minimum and the maximum of each column.
   static constexpr std::size_t kFixed = 4;
   static constexpr std::size_t kPerStretch = kFixed + 2 * kOutlined;
 
@@ -59,7 +58,7 @@ class OutlineTrace final : public session::TickObserver {
   std::vector<std::int64_t> periods_ns_;
   std::size_t kept_ = 0, touch_rows_ = 0;
   std::uint64_t stretch_ = 1, in_stretch_ = 0, seen_ = 0;
-  std::array<Row, kFixed> own_{};  // first, last, before and after a change
+  std::array<Row, kFixed> own_{};  // first, last, before and after a change of contact
   Extremes<kOutlined, Row> extremes_;
   bool changed_ = false;
   bool finished_ = false;

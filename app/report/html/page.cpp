@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A script must not end the element that it stands in.
+// Escapes a script so that it does not end its own element.
 std::string script_text(std::string text) {
   for (std::size_t at = text.find("</script"); at != std::string::npos;
        at = text.find("</script", at + 4)) {
@@ -25,7 +25,7 @@ std::string script_text(std::string text) {
   return text;
 }
 
-// JSON inside of a script.
+// Returns JSON for use within a script.
 std::string script_json(const Json& json) {
   std::string safe;
   for (const char c : json_text(json)) {
@@ -38,7 +38,7 @@ std::string script_json(const Json& json) {
   return safe;
 }
 
-// Fills the names between two @ in; what is filled in is not looked at again.
+// Replaces the placeholders between two @; inserted text is not searched again.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values) {
   std::string page;
   while (!text.empty()) {

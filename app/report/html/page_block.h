@@ -10,13 +10,12 @@
 
 namespace thimble::report {
 
-/// The numbers of a page: arrays of plain numbers one after the other, little-endian, each at a
-/// multiple of 8 bytes, so that a browser looks at them in place. Real-time: never from the servo
-/// thread.
+/// The binary data of a page: consecutive arrays of numbers, little-endian, each at a multiple of 8
+/// bytes, so that a browser can use them without copying. Real-time: never from the servo thread.
 class PageBlock {
  public:
-  /// Adds an array under a name of its own; its type in the page is that of JavaScript's typed
-  /// arrays: f64, f32, u32, u16, i16 or u8.
+  /// Adds an array with a unique name. Its type on the page is one of JavaScript's typed arrays:
+  /// f64, f32, u32, u16, i16 or u8.
   void add(const std::string& name, std::span<const double> numbers);
   void add(const std::string& name, std::span<const float> numbers);          ///< As above.
   void add(const std::string& name, std::span<const std::uint32_t> numbers);  ///< As above.
@@ -24,7 +23,7 @@ class PageBlock {
   void add(const std::string& name, std::span<const std::int16_t> numbers);   ///< As above.
   void add(const std::string& name, std::span<const std::uint8_t> numbers);   ///< As above.
 
-  /// Returns where each array lies: {"NAME": {"type", "offset", "count"}}, offsets in bytes.
+  /// Returns the position of each array: {"NAME": {"type", "offset", "count"}}, offsets in bytes.
   const nlohmann::ordered_json& arrays() const noexcept { return arrays_; }
   /// Returns all bytes.
   std::span<const std::uint8_t> bytes() const noexcept { return bytes_; }
@@ -37,10 +36,10 @@ class PageBlock {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Writes bytes as base64 (RFC 4648), without line breaks.
+/// Returns bytes as base64 (RFC 4648), without line breaks.
 std::string base64(std::span<const std::uint8_t> bytes);
 
-/// Writes text so that it may stand in HTML, between tags or in a quoted attribute.
+/// Escapes text for HTML, between tags or in a quoted attribute.
 std::string html_text(std::string_view text);
 
 }  // namespace thimble::report

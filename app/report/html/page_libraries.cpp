@@ -36,7 +36,7 @@ std::vector<fs::path> share_folders() {
   return folders;
 }
 
-// Returns what a package brings if it is whole.
+// Reads the files of a package; returns whether it is complete.
 bool read(const Wanted& wanted, const fs::path& share, PageLibrary& library) {
   const fs::path folder = share / "javascript";
   library = {.name = wanted.name,

@@ -7,18 +7,18 @@
 
 namespace thimble::report {
 
-/// A library of other people's that is put into a page.
+/// A third-party library that is included in a page.
 struct PageLibrary {
-  std::string name;     ///< As its makers write it.
-  std::string package;  ///< Debian's.
+  std::string name;     ///< In its makers' spelling.
+  std::string package;  ///< Debian package.
   std::string script;   ///< JavaScript.
   std::string style;    ///< CSS; may be empty.
-  std::string licence;  ///< With its copyrights, as Debian keeps it.
+  std::string licence;  ///< With its copyrights, from the Debian package.
 };
 
-/// Reads what a page needs of other people: three.js and dygraphs, from javascript/ below each
-/// folder of $XDG_DATA_DIRS (/usr/share), where Debian's libjs-three and libjs-dygraphs put them.
-/// The error says what to install. Real-time: never from the servo thread.
+/// Reads the third-party libraries of a page: three.js and dygraphs, from javascript/ below each
+/// folder of $XDG_DATA_DIRS (/usr/share), where Debian's libjs-three and libjs-dygraphs install
+/// them. The error says what to install. Real-time: never from the servo thread.
 driver::Result<std::vector<PageLibrary>> read_page_libraries();
 
 }  // namespace thimble::report

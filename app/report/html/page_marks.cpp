@@ -46,12 +46,12 @@ PageMark::Kind kind_of(const TickEvent& event) noexcept {
   return PageMark::Kind::kWarning;
 }
 
-// Takes away what a line of the log begins with: a page says when by itself.
+// Removes the time at the start of a log line, because the page shows the time itself.
 std::string words_of(const TickEvent& event) {
   return session::words_of(event, {}).substr(session::at_tick(event.tick, event.time_ns).size());
 }
 
-// Marks by number, of which the oldest may be forgotten.
+// Numbered marks; the oldest may be discarded.
 class MarkList {
  public:
   explicit MarkList(std::size_t most = SIZE_MAX) : most_(most) {}
@@ -78,10 +78,10 @@ class MarkList {
 
 constexpr std::uint64_t kNone = UINT64_MAX;
 
-using GoingOn = std::array<std::uint64_t, session::kActivities>;  // the marks of activities
+using GoingOn = std::array<std::uint64_t, session::kActivities>;  // the marks of current activities
 
-// An activity is told twice, when it begins and when it is over: that is one mark. Returns its
-// number; kNone for a touch, which is none.
+// An activity has two events, its begin and its end, but only one mark. Returns its number; kNone
+// for a touch, which has none.
 std::uint64_t add(const TickEvent& event, MarkList& marks, GoingOn& going_on) {
   if (event.kind == EventKind::kTouchBegan || event.kind == EventKind::kTouchEnded) return kNone;
   auto& open = going_on[static_cast<std::size_t>(event.activity)];
@@ -118,7 +118,7 @@ void tell_of_lost(std::uint64_t lost, std::vector<PageMark>& marks) {
                    fmt::format("{} more events found no room on this page.", lost)});
 }
 
-// What no recording keeps did not happen, as far as it tells.
+// Counters that recordings do not contain; always zero.
 class NoCounters final : public session::EventCounters {
  public:
   std::uint64_t changes() const noexcept override { return 0; }
@@ -132,13 +132,13 @@ bool gate_acted(const driver::TickRecord& tick) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     most = std::max(most, std::abs(tick.f_sent_W[k] - tick.f_wanted_W[k]));
   }
-  return most > 1e-6;  // N: what the frames of the arm round is less
+  return most > 1e-6;  // N: rounding errors of the arm's frames are smaller
 }
 
-// Times in which the gate acted, with gaps of up to EventWatch::kQuiet_ns.
+// Intervals in which the gate changed the force, merged across gaps of up to EventWatch::kQuiet_ns.
 class GateTimes {
  public:
-  /// Takes a tick. Returns whether it is of a time in which the gate acts, which `mark` tells.
+  /// Takes a tick. Returns whether it belongs to the interval of `mark`.
   bool take(const driver::TickRecord& tick) {
     if (!gate_acted(tick)) return false;
     began_ = count_ == 0 || tick.time_ns - newest_ns_ > session::EventWatch::kQuiet_ns;
@@ -150,7 +150,7 @@ class GateTimes {
     newest_ns_ = tick.time_ns;
     return true;
   }
-  /// Returns whether that time began with the last tick of it.
+  /// Returns whether that interval began with its last tick.
   bool began() const { return began_; }
   PageMark mark() const {
     return {
@@ -225,7 +225,7 @@ struct MarksAsTheyCome::Parts {
   }
 
   NoCounters counters;
-  session::SpscRing<TickEvent> ring{64};  // a tick has fewer
+  session::SpscRing<TickEvent> ring{64};  // a tick has fewer events
   session::EventWatch watch;
   MarkList marks{kMost};
   GoingOn going_on{};
@@ -260,7 +260,7 @@ std::vector<std::uint64_t> MarksAsTheyCome::take(std::span<const driver::TickRec
       gate_changed = true;
     }
   }
-  // Its words grow with every tick; they are written once for all of these.
+  // Its text changes with every tick, so it is updated once after all of these.
   if (gate_changed) {
     if (PageMark* mark = parts.marks.at(parts.gate_mark)) *mark = parts.gate.mark();
     changed.push_back(parts.gate_mark);

@@ -15,35 +15,36 @@
 
 namespace thimble::report {
 
-/// Something that happened in a run, as a page marks it.
+/// An event of a run, as marked on a page.
 struct PageMark {
-  /// How much it matters.
+  /// Importance of an event.
   enum class Kind : std::uint8_t { kFault, kWarning, kGate, kNote };
 
   std::int64_t begin_ns = 0;  ///< On the loop's clock.
-  std::int64_t end_ns = 0;    ///< When it was over; `begin_ns` if it took no time.
-  Kind kind = Kind::kNote;    ///< Of the worst of it.
+  std::int64_t end_ns = 0;    ///< Its end; `begin_ns` if it has no duration.
+  Kind kind = Kind::kNote;    ///< The most important kind within it.
   std::string words;          ///< A sentence.
 };
 
-/// Names a kind as the page does: fault, warning, gate, note.
+/// Returns the name of a kind on the page: fault, warning, gate, note.
 const char* name_of(PageMark::Kind kind) noexcept;
 
-/// The events of a run on one arm, kept until it is over.
+/// Collects the events of a run on one arm until it is over.
 class EventKeeper final : public session::TickObserver {
  public:
-  /// Events that are kept: the first so many, 500 kB. [chosen: a page shows a hundred at a time]
+  /// Maximum number of events kept, 500 kB; later ones are counted as lost. [chosen: a page shows a
+  /// hundred at a time]
   static constexpr std::size_t kEventsMost = 8192;
 
-  /// Watches ticks due every `period_ns` on `device`, which must be open and outlive it.
+  /// Observes ticks due every `period_ns` on `device`, which must be open and outlive this.
   /// Real-time: never from the servo thread.
   EventKeeper(const driver::Device& device, std::int64_t period_ns);
 
   /// Takes one tick. Real-time: safe.
   void take(const driver::TickRecord& tick) noexcept override { watch_.take(tick); }
 
-  /// Ends what goes on and returns everything that happened but touches, in order. After the last
-  /// tick, once.
+  /// Ends current activities and returns all events except touches, in order. Call once, after the
+  /// last tick.
   std::vector<PageMark> finish();
 
  private:
@@ -52,21 +53,20 @@ class EventKeeper final : public session::TickObserver {
   session::EventWatch watch_;
 };
 
-/// What the ticks of a run tell as they come of what `marks_of_ticks` tells at its end; the oldest
-/// marks are forgotten. Real-time: never from the servo thread.
+/// Finds the marks of `marks_of_ticks` during a run, as its ticks arrive; the oldest marks are
+/// discarded. Real-time: never from the servo thread.
 class MarksAsTheyCome {
  public:
-  /// Marks that are kept. [chosen: what a page lists]
+  /// Maximum number of marks kept. [chosen: the length of a page's list]
   static constexpr std::size_t kMost = 500;
 
-  /// Watches ticks due every `period_ns`.
+  /// Observes ticks due every `period_ns`.
   explicit MarksAsTheyCome(std::int64_t period_ns);
   ~MarksAsTheyCome();
 
-  /// Takes the next ticks. Returns the numbers of the marks that are new or that have changed; they
-  /// count from 0 on.
+  /// Takes the next ticks. Returns the numbers of new and changed marks; numbers start at 0.
   std::vector<std::uint64_t> take(std::span<const driver::TickRecord> ticks);
-  /// Returns a mark; null if it is forgotten.
+  /// Returns a mark; null if it was discarded.
   const PageMark* mark(std::uint64_t number) const noexcept;
   /// Returns the number of the oldest mark that is kept, and one above that of the newest.
   std::uint64_t oldest() const noexcept;
@@ -77,9 +77,9 @@ class MarksAsTheyCome {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Returns what the ticks of a recording tell of the same: the arm's stages, faults, ticks missed,
-/// and when the force that was sent was not the one that was asked for; why the gate did that no
-/// recording tells. Real-time: never from the servo thread.
+/// Returns the events that the ticks of a recording show: the arm's stages, faults, missed ticks,
+/// and when the force sent differed from the requested one. Recordings do not contain the gate's
+/// reason. Real-time: never from the servo thread.
 std::vector<PageMark> marks_of_ticks(std::span<const driver::TickRecord> ticks,
                                      std::int64_t period_ns);
 

@@ -17,7 +17,7 @@ double size_of(const std::array<double, 3>& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-// What is plotted, and must keep its outline.
+// The plotted columns, whose outline must be kept.
 constexpr std::size_t kOutlined = 6;
 std::array<double, kOutlined> outlined(const PageTicks& ticks, std::size_t i) {
   const TickRecord& tick = ticks.ticks[i];
@@ -29,13 +29,13 @@ std::array<double, kOutlined> outlined(const PageTicks& ticks, std::size_t i) {
           static_cast<double>(tick.work_ns)};
 }
 
-// A stretch gives its first tick, and the least and the most of each.
+// A stretch contributes its first tick, and the minimum and the maximum of each column.
 constexpr std::size_t kPerStretch = 1 + 2 * kOutlined;
 
-// What of a tick is drawn, one number after the other: tip, proxy, force; then what is outlined.
+// The values of a tick that are drawn: tip, proxy, force; then the outlined columns.
 constexpr std::size_t kDrawn = 9 + kOutlined;
-constexpr std::size_t kPath = 6;     // of them tip and proxy, m
-constexpr std::size_t kSmooth = 12;  // of them, the first: the others may be noise in each tick
+constexpr std::size_t kPath = 6;     // the first of them: tip and proxy, m
+constexpr std::size_t kSmooth = 12;  // the first of them: the others may be noisy in each tick
 std::array<double, kDrawn> drawn(const PageTicks& ticks, std::size_t i) {
   const TickRecord& tick = ticks.ticks[i];
   const auto& proxy = tick.in_contact ? tick.p_WP : tick.p_WT;
@@ -47,7 +47,7 @@ std::array<double, kDrawn> drawn(const PageTicks& ticks, std::size_t i) {
   return all;
 }
 
-// Which ticks are kept, each once.
+// The set of kept ticks.
 class KeptTicks {
  public:
   explicit KeptTicks(std::size_t ticks) : kept_(ticks, 0) {}
@@ -71,7 +71,7 @@ class KeptTicks {
   std::size_t count_ = 0;
 };
 
-// Keeps the first of some ticks, and those at which each outlined column is least and most.
+// Keeps the first of some ticks, and those with the minimum and maximum of each outlined column.
 void keep_outline(const PageTicks& ticks, std::span<const std::size_t> some, KeptTicks& kept) {
   Extremes<kOutlined> extremes;
   for (const std::size_t i : some) extremes.take(outlined(ticks, i), i);
@@ -79,7 +79,7 @@ void keep_outline(const PageTicks& ticks, std::span<const std::size_t> some, Kep
   for (const std::size_t i : extremes.places()) kept.keep(i);
 }
 
-// Keeps the outline of some of the run's ticks with at most `rows`; all of them if they fit.
+// Keeps the outline of some of the run's ticks in at most `rows`; all of them if they fit.
 void keep_outlines(const PageTicks& ticks, std::span<const std::size_t> some, std::size_t rows,
                    KeptTicks& kept) {
   if (some.size() <= rows) {
@@ -106,8 +106,8 @@ std::size_t round_stretches(std::size_t most) {
   return round;
 }
 
-// Keeps the ticks at which anything that is drawn is least and most in the whole run; returns how
-// far each goes, at least a little.
+// Keeps the ticks with the minimum and maximum of every drawn value in the whole run; returns the
+// range of each, with a lower bound.
 std::array<double, kDrawn> keep_extremes(const PageTicks& ticks, KeptTicks& kept) {
   Extremes<kDrawn> extremes;
   for (std::size_t i = 0; i < ticks.ticks.size(); ++i) extremes.take(drawn(ticks, i), i);
@@ -117,19 +117,19 @@ std::array<double, kDrawn> keep_extremes(const PageTicks& ticks, KeptTicks& kept
   return ranges;
 }
 
-// Ticks between two rows, which are shown as the first of them.
+// Ticks between two rows, which are shown like the first of them.
 struct Gap {
-  double error = 0;        // of what is shown, in what a person sees
+  double error = 0;        // error of the display, in visible units
   std::size_t begin = 0;   // the row
   std::size_t end = 0;     // the next row
-  std::size_t middle = 0;  // where a row helps the most
+  std::size_t middle = 0;  // best position for a new row
   bool operator<(const Gap& other) const {
     return error < other.error || (error == other.error && begin > other.begin);
   }
 };
 
-// What a person sees: of the path, and of a curve as a part of its range; in contact one looks
-// closely. [chosen]
+// Visible differences: of the path, m, and of a curve, as a fraction of its range; weight of ticks
+// in contact. [chosen]
 constexpr double kSeenOfPath = 1e-4, kSeenOfCurve = 0.04, kOfContact = 4;
 
 Gap gap_of(const PageTicks& ticks, const std::array<double, kDrawn>& ranges, std::size_t begin,
@@ -159,7 +159,7 @@ Gap gap_of(const PageTicks& ticks, const std::array<double, kDrawn>& ranges, std
     gap.middle = curve_at;
     return gap;
   }
-  // A path is cut in halves by its length.
+  // A path is divided at half of its largest deviation.
   for (std::size_t n = 0; n < paths.size(); ++n) {
     if (paths[n] < path / 2) continue;
     gap.middle = begin + 1 + n;
@@ -168,7 +168,7 @@ Gap gap_of(const PageTicks& ticks, const std::array<double, kDrawn>& ranges, std
   return gap;
 }
 
-// Spends the rows that are left where what is shown is farthest from what was.
+// Adds the remaining rows where the display differs most from the ticks.
 void keep_where_it_errs(const PageTicks& ticks, const std::array<double, kDrawn>& ranges,
                         std::size_t rows_most, KeptTicks& kept) {
   std::priority_queue<Gap> gaps;
@@ -188,7 +188,7 @@ void keep_where_it_errs(const PageTicks& ticks, const std::array<double, kDrawn>
   }
 }
 
-// Spends what is still left evenly on the ticks that are not kept: there nothing changes.
+// Distributes rows that still remain evenly over the other ticks, where nothing changes.
 void keep_evenly(std::size_t ticks, std::size_t rows_most, KeptTicks& kept) {
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < ticks; ++i) {
@@ -198,7 +198,7 @@ void keep_evenly(std::size_t ticks, std::size_t rows_most, KeptTicks& kept) {
   for (std::size_t n = 0; n < left; ++n) kept.keep(others[n * others.size() / left]);
 }
 
-// Keeps the ticks before and after each touch begins and ends, up to `rows` of them.
+// Keeps the ticks before and after each begin and end of a touch, up to `rows` of them.
 void keep_touch_ends(const PageTicks& ticks, std::size_t rows, KeptTicks& kept) {
   const std::size_t most = kept.count() + rows;
   for (std::size_t i = 1; i < ticks.ticks.size() && kept.count() + 2 <= most; ++i) {
@@ -213,10 +213,10 @@ void keep_touch_ends(const PageTicks& ticks, std::size_t rows, KeptTicks& kept) 
 std::int64_t PageTicks::period_ns(std::size_t i) const noexcept {
   if (!periods_ns.empty()) return periods_ns[i > 0 || periods_ns.size() < 2 ? i : 1];
   if (ticks.size() < 2) return 0;
-  // How long the first took to come is not known; it shall not stand out.
+  // The period of the first tick is unknown; it must not stand out.
   const TickRecord& before = ticks[i > 0 ? i - 1 : 0];
   const TickRecord& tick = ticks[i > 0 ? i : 1];
-  // Between ticks that do not follow each other: the mean.
+  // The mean, if the ticks are not consecutive.
   const std::uint64_t apart = tick.tick > before.tick ? tick.tick - before.tick : 1;
   return (tick.time_ns - before.time_ns) / static_cast<std::int64_t>(apart);
 }
@@ -230,10 +230,10 @@ std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most
   }
   KeptTicks kept(count);
   kept.keep(0);
-  // The last tick is kept as well, so that the page ends where the run did.
+  // The page ends with the last tick.
   kept.keep(count - 1);
   constexpr std::size_t kFixed = 2 + 2 * kDrawn;
-  if (rows_most < 4 * kFixed) {  // too few for more than an outline
+  if (rows_most < 4 * kFixed) {  // room for an outline only
     std::vector<std::size_t> all(count);
     for (std::size_t i = 0; i < count; ++i) all[i] = i;
     if (rows_most > 2 + kPerStretch) keep_outlines(ticks, all, rows_most - 2, kept);
@@ -245,7 +245,7 @@ std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most
   for (std::size_t i = 0; i < count; ++i) {
     (ticks.ticks[i].in_contact ? touching : free).push_back(i);
   }
-  // About as many stretches as a plot has pixels, of all ticks.
+  // About one stretch per pixel of a plot, over all ticks.
   std::vector<std::size_t> all(count);
   for (std::size_t i = 0; i < count; ++i) all[i] = i;
   keep_outlines(ticks, all, kPerStretch * round_stretches(rows_most / (4 * kPerStretch)), kept);

@@ -59,7 +59,7 @@ bool draws_all(const SharedScene& scene) {
 
 namespace {
 
-// Whether it stands for a plane, which has no end.
+// Returns whether a mesh is flat: then it represents a plane.
 bool is_flat(const render::TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return false;
   Eigen::AlignedBox3d box;
@@ -119,7 +119,7 @@ void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> t
       }
     }
     if (times.empty()) lines = now;
-    if (now != lines) continue;  // out of reach for once: there is nothing to draw
+    if (now != lines) continue;  // at an unreachable position: nothing to draw
     times.push_back(1e-9 * static_cast<double>(tick.time_ns - begin_ns));
     points.insert(points.end(), own.begin(), own.end());
   }
@@ -157,7 +157,7 @@ Json page_objects(const PageTouch& touch, PageBlock& block) {
     const render::TriangleMesh mesh = mesh_of(touch.scene, object);
     const bool shaped = std::any_of(touch.left.begin(), touch.left.end(),
                                     [i](const PageShape& shape) { return shape.object == i; });
-    // Each object gives way in proportion; what stands twice on the page counts twice.
+    // All objects are reduced in proportion; an object that is on the page twice counts twice.
     const std::size_t most = all <= kPageTrianglesMost
                                  ? mesh.triangles.size()
                                  : kPageTrianglesMost * mesh.triangles.size() / all;

@@ -36,7 +36,7 @@ void ShapeTrace::take(const driver::TickRecord& tick) noexcept {
       mark(first_[i] + static_cast<std::uint32_t>(move.vertex));
     }
     for (const render::EdgeSplit& split : shape.splits()) {
-      // A tick in which the scene is not felt shows those of the last one again.
+      // A tick in which the scene is not computed repeats the splits of the last one.
       if (split.vertex < 0 || static_cast<std::size_t>(split.vertex) != vertices_now_[i]) continue;
       if (split_count_ == splits_.size()) continue;
       ++vertices_now_[i];
@@ -56,7 +56,7 @@ void ShapeTrace::keep(std::int64_t time_ns) noexcept {
   const auto full = [this] {
     return frame_count_ == frames_.size() || move_count_ + waiting_count_ > moves_.size();
   };
-  // What finds no room even then waits for the next picture.
+  // If there is still no room, the moves wait for the next picture.
   if (full()) halve();
   next_ns_ = time_ns + step_ns_;
   if (full()) return;
@@ -74,7 +74,7 @@ void ShapeTrace::keep(std::int64_t time_ns) noexcept {
 }
 
 void ShapeTrace::halve() noexcept {
-  // Those that wait are marked by 1; here 2 says that the later picture of two has a vertex too.
+  // Mark 1: waiting. Mark 2: the later picture of a pair has the vertex too.
   std::size_t stays = 0, move = 0, begin = 0;
   for (std::size_t i = 0; i < frame_count_; i += 2) {
     const bool pair = i + 1 < frame_count_;

@@ -14,43 +14,43 @@
 
 namespace thimble::report {
 
-/// How the objects of a run that are shaped for good came to what they were left as, often enough
-/// for a film of it. All memory is there and touched when it is made.
+/// Records how permanently deformed objects changed during a run, at a rate for animation. All
+/// memory is allocated and touched by the constructor.
 class ShapeTrace final : public session::TickObserver {
  public:
-  /// Between two pictures, at least, ns. [chosen: a print deepens slowly; 20 a second look smooth]
+  /// Minimum time between two pictures, ns. [chosen: deformation is slow; 20 a second look smooth]
   static constexpr std::int64_t kStep_ns = 50'000'000;
-  /// Pictures, and moves of vertices of all of them: 2 MB. [chosen]
+  /// Maximum number of pictures, and of vertex moves in all of them: 2 MB. [chosen]
   static constexpr std::size_t kFramesMost = 4096;
   static constexpr std::size_t kMovesMost = 100'000;  ///< As above.
 
-  /// An object that is shaped.
+  /// A deformed object.
   struct Shaped {
-    std::size_t object = 0;                    ///< Of the scene.
+    std::size_t object = 0;                    ///< Index in the scene.
     const render::BodyShape* shape = nullptr;  ///< Must outlive the trace.
-    std::size_t vertices = 0;                  ///< That its mesh has at first.
+    std::size_t vertices = 0;                  ///< Initial number of vertices.
   };
 
-  /// Looks at objects before the first tick. Real-time: never from the servo thread.
+  /// Takes the objects before the first tick. Real-time: never from the servo thread.
   explicit ShapeTrace(std::vector<Shaped> shaped);
 
-  /// Keeps which vertices have moved, and where they are when it is time for a picture. Once there
-  /// is no room for more, two pictures become one each, and from then on they are taken half as
-  /// often. Real-time: safe; in the tick without room it moves its memory once, some 100 us.
+  /// Records which vertices have moved, and their positions when a picture is due. If the memory is
+  /// full, every two pictures are merged, and the interval doubles. Real-time: safe; the tick that
+  /// merges them moves the memory once, some 100 us.
   void take(const driver::TickRecord& tick) noexcept override;
 
-  /// Returns what led from picture to picture, in s from `begin_ns` on the loop's clock; `first`
-  /// are the meshes of the shaped objects before the first tick, in their order. After the last
-  /// tick. Real-time: never from the servo thread.
+  /// Returns the changes from picture to picture, in s from `begin_ns` on the loop's clock. `first`
+  /// are the meshes of the deformed objects before the first tick, in their order. Call after the
+  /// last tick. Real-time: never from the servo thread.
   std::vector<ShapeStep> steps(std::vector<render::TriangleMesh> first, std::int64_t begin_ns);
 
-  /// Returns how many pictures there are.
+  /// Returns the number of pictures.
   std::size_t frames() const noexcept { return frame_count_; }
-  /// Returns the objects that it looks at.
+  /// Returns the observed objects.
   std::span<const Shaped> shaped() const noexcept { return shaped_; }
 
  private:
-  /// A place of a vertex from then on; `vertex` counts through all shaped objects.
+  /// A new position of a vertex; `vertex` is numbered across all deformed objects.
   struct Move {
     std::uint32_t vertex = 0;
     std::array<float, 3> place{};
@@ -71,10 +71,11 @@ class ShapeTrace final : public session::TickObserver {
   std::size_t owner(std::uint32_t vertex) const noexcept;
 
   std::vector<Shaped> shaped_;
-  std::vector<std::uint32_t> first_;       // vertex of each, through all; one more at the end
-  std::vector<std::size_t> vertices_now_;  // of each
-  std::vector<std::uint8_t> marked_;       // of each vertex
-  std::vector<std::uint32_t> waiting_;     // those marked
+  std::vector<std::uint32_t> first_;       // first vertex of each object across all objects, plus
+                                           // one past the end
+  std::vector<std::size_t> vertices_now_;  // current number of vertices of each object
+  std::vector<std::uint8_t> marked_;       // mark of each vertex
+  std::vector<std::uint32_t> waiting_;     // the marked vertices
   std::size_t waiting_count_ = 0;
   std::vector<Frame> frames_;
   std::size_t frame_count_ = 0;

@@ -25,7 +25,7 @@ std::vector<PageShape> shapes_left(const scene::Scene& scene, const scene::Scene
   return left;
 }
 
-// What looks at the objects that are shaped for good; null if there are none.
+// Makes the trace of permanently deformed objects; null if there are none.
 std::unique_ptr<ShapeTrace> trace_shapes(const scene::Scene& scene,
                                          const scene::SceneObjects& objects) {
   std::vector<ShapeTrace::Shaped> shaped;
@@ -49,7 +49,7 @@ std::vector<ShapeStep> steps_of(ShapeTrace* trace, const session::SharedScene& s
   return trace->steps(std::move(first), ticks.front().time_ns);
 }
 
-// What the ticks of a recording sum up to.
+// Returns the summary of a recording's ticks.
 std::vector<Figure> figures_of_ticks(std::span<const driver::TickRecord> ticks,
                                      const session::ReplayComparison& compared) {
   session::RunStatistics sums;
@@ -149,7 +149,7 @@ driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
                   .dents = dents(),
                   .left = shapes_left(scene(), objects())};
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / info.rate));
-  // The recordings came in any order; the page shows the scene's arms in theirs.
+  // Recordings come in any order; the page uses the scene's order of arms.
   std::vector<const session::Replay*> order(scene().arms.size(), nullptr);
   for (const session::Replay& replay : replays) order[arm_of(replay.felt.info)] = &replay;
   std::vector<std::string> devices;

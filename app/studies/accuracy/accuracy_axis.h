@@ -9,67 +9,68 @@
 
 namespace thimble::studies {
 
-/// Runs one stroke of work and returns a number made of all that was worked out, so that none of it
-/// can be left out as unused.
+/// Runs one stroke of work and returns a number computed from all results, so that the compiler
+/// cannot remove any of it.
 using Stroke = std::function<double()>;
 
-/// One setting of a knob: how wrong it is, and the work that it takes.
+/// One setting of a knob: its error and its work.
 struct AccuracyPoint {
   std::string name;  ///< Without spaces: part of an argument of `thimble cost-probe`.
-  double knob = 0;   ///< In the unit of the axis.
-  /// Finds the error against the truth, in the unit of the axis: the same bits each time. NaN or
-  /// infinite where the method has diverged.
+  double knob = 0;   ///< Value of the knob, in the unit of the axis.
+  /// Computes the error against the truth, in the unit of the axis; bit-identical each time. NaN or
+  /// infinite if the method has diverged.
   std::function<double()> error;
-  /// Makes one stroke ready; called once, outside of what is timed.
+  /// Prepares one stroke; called once, outside of the timed part.
   std::function<Stroke()> prepare;
-  /// Makes ready what a stroke does besides, which is no cost of the point and is taken off; empty
-  /// if there is nothing.
+  /// Prepares the additional work of a stroke that is no cost of the point; its cost is subtracted.
+  /// Empty if there is none.
   std::function<Stroke()> beside = {};
-  double ticks = 1;                ///< What a stroke's cost is divided by: ticks, or ms of touch.
-  bool is_default = false;         ///< On a given axis: where a PHANTOM-like arm stands.
-  bool fits = false;               ///< Whether the slope of the line is taken from it.
-  std::optional<double> law = {};  ///< The error that a published law tells, if there is one.
-  std::string title = {};  ///< In words, where the line's title and the knob do not name it.
+  double ticks = 1;                ///< Divisor of a stroke's cost: ticks, or ms of touch.
+  bool is_default = false;         ///< On an axis with `given`: the value of a PHANTOM-like arm.
+  bool fits = false;               ///< Whether it is used for the slope of the line.
+  std::optional<double> law = {};  ///< Error predicted by a published law, if there is one.
+  std::string title = {};          ///< Words for the point, if line and knob do not describe it.
 };
 
-/// One method over its knob.
+/// One method with several settings of its knob.
 struct AccuracyLine {
   std::string name;                  ///< Without spaces.
   std::string title;                 ///< In words, for legends.
-  std::optional<double> order = {};  ///< Slope of error over knob that theory asks for.
-  bool exact = false;                ///< Should sit at rounding level at every point.
-  bool apart = false;                ///< Its points are methods of their own: each is named.
+  std::optional<double> order = {};  ///< Theoretical slope of error over knob.
+  bool exact = false;                ///< Its error should be at rounding level at every point.
+  bool apart = false;                ///< Its points are separate methods, each with a name.
   std::vector<AccuracyPoint> points = {};
 };
 
-/// One diagram of what accuracy costs: a knob, an error with its truth, and methods.
+/// One diagram of accuracy and cost: a knob, an error with its truth, and methods.
 struct AccuracyAxis {
-  std::string name;   ///< `--axis NAME`, and of the files.
-  std::string title;  ///< Says what is shown.
+  std::string name;   ///< Value of `--axis`, and name of the files.
+  std::string title;  ///< Title of the diagram.
   std::string knob, knob_unit;
   std::string metric, unit;
   std::string truth;                     ///< One sentence: what the errors are measured against.
-  std::optional<double> threshold = {};  ///< What cannot be felt, in `unit` [PHYSICS 6].
+  std::optional<double> threshold = {};  ///< Threshold of perception, in `unit` [PHYSICS 6].
   std::string threshold_words;
-  std::string felt_words;      ///< In place of the sentence about the point beyond what is felt.
-  std::string per = "tick";    ///< What the cost is counted for.
-  bool given = false;          ///< No choice of a program: the arm brings the knob's value.
-  bool cost_is_added = false;  ///< The cost is what a point adds to something, and may be negative.
-  std::string default_words;   ///< Why the default is where it is, if it is not on the front.
-  std::string left_out;        ///< One or two sentences: what this axis does not show, and why.
-  bool over_cost = true;       ///< Draws the error over the cost.
-  bool over_knob = true;       ///< Draws the error over the knob.
-  bool cost_over_knob = false;  ///< Draws the cost over the knob, where all are exact.
+  std::string felt_words;       ///< Replaces the sentence about the point beyond which accuracy
+                                ///< cannot be felt.
+  std::string per = "tick";     ///< Unit of work of the cost.
+  bool given = false;           ///< The arm gives the value of the knob.
+  bool cost_is_added = false;   ///< The cost is an increment, and may be negative.
+  std::string default_words;    ///< Why the default is where it is, if it is not on the front.
+  std::string left_out;         ///< One or two sentences: what this axis does not show, and why.
+  bool over_cost = true;        ///< Draws the error over the cost.
+  bool over_knob = true;        ///< Draws the error over the knob.
+  bool cost_over_knob = false;  ///< Draws the cost over the knob, for exact methods.
   std::vector<AccuracyLine> lines;
 };
 
-/// Makes one axis; nothing is measured yet.
+/// A function that makes one axis, without measuring.
 struct AxisMaker {
   std::string_view name;
   AccuracyAxis (*make)();
 };
 
-/// Returns every axis, in the order of the page. To add one: write its file, add its line there.
+/// Returns every axis, in the order of the page. To add one, write its file and add its line there.
 std::span<const AxisMaker> accuracy_axes();
 
 }  // namespace thimble::studies

@@ -47,7 +47,7 @@ std::string cell(const std::string& text) {
   return "<td>" + report::html_text(text) + "</td>";
 }
 
-// Lists the diagrams of one kind, if there are any.
+// Adds a list of the diagrams of one kind, if there are any.
 void add_contents(const std::vector<AxisSection>& sections, bool given, const char* words,
                   std::ostringstream& page) {
   const char* begin = words;

@@ -13,16 +13,16 @@
 namespace thimble::studies {
 namespace {
 
-// Colours that stay apart for colour-blind eyes [M Okabe and Ito].
+// Colours that colour-blind people can distinguish [M Okabe and Ito].
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#30343b"};
 constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
-constexpr std::array kHollowMarks{6, 4, 8, 12, 10, 2};  // of the same shapes, for the next six
-constexpr const char* kUnfeltFill = "#f0f4ee";          // under what cannot be felt
-constexpr std::size_t kTitleWidth = 50, kKnobWidth = 60, kErrorWidth = 26;  // letters
+constexpr std::array kHollowMarks{6, 4, 8, 12, 10, 2};  // the same shapes, hollow, for the next six
+constexpr const char* kUnfeltFill = "#f0f4ee";          // background below the threshold
+constexpr std::size_t kTitleWidth = 50, kKnobWidth = 60, kErrorWidth = 26;  // in letters
 
 enum class View { kErrorOverCost, kErrorOverKnob, kCostOverKnob };
 
-// Tells the diagrams of one axis apart.
+// Returns the words that distinguish the diagrams of one axis.
 const char* words_for(View view) {
   switch (view) {
     case View::kErrorOverCost:
@@ -35,12 +35,12 @@ const char* words_for(View view) {
   return "cost over the setting";
 }
 
-// Units as pictures write them.
+// Returns a unit as written on pictures.
 std::string shown_unit(const std::string& unit) {
   return unit == "um" || unit == "us" ? "µ" + unit.substr(1) : unit;
 }
 
-// Words that stay together: a number and its unit.
+// Splits a text into words; a number and its unit stay together.
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> words;
@@ -67,8 +67,8 @@ std::vector<std::string> filled(const std::vector<std::string>& words, std::size
   return lines;
 }
 
-// Breaks a text at spaces into as few lines of up to `width` letters as it takes, as even as they
-// can be.
+// Breaks a text at spaces into the smallest number of lines of up to `width` letters, of similar
+// lengths.
 std::vector<std::string> broken(const std::string& text, std::size_t width) {
   const std::vector<std::string> words = words_of(text);
   std::vector<std::string> fewest = filled(words, width);
@@ -79,7 +79,7 @@ std::vector<std::string> broken(const std::string& text, std::size_t width) {
   return fewest;
 }
 
-// Quotes it with gnuplot's own line breaks.
+// Quotes a text with gnuplot's line breaks.
 std::string wrapped(const std::string& text, std::size_t width) {
   std::string quoted;
   for (const std::string& line : broken(text, width)) {
@@ -93,8 +93,8 @@ std::string labelled(const std::string& name, const std::string& unit, std::size
   return wrapped(name + (unit[0] == '%' ? " in " : ", ") + shown_unit(unit), width);
 }
 
-// Names 1, 2 and 5 of each decade where gnuplot would name one number only; 1 and 3 where the
-// numbers are long.
+// Returns tics at 1, 2 and 5 of each decade if gnuplot would label only one; 1 and 3 if the numbers
+// are long.
 std::string tics_of(char axis, double low, double high) {
   if (high / low > 3000) return {};
   const bool high_numbers = high > 1e4;
@@ -115,12 +115,12 @@ std::string tics_of(char axis, double low, double high) {
   return first ? std::string() : text + ")\n";
 }
 
-// Errors below this share of the threshold are drawn there: rounding, which would squeeze all else.
-// Without a threshold they are drawn below all others.
+// Errors below this fraction of the threshold are rounding, and are drawn at it so that they do not
+// compress the axis. Without a threshold they are drawn below all others.
 constexpr double kFloorShare = 1e-4;
 constexpr double kRounding = 1e-9;
 
-/// How one view sees a point.
+/// Coordinates of points in one view.
 class Eye {
  public:
   Eye(const MeasuredAxis& axis, View view)
@@ -150,7 +150,7 @@ class Eye {
   double shown(double error) const { return std::max(std::abs(error), floor_); }
   bool sees(const MeasuredPoint& point) const {
     if (!std::isfinite(x(point))) return false;
-    const bool any = added_ || point.point->knob == 0;  // what may be 0 has no decades
+    const bool any = added_ || point.point->knob == 0;  // zero needs a linear axis
     if (!(x(point) > 0) && !any) return false;
     return view_ == View::kCostOverKnob || !point.diverged;
   }
@@ -165,7 +165,7 @@ bool spans_decades(double low, double high) {
   return low > 0 && high / low > 5;
 }
 
-// Draws points that are methods of their own: each with its mark, colour and name.
+// Draws points that are separate methods, each with its mark, colour and name.
 void draw_apart(const MeasuredLine& line, const Eye& eye, std::size_t index,
                 std::ostringstream& text, std::ostringstream& plots) {
   std::size_t k = 0;
@@ -255,7 +255,7 @@ report::Plot plot_of(const MeasuredAxis& axis, View view) {
                                        : labelled(a.metric, a.unit, kErrorWidth))
        << '\n';
   const std::size_t label_lines =
-      broken(a.metric + ", " + a.unit, kErrorWidth).size();  // room for them, beside the numbers
+      broken(a.metric + ", " + a.unit, kErrorWidth).size();  // their space next to the numbers
   text << "set lmargin " << 9 + 2 * label_lines << "\nset rmargin 5\nset ylabel offset -1\n";
   if (over_cost && a.cost_is_added) {
     const double more = 0.08 * (high_x - std::min(low_x, 0.0));
@@ -305,7 +305,7 @@ report::Plot plot_of(const MeasuredAxis& axis, View view) {
   for (const MeasuredLine& line : axis.lines) {
     entries += line.line->apart ? line.points.size() : 1;
   }
-  // The more the legend says, the taller, so that the diagram stays as large.
+  // A longer legend makes the picture taller, so that the diagram keeps its size.
   return {.name = name,
           .width = 840,
           .height = static_cast<int>(584 + 24 * entries),

@@ -9,10 +9,10 @@
 
 namespace thimble::studies {
 
-/// Draws an axis into `folder`, as PNG and SVG each: error over cost, error over knob, cost over
-/// knob, as it asks for. The default is ringed, the threshold a dashed line with its words, laws
-/// are thin lines. Returns the names of the pictures without ending. The folder data/ must exist.
-/// Real-time: never from the servo thread.
+/// Draws the requested pictures of an axis into `folder`, each as PNG and SVG: error over cost,
+/// error over knob, cost over knob. The default has a ring, the threshold is a dashed line with its
+/// text, laws are thin lines. Returns the names of the pictures without ending. The folder data/
+/// must exist. Real-time: never from the servo thread.
 driver::Result<std::vector<std::string>> draw_axis(const MeasuredAxis& axis,
                                                    const std::filesystem::path& folder);
 

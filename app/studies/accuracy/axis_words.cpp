@@ -30,13 +30,13 @@ double largest_error(const MeasuredLine& line) {
   return largest;
 }
 
-// Where a knob costs nothing there is no cheapest point: how far may it be turned up?
+// Without a cost there is no cheapest point; returns the coarsest knob below the threshold.
 std::string coarsest_sentence(const MeasuredAxis& axis) {
   std::string text;
   for (const MeasuredLine& line : axis.lines) {
     const MeasuredPoint* coarsest = nullptr;
     for (const MeasuredPoint& point : line.points) {
-      // Written so that NaN is felt.
+      // NaN counts as above the threshold.
       if (point.diverged || !(point.error <= *axis.axis.threshold)) continue;
       if (coarsest == nullptr || point.point->knob > coarsest->point->knob) coarsest = &point;
     }

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using render::ContactMesh;
 using render::TrackerChoice;
 
-/// Writes the two ways of standing where another one does.
+/// Implements copying of the state.
 template <class Self>
 class CopiedFollower : public Follower {
  public:
@@ -31,7 +31,7 @@ class CopiedFollower : public Follower {
   }
 };
 
-/// Follows by a contact of the product.
+/// Follows with a contact of the product.
 template <class Contact>
 class TrackedFollower final : public CopiedFollower<TrackedFollower<Contact>> {
  public:
@@ -48,7 +48,7 @@ class TrackedFollower final : public CopiedFollower<TrackedFollower<Contact>> {
   double effort() const noexcept override { return effort_; }
 
  private:
-  // All looks around and questions to the search so far, each as many triangles.
+  // Returns all looks around and searches so far, as a number of triangles.
   double looks() const noexcept {
     const auto counters = contact_.counters();
     if constexpr (requires { counters.found_near; }) {
@@ -65,7 +65,7 @@ class TrackedFollower final : public CopiedFollower<TrackedFollower<Contact>> {
   double effort_ = 0;
 };
 
-/// Asks for the nearest triangle in every tick and remembers nothing.
+/// Searches the nearest triangle in every tick, without memory.
 class SearchedFollower final : public CopiedFollower<SearchedFollower> {
  public:
   explicit SearchedFollower(std::shared_ptr<const render::ContactSearch> search)
@@ -73,7 +73,7 @@ class SearchedFollower final : public CopiedFollower<SearchedFollower> {
 
   std::int32_t follow(const Vector3d& p_WT) noexcept override {
     const auto hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
-    effort_ = hit.distance;  // what is farther away has more boxes that come as near
+    effort_ = hit.distance;  // the farther the surface, the more boxes must be searched
     return hit.triangle;
   }
   double effort() const noexcept override { return effort_; }
@@ -83,7 +83,7 @@ class SearchedFollower final : public CopiedFollower<SearchedFollower> {
   double effort_ = 0;
 };
 
-/// Hops over edge planes from where it was, and may look at the rings around where that ends.
+/// Hops over edge planes from its last triangle, and may search the rings around the final one.
 class HoppingFollower final : public CopiedFollower<HoppingFollower> {
  public:
   HoppingFollower(const FollowedSurface& surface, int rings)

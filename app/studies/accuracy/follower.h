@@ -11,46 +11,45 @@
 
 namespace thimble::studies {
 
-/// How a study follows a tip below a surface: by one of the product's trackers, or by one of
-/// what they are compared with.
+/// Method for following a tip below a surface: one of the product's trackers, or one for
+/// comparison.
 struct FollowerChoice {
   std::optional<render::TrackerChoice> tracker = {};
-  /// Without a tracker: the nearest triangle anew in each tick, by this search.
+  /// Without a tracker: the nearest triangle in each tick, found by this search.
   std::optional<render::SearchChoice> search = {};
-  /// Without either: hops over edge planes alone, and then this many rings of triangles around
-  /// where they end.
+  /// Without either: only hops over edge planes, then this many rings of triangles around the last
+  /// one.
   int rings = 0;
 };
 
-/// One surface that is followed; all ways of following share it.
+/// One surface, shared by all methods.
 struct FollowedSurface {
   std::shared_ptr<const render::ContactMesh> mesh;
   std::shared_ptr<const render::ContactSearch> tree, linear;
 };
 
-/// Finds in each tick which triangle a tip that has come in from outside belongs to.
+/// Finds in each tick the triangle for a tip that has entered from outside.
 class Follower {
  public:
   virtual ~Follower() = default;
 
-  /// Follows the tip to `p_WT` (W, m) and tells the triangle; -1 if it takes it for free. The first
-  /// place must be outside, the second inside. Real-time: safe.
+  /// Follows the tip to `p_WT` (W, m) and returns the triangle; -1 if the tip counts as free. The
+  /// first position must be outside, the second inside. Real-time: safe.
   virtual std::int32_t follow(const Eigen::Vector3d& p_WT) noexcept = 0;
 
-  /// Returns how much was done in the last `follow`: hops, with looks around counted as the
-  /// triangles that they may take. To find the worst tick by, the same on every machine. Real-time:
-  /// safe.
+  /// Returns the work of the last `follow`: hops, plus the number of triangles that looks around
+  /// may visit. It finds the worst tick, independently of the machine. Real-time: safe.
   virtual double effort() const noexcept = 0;
 
-  /// Makes another one that stands where this one does. Real-time: never from the servo thread.
+  /// Returns a copy with the same state. Real-time: never from the servo thread.
   virtual std::unique_ptr<Follower> copy() const = 0;
 
-  /// Stands where `other` does, which was made by the same choice. Real-time: safe.
+  /// Copies the state of `other`, which was made by the same choice. Real-time: safe.
   virtual void stand_where(const Follower& other) noexcept = 0;
 };
 
-/// Makes a follower. Precondition: the surface can be followed so (the caller's duty; otherwise
-/// Result::value throws).
+/// Makes a follower. Precondition: the surface supports the method (otherwise Result::value
+/// throws).
 /// Real-time: never from the servo thread.
 std::unique_ptr<Follower> make_follower(const FollowedSurface& surface,
                                         const FollowerChoice& choice);

@@ -10,8 +10,8 @@ struct Jacobi {
   double sn, cn, dn;
 };
 
-// Jacobi's functions of parameter m = k^2 < 1 by the arithmetic-geometric mean [S Abramowitz and
-// Stegun 16.4].
+// Returns Jacobi's functions of parameter m = k^2 < 1 by the arithmetic-geometric mean [S
+// Abramowitz and Stegun 16.4].
 Jacobi jacobi(double u, double m) {
   std::array<double, 16> a{}, c{};
   a[0] = 1;
@@ -30,7 +30,7 @@ Jacobi jacobi(double u, double m) {
   return {sn, std::cos(phi), std::sqrt(1 - m * sn * sn)};
 }
 
-// Finds u with sn(u) = s, cn(u) > 0, by Carlson's R_F(c^2, 1 - m s^2, 1) [S Abramowitz and Stegun
+// Returns u with sn(u) = s, cn(u) > 0, by Carlson's R_F(c^2, 1 - m s^2, 1) [S Abramowitz and Stegun
 // 17; Carlson 1979].
 double inverse_sn(double s, double m) {
   double x = 1 - s * s, y = 1 - m * s * s, z = 1;
@@ -50,7 +50,8 @@ Eigen::Vector3d true_rate(const FreeSpin& spin, double t) {
   const Eigen::Vector3d& w = spin.omega;
   const double energy2 = I.dot(w.cwiseAbs2());
   const double momentum2 = I.cwiseProduct(w).squaredNorm();
-  // With momentum^2 > 2 E I_2 axis 3 keeps its sign; else axis 1 does, and the two swap roles.
+  // If momentum^2 > 2 E I_2, axis 3 keeps its sign; otherwise axis 1 does, and the two are
+  // exchanged.
   const bool swap = momentum2 < energy2 * I[1];
   const int one = swap ? 2 : 0;
   const int three = swap ? 0 : 2;
@@ -61,7 +62,7 @@ Eigen::Vector3d true_rate(const FreeSpin& spin, double t) {
   const double rate = std::sqrt((i3 - i2) * (momentum2 - energy2 * i1) / (i1 * i2 * i3));
   const double m =
       (i2 - i1) * (energy2 * i3 - momentum2) / ((i3 - i2) * (momentum2 - energy2 * i1));
-  // Which branch: cn has the sign of w1 over that of its amplitude. The sense in which axis 2 runs
+  // Selects the branch: cn has the sign of w1 over that of its amplitude. The direction of axis 2
   // follows from Euler's equation I2 w2' = (I3 - I1) w3 w1.
   const double sign1 = w[one] >= 0 ? 1 : -1;
   const double sign3 = w[three] >= 0 ? 1 : -1;

@@ -58,7 +58,7 @@ double GuardedWall::coupled(double depth) noexcept {
   const double moved = begun_ ? depth - last_depth_ : 0;
   const double rate = damper_ / GuardedArm::kTick;
   const double pull = spring_ * depth + rate * (moved + last_point_);
-  // Where the coupling alone leaves the point, and where the wall does.
+  // The point without the wall, and with it.
   double point = pull / (spring_ + rate);
   double sent = 0;
   if (point > 0) {

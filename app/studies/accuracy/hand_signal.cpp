@@ -9,7 +9,7 @@ HandSignal hand_signal(double t) {
   struct Wave {
     double amplitude, frequency, phase;
   };
-  // Frequencies without a common period, so that every place between two counts is visited.
+  // Frequencies without a common period, so that positions cover the range between two counts.
   constexpr Wave kWaves[] = {{0.02, 0.4142, 0.3}, {0.001, 3.1416, 1.1}, {50e-6, 10.36, 2.0}};
   HandSignal at;
   for (const Wave& wave : kWaves) {

@@ -17,12 +17,12 @@ LineMotion moved(const LineMotion& at, const Impact& impact, double force, doubl
 
 double one_restitution(const Impact& impact, int run) {
   const double first = impact.period_of ? impact.period_of(run, 0) : impact.period;
-  // The moment of contact lies anywhere in the first period.
+  // The moment of contact is distributed over the first period.
   LineMotion now{-impact.speed * first * (run + 0.5) / kPhases, impact.speed};
   double seen_before = now.x;
   double period = first;
-  double held = 0;             // N, what the motors give now
-  std::vector<double> on_way;  // forces that have not arrived yet, with their times
+  double held = 0;             // N, present motor force
+  std::vector<double> on_way;  // forces in transit, with their arrival times
   std::vector<double> arrives;
   double time = 0;
   bool was_in = false;
@@ -52,7 +52,7 @@ double one_restitution(const Impact& impact, int run) {
     now = moved(now, impact, held, end - time);
     time = end;
     if (!(std::abs(now.v) < 1e6)) return INFINITY;
-    // Zero forces need not be waited for.
+    // Zero forces are removed at once.
     bool silent = held == 0;
     for (const double f : on_way) silent = silent && f == 0;
     if (silent && now.x < 0) {

@@ -12,14 +12,14 @@
 namespace thimble::studies {
 namespace {
 
-// The time that this thread has worked, s: others that want the processor do not count.
+// Returns the CPU time of this thread, s: other load does not count.
 double worked() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// How a measurement gets on, and whether it is to be stopped.
+/// Progress of a measurement, and whether to stop it.
 class Course {
  public:
   explicit Course(const MeasureOptions& options) : options_(options) {}
@@ -33,7 +33,7 @@ class Course {
   const MeasureOptions& options_;
 };
 
-constexpr int kCountSteps = 2;  // of each point; counting takes longer than all else [measured]
+constexpr int kCountSteps = 2;  // per point; counting takes longer than the rest [measured]
 
 void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course& course) {
   struct Timed {
@@ -48,7 +48,7 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course
     if (course.stopped()) return;
     all.push_back({point, point->point->prepare()});
     if (point->point->beside) all.back().beside = point->point->beside();
-    seen = seen + all.back().stroke();  // the first one reads everything into the caches
+    seen = seen + all.back().stroke();  // the first one fills the caches
     if (all.back().beside) seen = seen + all.back().beside();
   }
   for (int round = 0; round < rounds; ++round) {
@@ -74,7 +74,7 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course
   }
 }
 
-// Costs and errors within this share of each other are as good as the same.
+// Costs and errors within this fraction of each other count as equal.
 constexpr double kAlike = 0.02;
 
 void find_front(const std::vector<MeasuredPoint*>& points) {
@@ -116,7 +116,7 @@ const MeasuredPoint* MeasuredAxis::enough() const {
   if (!axis.threshold) return nullptr;
   for (const MeasuredLine& line : lines) {
     for (const MeasuredPoint& point : line.points) {
-      // Written so that NaN is never enough.
+      // NaN never counts as enough.
       if (point.diverged || !(point.error <= *axis.threshold)) continue;
       if (found == nullptr || point.cost() < found->cost()) found = &point;
     }
@@ -143,7 +143,7 @@ std::optional<double> slope_of(const std::vector<MeasuredPoint>& points) {
 
 namespace {
 
-/// Returns an axis with its lines and points, of which nothing is known yet.
+/// Returns an axis with its lines and points, without results.
 MeasuredAxis unmeasured(AccuracyAxis axis) {
   MeasuredAxis measured;
   measured.axis = std::move(axis);
@@ -168,7 +168,7 @@ std::vector<MeasuredPoint*> points_of(MeasuredAxis& measured) {
 
 void set_error(MeasuredPoint& point, double error) {
   point.error = error;
-  // Written so that NaN counts as diverged.
+  // NaN counts as diverged.
   point.diverged = !(std::abs(error) < 1e9);
 }
 
@@ -185,7 +185,7 @@ void count_instructions(const std::string& axis, const std::vector<MeasuredPoint
   }
 }
 
-/// Finds what follows from the numbers of all points.
+/// Derives the results of the axis from the numbers of all points.
 void conclude(MeasuredAxis& measured) {
   for (MeasuredLine& line : measured.lines) line.slope = slope_of(line.points);
   if (!measured.axis.given) find_front(points_of(measured));

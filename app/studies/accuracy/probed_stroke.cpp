@@ -9,7 +9,7 @@
 
 extern "C" [[gnu::noinline]] double thimble_probed_stroke(const thimble::studies::Stroke& stroke) {
   const double sum = stroke();
-  asm volatile("");  // so that the call above is no jump, and the function ends here
+  asm volatile("");  // so that the call above is no tail call, and the function ends here
   return sum;
 }
 
@@ -21,7 +21,7 @@ bool begins_with(const std::string& name, const std::string& prefix) {
   return name.size() == prefix.size() || name[prefix.size()] == '/';
 }
 
-// Reads what callgrind counted up to one dump: "totals: 12345".
+// Reads the count of one callgrind dump: "totals: 12345".
 std::optional<double> totals_of(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::optional<double> totals;
@@ -31,7 +31,7 @@ std::optional<double> totals_of(const std::filesystem::path& file) {
   return totals;
 }
 
-// Makes a folder that goes away with everything in it.
+// A temporary folder that the destructor removes with its content.
 class ScratchFolder {
  public:
   ScratchFolder() {

@@ -6,23 +6,23 @@
 
 #include "studies/accuracy/accuracy_axis.h"
 
-/// Runs one stroke. Instructions are counted inside this function alone, which callgrind finds by
-/// its name; so it has a plain one.
+/// Runs one stroke. Callgrind counts instructions only inside this function, which it finds by
+/// name, hence the C linkage.
 extern "C" double thimble_probed_stroke(const thimble::studies::Stroke& stroke);
 
 namespace thimble::studies {
 
 /// Runs one stroke of every point whose name AXIS/LINE/POINT begins with `prefix`, in the order of
-/// the axis, each followed by what it does besides if there is that, and returns how many there
-/// were. Real-time: never from the servo thread.
+/// the axis, each followed by its additional work, if any. Returns the number of strokes.
+/// Real-time: never from the servo thread.
 int probe_strokes(const std::string& prefix);
 
 /// Counts the instructions of one stroke of each of these points, by one run of this program under
-/// callgrind. Empty if valgrind is not installed or fails. The same on every machine that runs the
-/// same binary. Real-time: never from the servo thread.
+/// callgrind. Empty if valgrind is not installed or fails. Identical on every machine with the same
+/// binary. Real-time: never from the servo thread.
 std::optional<std::vector<double>> count_strokes(const std::string& prefix);
 
-/// Does the same for any subject of `thimble cost-probe` that runs strokes by
+/// Does the same for any subject of `thimble cost-probe` that runs its strokes by
 /// `thimble_probed_stroke`.
 std::optional<std::vector<double>> count_subject(const std::string& subject);
 

@@ -9,8 +9,8 @@
 namespace thimble::studies {
 namespace {
 
-// Goes on by a tick: m v' = f - b v - c sgn v in closed form, and the time at which v comes to zero
-// as well.
+// Advances by a tick: m v' = f - b v - c sgn v in closed form, including the time at which v
+// becomes zero.
 struct LongMotion {
   long double x = 0, v = 0;
 };
@@ -23,7 +23,7 @@ LongMotion slide(long double x, long double v, long double f) {
   for (int event = 0; event < 4 && left > 0; ++event) {
     if (v == 0 && std::abs(f) <= c) break;
     const long double sign = v != 0 ? (v > 0 ? 1 : -1) : (f > 0 ? 1 : -1);
-    const long double u = (f - c * sign) / b;  // m/s, towards which it goes
+    const long double u = (f - c * sign) / b;  // m/s, terminal speed
     // v + (u - v) (1 - exp(-b t / m)) = 0, if u has the other sign.
     long double t = left;
     bool stops = false;

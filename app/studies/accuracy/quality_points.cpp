@@ -22,7 +22,7 @@ namespace {
 using render::BlendingChoice;
 using render::TrackerChoice;
 
-// What can be felt [PHYSICS 6], as the diagrams of tessellation shade it.
+// Thresholds of perception [PHYSICS 6], as in the diagrams of tessellation.
 constexpr double kForceShareFelt = 0.035;
 constexpr double kAngleFelt = 5 * std::numbers::pi / 180;
 
@@ -32,7 +32,7 @@ constexpr int kMostSubsteps = 8;
 struct TouchedBy {
   const char* name;
   const char* tracker;
-  const char* blending;  // as the table's source names it
+  const char* blending;  // name in the source of the table
   const char* curved;
   render::ContactChoice choice;
 };
@@ -64,7 +64,7 @@ double worst_over_felt(const RingTouch& ring) {
                    errors.jump / kAngleFelt});
 }
 
-// As Linux names the processor; empty where it names none.
+// Returns Linux' name of the processor; empty if it has none.
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -103,7 +103,7 @@ std::string ring_rows() {
   return text + "};\n";
 }
 
-// The schemes that are stable on any dent.
+// Returns the rows of the schemes that are stable on any dent.
 std::string step_rows() {
   AccuracyAxis steps = deformable_axis();
   std::erase_if(steps.lines, [](const AccuracyLine& line) {

@@ -6,13 +6,15 @@
 
 namespace thimble::studies {
 
-/// Returns the diagram of all ways to touch a mesh that `--quality auto` chooses among: the knob is
-/// the mesh's typical turn over an edge (scene's quality_table.h), the error the worst of force,
-/// direction and jump, each over what can be felt of it. Real-time: never from the servo thread.
+/// Returns the diagram of all contact methods from which `--quality auto` chooses. The knob is the
+/// mesh's typical angle at an edge (quality_table.h of the scene). The error is the worst of force,
+/// direction and jump, each relative to its threshold of perception. Real-time: never from the
+/// servo thread.
 AccuracyAxis contact_points_axis();
 
-/// Measures every point of `--quality auto` and returns the text of the stored table, one version
-/// after the one that is built in. Takes about a minute. Real-time: never from the servo thread.
+/// Measures every point of `--quality auto` and returns the text of the stored table, with the
+/// version of the built-in one plus one. Takes about a minute. Real-time: never from the servo
+/// thread.
 std::string quality_table_text();
 
 }  // namespace thimble::studies

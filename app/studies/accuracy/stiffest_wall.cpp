@@ -14,13 +14,13 @@ constexpr double kStiffest = 1e6;  // N/m
 constexpr int kHalvings = 40;
 constexpr double kNearEnough = 1e-3;
 
-/// A force that is on its way to the motors.
+/// A force in transit to the motors.
 struct Sent {
   double arrives = 0;  // s
   double force = 0;    // N
 };
 
-// Tells whether an oscillation is larger in the last quarter of the time than in the second one.
+// Returns whether an oscillation is larger in the last quarter of the time than in the second one.
 bool grows(const RestedWall& wall, double stiffness) {
   LineMotion now{kStart, 0};
   const auto estimate = wall.estimate ? wall.estimate() : nullptr;
@@ -45,9 +45,9 @@ bool grows(const RestedWall& wall, double stiffness) {
     }
     now = moved_by_held_force(now, wall.mass, wall.viscous, held, end - time);
     time = end;
-    // Written so that NaN counts as growing.
+    // NaN counts as growing.
     if (!(std::abs(now.x) < 1e3 * kStart)) return true;
-    // Its energy, as the square of an amplitude.
+    // Its energy, as a squared amplitude.
     const double size = now.x * now.x + wall.mass / stiffness * now.v * now.v;
     if (time > wall.duration / 4 && time <= wall.duration / 2) early += size * dt;
     if (time > 3 * wall.duration / 4) late += size * dt;

@@ -9,9 +9,9 @@
 namespace thimble::studies {
 namespace {
 
-constexpr int kEdgesMax = 10000;  // per advance; only steps of metres meet more
+constexpr int kEdgesMax = 10000;  // per advance; only steps of metres cross more
 
-/// An edge as seen from a triangle: where it begins, its direction, and the one into the triangle.
+/// An edge seen from a triangle: its start, its direction, and the direction into the triangle.
 struct SeenEdge {
   Eigen::Vector3d from, along, inwards;
 };
@@ -54,7 +54,7 @@ void StraightWalk::advance(double length) noexcept {
     p_W_ += nearest * d_W_;
     const SeenEdge left = edge_of(mesh_, triangle_, out);
     triangle_ = mesh_.cell(triangle_).neighbours[out];
-    // The neighbour's normal tells its own direction away from the same edge.
+    // The neighbour's normal gives its own inward direction at the same edge.
     const Eigen::Vector3d inwards = mesh_.cell(triangle_).face.n.cross(-left.along);
     d_W_ = (d_W_.dot(left.along) * left.along - d_W_.dot(left.inwards) * inwards).normalized();
   }

@@ -7,21 +7,21 @@
 
 namespace thimble::studies {
 
-/// A walk straight ahead on the surface of a mesh: over an edge it keeps its angle with it, as on
-/// both triangles laid flat side by side, so that nothing but what is looked at on the way can
-/// turn.
+/// A straight walk on the surface of a mesh. It keeps its angle with each edge that it crosses, as
+/// on the two triangles unfolded into a plane, so that the path itself adds no rotation.
 class StraightWalk {
  public:
-  /// Begins in the middle of a triangle, towards what is nearest to `direction_W` in its plane.
+  /// Begins in the middle of a triangle, in the direction in its plane nearest to `direction_W`.
   /// Precondition: `direction_W` is not along the triangle's normal.
   StraightWalk(const render::ContactMesh& mesh, std::int32_t triangle,
                const Eigen::Vector3d& direction_W);
 
-  /// Goes on by `length` (m, > 0). A walk right through a vertex goes on in one of its triangles.
+  /// Advances by `length` (m, > 0). A walk exactly through a vertex continues in one of its
+  /// triangles.
   void advance(double length) noexcept;
 
-  std::int32_t triangle() const noexcept { return triangle_; }  ///< Returns where it is.
-  /// Returns the weights of the triangle's corners there, at least 0, sum 1.
+  std::int32_t triangle() const noexcept { return triangle_; }  ///< Returns the current triangle.
+  /// Returns the weights of the triangle's corners at the current point, at least 0, sum 1.
   Eigen::Vector3d weights() const noexcept;
 
  private:

@@ -13,16 +13,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeepEnough = 2e-4;  // m; shallower, a relative error says nothing
+constexpr double kDeepEnough = 2e-4;  // m; below, a relative error is meaningless
 
-// The true force on the ring at a state around the origin.
+// Returns the force of the exact ring at a state around the origin.
 Vector3d true_force(const driver::DeviceState& state) {
   const double depth = kCostRing.depth(state.p_WT);
   const Vector3d n = kCostRing.normal(state.p_WT);
   return std::max(kCostSpring.stiffness * depth - kCostSpring.damping * n.dot(state.v_WT), 0.0) * n;
 }
 
-// The angle between two forces, rad; 0 where one of them is none.
+// Returns the angle between two forces, rad; 0 if one of them is zero.
 double angle_between(const Vector3d& f, const Vector3d& g) {
   return std::atan2(f.cross(g).norm(), f.dot(g));
 }

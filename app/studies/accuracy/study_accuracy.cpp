@@ -52,7 +52,7 @@ driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::
   return found;
 }
 
-/// Measures axes one after the other, and keeps each in the journal.
+/// Measures axes one after the other, and writes each to the journal.
 class AxisSweep {
  public:
   AxisSweep(const AccuracyChoice& choice, std::vector<AccuracyAxis> axes,
@@ -87,7 +87,7 @@ class AxisSweep {
       auto axis =
           std::make_unique<MeasuredAxis>(kept ? with_numbers(std::move(axes_[i]), numbers[i])
                                               : measure_axis(std::move(axes_[i]), options));
-      if (!axis->complete && !kept) return measured;  // it was stopped
+      if (!axis->complete && !kept) return measured;  // stopped
       if (!axis->complete) return damaged();
       if (!kept) {
         numbers[i] = numbers_of(*axis);
@@ -131,7 +131,7 @@ driver::Result<void> write_runs(const std::filesystem::path& folder) {
        {scene::Quality::kNormal, "as the scene says"},
        {scene::Quality::kReference, "beyond what can be felt"}}};
   for (const auto& [quality, words] : qualities) {
-    if (!scene) break;  // an own build without the shipped scenes: the list is empty
+    if (!scene) break;  // a separate build without the shipped scenes: the list is empty
     session::SessionOptions options;
     options.duration = 3;
     options.rate_factor = scene::rate_factor_of(quality);

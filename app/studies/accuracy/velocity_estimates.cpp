@@ -20,7 +20,7 @@ class ProductEstimate final : public VelocityEstimate {
   double period_;
 };
 
-/// Keeps the last places in a ring.
+/// Keeps the last positions in a ring buffer.
 class Past {
  public:
   void take(double x) noexcept {
@@ -65,7 +65,7 @@ class AdaptiveEstimate final : public VelocityEstimate {
     for (int n = 1; n <= longest; ++n) {
       const double tried = (x - past_.ago(n)) / n;  // m per tick
       for (int i = 1; i < n; ++i) {
-        // Written so that NaN ends the window.
+        // NaN ends the window.
         if (!(std::abs(x - tried * i - past_.ago(i)) <= 2 * within_)) return slope / period_;
       }
       slope = tried;

@@ -16,7 +16,7 @@ namespace {
 
 using Built = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 
-// Settings of effects that have none of their own; every other effect is taken as it is.
+// Settings of effects without defaults; every other effect uses its own.
 struct Sample {
   std::string_view name;  // or group
   std::string_view settings;
@@ -39,7 +39,7 @@ render::ContactChoice choice_of(render::TrackerChoice tracker) {
   return choice;
 }
 
-/// A height map without a file: stripes of two pixels, 1 mm apart.
+/// Returns a height map without a file: stripes of two pixels, 1 mm apart.
 std::unique_ptr<render::AnyStage> striped_map() {
   render::HeightMap::Settings settings;
   settings.image =
@@ -66,7 +66,7 @@ Built build_effect(const render::EffectKind& kind) {
   auto yaml = scene::YamlFile::parse(text, std::string(kind.name));
   if (!yaml) return yaml.error();
   render::SurfaceChoice surface{.spring = kCostSpring, .effects = {}};
-  // The PHANTOM-like set of [PHYSICS 0].
+  // The PHANTOM-like arm of [PHYSICS 0].
   const render::EffectContext context{.tick = 0.001,
                                       .delay = 0.001,
                                       .encoder_step = 0.03e-3,
@@ -95,7 +95,7 @@ std::vector<CostSubject> cost_subjects() {
   using enum render::TrackerChoice;
   for (std::size_t i = 0; i < render::kTrackerNames.size(); ++i) {
     const auto tracker = static_cast<render::TrackerChoice>(i);
-    // These two have one way to be felt.
+    // These two have a single feel.
     render::ContactChoice choice = choice_of(tracker);
     if (tracker == kGodObject || tracker == kPacked) {
       add(std::string(render::kTrackerNames[i]), choice);

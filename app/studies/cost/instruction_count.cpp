@@ -9,7 +9,7 @@
 namespace thimble::studies {
 namespace {
 
-// Counts the instructions of a whole run; valgrind says so at its end: "Collected : 12345".
+// Counts the instructions of a whole run, from valgrind's final message: "Collected : 12345".
 std::optional<double> instructions_of(const std::string& subject, int strokes) {
   std::error_code error;
   const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();

@@ -5,10 +5,10 @@
 
 namespace thimble::studies {
 
-/// Counts the instructions that one tick of a cost subject executes, on average over its stroke:
-/// two runs of this program under callgrind that differ in the number of strokes, divided. The same
-/// on every machine that runs the same binary. Empty if valgrind is not installed or fails.
-/// Real-time: never from the servo thread.
+/// Counts the instructions of one tick of a cost subject, averaged over its stroke: the difference
+/// of two runs of this program under callgrind with different numbers of strokes, divided by the
+/// ticks. Identical on every machine with the same binary. Empty if valgrind is not installed or
+/// fails. Real-time: never from the servo thread.
 std::optional<double> instructions_per_tick(const std::string& subject);
 
 /// The number of ticks of one stroke.

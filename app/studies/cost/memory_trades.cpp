@@ -19,15 +19,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Sums what questions answer, so that none is left out as unused.
+// Sum of all answers, so that the compiler removes no query.
 volatile double answers = 0;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Asks again and again, until it took long enough to be timed, and gives ns per question: the
-/// median of several rounds.
+/// Repeats the query until the time is long enough to measure, and returns ns per query: the median
+/// of several rounds.
 template <class Ask>
 double time_of_question(Ask ask) {
   constexpr int kRounds = 9;
@@ -50,7 +50,7 @@ double time_of_question(Ask ask) {
   return rounds[kRounds / 2];
 }
 
-// Runs `build` once and tells how long it took, us per triangle.
+// Runs `build` once and returns its duration, us per triangle.
 template <class Build>
 auto timed(Build build, std::size_t triangles, double& us) {
   const auto begin = Clock::now();
@@ -64,7 +64,7 @@ auto timed(Build build, std::size_t triangles, double& us) {
 std::vector<MemoryTrade> measure_memory_trades() {
   const render::TriangleMesh mesh = kCostRing.mesh(kCostAround, kCostAcross);
   const std::size_t count = mesh.triangles.size();
-  // A large odd step, so that questions jump over the mesh.
+  // A large odd step, so that queries jump over the mesh.
   const auto some = [count](std::size_t i) { return (i * 2654435761U) % count; };
   std::vector<MemoryTrade> trades;
 
@@ -105,7 +105,7 @@ std::vector<MemoryTrade> measure_memory_trades() {
         [&] { return render::make_search(*contact_mesh, static_cast<render::SearchChoice>(k)); },
         count, trade.build_us_per_triangle);
     trade.bytes_per_triangle = static_cast<double>(search->bytes()) / static_cast<double>(count);
-    // Free ticks of a hand at 0.3 m/s, some tenths of a millimetre over the ring.
+    // Free ticks of a hand at 0.3 m/s, some tenths of a millimetre above the ring.
     trade.ns_per_question = time_of_question([&](std::size_t i) {
       const double way = 0.01 * static_cast<double>(some(i));
       const Eigen::Vector3d p = kCostRing.at(way, 3 * way, 5e-4);

@@ -5,7 +5,7 @@
 
 namespace thimble::studies {
 
-/// One way to answer a question that a contact asks, with what it holds in memory for that.
+/// One way to answer a query of a contact, with the memory that it needs.
 struct MemoryTrade {
   std::string name;
   double bytes_per_triangle = 0;
@@ -13,9 +13,9 @@ struct MemoryTrade {
   double ns_per_question = 0;
 };
 
-/// Measures memory against time, as the paper offers it [BP 3.1]: which way out is (OUT array or in
-/// the cycle), who the neighbour is (array or in the cycle), what a free tip enters (each search),
-/// on the ring of the cost subjects. Real-time: never from the servo thread.
+/// Measures memory against time, for the alternatives of the paper [BP 3.1], on the ring of the
+/// cost subjects: which exit (OUT array or in the cycle), which neighbour (array or in the cycle),
+/// and what a free tip enters (each search). Real-time: never from the servo thread.
 std::vector<MemoryTrade> measure_memory_trades();
 
 }  // namespace thimble::studies

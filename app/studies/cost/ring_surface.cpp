@@ -40,7 +40,7 @@ std::vector<driver::DeviceState> ring_stroke(const RingSurface& ring, int ticks,
   for (int i = 0; i < ticks; ++i) {
     const double t = i * dt;
     const double share = static_cast<double>(i) / (ticks - 1);
-    // Forth and back: 80 mm/s on the outer equator at most, standing still at each turn.
+    // Forth and back: at most 80 mm/s on the outer equator, zero at each turn.
     const double around = 0.08 / (ring.ring_radius + ring.tube_radius) / 4 * std::sin(4 * t);
     const double across = 2 * std::numbers::pi * share;
     const double edge = std::min(1.0, 20 * std::min(share, 1 - share));

@@ -28,17 +28,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kRounds = 41;           // strokes timed of each subject, in turn with all others
-constexpr double kDeepEnough = 2e-4;  // m; shallower, a relative error says nothing
+constexpr int kRounds = 41;           // timed strokes of each subject, alternating with all others
+constexpr double kDeepEnough = 2e-4;  // m; below, a relative error is meaningless
 
 struct Cost {
   const CostSubject* subject = nullptr;
   std::unique_ptr<render::ObjectTouch> touch;
-  double bytes = 0;                    // held on the heap
+  double bytes = 0;                    // on the heap
   std::vector<double> round_ns;        // per tick
   std::optional<double> instructions;  // per tick
   std::vector<Vector3d> forces;        // N
-  double error = 0;  // contact: RMS of the force's error as a share; effect: RMS of what it adds, N
+  double error = 0;  // contact: RMS of the relative error; effect: RMS of the added force, N
   double direction_p99 = 0;  // contact: rad
 
   double median_ns() const {
@@ -48,7 +48,7 @@ struct Cost {
   }
 };
 
-// The heap's bytes in use; of large blocks too.
+// Returns the heap's bytes in use, including large blocks.
 double heap_bytes() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
@@ -64,7 +64,7 @@ void stroke(Cost& cost, const std::vector<driver::DeviceState>& states) {
   cost.round_ns.push_back(time.count() / static_cast<double>(states.size()));
 }
 
-// Compares a way of contact with the ring itself.
+// Compares a contact method with the exact ring.
 void compare_with_truth(Cost& cost, const std::vector<driver::DeviceState>& states) {
   std::vector<double> angles;
   double squares = 0;
@@ -85,7 +85,7 @@ void compare_with_truth(Cost& cost, const std::vector<driver::DeviceState>& stat
   cost.direction_p99 = angles[angles.size() * 99 / 100];
 }
 
-// Compares an effect with the scene that lacks it.
+// Compares an effect with the scene without it.
 void compare_with_bare(Cost& cost, const Cost& bare) {
   double squares = 0;
   std::size_t ticks = 0;
@@ -123,7 +123,8 @@ struct Bar {
   std::string says;
 };
 
-// Bars one under the other, each with its name on the left and a short text at its end.
+// Returns a plot of bars below each other, each with its name on the left and a short text at its
+// end.
 report::Plot bar_plot(const std::string& name, const std::string& title, const std::string& axis,
                       const std::vector<Bar>& bars) {
   std::ostringstream text;
@@ -240,7 +241,7 @@ driver::Result<std::vector<session::Figure>> study_cost(const std::filesystem::p
     cost.forces.resize(states.size());
     costs.push_back(std::move(cost));
   }
-  // All take turns, so that what else the machine does meets all alike.
+  // Subjects alternate, so that other load of the machine affects all equally.
   for (int round = 0; round < kRounds; ++round) {
     for (Cost& cost : costs) stroke(cost, states);
   }

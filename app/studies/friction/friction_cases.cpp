@@ -19,14 +19,15 @@ constexpr double kCorner = 50;         // Hz [PHYSICS 2.5]
 constexpr double kNothing = 1e-12;     // N or m
 constexpr double kOscillates = 0.001;  // N RMS [PHYSICS 7, case 14]
 
-/// Returns the RMS above the corner in the last `ticks`; what is left of the filter's ringing is 0.
+/// Returns the RMS above the corner in the last `ticks`; the remaining transient of the filter
+/// counts as 0.
 double above_corner(std::span<const double> signal, double rate, std::size_t ticks) {
   const std::vector<double> fast = stability::high_passed(signal, rate, kCorner);
   const double found = stability::root_mean_square(std::span(fast).last(ticks));
   return found > kNothing ? found : 0;
 }
 
-/// Creeps at `speed` for long enough to slide, symmetric about the arm's home.
+/// Creeps at `speed` long enough to slide, symmetric about the arm's home.
 stability::RigRun creep_run(const FrictionCase& which, const stability::FrictionRigSettings& rig,
                             double speed) {
   const auto friction = build_friction(which, rig);
@@ -37,7 +38,8 @@ stability::RigRun creep_run(const FrictionCase& which, const stability::Friction
 }  // namespace
 
 const std::vector<FrictionCase>& friction_cases() {
-  // The last breaks the arm's bound on purpose: z_max of one count, which a scene is refused.
+  // The last one violates the arm's bound on purpose: z_max of one count, which a scene may not
+  // have.
   static const std::vector<FrictionCase> cases{
       {"naive", "naive, zero at rest", "A", "naive", "at_rest", "zero"},
       {"naive_hold", "naive, holds the last direction", "B", "naive", "at_rest", "hold"},

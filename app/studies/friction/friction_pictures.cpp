@@ -14,7 +14,7 @@
 namespace thimble::studies {
 namespace {
 
-/// Returns the state at rest in a few words.
+/// Returns a short text about the state at rest.
 std::string verdict(const FrictionMeasures& found) {
   if (found.rest_force < 0.001) {
     return found.rest_held >= 0.01 ? fmt::format("at rest: silent, holds {:.2f} N", found.rest_held)
@@ -48,7 +48,7 @@ std::string spectrum_table(const stability::RigRun& run) {
   return text.str();
 }
 
-/// Places a panel by its edges in parts of the picture.
+/// Returns commands for a panel by its edges, in fractions of the picture.
 std::string panel(double left, double right, double bottom, double top) {
   return "set lmargin at screen " + report::number(left) + "\nset rmargin at screen " +
          report::number(right) + "\nset bmargin at screen " + report::number(bottom) +

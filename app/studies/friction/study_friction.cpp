@@ -19,8 +19,8 @@
 namespace thimble::studies {
 namespace {
 
-constexpr int kDelays = 4;  // ticks 0 to 3
-constexpr int kStops = 40;  // places within one count [PHYSICS 7, case 14]
+constexpr int kDelays = 4;  // 0 to 3 ticks
+constexpr int kStops = 40;  // positions within one count [PHYSICS 7, case 14]
 
 std::string table_row(const FrictionCase& which, const FrictionMeasures& found) {
   return fmt::format(
@@ -64,7 +64,7 @@ WorstStop worst_stop(const FrictionCase& which) {
   return worst;
 }
 
-/// Adds the naive law's mean and ripple against their closed forms [PHYSICS 2.1].
+/// Adds the naive law's mean and ripple with their closed forms [PHYSICS 2.1].
 void add_even_sliding(std::vector<session::Figure>& figures) {
   for (const double speed : {0.005, 0.02}) {
     const stability::FrictionRigSettings rig;
@@ -84,8 +84,8 @@ void add_even_sliding(std::vector<session::Figure>& figures) {
 void add_measures(std::vector<session::Figure>& figures, const FrictionCase& which,
                   const FrictionMeasures& found) {
   const std::string name = which.name + ".";
-  // What the default promises, and what the paper's limit cycle is [PHYSICS 2.2 and 7, cases 14,
-  // 15].
+  // The guarantees of the default, and the limit cycle of the paper's friction [PHYSICS 2.2 and 7,
+  // cases 14, 15].
   const bool chosen = which.name == "bristle";
   figures.push_back({name + "rest_force", found.rest_force, "N", chosen ? "<= 0.001" : ""});
   figures.push_back({name + "rest_way", found.rest_way, "m", chosen ? "<= 5e-08" : ""});

@@ -6,33 +6,34 @@
 
 namespace thimble::studies {
 
-/// Most energy that motors gave in any window of a run, beyond what the pressed springs held at its
-/// beginning.
+/// Maximum energy from the motors in any window of a run, beyond the energy of the compressed
+/// springs at its beginning.
 ///
-/// What damping and friction took before is no credit: a wall that oscillates for a minute after an
-/// hour of rubbing gives energy. Only what the springs that are pressed hold may come back.
+/// Energy that damping and friction absorbed before is no credit: a wall that oscillates for a
+/// minute after an hour of rubbing adds energy. Only the energy of compressed springs may return.
 class EnergyGiven {
  public:
-  /// Books the work done on the tip since the last tick (J), with what the springs hold now (J).
+  /// Adds the work done on the tip since the last tick (J), with the present energy of the springs
+  /// (J).
   void book(double work, double held) noexcept {
     credit_ = std::min(credit_ - work, held);
     most_ = std::max(most_, -credit_);
   }
-  /// Returns the most, J; 0 of a passive scene.
+  /// Returns the maximum, J; 0 for a passive scene.
   double most() const noexcept { return most_; }
 
  private:
-  double credit_ = 0;  // J; below 0: given
-  double most_ = 0;    // J
+  double credit_ = 0;  // J; below 0: energy was added
+  double most_ = 0;    // J, maximum so far
 };
 
-/// Energy (J) that a gate without an energy stage may let go in any window: what hard case 11
-/// allows a guarded wall.
+/// Energy (J) that a gate without an energy stage may release in any window: the bound of hard case
+/// 11 for a guarded wall.
 inline constexpr double kLetGoWithoutStage = 2e-3;
 
-/// Returns the most energy (J) that motors behind a gate with this energy stage may give in any
-/// window: the stage's account starts at its reservoir at most (and what springs hold), damps from
-/// -allowance on, and at -(allowance + 2 onset) no force is left that could give more.
+/// Returns the maximum energy (J) that motors behind a gate with this energy stage may add in any
+/// window. The stage's account starts at its reservoir at most (plus the energy of springs). It
+/// damps below -allowance, and at -(allowance + 2 onset) no force is left that could add more.
 inline double energy_let_go(const driver::EnergyGuardSettings& stage) {
   if (stage.stage != driver::EnergyStage::kPassivity) return kLetGoWithoutStage;
   return stage.reservoir + stage.allowance + 2 * stage.onset;

@@ -21,10 +21,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTouch = 1.6;  // s of touch [issue of the search, with the first of the rest]
-/// s at the end, in which the hand holds still. The softest hand (100 N/m) creeps on through the
-/// thickest fields and walls (9 + 2 * 8 N s/m) with a time constant of 0.25 s; from 0.2 m/s it has
-/// come to 1 mm/s, a count in 30 ms, after 1.3 s.
+constexpr double kTouch = 1.6;  // s of touch [issue of the search, including the start of the rest]
+/// s at the end, in which the hand rests. The softest hand (100 N/m) creeps through the most
+/// viscous fields and walls (9 + 2 * 8 N s/m) with a time constant of 0.25 s; from 0.2 m/s it slows
+/// down to 1 mm/s, a count in 30 ms, after 1.3 s.
 constexpr double kRest = 1.6;
 constexpr double kDuration = kTouch + kRest;
 constexpr double kGravity = 9.81;  // m/s^2
@@ -46,7 +46,7 @@ std::string joined(std::initializer_list<std::string_view> parts) {
   return text;
 }
 
-/// Writes YAML by lines.
+/// Writes YAML line by line.
 class Lines {
  public:
   void add(int indent, std::string_view key, std::string_view value) {
@@ -65,7 +65,7 @@ struct Hand {
   double mass, stiffness, damping, tremor;
 };
 
-/// One object as far as the hand must know it.
+/// The properties of an object that the hand uses.
 struct Placed {
   std::string name;
   bool has_surface = false;
@@ -101,7 +101,7 @@ class Drawing {
   }
 
  private:
-  /// Returns how stiff a surface may be.
+  /// Returns the maximum stiffness of a surface.
   double stiffness_max() const {
     const scene::ArmFile& arm = limits_.arm;
     const device_sim::SimulatedArmSettings& sim = arm.simulated;
@@ -138,7 +138,7 @@ class Drawing {
         break;
       case 2: {
         const double force = draw_.uniform(-2, 2), radius = draw_.uniform(0.01, 0.03);
-        // The potential's depth: 1.5 sqrt(3) F R.
+        // Depth of the potential: 1.5 sqrt(3) F R.
         own_energy_ += 2.6 * std::abs(force) * radius;
         lines_.add(4, "field", "charges");
         lines_.add(4, "charges",
@@ -186,8 +186,7 @@ class Drawing {
                          number(draw_.uniform(-90, 90)), "]]"}));
     }
     const bool texture = draw_.chance(0.3);
-    // Objects may overlap, and then their springs add up; a slope of up to 1 makes a surface up to
-    // twice as stiff.
+    // Springs of overlapping objects add up; a slope of up to 1 doubles the stiffness of a surface.
     const double stiffest = share_ * stiffness_max() / (texture ? 2 : 1);
     lines_.add(4, "stiffness", draw_.octave(std::min(50.0, stiffest / 2), stiffest));
     lines_.add(4, "damping", draw_.chance(0.3) ? 0 : draw_.uniform(0, 3));
@@ -299,7 +298,7 @@ class Drawing {
         joined({"{mass: ", number(hand_.mass), ", stiffness: ", number(hand_.stiffness),
                 ", damping: ", number(hand_.damping), ", tremor: ", number(hand_.tremor), "}"}));
     lines_.add(2, "path", "");
-    // Above everything, so that nothing is touched while the forces open softly.
+    // Above everything, so that nothing is touched during the soft start.
     station(0, Vector3d{draw_.uniform(-0.05, 0.05), draw_.uniform(-0.05, 0.05), 0.075});
     double time = draw_.uniform(0.3, 0.5);
     const Placed* last = nullptr;
@@ -309,7 +308,7 @@ class Drawing {
       lines_.text().append("    - {t: ").append(number(time)).append(rest).append("}\n");
       time += draw_.uniform(0.12, 0.5);
     }
-    // Rest where the last station was.
+    // Rests at the last station.
     lines_.text().append("    - {t: ").append(number(kTouch)).append(rest);
     lines_.text().append(", stop: true}\n");
     lines_.text().append("    - {t: ").append(number(kDuration)).append(rest);
@@ -321,8 +320,8 @@ class Drawing {
     lines_.text().append(vector(p_W)).append("}\n");
   }
 
-  /// Draws a station, without its time: near to the last one on the same object, on another, or a
-  /// free point, perhaps within something.
+  /// Returns a random station, without its time: near the last one on the same object, on another
+  /// object, or a free point, which may be inside of something.
   std::string next_station(const Placed*& last) {
     if (last == nullptr || draw_.chance(0.25)) {
       const Placed& object = objects_[draw_.one_of(objects_.size())];
@@ -346,7 +345,7 @@ class Drawing {
   Lines lines_;
   double own_energy_ = 0;
   bool oscillates_ = false;
-  double share_ = 1;  // of the stiffness, for each object
+  double share_ = 1;  // of the stiffness, per object
   std::vector<Placed> objects_;
   Vector3d way_{0, 0, 1};
 };

@@ -18,7 +18,7 @@ using render::TriangleMesh;
 
 constexpr double kPi = std::numbers::pi;
 
-/// Cuts each triangle in four and puts all corners onto the unit sphere.
+/// Divides each triangle into four and projects all corners onto the unit sphere.
 TriangleMesh refined(const TriangleMesh& coarse) {
   TriangleMesh mesh{coarse.vertices, {}};
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
@@ -50,7 +50,7 @@ TriangleMesh ball(int refinements) {
   return mesh;
 }
 
-/// A ball with six bumps and the hollows between them.
+/// Returns a ball with six bumps and concave places between them.
 TriangleMesh star() {
   TriangleMesh mesh = ball(3);
   for (Vector3d& v : mesh.vertices) {
@@ -78,7 +78,7 @@ TriangleMesh ring() {
   });
 }
 
-/// A slim cone: a vertex where many thin triangles meet.
+/// Returns a slim cone: many thin triangles meet at its vertex.
 TriangleMesh needle() {
   constexpr std::int32_t kAround = 32;
   TriangleMesh mesh;
@@ -95,7 +95,7 @@ TriangleMesh needle() {
   return mesh;
 }
 
-/// A roof with an edge of 20 degrees.
+/// Returns a roof with an edge of 20 degrees.
 TriangleMesh wedge() {
   const double half = std::tan(10 * kPi / 180);
   return {{{-1, -half, 0}, {1, -half, 0}, {1, half, 0}, {-1, half, 0}, {-1, 0, 1}, {1, 0, 1}},

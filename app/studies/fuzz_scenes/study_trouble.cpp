@@ -20,16 +20,17 @@
 namespace thimble::studies {
 namespace {
 
-constexpr int kTries = 12;           // a scene that the loader refuses is drawn anew
-constexpr std::size_t kWorst = 10;   // kept
-constexpr std::size_t kShown = 3;    // of them, with a page; chosen: what somebody looks at
-constexpr double kGivenMuch = 1e-3;  // J, told
+constexpr int kTries = 12;           // attempts: a scene rejected by the loader is replaced
+constexpr std::size_t kWorst = 10;   // scenes kept
+constexpr std::size_t kShown = 3;    // of them with a page; chosen: as many as a reader looks at
+constexpr double kGivenMuch = 1e-3;  // J, reported
 
-/// A folder for scene files of this process; it goes with the object.
+/// A folder for scene files of this process; the destructor removes it.
 class SceneFolder {
  public:
   SceneFolder() {
-    // A name that no other user can foresee. Without a folder, writing the first file fails.
+    // A name that another user cannot guess. If the folder cannot be made, writing the first file
+    // fails.
     std::string name = (std::filesystem::temp_directory_path() / "thimble-XXXXXX").string();
     path_ = mkdtemp(name.data()) != nullptr ? name : "/dev/null/no-temporary-folder";
   }
@@ -53,7 +54,7 @@ std::string seed_name(std::uint64_t seed) {
   return fmt::format("{:016x}", seed);
 }
 
-/// Draws and runs scenes until the loader accepts one; adds how many it refused.
+/// Draws and runs scenes until the loader accepts one; adds the number of rejected scenes.
 driver::Result<std::vector<double>> measure(std::size_t cell, std::uint64_t seed,
                                             const RandomSceneLimits& limits,
                                             const std::filesystem::path& folder) {
@@ -89,8 +90,8 @@ std::string table_of(const CellNumbers& cells, std::uint64_t seed) {
   return csv;
 }
 
-/// Writes the worst scenes with what they showed, so that they can be run by themselves, and pages
-/// of the very worst.
+/// Writes the worst scenes with their results, so that they can be run separately, and pages of the
+/// very worst.
 driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
                                 RandomSceneLimits limits, const std::filesystem::path& folder) {
   std::vector<std::size_t> order(cells.size());

@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 constexpr double kCorner = 50;        // Hz [PHYSICS 2.5]
 constexpr double kRestWindow = 0.25;  // s
 
-/// Keeps the account of one run, tick by tick.
+/// Computes the account of one run, tick by tick.
 class Account {
  public:
   explicit Account(const session::Session& session)
@@ -44,7 +44,7 @@ class Account {
     found_.contact += record.in_contact ? 1 : 0;
     ++ticks_;
     if (record.fault != driver::Fault::kNone) found_.fault = static_cast<double>(record.fault);
-    // What the arm did since the last tick, under the force of the tick before.
+    // The arm's motion since the last tick, under the force of the previous tick.
     const device_sim::Plant& plant = arm_.plant();
     const Vector3d p = plant.p_BT(), v = plant.v_BT();
     if (!(sent.squaredNorm() + p.squaredNorm() + v.squaredNorm() < HUGE_VAL)) {
@@ -88,13 +88,13 @@ class Account {
 }  // namespace
 
 bool TroubleFound::bad() const {
-  // Written so that NaN is bad.
+  // NaN counts as bad.
   return not_finite > 0 || fault > 0 || !(force_share <= 1 + 1e-9) || !(given <= given_bound);
 }
 
 double TroubleFound::badness() const {
   if (not_finite > 0) return 1e9;
-  // A fault takes the force away, so what is beside it tells little.
+  // A fault switches the force off, so other values mean little then.
   return (fault > 0 ? 1e6 : 0) + (force_share > 1 + 1e-9 ? 1e5 : 0) + given / given_bound +
          (must_oscillate ? 0 : 10 * limit_cycle);
 }

@@ -56,7 +56,7 @@ std::vector<double> membrane_truth(const Membrane& membrane, double t) {
     }
   }
   const Eigen::MatrixXd field = sines.transpose() * heights * sines;
-  // Column by column is node by node: columns are rows of the membrane.
+  // The matrix is stored by columns, which are rows of the membrane.
   return {field.data(), field.data() + field.size()};
 }
 

@@ -10,7 +10,7 @@
 namespace thimble::studies {
 namespace {
 
-// Looks at the touched node, in a way that cannot be left out.
+// Reads the touched node so that the compiler cannot remove the read.
 template <int kDof>
 void keep(const render::SpringMotion<kDof>& motion, std::int32_t node) {
   volatile double seen = motion.u()[static_cast<std::size_t>(node)][0];
@@ -22,19 +22,19 @@ void keep(const render::ModalMotion<kDof>& motion, std::int32_t node) {
   static_cast<void>(seen);
 }
 
-// What else the machine does adds to the time even of this thread alone, so the least of some runs
-// is taken; slow ones run once.
+// Other load of the machine adds even to the CPU time of this thread, so the minimum of several
+// runs is taken; slow methods run once.
 constexpr int kRuns = 9;
 constexpr double kRunsBudget = 0.2;  // s
 
-// The time that this thread has worked, s: others that want the processor do not count.
+// Returns the CPU time of this thread, s: other load does not count.
 double worked() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Moves on by a frame and looks at the touched node, as a tick of touch does.
+// Advances by a frame and reads the touched node, like a tick of touch.
 template <class Motion, class Vector>
 void frame_of(Motion& motion, std::int32_t poked, const Vector& force, bool poke) {
   if (poke) motion.push(poked, force);
@@ -42,7 +42,7 @@ void frame_of(Motion& motion, std::int32_t poked, const Vector& force, bool poke
   keep(motion, poked);
 }
 
-// Keeps the largest error against the truth.
+// Computes the largest error against the truth.
 template <int kDof>
 class Compared {
  public:
@@ -53,7 +53,7 @@ class Compared {
     const auto& truth = body_.truth[static_cast<std::size_t>(frame)];
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const double off = (at(i) - truth[i]).norm();
-      // Written so that NaN counts as diverged.
+      // NaN counts as diverged.
       if (!(off < kFar)) diverged_ = true;
       error_ = std::max(error_, off);
       size_ = std::max(size_, truth[i].norm());
@@ -72,7 +72,7 @@ class Compared {
   bool diverged_ = false;
 };
 
-// Runs a copy of `rest` under the eyes of `look`, then others for the least time per frame.
+// Runs a copy of `rest` with `look` as observer, then others for the minimum time per frame.
 template <class Motion, class Vector, class Look>
 double least_frame_us(const Motion& rest, std::int32_t poked, const Vector& force, int poke_frames,
                       int frames, Look&& look) {

@@ -27,14 +27,14 @@ namespace {
 using render::SpringScheme;
 
 constexpr int kFrames = 100;
-// Half the force that a hand can just tell apart, which is 7 % [PHYSICS 6, after Pang, Tan,
+// Half of the just noticeable difference of force, which is 7 % [PHYSICS 6, after Pang, Tan,
 // Durlach 1991].
 constexpr double kFelt = 0.035;
 
-// The scan: small, closed, of irregular triangles. Scaled to what fits in a hand.
+// The scan: small, closed, with irregular triangles; scaled to hand size.
 constexpr const char* kScan = "elephant.off";
 constexpr double kScanSize = 0.1;        // m, the longest side of its box
-constexpr double kScanMass = 0.1;        // kg in all
+constexpr double kScanMass = 0.1;        // kg in total
 constexpr int kReferenceSubsteps = 512;  // per frame: 8 times finer than the finest of its order
 
 struct Line {
@@ -50,7 +50,7 @@ std::vector<Line> lines(bool membrane) {
                         {SpringScheme::kTrapezoid, 2, {1, 2, 4, 8, 16, 32}},
                         {SpringScheme::kExplicitEuler, 1, {1, 4, 16, 64, 256}}};
   if (!membrane) return all;
-  // Cheap enough to go on until orders show.
+  // Cheap enough to continue until orders are visible.
   for (Line& line : all) {
     const int more = line.scheme == SpringScheme::kImplicitEuler ? 4 : 2;
     for (int i = 0; i < more; ++i) line.substeps.push_back(2 * line.substeps.back());
@@ -83,8 +83,8 @@ driver::Result<PokedBody<3>> poked_scan() {
     high = high.cwiseMax(p);
   }
   for (Eigen::Vector3d& p : mesh->vertices) p *= kScanSize / (high - low).maxCoeff();
-  // A soft skin: edges of 300 N/m that pull along themselves, 10 N/m to the base points, dampers
-  // that are the same share of all springs.
+  // A soft skin: edges of 300 N/m with axial springs, 10 N/m to the base points, and dampers in a
+  // fixed ratio to all springs.
   constexpr double kShare = 2e-5;  // s
   const render::MeshSpringSettings settings{kScanMass / static_cast<double>(mesh->vertices.size()),
                                             10,
@@ -110,8 +110,8 @@ driver::Result<PokedBody<3>> poked_scan() {
 }
 
 struct Diagram {
-  std::string name;   // of the picture
-  std::string title;  // says what is shown
+  std::string name;   // file name of the picture
+  std::string title;  // title
   std::vector<std::vector<WorkPoint>> lines;
 };
 
@@ -157,11 +157,12 @@ std::string spoken(std::string name) {
   return name;
 }
 
-// Errors below this share are drawn at it: rounding, which would squeeze all else.
+// Errors below this fraction are rounding, and are drawn at it so that they do not compress the
+// axis.
 constexpr double kFloor = 1e-7;
 
 report::Plot work_precision(const Diagram& diagram) {
-  // Colours that stay apart for colour-blind eyes [M Okabe and Ito].
+  // Colours that colour-blind people can distinguish [M Okabe and Ito].
   constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a919c", "#30343b"};
   constexpr std::array kMarks{7, 5, 9, 13, 11, 3};
   std::ostringstream text;
@@ -199,7 +200,7 @@ report::Plot work_precision(const Diagram& diagram) {
   return {.name = diagram.name, .width = 1600, .height = 900, .commands = text.str()};
 }
 
-// Finds the slope over the two finest steps, as an order.
+// Returns the slope over the two finest steps, as an order.
 double order_of(const std::vector<WorkPoint>& line) {
   const WorkPoint& fine = line[line.size() - 1];
   const WorkPoint& coarse = line[line.size() - 2];

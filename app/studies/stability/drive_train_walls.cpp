@@ -17,9 +17,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kCellRange =
-    4;  // an edge is looked for within what the map says over and times it
+    4;  // an edge is searched between the map's value divided and multiplied by this
 
-/// A joint that alone moves the tip along its own way at home.
+/// A joint that alone moves the tip along a line at home.
 struct LoneJoint {
   stability::ArmDirection direction;
   Matrix3d J_BT;  // at home, m/rad
@@ -52,8 +52,8 @@ std::vector<double> series(double least, double most, int count, bool logarithmi
   return values;
 }
 
-/// Finds whether an oscillation that a kick begins grows. What is looked at is the force: where a
-/// motor oscillates against its tip, the tip shows little of it.
+/// Returns whether an oscillation after a kick grows. It uses the force: if a motor oscillates
+/// against its tip, the tip moves little.
 driver::Result<bool> force_grows(const scene::ArmFile& arm, stability::WallCase wall, double mass) {
   constexpr double kStartForce = 0.3;  // N, far above a step of the current
   constexpr double kFarFromStart = 10;
@@ -64,7 +64,7 @@ driver::Result<bool> force_grows(const scene::ArmFile& arm, stability::WallCase 
   const auto run = stability::run_wall(arm, wall);
   if (!run) return run.error();
   if (run->gave_up) return true;
-  // The motor against the tip may grow, quickly to and fro, while the slower of both dies.
+  // The fast oscillation of the motor against the tip may grow while the slow one decays.
   const double rate = 1e9 / static_cast<double>(wall.period_ns);
   const double between = 2 * frequency / (2 * std::numbers::pi);
   const std::vector<double> quick =
@@ -78,7 +78,7 @@ driver::Result<bool> force_grows(const scene::ArmFile& arm, stability::WallCase 
       const auto [least, largest] = std::minmax_element(at(from), at(to));
       return std::max(*largest, -*least);
     };
-    // Where it soon grew until the motors gave no more, it grows no further.
+    // After early growth up to the motors' limit, it cannot grow further.
     if (most(0.3, 1) > kFarFromStart * kStartForce) return true;
     return most(0.75, 1) > std::max(most(0.3, 0.55), 2 * wall.direction.force_step);
   };

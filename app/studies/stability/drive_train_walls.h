@@ -10,25 +10,25 @@
 
 namespace thimble::studies {
 
-// What the drive train does to the largest stiffness: amplifiers that lag, and cables that stretch.
-// The arm is that of case 1 [PHYSICS 7], free and linear. With a cable a part of its mass belongs
-// to the motor, whose encoder the loop sees. Real-time: never from the servo thread.
+// Effects of the drive train on the largest stiffness: amplifier lag and elastic cables. The arm is
+// that of case 1 [PHYSICS 7], free and linear. With a cable, a part of its mass belongs to the
+// motor, whose encoder the loop reads. Real-time: never from the servo thread.
 
-/// The part of the tip's mass that is the motor's where a cable stretches [chosen: what the rotors
-/// of such arms make of it is not published].
+/// The motor's fraction of the tip's mass with an elastic cable [chosen: values of such arms are
+/// not published].
 inline constexpr double kRotorShare = 0.3;
 
-/// Adds the cells of both sweeps; those of the cable only for an arm of which one joint alone moves
-/// the tip along a line at home, for the law is of one dimension.
+/// Adds the cells of both sweeps. Those of the cable are added only for an arm with a single joint
+/// that moves the tip along a line at home, because the law is one-dimensional.
 void add_drive_train_walls(const StabilitySetup& setup, std::vector<StabilityCell>& cells);
 
 /// Returns the linear loop of a cell of either sweep.
 stability::SampledWall drive_train_wall(const StabilitySetup& setup, const StabilityCell& cell);
 
-/// Finds the largest stiffness of the simulated arm, N/m. Fails as run_wall.
+/// Returns the largest stiffness of the simulated arm, N/m. Fails like run_wall.
 driver::Result<double> drive_train_edge(const StabilitySetup& setup, const StabilityCell& cell);
 
-/// Draws both, law and simulation side by side.
+/// Draws law and simulation of both.
 driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
                                             const std::vector<StabilityRow>& rows,
                                             const std::filesystem::path& folder);

@@ -15,14 +15,15 @@
 
 namespace thimble::studies {
 
-// What the pictures of this study share.
+// Shared parts of the pictures of this study.
 
-// Colours apart for colour-blind eyes too, beside those of picture_parts.h [M Okabe and Ito].
+// Colours that colour-blind people can distinguish, in addition to those of picture_parts.h [M
+// Okabe and Ito].
 inline constexpr const char* kGreenInk = "#009e73";
 inline constexpr const char* kPurpleInk = "#8a3d6b";
 inline constexpr const char* kGoldInk = "#b8860b";
 
-/// Places a panel, in shares of the picture.
+/// Returns commands for the position of a panel, in fractions of the picture.
 inline std::string panel(double left, double right, double bottom, double top) {
   std::ostringstream c;
   c << "set lmargin at screen " << left << "\nset rmargin at screen " << right
@@ -30,7 +31,7 @@ inline std::string panel(double left, double right, double bottom, double top) {
   return c.str();
 }
 
-/// Puts title and subtitle above a picture.
+/// Returns commands for title and subtitle of a picture.
 inline std::string heading(const std::string& title, const std::string& below) {
   std::ostringstream c;
   c << "set label 101 " << report::quote(report::fitted(title, 1400, 22))
@@ -42,19 +43,20 @@ inline std::string heading(const std::string& title, const std::string& below) {
   return c.str();
 }
 
-/// Puts a panel's own title above it, from its left edge, a line's height away from the frame.
+/// Returns commands for the title above a panel, from its left edge, a line's height above the
+/// frame.
 inline std::string panel_title(const std::string& title) {
   return "set label 103 " + report::quote(title) +
          " at graph 0, graph 1 offset 0,0.9 noenhanced textcolor rgb '" + report::kInk + "'\n";
 }
 
-/// Labels both axes.
+/// Returns commands for the labels of both axes.
 inline std::string axis_labels(const std::string& x, const std::string& y) {
   return "set xlabel " + report::quote(x) + " noenhanced textcolor rgb '" + report::kInk +
          "'\nset ylabel " + report::quote(y) + " noenhanced textcolor rgb '" + report::kInk + "'\n";
 }
 
-/// Writes columns of numbers as gnuplot reads them; what is no number leaves a gap.
+/// Writes columns of numbers for gnuplot; NaN leaves a gap.
 inline driver::Result<void> write_data(const std::vector<std::vector<double>>& rows,
                                        const std::filesystem::path& file) {
   std::string text;

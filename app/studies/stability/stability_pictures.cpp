@@ -19,7 +19,7 @@
 namespace thimble::studies {
 namespace {
 
-/// Says which arm, hand and loop it is.
+/// Returns a text with arm, hand and loop.
 std::string subject(const StabilitySetup& setup, bool with_hand) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   std::string text = fmt::format("{} at {:.4g} Hz, force {:.3g} ms late, tip {:.3g} kg",
@@ -66,7 +66,7 @@ driver::Result<void> write_kb_lines(const StabilitySetup& setup,
   return write_data(lines, folder / "data/kb_lines.dat");
 }
 
-/// Writes a map as log10 B, log10 K, value. A line between blocks keeps gnuplot's grid.
+/// Writes a map as log10 B, log10 K, value. A blank line between blocks keeps gnuplot's grid.
 driver::Result<void> write_map(const std::vector<StabilityRow>& rows,
                                const std::function<double(double)>& value,
                                const std::filesystem::path& file) {
@@ -185,7 +185,7 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
     if (fresh) series.push_back(cell);
     points.push_back(
         {cell.a, bounces[i].found[0], bounces[i].found[1], bounces[i].found[2], bounces[i].law});
-    // The law between the points as well.
+    // The law is also drawn between the points.
     if (i + 1 == bounces.size() || bounces[i + 1].cell.c != cell.c ||
         bounces[i + 1].cell.d != cell.d || bounces[i + 1].cell.b != cell.b) {
       const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
@@ -262,7 +262,7 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
         if (row.cell.c != start || row.cell.d != delay) continue;
         map.push_back({row.cell.a, row.cell.b, std::log10(std::clamp(row.found[0], 1e-3, 250.0))});
       }
-      // beta at which dry friction just holds the starting speed: v* solved for b.
+      // beta at which dry friction just suppresses the initial speed: v* solved for b.
       const double speed = cycle_speed(setup, start);
       for (double sigma = 0.02; sigma <= 1.54; sigma += 0.02) {
         const double held = 4 / std::numbers::pi * sigma * kCycleStep / (setup.period() * speed);
@@ -318,7 +318,7 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
     const StabilityRow* last = nullptr;
     const auto chosen = part_of(rows, part);
     for (const StabilityRow& row : chosen) {
-      // A series begins anew where x turns back.
+      // A new series begins where x decreases.
       if (last != nullptr && x(row) < x(*last)) lines.push_back({});
       lines.push_back({x(row), row.found[0], row.law});
       last = &row;

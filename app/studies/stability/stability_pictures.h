@@ -8,8 +8,8 @@
 
 namespace thimble::studies {
 
-/// Draws all pictures of the study out of the tables that lie in `folder` (write_stability_tables).
-/// Fails if gnuplot does. Real-time: never from the servo thread.
+/// Draws all pictures of the study from the tables in `folder` (write_stability_tables). Fails if
+/// gnuplot does. Real-time: never from the servo thread.
 driver::Result<void> draw_stability(const StabilitySetup& setup,
                                     const std::vector<StabilityRow>& rows,
                                     const std::filesystem::path& folder);

@@ -12,13 +12,13 @@
 namespace thimble::studies {
 namespace {
 
-// The limits of all maps: five decades of each, from what passivity allows to beyond any arm.
+// The limits of all maps: five decades of each, from the passivity bound to beyond any arm.
 constexpr double kStiffnessLeast = 1, kStiffnessMost = 1e5;  // N/m
 constexpr double kDampingLeast = 1e-3, kDampingMost = 1e2;   // N s/m
-constexpr double kQuiet = 0.25;   // counts: what oscillates less is taken as at rest
-constexpr double kEdgeRange = 4;  // an edge is looked for within the law divided and times this
+constexpr double kQuiet = 0.25;   // counts: a smaller oscillation counts as rest
+constexpr double kEdgeRange = 4;  // an edge is searched within this factor of the law
 
-/// Gives `count` values from `least` to `most`, evenly on a logarithm.
+/// Returns `count` values from `least` to `most`, evenly spaced on a logarithmic scale.
 std::vector<double> octaves(double least, double most, int count) {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(count));
@@ -35,7 +35,7 @@ std::vector<double> even(double least, double most, int count) {
   return values;
 }
 
-/// The arm as a linear one: no dry friction, ideal encoders, no limits.
+/// Returns a case with a linear arm: no dry friction, ideal encoders, no limits.
 stability::WallCase linear_case(const StabilitySetup& setup) {
   stability::WallCase wall;
   wall.direction = setup.direction;
@@ -49,8 +49,8 @@ stability::WallCase linear_case(const StabilitySetup& setup) {
   return wall;
 }
 
-/// The arm with its friction, encoders and limits, but without the energy stage of its gate, of
-/// which the laws know nothing.
+/// Returns a case with the arm's friction, encoders and limits, but without the energy stage of its
+/// gate, which the laws do not cover.
 stability::WallCase arm_case(const StabilitySetup& setup,
                              const stability::ArmDirection& direction) {
   stability::WallCase wall = linear_case(setup);
@@ -61,7 +61,7 @@ stability::WallCase arm_case(const StabilitySetup& setup,
   return wall;
 }
 
-/// A free linear arm with b = 1, as in case 1 of [PHYSICS 7].
+/// Returns a case with a free linear arm with b = 1, as in case 1 of [PHYSICS 7].
 stability::WallCase bare_case(const StabilitySetup& setup) {
   stability::WallCase wall = linear_case(setup);
   wall.hand = {};
@@ -112,8 +112,8 @@ driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& c
   wall.tip.coulomb = cell.a * kCycleStiffness * kCycleStep;
   wall.tip.viscous = cell.b * kCycleStiffness * period;
   wall.delay_ns = to_ns(cell.d * period);
-  // An oscillation dies or grows by (K T / m) times its distance from the corner: so long until it
-  // is told.
+  // The growth rate is (K T / m) times the distance from the corner; the duration is long enough to
+  // distinguish growth from decay.
   const double growth_time = wall.tip.mass / (kCycleStiffness * period);
   const double duration = (setup.coarse ? 40 : 70) * growth_time;
   const auto oscillation =
@@ -131,7 +131,7 @@ driver::Result<double> step_edge(const StabilitySetup& setup, double step) {
   return released_edge(setup.arm, wall, kReleaseSpeed, 2, 1e-3 * step, 10, kStiffnessMost);
 }
 
-/// Returns the one number of a cell.
+/// Returns the number of a cell as a list.
 driver::Result<std::vector<double>> alone(const driver::Result<double>& number) {
   if (!number) return number.error();
   return std::vector<double>{*number};
@@ -161,7 +161,7 @@ void add_restitution(const StabilitySetup& setup, std::vector<StabilityCell>& ce
   const double mass = setup.arm.simulated.plant.mass;
   for (const Series& s : {Series{0.001, 0, 0}, Series{0.001, 0.001, 0}, Series{0.001, 0.002, 0},
                           Series{0.00025, 0, 0}, Series{0.000125, 0, 0}, Series{0.001, 0, 2}}) {
-    // Beyond this the law's own condition, K L^2 / m << 1, is broken [PHYSICS 1.1].
+    // Beyond this, the law's condition K L^2 / m << 1 is violated [PHYSICS 1.1].
     const double latency = s.period / 2 + s.delay;
     const double most = std::min(0.3 * mass / (latency * latency), 3e4);
     for (const double stiffness : octaves(100, most, setup.coarse ? 4 : 20)) {
@@ -171,7 +171,7 @@ void add_restitution(const StabilitySetup& setup, std::vector<StabilityCell>& ce
 }
 
 void add_cycles(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
-  // Neither grid falls onto a corner.
+  // No point of the grids is on a corner.
   const auto shares = even(0.05, 1.5, setup.coarse ? 7 : 50);
   for (const double start : {3.5, 60.5}) {
     for (const double delay : {0.0, 1.0}) {
@@ -289,7 +289,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
     case StabilityPart::kCableEdge:
       return alone(drive_train_edge(setup, cell));
   }
-  return std::vector<double>{};  // of no part: a sweep takes no cell without numbers
+  return std::vector<double>{};  // unreachable: a sweep rejects a cell without numbers
 }
 
 scene::LoopTimes late_times(double period, double share) {
@@ -299,7 +299,7 @@ scene::LoopTimes late_times(double period, double share) {
 }
 
 scene::LoopTimes spread_times(double period, double spread) {
-  // Of an even spread [derived: a uniform law of half width w has a standard deviation of
+  // For a uniform distribution [derived: a uniform law of half width w has a standard deviation of
   // w / sqrt 3].
   return {.period = period, .period_spread = spread * period / std::sqrt(3.0)};
 }

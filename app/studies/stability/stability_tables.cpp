@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// The wall that the exact map knows, of the arm with the hand.
+/// Returns the wall of the exact map, for the arm with the hand.
 stability::SampledWall sampled(const StabilitySetup& setup, double damping) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   return {.mass = tip.mass + setup.hand.mass,
@@ -28,7 +28,7 @@ stability::SampledWall sampled(const StabilitySetup& setup, double damping) {
           .delay = setup.delay()};
 }
 
-/// The free linear arm of case 1 [PHYSICS 7].
+/// Returns the free linear arm of case 1 [PHYSICS 7].
 stability::SampledWall bare(const StabilitySetup& setup, double period, double delay) {
   return {.mass = setup.arm.simulated.plant.mass,
           .viscous = kBareDamping,
@@ -36,9 +36,8 @@ stability::SampledWall bare(const StabilitySetup& setup, double period, double d
           .delay = delay};
 }
 
-/// Tells up to which stiffness an oscillation that begins at the speed of a touch dies: dry
-/// friction holds it beyond what damping carries, (b + B + 4 c / (pi v)) / L [PHYSICS 1.4, solved
-/// for K].
+/// Returns the stiffness up to which an oscillation with the speed of a touch decays: dry friction
+/// adds to the damping, (b + B + 4 c / (pi v)) / L [PHYSICS 1.4, solved for K].
 double arm_law(const StabilitySetup& setup, double damping) {
   const device_sim::PlantSettings& tip = setup.arm.simulated.plant;
   const double coulomb = tip.coulomb * setup.direction.friction_share;
@@ -99,7 +98,7 @@ void add_laws(const StabilitySetup& setup, StabilityRow& row) {
   }
 }
 
-/// One CSV: its file, its heading, and the sweeps in it.
+/// One CSV: its file, its heading, and its sweeps.
 struct Table {
   const char* file;
   const char* heading;
@@ -171,7 +170,7 @@ std::string csv_line(const std::vector<double>& values) {
   return line.append("\n");
 }
 
-/// Says in words which wall a row is about.
+/// Returns a text that identifies the wall of a row.
 std::string place_of(const StabilityCell& c) {
   switch (c.part) {
     case StabilityPart::kLinearEdge:
@@ -198,7 +197,7 @@ std::string place_of(const StabilityCell& c) {
   }
 }
 
-/// The largest error of some rows, and at which; not a number where there are none.
+/// The largest error of some rows, and its place; NaN if there are no rows.
 struct WorstError {
   double error = kNone;
   bool unjudged = true;
@@ -213,7 +212,7 @@ double shortfall(double found, double law) {
   return std::max(0.0, 1 - found / law);
 }
 
-/// Returns the largest error of the rows that `holds` keeps.
+/// Returns the largest error of the rows selected by `holds`.
 template <class Holds>
 WorstError worst_error(const std::vector<StabilityRow>& rows, double StabilityRow::*law,
                        const Holds& holds, double (*error_of)(double, double) = departure) {
@@ -221,7 +220,7 @@ WorstError worst_error(const std::vector<StabilityRow>& rows, double StabilityRo
   for (const StabilityRow& row : rows) {
     if (!holds(row)) continue;
     const double error = error_of(row.found[0], row.*law);
-    // Written so that an error that is no number is the worst and stays it.
+    // A NaN error becomes the worst and remains it.
     if (!(error <= worst.error)) worst = {error, false, place_of(row.cell)};
     if (std::isnan(error)) break;
   }
@@ -230,13 +229,13 @@ WorstError worst_error(const std::vector<StabilityRow>& rows, double StabilityRo
 
 constexpr auto kAll = [](const StabilityRow&) { return true; };
 
-/// How the map of limit cycles agrees with its corners: shares of the cells that are no nearer
-/// to a boundary than 5 % or 0.04. Where not one encoder alone steps against the friction of one
-/// axis, sigma = 1/2 is a bound: what it says will rest is judged, and what flickers is not.
+/// Agreement of the map of limit cycles with its corners: fractions of the cells that are at least
+/// 5 % or 0.04 from a boundary. If more than one encoder steps, or against the friction of several
+/// axes, sigma = 1/2 is a bound: only predicted rest is judged, not predicted flicker.
 struct CycleAgreement {
-  double growing = 0;  ///< Grows or does not, as the speed limit of an oscillation says.
-  double resting = 0;  ///< Of those that do not grow: rests or flickers, as sigma = 1/2 says.
-  double flicker = 0;  ///< Largest flicker of those that should, without a delay, counts.
+  double growing = 0;  ///< Growth as predicted by the speed limit of an oscillation.
+  double resting = 0;  ///< Of those that do not grow: rest or flicker as predicted by sigma = 1/2.
+  double flicker = 0;  ///< Largest flicker where it is predicted, without a delay, counts.
 };
 
 CycleAgreement cycle_agreement(const StabilitySetup& setup, const std::vector<StabilityRow>& rows) {
@@ -249,17 +248,17 @@ CycleAgreement cycle_agreement(const StabilitySetup& setup, const std::vector<St
     const double viscous = cell.b * kCycleStiffness * period;
     const double coulomb = cell.a * kCycleStiffness * kCycleStep;
     const double latency = scene::latency_of({.period = period, .delay = cell.d * period});
-    // Far from rest every axis slides, and each rubs by itself.
+    // Far from rest all axes slide, each with its own friction.
     const double limit = stability::oscillation_speed_limit(
         kCycleStiffness, viscous, coulomb * setup.direction.friction_share, latency);
     const double speed = cycle_speed(setup, cell.c);
     const double oscillation = row.found[0];
     const bool near_speed = std::abs(speed / limit - 1) < 0.1;
-    // Below one step of speed per tick the describing function knows nothing of the steps.
+    // Below one step of speed per tick the describing function does not apply to the steps.
     if (near_speed || std::abs(cell.b - 0.5 - cell.d) < 0.04 || std::abs(cell.a - 0.5) < 0.04) {
       continue;
     }
-    const bool grows = oscillation > 2.2 * cell.c;  // from peak to peak, beyond twice the start
+    const bool grows = oscillation > 2.2 * cell.c;  // peak to peak, more than twice the start
     if (speed > limit || cell.a > 0.5) {
       ++judged;
       right += grows == (speed > limit) ? 1 : 0;
@@ -330,7 +329,7 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
                                   const std::string& note = {}) {
     figures.push_back({name, 100 * error, "%", goal, note});
   };
-  // An error is judged where there is one.
+  // An error is judged only if there is one.
   const auto judge = [&percent](const std::string& name, const WorstError& worst,
                                 const char* goal) {
     percent(name, worst.error, worst.unjudged ? "" : goal, worst.note);
@@ -350,7 +349,7 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
   figures.push_back({"z_width.linear.area", ideal.area, "N/m N s/m", ""});
   figures.push_back({"z_width.linear.stiffness_max", ideal.stiffness_max, "N/m", ""});
 
-  // Near its tip the region's edge is upright: a hair in B is much in K.
+  // Near its tip the region's edge is vertical: a small change of B is a large one of K.
   const double below_tip = 0.5 * ideal.damping_at;
   judge("agreement.edge_with_exact_map",
         worst_error(linear, &StabilityRow::exact,
@@ -361,7 +360,7 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
   judge("agreement.edge_with_latency_law",
         worst_error(linear, &StabilityRow::law,
                     [&](const StabilityRow& row) {
-                      // The law's own regime [PHYSICS 1.1].
+                      // The regime of the law [PHYSICS 1.1].
                       // A filtered velocity damps less than the law's B [PHYSICS 1.1].
                       return row.cell.b < 0.03 * wall.viscous &&
                              wall.viscous * setup.period() / wall.mass < 0.1 &&
@@ -381,15 +380,15 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
   for (const auto& [part, name] : {std::pair(StabilityPart::kLagEdge, "agreement.lag_with_"),
                                    {StabilityPart::kCableEdge, "agreement.cable_with_"}}) {
     const auto edges = part_of(rows, part);
-    if (edges.empty()) continue;  // an arm on which no joint moves the tip along a way of its own
+    if (edges.empty()) continue;  // no joint of this arm moves the tip along a line by itself
     judge(std::string(name) + "law", worst_error(edges, &StabilityRow::law, kAll), "<= 5");
     judge(std::string(name) + "exact_map", worst_error(edges, &StabilityRow::exact, kAll), "<= 5");
   }
   const auto bounces = part_of(rows, StabilityPart::kRestitution);
   const auto soft = [&setup](const StabilityRow& row, bool damped) {
     const double l = row.cell.c / 2 + row.cell.d;
-    // The law is of small damping: a wall that stops what hits it within one oscillation is
-    // another.
+    // The law is for small damping: a wall that stops the mass within one oscillation behaves
+    // differently.
     const double ratio = row.cell.b / (2 * std::sqrt(row.cell.a * setup.arm.simulated.plant.mass));
     return (row.cell.b > 0) == damped && ratio < 0.12 &&
            row.cell.a * l * l / setup.arm.simulated.plant.mass < 0.05;
@@ -412,7 +411,7 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
   percent("agreement.limit_cycles_rest_as_predicted", cycles.resting, ">= 95",
           lone ? "" : bound + "; judged is what it says will rest");
   figures.push_back({"limit_cycles.largest_flicker", cycles.flicker, "counts", "<= 2"});
-  // A step of the motors' current is some percent of what holds here.
+  // A step of the motors' current is some percent of the holding force here.
   const auto steps = part_of(rows, StabilityPart::kStepEdge);
   judge("agreement.encoder_step_short_of_law",
         worst_error(steps, &StabilityRow::law, kAll, shortfall), "<= 10");

@@ -35,7 +35,7 @@ driver::Result<device_sim::HandSettings> hand_of(const StabilityOptions& options
   return hand;
 }
 
-/// Writes what was studied and the figures, for people and for scripts.
+/// Writes the settings and the figures, as text and as JSON.
 driver::Result<void> write_summary(const StabilitySetup& setup,
                                    const std::vector<session::Figure>& figures,
                                    const std::filesystem::path& folder) {

@@ -14,28 +14,28 @@
 
 namespace thimble::studies {
 
-/// What a study of stability is asked for.
+/// Options of a study of stability.
 struct StabilityOptions {
   std::filesystem::path arm_file;
   double rate = 1000;             ///< Hz
-  std::string hand = "arm";       ///< "arm": as its file says; "none"; or "MASS,STIFFNESS,DAMPING".
-  std::vector<double> direction;  ///< Along which the wall stands, in the world; empty: the worst.
+  std::string hand = "arm";       ///< "arm": that of its file; "none"; or "MASS,STIFFNESS,DAMPING".
+  std::vector<double> direction;  ///< Normal of the wall in the world; empty: the worst direction.
   bool coarse = false;            ///< Few points, for tests.
 };
 
-/// Reads what is asked for. The error says what to mend. Real-time: never from the servo thread.
+/// Checks the options. The error says what to correct. Real-time: never from the servo thread.
 driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options);
 
-/// What the study found.
+/// Result of the study.
 struct StabilityReport {
   SweepEnd end = SweepEnd::kDone;
   std::vector<session::Figure> figures;
 };
 
-/// Measures where walls are stable on a simulated arm, through the whole loop from the force law
-/// over gate, wire and firmware to the tip and back, beside what the laws say: K-B map,
-/// restitution, limit cycles, largest stiffness. Writes pictures, tables and summary.json.
-/// Real-time: never from the servo thread.
+/// Measures the region of stable walls on a simulated arm and compares it with the laws: K-B map,
+/// restitution, limit cycles, largest stiffness. The measurement includes the whole loop from the
+/// force law over gate, wire and firmware to the tip and back. Writes pictures, tables and
+/// summary.json. Real-time: never from the servo thread.
 driver::Result<StabilityReport> study_stability(const StabilityOptions& options,
                                                 const SweepOptions& sweep,
                                                 const std::atomic<bool>& stop);

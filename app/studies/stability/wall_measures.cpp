@@ -10,17 +10,15 @@
 namespace thimble::studies {
 namespace {
 
-constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [PHYSICS 1.5 and 1.6]
-constexpr double kStartMost =
-    0.008;  // m, of a small oscillation: no arm reaches the end of its joints
-constexpr double kFarthest =
-    0.05;                        // m from the middle: a small oscillation that comes so far grows
-constexpr double kCeiling = 25;  // times its energy at first
-constexpr double kFloor = 1e-3;  // of its energy: an oscillation below that is seen no more
-constexpr double kStartForce = 0.3;   // N, of a small oscillation: far above a step of the current
-constexpr double kOscillations = 20;  // that are waited for, lest a slow one be judged by its phase
+constexpr double kTouchSpeed = 0.1;   // m/s: a light tap [PHYSICS 1.5 and 1.6]
+constexpr double kStartMost = 0.008;  // m, of a small oscillation: far from the joints' limits
+constexpr double kFarthest = 0.05;   // m from the middle: a small oscillation that reaches it grows
+constexpr double kCeiling = 25;      // times its initial energy
+constexpr double kFloor = 1e-3;      // of its energy: a smaller oscillation is no longer detected
+constexpr double kStartForce = 0.3;  // N, of a small oscillation: far above a step of the current
+constexpr double kOscillations = 20;  // minimum number, for a result independent of the phase
 
-/// Returns where a measure leaves what is good, in equal steps of the logarithm.
+/// Returns the value at which a measurement is no longer good, in equal steps of the logarithm.
 template <class Good>
 driver::Result<double> bisect(double least, double most, double share, const Good& good) {
   for (const double end : {least, most}) {
@@ -83,12 +81,13 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCas
     };
     return *std::max_element(at(from), std::max(at(from) + 1, at(to)));
   };
-  // What soon grows far or dies down to the steps of the motors' current is timed; the rest is
-  // compared early and late, each long enough for an oscillation to show all its energy.
+  // If the oscillation soon grows far, or decays to the steps of the motors' current, its time is
+  // measured. Otherwise an early and a late interval are compared, both long enough to contain the
+  // oscillation's full energy.
   const double first = 0.5 * mass * wall.kick * wall.kick;
   const double late = most(0.85, 1);
-  // Where the spring asks for less than a step of the motors' current, the tip may rest beside the
-  // middle: that is no oscillation.
+  // If the spring's force is below a step of the motors' current, the tip may rest next to the
+  // middle, which is no oscillation.
   const double asleep =
       0.5 * wall.direction.force_step * wall.direction.force_step / wall.stiffness;
   const double floor = std::max(kFloor * first, asleep);
@@ -134,7 +133,7 @@ driver::Result<double> pressed_oscillation(const scene::ArmFile& arm, stability:
   wall.offset = -kWay;
   wall.hand_from = 0;
   wall.hand_to = -2 * kWay;
-  // The soft start is over when the wall is reached.
+  // The soft start ends before the wall is reached.
   wall.hand_start = arm.limits.soft_start + 0.02;
   wall.hand_end = wall.hand_start + 2 * kWay / kTouchSpeed;
   wall.duration = wall.hand_end + 1.4;
@@ -146,12 +145,12 @@ driver::Result<double> released_oscillation(const scene::ArmFile& arm, stability
   const double mass = wall.tip.mass + wall.hand.mass;
   wall.one_sided = false;
   const double step = wall.own_step ? wall.direction.step : wall.step;
-  // Between two counts the force is never zero: the worst place to come to rest [PHYSICS 1.4].
-  // There the tip lies and the hand wants to be when the kick comes.
+  // Between two counts the force is never zero: the worst position for rest [PHYSICS 1.4]. The tip
+  // and the hand's target are there at the kick.
   wall.offset = wall.hand_from = wall.hand_to = 0.5 * step;
   wall.hand_start = wall.hand_end = 0;
   wall.kick = speed;
-  // Before its soft start is over, the arm's own gate would let no kick through.
+  // During its soft start, the arm's gate would block the kick.
   wall.kick_start = wall.own_limits ? arm.limits.soft_start + 0.02 : 0;
   const double reach = speed * std::sqrt(mass / (wall.stiffness + wall.hand.stiffness));
   wall.duration = wall.kick_start + duration;
@@ -194,8 +193,8 @@ driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, stability::
     const auto ran = stability::run_wall(arm, wall);
     if (!ran) return ran.error();
     const stability::WallRun& run = *ran;
-    // In: the last tick before the wall. Out: when the last force has ended, `late` ticks after the
-    // first that is seen outside again.
+    // In: the last tick before the wall. Out: after the last force has ended, `late` ticks after
+    // the first that is outside again.
     std::size_t k = 0;
     while (k + 1 < run.x.size() && run.x[k + 1] > wall.offset) ++k;
     const double in = run.v[k];

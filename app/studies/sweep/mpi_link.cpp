@@ -6,7 +6,7 @@ extern "C" {
 
 int thimble_mpi_begin() {
   int provided = 0;
-  // Other threads measure; only this one calls MPI.
+  // Other threads measure, but only this one calls MPI.
   const int status = MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
   return status == MPI_SUCCESS && provided >= MPI_THREAD_FUNNELED ? 0 : 1;
 }

@@ -5,17 +5,17 @@
 
 namespace thimble::studies {
 
-/// Shows on stderr how far a long work is, if stderr is a terminal; else does nothing.
+/// Shows the progress of long work on stderr, if stderr is a terminal; otherwise does nothing.
 class ProgressBar {
  public:
-  /// Begins with `done` of `all` steps done.
+  /// Begins with `done` of `all` steps.
   ProgressBar(std::size_t done, std::size_t all);
-  /// Leaves the terminal with an empty line.
+  /// Clears the line.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws anew, at most five times a second.
+  /// Draws the bar, at most five times a second.
   void show(std::size_t done);
 
  private:

@@ -23,19 +23,19 @@ namespace {
 
 using Message = SweepTeam::Message;
 
-// A helper asks for work by the results of its last portion: 0, then CELL COUNT NUMBERS... of each;
-// or says what went wrong: 1, then one character a number. It is answered by its next cells; by
-// none it may go.
+// Protocol: a helper requests work with the results of its last portion: 0, then CELL COUNT
+// NUMBERS... of each. Or it reports an error: 1, then one character per number. The answer is its
+// next cells; an empty one ends the helper.
 constexpr std::uint64_t kResults = 0;
 constexpr std::uint64_t kTrouble = 1;
 
-/// What is left to measure and what went wrong; all threads of a process share one.
+/// The remaining work and the first error, shared by all threads of a process.
 class Work {
  public:
   Work(std::vector<std::size_t> cells, const std::atomic<bool>& stop)
       : cells_(std::move(cells)), stop_(stop) {}
 
-  /// Gives the next cells, at most so many; none if all are given away, or the sweep shall end.
+  /// Returns the next cells, at most `most`; none if all are assigned, or the sweep is to end.
   std::vector<std::size_t> take(std::size_t most) {
     const std::scoped_lock lock(mutex_);
     if (trouble_ || stop_.load(std::memory_order_relaxed)) return {};
@@ -48,7 +48,7 @@ class Work {
     const std::scoped_lock lock(mutex_);
     return cells_.size() - next_;
   }
-  /// Ends the sweep; the first trouble is told.
+  /// Ends the sweep; the first error is reported.
   void fail(std::string message) {
     const std::scoped_lock lock(mutex_);
     if (!trouble_) trouble_ = std::move(message);
@@ -66,7 +66,7 @@ class Work {
   std::optional<std::string> trouble_;
 };
 
-/// Measures cells until the work gives no more, on the calling thread.
+/// Measures cells until no work remains, on the calling thread.
 template <class Keep>
 void measure_all(const Sweep& sweep, Work& work, const Keep& keep) {
   while (true) {
@@ -84,13 +84,13 @@ void measure_all(const Sweep& sweep, Work& work, const Keep& keep) {
       } else {
         keep(cell[0], std::move(numbers).value());
       }
-    } catch (const std::exception& thrown) {  // out of memory, say: it must not end the program
+    } catch (const std::exception& thrown) {  // out of memory, say: must not end the program
       fail(thrown.what());
     }
   }
 }
 
-/// Measures a portion on all threads of a helper and packs it for the process that leads.
+/// Measures a portion on all threads of a helper and packs the results for the leading process.
 Message measure_portion(const Sweep& sweep, const Message& portion, int jobs,
                         const std::atomic<bool>& stop) {
   Work work({portion.begin(), portion.end()}, stop);
@@ -119,7 +119,7 @@ Message measure_portion(const Sweep& sweep, const Message& portion, int jobs,
   return results;
 }
 
-/// Helps the process that leads until it has no more work.
+/// Helps the leading process until it has no more work.
 SweepResult help(const Sweep& sweep, SweepTeam& team, int jobs, const std::atomic<bool>& stop) {
   Message answer{kResults};
   while (true) {
@@ -130,7 +130,7 @@ SweepResult help(const Sweep& sweep, SweepTeam& team, int jobs, const std::atomi
   }
 }
 
-/// Leads a sweep: threads of this process and helpers share the work, and all results come here.
+/// Leads a sweep: threads of this process and helpers share the work, and all results arrive here.
 class Lead {
  public:
   Lead(const Sweep& sweep, SweepJournal* journal, CellNumbers& numbers,
@@ -156,7 +156,8 @@ class Lead {
     std::unique_lock lock(mutex_);
     while (busy > 0 || helpers > 0) {
       bar.show(done_);
-      // Nothing wakes this thread when a helper writes: it looks often enough to keep it busy.
+      // A message of a helper does not wake this thread, so it polls often enough to keep helpers
+      // busy.
       changed_.wait_for(lock, std::chrono::milliseconds(helpers > 0 ? 1 : 100),
                         [&] { return busy == 0 && helpers == 0; });
       lock.unlock();
@@ -199,7 +200,7 @@ class Lead {
     }
   }
 
-  /// Answers one helper, if one asks; fewer helpers are left when it is sent away.
+  /// Answers one helper, if it has sent a request; decrements `helpers` if it is dismissed.
   bool answer(SweepTeam& team, int& helpers) {
     int from = 0;
     Message asked;
@@ -211,7 +212,7 @@ class Lead {
     } else {
       keep(asked);
     }
-    // Large portions cost fewer questions; small ones at the end keep all busy to the last.
+    // Large portions need fewer messages; small ones at the end keep all processes busy.
     constexpr std::size_t kPortionMax = 32;
     const auto shares = std::size_t{4} * static_cast<std::size_t>(team.size());
     const auto cells = work_.take(std::clamp(work_.left() / shares, std::size_t{1}, kPortionMax));
@@ -223,9 +224,9 @@ class Lead {
   const Sweep& sweep_;
   SweepJournal* journal_;
   CellNumbers& numbers_;
-  std::size_t done_ = 0;  // before work_, which counts it
+  std::size_t done_ = 0;  // before work_, whose initialiser uses it
   Work work_;
-  std::mutex mutex_;  // of the results
+  std::mutex mutex_;  // for the results
   std::condition_variable changed_;
 };
 
@@ -241,7 +242,7 @@ driver::Result<SweepResult> run_sweep(const Sweep& sweep, const SweepOptions& op
   auto journal = SweepJournal::open(options.folder / (sweep.name + ".journal"), sweep.key,
                                     sweep.cells, options.resume, result.numbers);
   Lead lead(sweep, journal ? journal->get() : nullptr, result.numbers, stop);
-  // Helpers wait for an answer even if there is nothing for them to do.
+  // Helpers wait for an answer even if there is no work for them.
   if (!journal) lead.work().fail(journal.error().message);
   lead.run(jobs, options.team);
   if (const auto trouble = lead.work().trouble()) return driver::Error{*trouble};
@@ -269,7 +270,7 @@ int jobs_here() {
   if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) cores = CPU_COUNT(&allowed);
   int beside = 1;
   if (const char* text = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE")) beside = std::atoi(text);
-  // mpirun may have given this process cores of its own, or all of them to every process.
+  // mpirun may have assigned cores to this process, or all cores to every process.
   const auto all = static_cast<int>(std::thread::hardware_concurrency());
   if (beside > 1 && cores >= all) cores /= beside;
   return std::max(cores, 1);

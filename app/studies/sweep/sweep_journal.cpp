@@ -26,7 +26,7 @@ std::string heading_of(const std::string& key, std::size_t cells) {
   return "thimble-sweep 1 " + std::to_string(cells) + " " + hex(scene::text_hash(key)) + "\n";
 }
 
-/// Writes a cell as `CELL COUNT NUMBERS... CHECK`, each number as the bits that it is.
+/// Writes a cell as `CELL COUNT NUMBERS... CHECK`, each number as its bit pattern.
 std::string line_of(std::size_t cell, std::span<const double> numbers) {
   std::string line = std::to_string(cell) + " " + std::to_string(numbers.size());
   for (const double number : numbers) {
@@ -36,7 +36,7 @@ std::string line_of(std::size_t cell, std::span<const double> numbers) {
   return line.append(" ").append(check).append("\n");
 }
 
-/// Takes the next word of a line; empty at its end.
+/// Returns the next word of a line; empty at its end.
 std::string_view next_word(std::string_view& rest) {
   const std::size_t end = rest.find(' ');
   const std::string_view word = rest.substr(0, end);
@@ -51,7 +51,7 @@ std::optional<std::uint64_t> whole_number(std::string_view word, int base) {
   return value;
 }
 
-/// Reads one line without its end; false if it is torn or damaged.
+/// Parses one line without its end; false if it is incomplete or damaged.
 bool read_line(std::string_view line, CellNumbers& numbers) {
   const std::size_t last = line.rfind(' ');
   if (last == std::string_view::npos) return false;
@@ -71,7 +71,7 @@ bool read_line(std::string_view line, CellNumbers& numbers) {
   return true;
 }
 
-/// Reads all whole lines after the heading; tells where the good part ends.
+/// Parses all complete lines after the heading; returns where the valid part ends.
 std::size_t read_lines(std::string_view text, std::size_t begin, CellNumbers& numbers) {
   while (true) {
     const std::size_t end = text.find('\n', begin);
@@ -122,7 +122,7 @@ driver::Result<std::unique_ptr<SweepJournal>> SweepJournal::open(const std::file
   } else if (there) {
     std::filesystem::rename(file, file.string() + ".old", status);
   }
-  // O_NONBLOCK: a pipe of that name is an error, and is not waited for.
+  // O_NONBLOCK: a pipe of that name is an error, without waiting for it.
   const int descriptor =
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0644);
   if (descriptor < 0) return unwritable(file);

@@ -12,15 +12,15 @@
 
 namespace thimble::studies {
 
-/// The file that keeps what a sweep has measured: one line per cell, to the bit, with a check
-/// sum, each written by one call. Whatever ends the program, at most the last line is torn; `open`
-/// cuts it off.
+/// The file with the results of a sweep: one line per cell, bit-identical, with a check sum, each
+/// written by one call. However the program ends, at most the last line is incomplete; `open`
+/// removes it.
 class SweepJournal {
  public:
-  /// Opens a journal for `cells` cells of a sweep with this key. With `resume` and a file there,
-  /// its results go into `numbers`; else a new one is begun, and an old file is kept as FILE.old.
-  /// Fails if the file is of another sweep, cannot be written, or another process keeps a journal
-  /// in its folder. Real-time: never from the servo thread.
+  /// Opens a journal for `cells` cells of a sweep with this key. With `resume` and an existing
+  /// file, its results go into `numbers`; otherwise a new file is begun, and an old one is kept as
+  /// FILE.old. Fails if the file is of another sweep, cannot be written, or another process uses a
+  /// journal in its folder. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<SweepJournal>> open(const std::filesystem::path& file,
                                                             const std::string& key,
                                                             std::size_t cells, bool resume,
@@ -30,10 +30,10 @@ class SweepJournal {
   SweepJournal& operator=(const SweepJournal&) = delete;
   ~SweepJournal();
 
-  /// Adds the result of one cell; false if it cannot be written. For one thread at a time.
+  /// Adds the result of one cell; false if it cannot be written. Only one thread at a time.
   bool add(std::size_t cell, std::span<const double> numbers);
 
-  /// Writes the file anew with all cells in order, in one step that cannot be seen half done.
+  /// Replaces the file by one with all cells in order, atomically.
   driver::Result<void> finish(const CellNumbers& numbers);
 
  private:

@@ -11,10 +11,10 @@
 namespace thimble::studies {
 namespace {
 
-/// A team that talks by MPI.
+/// A team that communicates by MPI.
 class MpiTeam final : public SweepTeam {
  public:
-  /// Takes the loaded library; false if something is missing in it.
+  /// Resolves the functions of the loaded library; false if one is missing.
   bool find(void* library) {
     return find(library, "thimble_mpi_begin", begin_) && find(library, "thimble_mpi_rank", rank_) &&
            find(library, "thimble_mpi_size", size_) && find(library, "thimble_mpi_send", send_) &&
@@ -65,7 +65,7 @@ class MpiTeam final : public SweepTeam {
   decltype(&thimble_mpi_end) end_ = nullptr;
 };
 
-/// Returns whether mpirun started this process: Open MPI and the launchers of MPICH say so.
+/// Returns whether mpirun started this process: Open MPI and the launchers of MPICH set variables.
 bool started_by_mpirun() {
   return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr;
 }
@@ -77,7 +77,7 @@ driver::Result<std::unique_ptr<SweepTeam>> SweepTeam::join() {
   std::error_code status;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", status);
   const std::string file = (program.parent_path() / "libthimble_mpi.so").string();
-  // Open MPI loads parts of its own that look for its symbols among the program's.
+  // Open MPI loads plugins that look for its symbols among the program's.
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   auto team = std::make_unique<MpiTeam>();
   if (library == nullptr || !team->find(library)) {

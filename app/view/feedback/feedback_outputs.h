@@ -4,16 +4,16 @@
 
 namespace thimble::view {
 
-/// Where sound goes: a card, or a double in tests.
+/// Sound output: a sound card, or a test double.
 class SoundOutput {
  public:
   virtual ~SoundOutput() = default;
-  /// Plays samples (TouchSound::kRate a second, -1 to 1) after those before. Never waits: what
-  /// there is no room for is dropped.
+  /// Plays samples (TouchSound::kRate a second, -1 to 1) after the previous ones. Never waits:
+  /// samples without room in the buffer are dropped.
   virtual void play(std::span<const float> samples) = 0;
 };
 
-/// How hard the two motors of a gamepad run, each 0 to 1.
+/// The intensity of the two motors of a gamepad, each 0 to 1.
 struct RumbleLevel {
   double strong = 0;  ///< The slow, heavy one.
   double weak = 0;    ///< The fast, light one.
@@ -21,16 +21,16 @@ struct RumbleLevel {
   friend bool operator==(const RumbleLevel&, const RumbleLevel&) = default;
 };
 
-/// Where rumble goes: a gamepad, or a double in tests.
+/// Rumble output: a gamepad, or a test double.
 class RumbleOutput {
  public:
   virtual ~RumbleOutput() = default;
-  /// Lets the motors run so hard until it is called again, or kRumbleMost is over.
+  /// Sets the motors' intensity until the next call, or for kRumbleMost.
   virtual void rumble(const RumbleLevel& level) = 0;
 };
 
-/// s after which a gamepad stops by itself, and after which a run that tells nothing is taken to
-/// stand still. Chosen.
+/// Time (s) after which a gamepad stops by itself, and after which a run without new ticks counts
+/// as stopped. Chosen.
 inline constexpr double kRumbleMost = 0.2;
 
 }  // namespace thimble::view

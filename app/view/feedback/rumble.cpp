@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kWordBits = 8 * sizeof(unsigned long);
 
-/// Returns whether an event file is of something that rumbles.
+/// Returns whether an event file belongs to a device that can rumble.
 /// [S] Linux, Documentation/input/ff.rst, "Querying device capabilities".
 bool can_rumble(int file) {
   std::array<unsigned long, FF_CNT / kWordBits + 1> bits{};
@@ -29,13 +29,13 @@ std::uint16_t magnitude(double share) {
   return static_cast<std::uint16_t>(std::lround(0xffff * share));
 }
 
-/// A gamepad that is open. The kernel takes the effect off it when the file is closed.
+/// An open gamepad. The kernel removes its effect when the file is closed.
 /// [S] Linux, Documentation/input/ff.rst, "Uploading effects", "Controlling playback".
 class EvdevRumble final : public RumbleOutput {
  public:
   explicit EvdevRumble(int file) : file_(file) {
     effect_.type = FF_RUMBLE;
-    effect_.id = -1;  // a new one; the kernel writes its number here
+    effect_.id = -1;  // a new effect; the kernel writes its number here
     effect_.replay.length = static_cast<std::uint16_t>(1e3 * kRumbleMost);  // ms
   }
   EvdevRumble(const EvdevRumble&) = delete;
@@ -60,7 +60,7 @@ class EvdevRumble final : public RumbleOutput {
     event.type = EV_FF;
     event.code = static_cast<std::uint16_t>(effect_.id);
     event.value = times;
-    // Where it fails, the gamepad is gone, or the kernel ends the effect in its time.
+    // If this fails, the gamepad is gone or the kernel ends the effect in time.
     [[maybe_unused]] const ssize_t written = write(file_, &event, sizeof event);
   }
 

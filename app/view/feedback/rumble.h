@@ -9,9 +9,9 @@
 namespace thimble::view {
 
 /// Opens the first gamepad that can rumble, by the kernel's force feedback (evdev, FF_RUMBLE).
-/// `folder`: where its event files are. The kernel itself stops the motors kRumbleMost after they
-/// were told last, and when this goes or its process dies. The error says what to do. Real-time:
-/// never from the servo thread.
+/// `folder`: folder of the event files. The kernel stops the motors kRumbleMost after the last
+/// command, and when this object is destroyed or its process dies. The error says what to do.
+/// Real-time: never from the servo thread.
 driver::Result<std::unique_ptr<RumbleOutput>> open_rumble(
     const std::filesystem::path& folder = "/dev/input");
 

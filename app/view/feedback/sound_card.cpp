@@ -13,12 +13,11 @@
 namespace thimble::view {
 namespace {
 
-constexpr unsigned kLatency =
-    80'000;  // us of what the card holds; chosen: four turns of the player
-// Silence that goes ahead, samples: what the card plays while the next turn comes late. Chosen.
+constexpr unsigned kLatency = 80'000;  // us, buffer of the card; chosen: four steps of the player
+// Silence written first, samples: the card plays it while the next step is late. Chosen.
 constexpr std::size_t kAhead = TouchSound::kRate / 1000 * 40;
 
-/// A card that is open.
+/// An open card.
 class AlsaCard final : public SoundOutput {
  public:
   explicit AlsaCard(snd_pcm_t* card) : card_(card) { begin(); }
@@ -29,7 +28,7 @@ class AlsaCard final : public SoundOutput {
   void play(std::span<const float> samples) override {
     const std::vector<std::int16_t> whole = sixteen_bits(samples);
     if (write(whole) != -EPIPE) return;
-    // It has played all that it had. It goes on with silence ahead of what is new.
+    // The card ran out of samples. Start again with silence before the new ones.
     begin();
     write(whole);
   }
@@ -39,7 +38,7 @@ class AlsaCard final : public SoundOutput {
     snd_pcm_prepare(card_);
     write(std::vector<std::int16_t>(kAhead, 0));
   }
-  /// Writes what there is room for; the rest is dropped.
+  /// Writes the samples that fit; drops the rest.
   int write(const std::vector<std::int16_t>& samples) {
     return static_cast<int>(snd_pcm_writei(card_, samples.data(), samples.size()));
   }
@@ -47,7 +46,7 @@ class AlsaCard final : public SoundOutput {
   snd_pcm_t* card_;
 };
 
-/// What ALSA would write to the terminal by itself.
+/// Suppresses ALSA's messages on the terminal.
 void say_nothing(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
                  const char* /*format*/, ...) {}
 

@@ -7,9 +7,8 @@
 
 namespace thimble::view {
 
-/// Opens the sound card that the person has chosen: ALSA's `default`, behind which PipeWire and
-/// PulseAudio stand where they run. The error says what to do. Real-time: never from the servo
-/// thread.
+/// Opens the user's default sound card: ALSA's `default`, which PipeWire and PulseAudio provide if
+/// they run. The error says what to do. Real-time: never from the servo thread.
 driver::Result<std::unique_ptr<SoundOutput>> open_sound_card();
 
 }  // namespace thimble::view

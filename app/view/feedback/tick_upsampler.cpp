@@ -9,7 +9,7 @@ TickUpsampler::TickUpsampler(double samples_per_tick)
     : samples_per_tick_(samples_per_tick), weights_(kPhases) {
   constexpr double kHalf = kTaps / 2.0;
   for (std::size_t phase = 0; phase < kPhases; ++phase) {
-    // The sample lies between the two numbers in the middle.
+    // The sample is between the two middle numbers.
     const double share = static_cast<double>(phase) / kPhases;
     double sum = 0;
     for (std::size_t i = 0; i < kTaps; ++i) {
@@ -19,7 +19,7 @@ TickUpsampler::TickUpsampler(double samples_per_tick)
       weights_[phase][i] = sinc * 0.5 * (1 + std::cos(turn / kHalf));
       sum += weights_[phase][i];
     }
-    for (double& weight : weights_[phase]) weight /= sum;  // what rests stays what it is
+    for (double& weight : weights_[phase]) weight /= sum;  // a constant input stays constant
   }
 }
 

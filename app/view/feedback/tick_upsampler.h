@@ -6,22 +6,23 @@
 
 namespace thimble::view {
 
-/// Makes audio samples of numbers that come once a tick, without what was not in them: a sinc of
-/// 16 ticks under a Hann window. It delays by 8 ticks. Real-time: never from the servo thread.
+/// Computes audio samples from numbers that arrive once a tick, without adding frequencies: a
+/// windowed sinc of 16 ticks (Hann window). The delay is 8 ticks. Real-time: never from the servo
+/// thread.
 class TickUpsampler {
  public:
   static constexpr std::size_t kTaps = 16;
-  /// Places between two ticks at which samples lie; of every rate of ticks from 1 to 8 kHz whose
-  /// period is a whole number of samples, or of a tenth of one, they lie there exactly.
+  /// Positions of samples between two ticks. They are exact for tick rates from 1 to 8 kHz whose
+  /// period is a whole number of samples, or of tenths of one.
   static constexpr std::size_t kPhases = 480;
 
-  /// `samples_per_tick`: above 0.
+  /// `samples_per_tick`: greater than 0.
   explicit TickUpsampler(double samples_per_tick);
 
-  /// Forgets what came.
+  /// Forgets all previous numbers.
   void reset();
 
-  /// Takes the next number and calls `each(sample)` for every sample until the one after it.
+  /// Takes the next number and calls `each(sample)` for every sample before the next number.
   template <class Each>
   void take(double x, Each each) {
     for (std::size_t i = 0; i + 1 < kTaps; ++i) history_[i] = history_[i + 1];
@@ -34,9 +35,9 @@ class TickUpsampler {
   double at(double share) const;
 
   double samples_per_tick_;
-  double place_ = 0;  // of the next sample after the newest tick, samples
+  double place_ = 0;  // position of the next sample after the newest tick, samples
   std::array<double, kTaps> history_{};
-  std::vector<std::array<double, kTaps>> weights_;  // of each phase
+  std::vector<std::array<double, kTaps>> weights_;  // one array per phase
 };
 
 }  // namespace thimble::view

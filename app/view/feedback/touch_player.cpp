@@ -6,9 +6,9 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kRumbleFull = 0.5;  // N from tick to tick for the light motor's all; chosen
-// How often a gamepad is told the same again, ns: twice before it would stop. It is told another
-// level no more often either, because its cable carries 8 ms of it at a time.
+constexpr double kRumbleFull = 0.5;  // N, change between ticks for full intensity; chosen
+// Time after which a level is sent again, ns: twice before the gamepad would stop. A new level is
+// sent no more often either, because the gamepad's cable transfers 8 ms of commands at a time.
 constexpr auto kBetween = static_cast<std::int64_t>(1e9 * kRumbleMost / 4);
 
 Eigen::Vector3d force(const driver::TickRecord& tick) {
@@ -26,7 +26,7 @@ RumbleLevel rumble_of(std::span<const driver::TickRecord> ticks, double force_ma
     const double change = (force(ticks[i]) - force(ticks[i - 1])).norm();
     level.weak = std::max(level.weak, change / kRumbleFull);
   }
-  // Written so that NaN is nothing.
+  // Maps NaN to zero.
   level.strong = level.strong > 0 ? std::min(level.strong, 1.0) : 0;
   level.weak = level.weak > 0 ? std::min(level.weak, 1.0) : 0;
   return level;
@@ -37,7 +37,7 @@ void TouchPlayer::begin(const session::SharedReader& run) {
   touch_sound_.emplace(run.scene().period_ns);
   serial_ = 0;
   ticks_.clear();
-  run.ticks_since(serial_, ticks_);  // what was felt before is not played
+  run.ticks_since(serial_, ticks_);  // older ticks are not played
   newest_ns_ = 0;
 }
 
@@ -58,9 +58,9 @@ void TouchPlayer::rumble(const RumbleLevel& level, std::int64_t now_ns) {
 void TouchPlayer::step(const session::SharedReader& run, std::int64_t now_ns) {
   ticks_.clear();
   run.ticks_since(serial_, ticks_);
-  // At another pace the samples would be too few or too many for the card.
+  // At another pace the card would get too few or too many samples.
   const bool real_time = run.scene().wall_clock || (run.scene().paced && run.speed_asked() == 1);
-  if (!run.scene().wall_clock && !run.scene().paced) return;  // nobody hears virtual time
+  if (!run.scene().wall_clock && !run.scene().paced) return;  // no sound in virtual time
   if (!ticks_.empty()) newest_ns_ = now_ns;
   if (sound_ && touch_sound_ && real_time) {
     samples_.clear();

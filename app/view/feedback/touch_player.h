@@ -12,27 +12,27 @@
 
 namespace thimble::view {
 
-/// Returns how a gamepad shall rumble for ticks in a row: the heavy motor by the largest force of a
-/// touch as a share of `force_max` (N, above 0), the light one by how much the force changes from
-/// tick to tick. Nothing where nothing touches; never above 1.
+/// Returns the rumble for consecutive ticks. The strong motor gets the largest contact force as a
+/// fraction of `force_max` (N, above 0). The weak motor gets the change of the force between ticks.
+/// Zero without contact; never above 1.
 RumbleLevel rumble_of(std::span<const driver::TickRecord> ticks, double force_max);
 
-/// Hands what a run feels on to a sound card and a gamepad. Only what happens in real time: a run
-/// in virtual time has no sound, and one at another pace than that of real time only rumbles. Used
-/// by one thread. Real-time: never from the servo thread.
+/// Plays the contact of a run on a sound card and a gamepad. A run in virtual time has neither
+/// sound nor rumble, and a run at another pace than real time only rumbles. Used by one thread.
+/// Real-time: never from the servo thread.
 class TouchPlayer {
  public:
-  /// Takes where to; either may be null.
+  /// Takes the outputs; either may be null.
   TouchPlayer(std::unique_ptr<SoundOutput> sound, std::unique_ptr<RumbleOutput> rumble)
       : sound_(std::move(sound)), rumble_(std::move(rumble)) {}
 
-  /// Begins with the newest tick of a run.
+  /// Starts at the newest tick of a run.
   void begin(const session::SharedReader& run);
-  /// Plays what is new of the run it began with; call it some 50 times a second. `now_ns`: on a
-  /// clock that always goes on. The gamepad stops where the run pauses, ends, or has told nothing
-  /// for kRumbleMost.
+  /// Plays what is new in the run passed to `begin`; call it about 50 times a second. `now_ns`:
+  /// time of a monotonic clock. The gamepad stops if the run pauses, ends, or has no new tick for
+  /// kRumbleMost.
   void step(const session::SharedReader& run, std::int64_t now_ns);
-  /// Stops the gamepad: there is no run.
+  /// Stops the gamepad, because there is no run.
   void stop();
 
  private:
@@ -42,9 +42,9 @@ class TouchPlayer {
   std::unique_ptr<RumbleOutput> rumble_;
   std::optional<TouchSound> touch_sound_;
   std::uint64_t serial_ = 0;
-  std::int64_t newest_ns_ = 0;  // when the last tick came
-  RumbleLevel level_;           // as it was asked for last ...
-  std::int64_t asked_ns_ = 0;   // ... and when
+  std::int64_t newest_ns_ = 0;  // time of the newest tick
+  RumbleLevel level_;           // the last level sent
+  std::int64_t asked_ns_ = 0;   // time at which it was sent
   std::vector<driver::TickRecord> ticks_;
   std::vector<float> samples_;
 };

@@ -9,20 +9,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-// All below are chosen by ear's measure: an everyday touch is well heard and none is cut.
-constexpr double kPerNewton = 0.4;     // of vibration
-constexpr double kSpreadTime = 0.05;   // s over which the direction of the vibration is found
-constexpr double kClickHz = 400;       // a hard thing's tap; the form A(v) e^-Bt sin wt: [Okamura]
-constexpr double kClickTime = 0.008;   // s in which it falls to 1/e
-constexpr double kClickSpeed = 0.2;    // m/s at which a click is at its loudest
-constexpr double kClickMost = 0.4;     // of 1
-constexpr double kHissPerWatt = 0.25;  // of 1, by the root of what friction takes
+// All values below are chosen by listening: an everyday touch is clearly audible and not clipped.
+constexpr double kPerNewton = 0.4;     // per newton of vibration
+constexpr double kSpreadTime = 0.05;   // s, time constant of the direction of the vibration
+constexpr double kClickHz = 400;       // tap of a hard object: A(v) e^-Bt sin wt [Okamura]
+constexpr double kClickTime = 0.008;   // s, decay to 1/e
+constexpr double kClickSpeed = 0.2;    // m/s at which a click is loudest
+constexpr double kClickMost = 0.4;     // of full scale 1
+constexpr double kHissPerWatt = 0.25;  // of full scale 1, per root of the friction power
 constexpr double kHissMost = 0.1;
-constexpr double kHissHz = 900;     // middle of the noise
-constexpr double kHissWidth = 0.7;  // 1/Q of its band
-constexpr double kOpen = 0.002;     // s in which the gate opens
-constexpr double kHold = 0.06;      // s that it stays open after the last touch: a click rings
-constexpr double kClose = 0.02;     // s in which it closes
+constexpr double kHissHz = 900;     // centre frequency of the noise
+constexpr double kHissWidth = 0.7;  // 1/Q of the band-pass
+constexpr double kOpen = 0.002;     // s, opening time of the gate
+constexpr double kHold = 0.06;      // s that the gate stays open after the last contact, so that a
+                                    // click can decay
+constexpr double kClose = 0.02;     // s, closing time of the gate
 
 constexpr std::uint64_t kNoiseSeed = 0x9e3779b97f4a7c15;                    // any but 0
 constexpr std::int64_t kPeriodLeast = 10'000, kPeriodMost = 1'000'000'000;  // ns
@@ -37,8 +38,8 @@ TouchSound::TouchSound(std::int64_t period_ns)
     : period_ns_(std::clamp(period_ns, kPeriodLeast, kPeriodMost)),
       upsampler_(1e-9 * static_cast<double>(period_ns_) * kRate) {
   period_ = 1e-9 * static_cast<double>(period_ns_);
-  // Butterworth's high-pass of second order by the bilinear transform [S: R. Bristow-Johnson, Audio
-  // EQ Cookbook]. Of ticks so rare that they hold nothing above kLowest nothing passes.
+  // Butterworth high-pass of second order by the bilinear transform [S: R. Bristow-Johnson, Audio
+  // EQ Cookbook]. If the tick rate is too low for frequencies above kLowest, nothing passes.
   const double turn = 2 * std::numbers::pi * std::min(kLowest * period_, 0.49);
   const double alpha = std::sin(turn) * std::numbers::sqrt2 / 2;
   const double cosine = std::cos(turn);
@@ -58,8 +59,9 @@ void TouchSound::reset() {
   untouched_ = kHold + kClose;
 }
 
-/// Finds what of the force is fast, as one number: along the direction in which it varies most,
-/// which turns slowly. Its length alone would make 500 Hz of a force that goes to and fro at 250.
+/// Returns the fast part of the force as one number: its component along the direction of largest
+/// variation, which turns slowly. The norm of the force would turn an oscillation of 250 Hz into
+/// 500.
 double TouchSound::vibration(const Vector3d& f) {
   const auto& [b0, b1, b2, a1, a2] = high_pass_;
   const Vector3d fast = b0 * f + high_pass_state_[0];
@@ -67,7 +69,8 @@ double TouchSound::vibration(const Vector3d& f) {
   high_pass_state_[1] = b2 * f - a2 * fast;
   const double share = std::min(1.0, period_ / kSpreadTime);
   spread_ += share * (fast * fast.transpose() - spread_);
-  // A step of the power iteration: what varies most grows most. It keeps its sign.
+  // A step of the power iteration: the direction of largest variation grows fastest. The sign is
+  // kept.
   const Vector3d turned = spread_ * direction_;
   if (turned.norm() > 1e-3 * spread_.trace()) direction_ = turned.normalized();
   return direction_.dot(fast);
@@ -93,7 +96,7 @@ double TouchSound::added_sample() {
   noise_ ^= noise_ >> 7U;
   noise_ ^= noise_ << 17U;
   const double white = static_cast<double>(noise_ >> 11U) * 0x1p-52 - 1;
-  // A state-variable filter, whose band this is [S: H. Chamberlin, Musical Applications].
+  // State-variable filter, band-pass output [S: H. Chamberlin, Musical Applications].
   static const double kTune = 2 * std::sin(std::numbers::pi * kHissHz / kRate);
   noise_low_ += kTune * noise_band_;
   noise_band_ += kTune * (white - noise_low_ - kHissWidth * noise_band_);
@@ -120,7 +123,7 @@ void TouchSound::one_tick(const driver::TickRecord& tick, std::vector<float>& sa
   upsampler_.take(kPerNewton * fast, [&](double sample) {
     gate_ = std::clamp(gate_ + step, 0.0, 1.0);
     const double sum = gate_ * (sample + added_sample());
-    // It bends towards kLoudest and never gets there.
+    // Soft limit: stays below kLoudest.
     samples.push_back(static_cast<float>(kLoudest * std::tanh(sum / kLoudest)));
   });
 }

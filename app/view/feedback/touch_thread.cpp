@@ -25,7 +25,7 @@ void play(const std::stop_token& stop, const std::string& name, TouchPlayer& pla
   player.stop();
 }
 
-/// Opens one output; where it cannot be, the reason joins `trouble`.
+/// Opens one output; if that fails, appends the reason to `trouble`.
 template <class Output>
 std::unique_ptr<Output> opened(driver::Result<std::unique_ptr<Output>> output,
                                std::string& trouble) {

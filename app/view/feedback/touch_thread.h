@@ -7,28 +7,28 @@
 
 namespace thimble::view {
 
-/// What a person hears and feels of a run beside its pictures.
+/// The chosen outputs: sound and rumble.
 struct FeltChoice {
   bool sound = false;
   bool rumble = false;
 };
 
-/// Plays the runs of a name on a thread of its own, so that slow pictures do not make it stutter.
-/// The run does not notice. Real-time: never from the servo thread.
+/// Plays the runs of a name in a separate thread, so that slow drawing does not interrupt the
+/// sound. The run is not affected. Real-time: never from the servo thread.
 class TouchThread {
  public:
-  /// Opens what is chosen. What cannot be opened is left out, and `trouble` says why.
+  /// Opens the chosen outputs. Outputs that cannot be opened are omitted, and `trouble` says why.
   explicit TouchThread(const FeltChoice& choice);
 
-  /// Plays the runs of this name from now on. Once.
+  /// Plays the runs of this name from now on. Call it once.
   void follow(const std::string& run);
 
-  /// Returns what was left out and what to do; empty if nothing was.
+  /// Returns which outputs were omitted and what to do; empty if none was.
   const std::string& trouble() const { return trouble_; }
 
  private:
   std::string trouble_;
-  std::unique_ptr<TouchPlayer> player_;  // until the thread has it; null too if nothing plays
+  std::unique_ptr<TouchPlayer> player_;  // until the thread takes it; null: no output
   std::jthread thread_;
 };
 

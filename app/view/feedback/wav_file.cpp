@@ -43,13 +43,13 @@ driver::Result<void> write_wav(std::span<const float> samples, int rate, const s
   std::string bytes = "RIFF";
   put(bytes, data_bytes + kHeaderBytes - 8, 4);
   bytes += "WAVEfmt ";
-  put(bytes, 16, 4);              // bytes of what follows
+  put(bytes, 16, 4);              // bytes of the format chunk
   put(bytes, 1, 2);               // PCM
   put(bytes, 1, 2);               // channels
-  put(bytes, per_second, 4);      // samples a second
+  put(bytes, per_second, 4);      // sample rate
   put(bytes, 2 * per_second, 4);  // bytes a second
-  put(bytes, 2, 2);               // bytes of a sample of all channels
-  put(bytes, 16, 2);              // bits of a sample
+  put(bytes, 2, 2);               // bytes per sample of all channels
+  put(bytes, 16, 2);              // bits per sample
   bytes += "data";
   put(bytes, data_bytes, 4);
   for (const std::int16_t x : sixteen_bits(samples)) put(bytes, static_cast<std::uint16_t>(x), 2);

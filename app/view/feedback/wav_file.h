@@ -9,7 +9,8 @@
 
 namespace thimble::view {
 
-/// Returns samples (-1 to 1) as 16 bits each; what is outside, or no number, is brought within.
+/// Converts samples to 16 bits. Samples outside -1 to 1 are clamped; samples that are not finite
+/// become 0.
 std::vector<std::int16_t> sixteen_bits(std::span<const float> samples);
 
 /// Writes samples (-1 to 1), `rate` a second, as a WAV file: one channel of 16 bits. The error

@@ -14,9 +14,9 @@
 #include "view/gl/colour_table.h"
 #include "view/gl/picture_file.h"
 
-// An animated PNG [PNG 3rd edition, W3C] is a PNG with chunks more: one that says how many pictures
-// follow, and for each picture where it goes and its pixels. The system's libpng writes the file
-// and its chunks, but knows nothing of what is in these.
+// An animated PNG [PNG 3rd edition, W3C] is a PNG with additional chunks: one with the number of
+// pictures, and for each picture its place and its pixels. The system's libpng writes the file and
+// its chunks, but does not know these.
 
 namespace thimble::view {
 namespace {
@@ -46,11 +46,11 @@ struct Part {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Packs the rows of a part, numbers of colours as they are.
+/// Compresses the rows of a part, as colour indices.
 Bytes pack(const Bytes& numbers, int picture_width, const Part& part) {
   Bytes rows;
   for (int y = part.y; y < part.y + part.height; ++y) {
-    rows.push_back(0);  // no filter: neighbouring numbers have nothing in common
+    rows.push_back(0);  // no filter: neighbouring indices are unrelated
     const auto from = numbers.begin() + static_cast<std::ptrdiff_t>(y) * picture_width + part.x;
     rows.insert(rows.end(), from, from + part.width);
   }
@@ -61,7 +61,8 @@ Bytes pack(const Bytes& numbers, int picture_width, const Part& part) {
   return packed;
 }
 
-/// Finds the smallest part outside which two pictures are the same; one pixel if all is.
+/// Returns the smallest part that contains all differences of two pictures; one pixel if they are
+/// equal.
 Part difference(const Bytes& before, const Bytes& now, int width, int height) {
   Part part{width, height, 0, 0};
   int right = -1;
@@ -83,14 +84,15 @@ Part difference(const Bytes& before, const Bytes& now, int width, int height) {
   return part;
 }
 
-/// How long a picture is shown, s, as the file has it.
+/// Duration of a picture, s, as a fraction in the file.
 struct DelayFraction {
   std::size_t numerator = 1;
   std::size_t denominator = 1;
 };
 
-/// Returns the delay of picture `i`: exact for a whole number of pictures a second, else rounded so
-/// that the sum of all delays up to each picture is within half a tenth of a millisecond.
+/// Returns the delay of picture `i`: exact for a whole number of pictures a second. Otherwise it is
+/// rounded so that the sum of all delays up to each picture is within half a tenth of a
+/// millisecond.
 DelayFraction delay_of(double frame_time, std::size_t i) {
   constexpr double kPerSecond = 10'000;
   const double pace = 1 / frame_time;
@@ -108,7 +110,7 @@ std::vector<Chunk> chunks_of(const std::vector<Picture>& pictures, double frame_
   std::vector<Chunk> chunks;
   Chunk& animation = chunks.emplace_back("acTL");
   animation.add(pictures.size());
-  animation.add(std::size_t{0});  // for ever
+  animation.add(std::size_t{0});  // repeat forever
   std::size_t number = 0, shown = 0;
   Bytes before;
   for (const Picture& picture : pictures) {
@@ -123,8 +125,8 @@ std::vector<Chunk> chunks_of(const std::vector<Picture>& pictures, double frame_
     const DelayFraction delay = delay_of(frame_time, shown++);
     place.add_short(delay.numerator);
     place.add_short(delay.denominator);
-    place.add_byte(0);  // what was drawn stays ...
-    place.add_byte(0);  // ... and is covered
+    place.add_byte(0);  // keep the previous picture
+    place.add_byte(0);  // and draw over it
     Chunk& pixels = chunks.emplace_back(before.empty() ? "IDAT" : "fdAT");
     if (!before.empty()) pixels.add(number++);
     pixels.add(pack(now, picture.width, part));
@@ -134,7 +136,7 @@ std::vector<Chunk> chunks_of(const std::vector<Picture>& pictures, double frame_
   return chunks;
 }
 
-/// libpng's own data of a file that is written.
+/// libpng's state for writing a file.
 class PngFile {
  public:
   PngFile() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, &ignore)) {
@@ -144,7 +146,8 @@ class PngFile {
   PngFile& operator=(const PngFile&) = delete;
   ~PngFile() { png_destroy_write_struct(&png_, &info_); }
 
-  /// Writes all there is. libpng leaves by longjmp, so nothing here may need a destructor.
+  /// Writes the file. libpng reports errors by longjmp, so no local variable here may need a
+  /// destructor.
   bool write(std::FILE* file, const Picture& first, const ColourTable& table,
              const std::vector<Chunk>& chunks) {
     if (png_ == nullptr || info_ == nullptr) return false;

@@ -8,8 +8,8 @@
 
 namespace thimble::view {
 
-/// Writes pictures of one size as an animated PNG (APNG) that plays for ever, `frame_time` (s)
-/// each, in 256 colours for all. What shows no animations shows the first.
+/// Writes pictures of one size as an animated PNG (APNG) that repeats forever, `frame_time` (s)
+/// each, with one palette of 256 colours. Programs without animation show the first picture.
 /// Precondition: there is a picture. Real-time: never from the servo thread.
 driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, double frame_time,
                                         const std::filesystem::path& file);

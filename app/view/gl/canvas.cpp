@@ -31,7 +31,7 @@ void bind_texture(GLenum unit, const GlTexture& texture) {
 }  // namespace
 
 Canvas::Canvas(int width, int height, int strip) : width_(width), height_(height), strip_(strip) {
-  // Normals of 16 bits: with 8 a gloss shows steps.
+  // Normals of 16 bits: with 8, highlights show steps.
   store(normals_, GL_RGBA16, GL_RGBA, GL_NEAREST, width, height);
   store(paints_, GL_RGBA8, GL_RGBA, GL_NEAREST, width, height);
   store(depths_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_NEAREST, width, height);

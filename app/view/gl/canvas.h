@@ -14,29 +14,30 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
 };
 
-/// What a scene is painted on, in layers: surfaces as normals and paints, then lit in one go, with
-/// marks over them; then the pixels. A surface is lit once a pixel, however small its triangles.
+/// The target on which a scene is painted, in layers: first normals and paints of the surfaces,
+/// then the light, with marks over it, then the pixels. Lighting is computed once per pixel,
+/// however small the triangles are.
 class Canvas {
  public:
-  /// Makes one of this size (pixels, > 0), of which the lowest `strip` rows are left for plots.
+  /// Makes a canvas of this size (pixels, > 0). Its lowest `strip` rows are reserved for plots.
   /// Precondition: a context of OpenGL 3.3 is current.
   Canvas(int width, int height, int strip = 0);
 
   int width() const { return width_; }
   int height() const { return height_; }
   int strip() const { return strip_; }
-  /// Returns width by height of the part that shows the scene.
+  /// Returns width by height of the part with the scene.
   double aspect() const { return static_cast<double>(width_) / (height_ - strip_); }
 
-  /// Lets everything drawn from now on be surfaces, with depths: there are none yet.
+  /// Clears the surfaces; subsequent drawing writes surfaces with depths.
   void begin_surfaces();
-  /// Lets everything drawn from now on go over the lit picture, with the surfaces' depths; binds
-  /// what there is of surfaces as textures 1 (normals), 2 (paints) and 3 (depths).
+  /// Subsequent drawing goes over the lit picture, with the surfaces' depths. Binds the surfaces as
+  /// textures 1 (normals), 2 (paints) and 3 (depths).
   void begin_light();
-  /// Makes pixels of the lit picture as it is and lets everything drawn from now on go to them,
-  /// with depths of 0; binds the lit picture as texture 1.
+  /// Copies the lit picture to the pixels; subsequent drawing goes to them, with depths of 0. Binds
+  /// the lit picture as texture 1.
   void begin_pixels();
-  /// Copies the pixels to the window's own (framebuffer 0), at this place from the lower left.
+  /// Copies the pixels to the window (framebuffer 0), at this place from the lower left.
   void show(int x, int y);
   /// Reads the pixels.
   Picture read();

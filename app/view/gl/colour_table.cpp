@@ -10,20 +10,20 @@ namespace thimble::view {
 namespace {
 
 constexpr std::size_t kMost = 256;
-constexpr int kBits = 6;  // of each colour that are told apart when asking for the nearest
+constexpr int kBits = 6;  // of each channel, for the lookup of the nearest colour
 constexpr int kDrop = 8 - kBits;
 
-/// A colour and how often it comes.
+/// A colour and its number of pixels.
 struct Counted {
   ColourTable::Rgb rgb;
   std::uint64_t count;
 };
 
-/// A box of colours: some of the list, one after the other.
+/// A box of colours: a range of the list.
 struct Box {
   std::size_t begin, end;
-  std::size_t axis = 0;  // the longest
-  double cost = 0;       // what cutting it would gain, about
+  std::size_t axis = 0;  // the longest axis
+  double cost = 0;       // approximate gain of splitting it
 };
 
 void measure(const std::vector<Counted>& list, Box& box) {
@@ -67,7 +67,7 @@ ColourTable::ColourTable(const std::vector<const Picture*>& pictures)
                      static_cast<std::uint8_t>(rgb)},
                     count});
   }
-  // A map has no order of its own: the same picture must give the same file.
+  // The order of a hash map is undefined, but the same picture must give the same file.
   std::sort(list.begin(), list.end(),
             [](const Counted& a, const Counted& b) { return a.rgb < b.rgb; });
   std::vector<Box> boxes = {{0, list.size()}};
@@ -83,7 +83,7 @@ ColourTable::ColourTable(const std::vector<const Picture*>& pictures)
     std::stable_sort(begin, end, [axis](const Counted& a, const Counted& b) {
       return a.rgb[axis] < b.rgb[axis];
     });
-    // Where the mean lies: half of the spread on each side.
+    // Split at the mean: half of the spread on each side.
     double sum = 0;
     double count = 0;
     for (auto i = begin; i != end; ++i) {
@@ -124,7 +124,7 @@ std::uint8_t ColourTable::nearest(int r, int g, int b) const {
   int least = std::numeric_limits<int>::max();
   const auto middle = [](int c) { return (c >> kDrop << kDrop) + (1 << kDrop) / 2; };
   for (std::size_t i = 0; i < colours_.size(); ++i) {
-    // The eye tells greens best, and reds better than blues.
+    // People distinguish greens best, and reds better than blues.
     const int d_r = middle(r) - colours_[i][0];
     const int d_g = middle(g) - colours_[i][1];
     const int d_b = middle(b) - colours_[i][2];
@@ -139,7 +139,7 @@ std::uint8_t ColourTable::nearest(int r, int g, int b) const {
 }
 
 std::vector<std::uint8_t> ColourTable::numbers(const Picture& picture) const {
-  // Bayer's pattern, in steps that cover what `nearest` does not tell apart.
+  // Bayer's pattern, with steps that cover the resolution of `nearest`.
   constexpr std::array<std::array<int, 4>, 4> kPattern = {
       {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}}};
   std::vector<std::uint8_t> result;

@@ -8,27 +8,26 @@
 
 namespace thimble::view {
 
-/// The colours that stand for all of some pictures, at most 256, by median cut [Heckbert 1982,
-/// "Color image quantization for frame buffer display"].
+/// A palette for several pictures, at most 256 colours, by median cut [Heckbert 1982, "Color image
+/// quantization for frame buffer display"].
 class ColourTable {
  public:
   using Rgb = std::array<std::uint8_t, 3>;
 
-  /// Finds them for all the pictures together. Real-time: never from the servo thread.
+  /// Computes the palette for all the pictures together. Real-time: never from the servo thread.
   explicit ColourTable(const std::vector<const Picture*>& pictures);
 
   const std::vector<Rgb>& colours() const { return colours_; }
 
-  /// Returns the number of the nearest colour for each pixel. Neighbours in a fine slope of colour
-  /// are mixed by a fixed pattern of 4 x 4, so that no steps are seen; it stands still in
-  /// animations.
+  /// Returns the index of the nearest colour for each pixel. Smooth gradients are dithered by a
+  /// fixed pattern of 4 x 4, which hides steps and does not move in animations.
   std::vector<std::uint8_t> numbers(const Picture& picture) const;
 
  private:
   std::uint8_t nearest(int r, int g, int b) const;
 
   std::vector<Rgb> colours_;
-  mutable std::vector<std::int16_t> known_;  // nearest colour by 6 bits of each; -1: not yet asked
+  mutable std::vector<std::int16_t> known_;  // nearest, by 6 bits per channel; -1: unknown
 };
 
 }  // namespace thimble::view

@@ -17,13 +17,13 @@ Eigen::Vector3f as_vertex(const Colour& colour) {
   return {colour[0], colour[1], colour[2]};
 }
 
-/// Returns two unit vectors across `along` and across each other.
+/// Returns two unit vectors perpendicular to `along` and to each other.
 std::pair<Point, Point> across(const Point& along) {
   const Point u = along.unitOrthogonal();
   return {u, along.cross(u)};
 }
 
-/// Adds a ring of corners; `tilt` turns the normals towards `along`, of a cone.
+/// Adds a ring of vertices; `tilt` turns the normals towards `along`, for a cone.
 void add_tube_ring(const Point& centre, const std::pair<Point, Point>& axes, double radius,
                    const Point& tilt, const Colour& colour, ColouredMesh& mesh) {
   for (std::uint32_t k = 0; k < kTubeSides; ++k) {
@@ -76,7 +76,7 @@ void add_tube(std::span<const Point> points, std::span<const Colour> colours, do
     const Point way = next - (begun ? last : p);
     if (begun && !((p - last).norm() > 1e-9)) continue;
     if (way.norm() > 1e-9) {
-      // As the last ring stood, turned no more than the path turns: else the tube is wrung.
+      // Rotates the ring with the path only; otherwise the tube would be twisted.
       const Point along = way.normalized();
       Point u = begun ? Point(axes.first - axes.first.dot(along) * along) : along.unitOrthogonal();
       if (!(u.norm() > 1e-3)) u = along.unitOrthogonal();

@@ -11,30 +11,30 @@
 
 namespace thimble::view {
 
-/// One corner of a mesh whose colour changes from place to place.
+/// One vertex of a mesh with a colour per vertex.
 struct ColouredVertex {
   Eigen::Vector3f p;       ///< m, W.
   Eigen::Vector3f n;       ///< Unit normal, W.
-  Eigen::Vector3f colour;  ///< As on the screen.
+  Eigen::Vector3f colour;  ///< Colour as on the screen.
 };
 
-/// Many small things in one mesh, so that one call draws them all.
+/// Many small things in one mesh, which one call draws.
 struct ColouredMesh {
   std::vector<ColouredVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Adds an arrow from one point to another (W, m), its shaft as thick as two of `radius` (m), of
-/// one colour. One without length adds nothing.
+/// Adds an arrow from one point to another (W, m), in one colour, with a shaft of this radius (m).
+/// An arrow without length adds nothing.
 void add_arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
                const Colour& colour, ColouredMesh& mesh);
 
 /// Adds a tube of this radius (m) through points (W, m), each with its colour. Precondition: as
-/// many colours as points. Points that are less than a nanometre from the last are left out.
+/// many colours as points. Points less than a nanometre from the previous one are omitted.
 void add_tube(std::span<const Eigen::Vector3d> points, std::span<const Colour> colours,
               double radius, ColouredMesh& mesh);
 
-/// A coloured mesh where OpenGL can draw it: position at 0, normal at 1, colour at 2.
+/// A coloured mesh in OpenGL: position at 0, normal at 1, colour at 2.
 class ColouredModel {
  public:
   ColouredModel();

@@ -11,11 +11,11 @@
 namespace thimble::view {
 namespace {
 
-/// One side of a triangle, named so that both sides of an edge have the same name.
+/// One side of a triangle, with the same name for both sides of an edge.
 struct Side {
   std::int32_t low, high;
   std::uint32_t triangle;
-  std::uint32_t corner;  // where the side begins
+  std::uint32_t corner;  // corner at which the side begins
 };
 
 /// Joins corners into groups.
@@ -54,14 +54,14 @@ std::vector<Side> sides_of(const render::TriangleMesh& mesh) {
   return sides;
 }
 
-/// Finds the corner of a triangle that is this vertex.
+/// Returns the corner of a triangle that is this vertex.
 std::uint32_t corner_at(const render::TriangleMesh& mesh, std::uint32_t triangle,
                         std::int32_t vertex) {
   const auto& c = mesh.triangles[triangle];
   return 3 * triangle + (c[0] == vertex ? 0U : c[1] == vertex ? 1U : 2U);
 }
 
-/// Returns whether a triangle goes along a side from the lower vertex to the higher.
+/// Returns whether a triangle traverses a side from the lower vertex to the higher.
 bool begins_low(const render::TriangleMesh& mesh, const Side& side) {
   return mesh.triangles[side.triangle][side.corner] == side.low;
 }
@@ -89,7 +89,7 @@ CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle, Normal
       ++end;
     edges.push_back(&sides[i]);
     closed = closed && end - i == 2 && begins_low(mesh, sides[i]) != begins_low(mesh, sides[i + 1]);
-    // Where more than two meet there is no telling which belong together.
+    // If more than two sides meet, it is unknown which belong together.
     if (end - i == 2) {
       const std::uint32_t a = sides[i].triangle;
       const std::uint32_t b = sides[i + 1].triangle;

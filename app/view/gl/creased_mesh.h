@@ -9,24 +9,24 @@
 
 namespace thimble::view {
 
-/// How much each polygon counts in the normal of a vertex.
+/// Weight of each polygon in the normal of a vertex.
 enum class NormalWeights {
-  kAngle,  ///< As wide as its angle there: cutting up a flat polygon changes no normal.
-  kEqual,  ///< All the same, as it was done when triangles were few [BP].
+  kAngle,  ///< The polygon's angle at the vertex: splitting a flat polygon changes no normal.
+  kEqual,  ///< The same for all, as was common for meshes with few triangles [BP].
 };
 
-/// A mesh ready to be drawn: a vertex has one normal, the mean of its polygons, except where
-/// they meet in a crease: there each side of the crease has its own.
+/// A mesh ready to be drawn. A vertex has one normal, the mean of its polygons. At a crease each
+/// side has its own normal.
 struct CreasedMesh {
   std::vector<Eigen::Vector3f> positions;               ///< m, in the mesh's frame.
   std::vector<Eigen::Vector3f> normals;                 ///< Unit.
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< In the mesh's order.
-  std::vector<std::array<std::uint32_t, 2>> edges;      ///< Each of the mesh's edges once.
-  bool closed = false;  ///< Each edge has two triangles that turn alike, outside is outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< In the order of the mesh.
+  std::vector<std::array<std::uint32_t, 2>> edges;      ///< Each edge of the mesh once.
+  bool closed = false;  ///< Each edge joins two triangles with the same orientation.
 };
 
-/// Splits a mesh at its creases: where the normals of two polygons differ by more than
-/// `crease_angle` (rad). Triangles without area lend no normal.
+/// Splits a mesh at its creases, where the normals of two polygons differ by more than
+/// `crease_angle` (rad). Triangles without area contribute no normal.
 /// Precondition: triangles name vertices that exist. Real-time: never from the servo thread.
 CreasedMesh crease(const render::TriangleMesh& mesh, double crease_angle,
                    NormalWeights weights = NormalWeights::kAngle);

@@ -9,7 +9,8 @@
 namespace thimble::view {
 namespace {
 
-/// Finds the weights of a triangle's corners at the foot of a point on its plane, all in 0 to 1.
+/// Returns the weights of a triangle's corners at the projection of a point on its plane, all in 0
+/// to 1.
 Eigen::Vector3d weights_at(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                            const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d n = (b - a).cross(c - a);
@@ -52,7 +53,7 @@ bool DentSurface::fits(const render::BodyPatch& patch) const {
                      });
 }
 
-// A point on an edge belongs to parts of two triangles, the cursor to parts of one.
+// A point on an edge belongs to parts of two triangles; any other point to parts of one.
 void DentSurface::find_sources(const render::BodyPatch& patch) {
   sources_.assign(patch.point_count, {-1, -1});
   for (std::size_t i = 0; i < patch.triangle_count; ++i) {
@@ -80,7 +81,7 @@ Eigen::Vector3d DentSurface::weights(const render::BodyPatch& patch, std::uint16
   };
   const auto& [one, other] = sources_[point];
   if (other >= 0) {
-    // On the edge that both have in common, so that both find the same.
+    // On the common edge of both triangles, so that both get the same weights.
     const auto& beside = triangles_[static_cast<std::size_t>(one == source ? other : one)];
     const auto shared = [&](std::size_t k) {
       return std::find(beside.begin(), beside.end(), corners[k % 3]) != beside.end();
@@ -117,7 +118,7 @@ void DentSurface::set(const render::BodyPatch& patch) {
       const Eigen::Vector3d w = weights(patch, point, patch.source[i]);
       vertex.p = Eigen::Map<const Eigen::Vector3d>(at.p.data()).cast<float>();
       vertex.weights = w.cast<float>();
-      // What the patch's normal has turned from where it began, put onto what was drawn there.
+      // Adds the change of the patch's normal by bending to the drawn normal.
       vertex.n = Eigen::Map<const Eigen::Vector3f>(at.n.data());
       for (std::size_t k = 0; k < 3; ++k) {
         const auto w_k = vertex.weights[static_cast<Eigen::Index>(k)];

@@ -22,8 +22,8 @@ namespace {
 
 enum class Ended { kGood, kMissing, kBad };
 
-/// Runs ffmpeg with what is read from `input` and what it says going to `said`. No shell is
-/// involved, so names may hold any character.
+/// Runs ffmpeg with standard input from `input` and its messages to `said`. No shell is used, so
+/// names may contain any character.
 class Ffmpeg {
  public:
   Ffmpeg(std::vector<std::string> words, int input, int said) {
@@ -53,7 +53,7 @@ class Ffmpeg {
   pid_t child_ = 0;
 };
 
-/// A file descriptor that is closed at the end.
+/// A file descriptor that the destructor closes.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -73,7 +73,7 @@ class Descriptor {
 bool send_all(int to, const std::vector<std::uint8_t>& bytes) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
-    // A reader that is gone is no reason to be killed.
+    // A closed reader must not raise SIGPIPE.
     const ssize_t now = send(to, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (now < 0 && errno == EINTR) continue;
     if (now <= 0) return false;
@@ -91,7 +91,7 @@ std::string ending_of(const std::filesystem::path& file) {
 
 std::vector<std::string> words_for(const Picture& first, double frame_time,
                                    const std::filesystem::path& file) {
-  // A name that begins with a dash is no option.
+  // An absolute path, because a name that begins with a dash would be an option.
   const std::string out = std::filesystem::absolute(file).string();
   std::vector<std::string> words{"ffmpeg",
                                  "-nostdin",
@@ -112,7 +112,7 @@ std::vector<std::string> words_for(const Picture& first, double frame_time,
     words.insert(words.end(), more.begin(), more.end());
   };
   if (is_gif(file)) {
-    // 256 colours for all pictures, as the animated PNG has.
+    // One palette of 256 colours for all pictures, as in the animated PNG.
     add({"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none", "-f",
          "gif"});
   } else {

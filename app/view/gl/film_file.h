@@ -8,22 +8,22 @@
 
 namespace thimble::view {
 
-/// Returns whether a file of this name is a film that ffmpeg writes: .mp4 or .gif.
+/// Returns whether the file name is that of a film written by ffmpeg: .mp4 or .gif.
 bool is_film(const std::filesystem::path& file);
 
-/// Returns whether a file of this name is a GIF. Players show a picture of one for 0.1 s if it asks
-/// for less than 0.02 s.
+/// Returns whether the file name is that of a GIF. Players show a picture of a GIF for 0.1 s if it
+/// asks for less than 0.02 s.
 bool is_gif(const std::filesystem::path& file);
 
-/// Returns whether ffmpeg can be run; what to do without it, if not.
+/// Returns whether ffmpeg can be run; the error says what to do without it.
 driver::Result<void> find_ffmpeg();
 
-/// Writes pictures of one size, `frame_time` (s) each, as a film: MP4 (H.264, which every browser
-/// and slide program plays) or GIF (for ever), by the ending of the file's name. ffmpeg writes it,
-/// the same bits each time. An MP4's sides are even: where a picture's are not, a line of white is
-/// added.
+/// Writes pictures of one size, `frame_time` (s) each, as a film, in the format of the file's
+/// ending: MP4 (H.264, which all browsers and slide programs play) or GIF (repeats forever). ffmpeg
+/// writes it, bit-identical each time. The sides of an MP4 are even: a white line is added to odd
+/// ones.
 ///
-/// Fails without ffmpeg, or tells what ffmpeg said.
+/// Fails without ffmpeg, or with the message of ffmpeg.
 /// Precondition: there is a picture and is_film(file). Real-time: never from the servo thread.
 driver::Result<void> write_film(const std::vector<Picture>& pictures, double frame_time,
                                 const std::filesystem::path& file);

@@ -11,7 +11,7 @@ driver::Error refused(const std::string& what, const char* words) {
           " Try without it (LIBGL_ALWAYS_SOFTWARE=1), and report these words."};
 }
 
-/// Compiles a shader into a program; returns the compiler's words if it does not.
+/// Compiles a shader into a program; returns the compiler's message on failure.
 std::optional<driver::Error> add_shader(GLuint program, GLenum kind, const std::string& text) {
   const GLuint shader = glCreateShader(kind);
   const char* source = text.c_str();
@@ -22,7 +22,7 @@ std::optional<driver::Error> add_shader(GLuint program, GLenum kind, const std::
   std::array<char, 2000> words{};
   if (good == 0) glGetShaderInfoLog(shader, words.size(), nullptr, words.data());
   glAttachShader(program, shader);
-  glDeleteShader(shader);  // lives as long as the program it is attached to
+  glDeleteShader(shader);  // the program keeps the shader
   if (good != 0) return std::nullopt;
   return refused("a shader", words.data());
 }

@@ -9,7 +9,7 @@
 
 namespace thimble::view {
 
-/// Owns one name that OpenGL gave; deletes it with the context that is current then.
+/// Owns one OpenGL name; deletes it in the context that is current then.
 template <auto make, auto remove>
 class GlName {
  public:
@@ -28,7 +28,8 @@ class GlName {
   GLuint name_ = 0;
 };
 
-// The functions are looked up when first called, so their addresses are not known to the compiler.
+// Wrappers, because the OpenGL functions are resolved at run time: their addresses are no
+// constants.
 inline void make_buffer(GLuint* name) {
   glGenBuffers(1, name);
 }
@@ -76,7 +77,8 @@ using GlRenderbuffer = GlName<make_renderbuffer, remove_renderbuffer>;
 /// A program of a vertex and a fragment shader.
 class GlProgram {
  public:
-  /// Makes a program. Fails with the compiler's words if the graphics driver refuses it.
+  /// Compiles and links a program. Fails with the compiler's message if the graphics driver rejects
+  /// it.
   static driver::Result<GlProgram> make(const std::string& vertex, const std::string& fragment);
   GlProgram(GlProgram&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   GlProgram& operator=(GlProgram&& other) noexcept {
@@ -88,7 +90,7 @@ class GlProgram {
   }
 
   GLuint operator*() const { return name_; }
-  /// Finds a uniform; -1, which OpenGL ignores, if the program does not use it.
+  /// Returns the location of a uniform; -1, which OpenGL ignores, if the program does not use it.
   GLint at(const char* uniform) const { return glGetUniformLocation(name_, uniform); }
 
  private:

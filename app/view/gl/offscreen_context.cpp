@@ -12,7 +12,7 @@ driver::Error missing(const std::string& what) {
           ". Install Mesa: apt-get install libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri."};
 }
 
-/// Asks for the display that needs no screen; its function is an extension.
+/// Returns the display without a screen, from an EGL extension.
 EGLDisplay surfaceless_display() {
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless") ||
       !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
@@ -24,7 +24,7 @@ EGLDisplay surfaceless_display() {
 }  // namespace
 
 driver::Result<std::unique_ptr<OffscreenContext>> OffscreenContext::open() {
-  // The loader ends the program where there is no EGL at all, so that is asked first.
+  // The loader would end the program without EGL, so this is checked first.
   if (dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) == nullptr) return missing("no libEGL.so.1");
   EGLDisplay display = surfaceless_display();
   if (display == EGL_NO_DISPLAY) return missing("EGL cannot do without a screen");
@@ -39,7 +39,7 @@ driver::Result<std::unique_ptr<OffscreenContext>> OffscreenContext::open() {
   EGLConfig config = nullptr;
   EGLint found = 0;
   if (eglChooseConfig(display, config_wanted, &config, 1, &found) == EGL_FALSE || found == 0) {
-    config = nullptr;  // EGL_KHR_no_config_context: Mesa needs none, as nothing is shown
+    config = nullptr;  // EGL_KHR_no_config_context: Mesa needs no config without a surface
   }
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                            3,

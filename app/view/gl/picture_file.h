@@ -9,10 +9,10 @@
 
 namespace thimble::view {
 
-/// How many colours a PNG holds.
+/// The number of colours in a PNG.
 enum class PngColours {
-  kAll,  ///< As drawn, for comparing.
-  k256,  ///< The 256 that fit best: a third of the size, and hardly seen.
+  kAll,  ///< All colours, for comparisons.
+  k256,  ///< The 256 best colours: a third of the size, with hardly visible differences.
 };
 
 /// Writes a picture as PNG. The error says which file could not be written.

@@ -1,4 +1,4 @@
-// Shaders that go over the whole picture, once a pixel.
+// Shaders over the whole picture, run once per pixel.
 #include "view/gl/shader_parts.h"
 #include "view/gl/shaders.h"
 
@@ -53,7 +53,7 @@ void main() {
 
 namespace {
 
-// Where there is an edge: the brightness of a pixel and of its neighbours, and how far they differ.
+// Detects an edge: the brightness of a pixel and of its neighbours, and their difference.
 const std::string kEdge = R"(
 uniform sampler2D picture;
 uniform int lowest;  // row of the picture

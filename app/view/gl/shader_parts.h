@@ -4,7 +4,7 @@
 
 #include "view/gl/shaders.h"
 
-// Parts that several shaders have in common.
+// Parts shared by several shaders.
 namespace thimble::view::shaders {
 
 inline const std::string kHead = R"(#version 330 core
@@ -25,18 +25,18 @@ layout(std140) uniform View {
 };
 )";
 
-// What follows is left out of a program that does not need it: Mesa's software runs both sides of
-// an `if`, and what comes after a `discard`, with lanes masked. It skips where the depths say that
-// none of eight pixels is seen, and goes out of a loop that no lane goes on with, whose body it has
-// run once.
+// Preprocessor definitions remove the code that a program does not need. Mesa's software renderer
+// runs both sides of an `if`, and the code after a `discard`, with masked lanes. It skips eight
+// pixels only if the depth test hides all of them. It leaves a loop when no lane continues, after
+// it has run the body once.
 inline std::string choice(Shading shading) {
   return shading == Shading::kGouraud  ? "#define GOURAUD\n"
          : shading == Shading::kMarked ? "#define MARKED\n"
                                        : "";
 }
 
-// Dots on what has a texture, lines on what has friction, in the object's own frame so that they
-// move with it; 2 and 3 mm apart, so that a few are seen on what a hand strokes.
+// Dots on textures, lines on friction. They are in the object's frame and move with it. They are 2
+// and 3 mm apart, so that a few are visible on typical objects.
 inline const std::string kMarks = R"(
 uniform int marks;  // 1: dots, 2: lines, 3: both
 float unmarked(vec3 p) {
@@ -55,8 +55,8 @@ float unmarked(vec3 p) {
 }
 )";
 
-// Light from a window to the left (the key), from a pale wall to the right (the fill), from the sky
-// above and from the table below.
+// Light from a window to the left (key), a pale wall to the right (fill), the sky above and the
+// table below.
 inline const std::string kLight = R"(
 // `colour` linear; `gloss` the share of the key's mirror image; `n` a unit vector.
 void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 direct) {

@@ -4,23 +4,23 @@
 
 namespace thimble::view {
 
-/// What the light sees of a scene, as depths. What stands still is drawn once and kept; in a
-/// picture it is copied, and only what moves is drawn over it.
+/// The shadow map: depths as seen from the light. Objects at rest are drawn once and kept; for each
+/// picture they are copied, and the moving ones are drawn over them.
 /// Precondition of all: the context it was made in is current.
 class ShadowMap {
  public:
-  /// Along each side. Chosen: 0.2 mm a pixel of a scene of 0.2 m.
+  /// Pixels along each side. Chosen: 0.2 mm a pixel for a scene of 0.2 m.
   static constexpr GLsizei kPixels = 1024;
 
   ShadowMap();
 
-  /// Lets everything drawn from now on go to what is kept, which is emptied first.
+  /// Clears the kept map; subsequent drawing goes to it.
   void begin_kept();
-  /// Lets everything drawn from now on go to the map of this picture, which begins with what is
-  /// kept if `on_kept`, else empty.
+  /// Subsequent drawing goes to the map of this picture, which begins as a copy of the kept map if
+  /// `on_kept`, otherwise empty.
   void begin(bool on_kept);
-  /// Binds the map of this picture, to compare depths with: as texture 0, where a look is the mean
-  /// of four texels, and as texture 4, where it is one.
+  /// Binds the map of this picture for depth comparison: as texture 0, where a lookup is the mean
+  /// of four texels, and as texture 4, where it is one texel.
   void bind() const;
 
  private:

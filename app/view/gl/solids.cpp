@@ -30,7 +30,7 @@ render::TriangleMesh unit_ball() {
       }
     }
   }
-  // The poles are one point each, or their triangles would not know each other.
+  // Each pole is one point, otherwise its triangles would not be connected.
   for (auto& triangle : mesh.triangles) {
     for (auto& vertex : triangle) {
       if (vertex < kSides) vertex = 0;
@@ -62,8 +62,8 @@ render::TriangleMesh unit_rod(double top) {
   return mesh;
 }
 
-/// Returns the shortest rotation that turns z to a unit vector. Quaternion::FromTwoVectors holds a
-/// singular-value decomposition, which takes as long to build as all else here.
+/// Returns the shortest rotation from z to a unit vector. Not Quaternion::FromTwoVectors: it
+/// contains a singular-value decomposition, which doubles the compile time of this file.
 Eigen::Matrix3d turn_from_z(const Eigen::Vector3d& to) {
   const double w = 1 + to.z();
   if (!(w > 1e-12)) return Eigen::Vector3d(1, -1, -1).asDiagonal();
@@ -111,7 +111,7 @@ Solid cone(const Eigen::Vector3d& base, const Eigen::Vector3d& tip, double radiu
 }
 
 SolidModels::SolidModels() {
-  constexpr double kSharp = 0.87;  // rad: their rims stay sharp, their sides are round
+  constexpr double kSharp = 0.87;  // rad: the rims stay sharp, the sides round
   models_.emplace_back(unit_ball(), kSharp);
   models_.emplace_back(unit_rod(1), kSharp);
   models_.emplace_back(unit_rod(0.001), kSharp);

@@ -7,7 +7,7 @@
 namespace thimble::view {
 namespace {
 
-/// One vertex as OpenGL takes it.
+/// One vertex in the format of OpenGL.
 struct MeshVertex {
   Eigen::Vector3f p;
   Eigen::Vector3f n;
@@ -95,7 +95,7 @@ void SurfaceModel::bend(const render::BodyPatch& patch) {
   dent_.set(patch);
   find_ranges();
   if (dent_.vertices().empty()) return;
-  // A new store every time: the card may still be reading the last one.
+  // Allocates a new buffer, because the card may still read the last one.
   glBindBuffer(GL_ARRAY_BUFFER, *dent_vertices_);
   fill(GL_ARRAY_BUFFER, dent_.vertices(), GL_STREAM_DRAW);
   std::vector<std::array<std::uint32_t, 2>> edges;
@@ -107,7 +107,7 @@ void SurfaceModel::bend(const render::BodyPatch& patch) {
   fill(GL_ARRAY_BUFFER, edges, GL_STREAM_DRAW);
 }
 
-// The runs of triangles between those that are bent: their indices stay where they are.
+// Finds the ranges of triangles that are not bent; their indices do not change.
 void SurfaceModel::find_ranges() {
   range_counts_.clear();
   range_begins_.clear();
@@ -141,7 +141,7 @@ void SurfaceModel::draw_dent() const {
 }
 
 void SurfaceModel::draw_edges() const {
-  // Where the mesh is bent its own edges lie under the bent surface, or stand out above it.
+  // In a dent, the edges of the original mesh are below or above the bent surface.
   if (dent_.hidden().empty()) {
     glBindVertexArray(*edge_array_);
     glDrawElements(GL_LINES, static_cast<GLsizei>(2 * edges_), GL_UNSIGNED_INT, nullptr);

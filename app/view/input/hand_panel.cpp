@@ -1,7 +1,7 @@
 #include "view/input/hand_panel.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -29,7 +29,7 @@ ImU32 packed(const Colour& colour, float alpha) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], alpha});
 }
 
-/// Returns whether a key is held, or was pressed and let go since the last picture.
+/// Returns whether a key is held, or was pressed and released since the last picture.
 bool held(const std::vector<int>& pressed, int key) {
   return ImGui::IsKeyDown(key) || std::find(pressed.begin(), pressed.end(), key) != pressed.end();
 }
@@ -106,7 +106,7 @@ void HandPanel::step(const std::vector<int>& keys, const Camera& camera,
     if (pressed_one(keys, GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT)) input_.change_speed(false);
   }
   const HandPush push = read(keys);
-  if (!trouble_.empty()) input_.let_go();  // its device is not there any more
+  if (!trouble_.empty()) input_.let_go();  // its device was unplugged
   if (moves || push.let_go) input_.step(push, camera, p_WT, reach, dt);
 }
 
@@ -125,7 +125,7 @@ void HandPanel::draw_target(const HandWish& hand, const Eigen::Vector3d& p_WT, c
   const ImVec2 target = on_screen(hand.p_WH);
   const ImVec2 tip = on_screen(p_WT);
   list.PushClipRect({part.x, part.y}, {part.x + part.width, part.y + part.height}, true);
-  // A pale rim below, so that it is seen on anything.
+  // A pale outline below, for any background.
   list.AddLine(tip, target, packed(kGroundColour, 0.8F), 0.25F * letter);
   list.AddCircle(target, kGhost * letter, packed(kGroundColour, 0.8F), 0, 0.3F * letter);
   list.AddLine(tip, target, packed(kDepthColour, 0.9F), 0.1F * letter);

@@ -6,7 +6,7 @@
 namespace thimble::view {
 namespace {
 
-/// Takes a dead zone off a vector, by its length; what is not a number pushes nothing.
+/// Applies a radial dead zone to a vector; NaN gives zero.
 template <class Vector>
 Vector without_dead_zone(const Vector& v, double zone) {
   const double length = v.norm();
@@ -18,7 +18,7 @@ double one_if(bool held) {
   return held ? 1 : 0;
 }
 
-/// Returns the share of its way that a trigger is pulled, from -1 to 1 as GLFW tells.
+/// Converts the position of a trigger, -1 to 1 as in GLFW, to a fraction.
 double pulled(double trigger) {
   const double share = (trigger + 1) / 2;
   if (!(share > kTriggerDeadZone)) return 0;
@@ -43,7 +43,7 @@ HandPush push_of(const GamepadState& pad) {
 
 HandPush push_of(const SpaceMouseState& mouse) {
   const auto& counts = mouse.translation;
-  // Right, down, towards the person, to right, up and towards the eye.
+  // From right, down, towards the person to right, up, towards the eye.
   const Eigen::Vector3d cap = Eigen::Vector3d(counts[0], -counts[2], counts[1]) / kSpaceMouseFull;
   return {without_dead_zone(cap, kCapDeadZone), (mouse.buttons & 1U) != 0,
           (mouse.buttons & 2U) != 0};

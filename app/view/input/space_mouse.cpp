@@ -16,8 +16,8 @@ struct Ids {
   unsigned vendor, product;
 };
 
-// [S] Open CASCADE (WNT_HIDSpaceMouse: SpacePid) and spacenavd (dev.c), which agree. Before 2013
-// they had the ids of Logitech, whose keyboards and mice have others.
+// [S] Open CASCADE (WNT_HIDSpaceMouse: SpacePid) and spacenavd (dev.c), which agree. Devices from
+// before 2013 have Logitech's vendor id, whose keyboards and mice have other product ids.
 constexpr std::array kDevices = {
     Ids{0x046d, 0xc626},  // SpaceNavigator
     Ids{0x046d, 0xc627},  // SpaceExplorer
@@ -40,7 +40,7 @@ constexpr unsigned kDesktopPage = 1, kMultiAxis = 8;
 
 constexpr std::chrono::seconds kBetweenLooks{1};
 constexpr std::size_t kReportMost = 64;  // bytes: a full-speed interrupt packet [S USB 2.0, 5.7.3]
-constexpr int kReportsMost = 256;  // of one look; chosen: 4 s of a device that tells every 16 ms
+constexpr int kReportsMost = 256;  // per call; chosen: 4 s of a device that reports every 16 ms
 
 }  // namespace
 

@@ -10,14 +10,14 @@ struct hid_device_;
 
 namespace thimble::view {
 
-/// Returns whether a HID interface is that of a SpaceMouse: its USB ids are known, and where the
-/// system tells what it is used as, it is a multi-axis controller.
+/// Returns whether a HID interface is that of a SpaceMouse: its USB ids are known, and its usage,
+/// if the system reports it, is that of a multi-axis controller.
 bool is_space_mouse(unsigned vendor, unsigned product, unsigned usage_page,
                     unsigned usage) noexcept;
 
-/// The SpaceMouse that is plugged in, if any, over hidapi. Looks for one now and then until there
-/// is one, and again when it is gone. It is only read: nothing is ever written to it. Used by one
-/// thread. Real-time: never from the servo thread.
+/// The plugged SpaceMouse, if any, over hidapi. Searches for one at intervals until one is found,
+/// and again after it is unplugged. The device is only read, never written to. Used by one thread.
+/// Real-time: never from the servo thread.
 class SpaceMouse {
  public:
   SpaceMouse() = default;
@@ -25,10 +25,10 @@ class SpaceMouse {
   SpaceMouse& operator=(const SpaceMouse&) = delete;
   ~SpaceMouse();
 
-  /// Takes the reports that have come, and returns how it stands; nothing if there is none.
+  /// Takes the reports that have arrived, and returns its state; empty if there is no device.
   std::optional<SpaceMouseState> read();
 
-  /// Returns what to do where there is none; empty where there is.
+  /// Returns what to do if there is no device; empty if there is one.
   const std::string& trouble() const { return trouble_; }
 
  private:

@@ -9,9 +9,9 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kWeakest = 0.06;  // of the field's strongest: less is not drawn [chosen]
+constexpr double kWeakest = 0.06;  // of the strongest force; weaker arrows are omitted [chosen]
 
-/// Returns how far the samples of a field lie apart, m: an arrow may be as long.
+/// Returns the spacing of a field's samples, m: the maximum length of an arrow.
 double spacing(const std::vector<FieldSample>& field) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < field.size(); ++i) {

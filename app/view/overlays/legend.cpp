@@ -21,7 +21,7 @@ ImU32 screen_colour(const Colour& colour) {
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice) {
   Legend legend;
   if (choice.fields || choice.trail) legend.strongest = strongest_force(scene, moment);
-  if (choice.fields && scene.field.empty()) {  // they push nothing that rests: viscous ones
+  if (choice.fields && scene.field.empty()) {  // viscous fields have no force at rest
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
       if (!scene.objects[i].field) continue;
       legend.lines.push_back(

@@ -10,9 +10,9 @@
 
 namespace thimble::view {
 
-/// What the marks of a picture mean, in words.
+/// The meanings of the marks of a picture, in words.
 struct Legend {
-  /// One line: a piece of colour and what it stands for.
+  /// One line: a colour and its meaning.
   struct Line {
     Colour colour{};
     std::string text;
@@ -21,11 +21,10 @@ struct Legend {
   double strongest = 0;  ///< N, at the end of the scale of forces; 0: no scale.
 };
 
-/// Returns what the marks that are chosen mean. Real-time: never from the servo thread.
+/// Returns the legend of the chosen marks. Real-time: never from the servo thread.
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice);
 
-/// Writes a legend at the upper left of a part. To be called between ImGui's
-/// NewFrame and Render.
+/// Draws a legend at the upper left of a part. Call between ImGui's NewFrame and Render.
 void write_legend(const Legend& legend, Theme theme, const ScreenPart& part);
 
 }  // namespace thimble::view

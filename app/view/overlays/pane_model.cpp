@@ -15,7 +15,7 @@ PaneModel::PaneModel() {
 void PaneModel::draw(const std::vector<Pane>& panes, const Camera& camera,
                      const GlProgram& plain) const {
   if (panes.empty()) return;
-  // The farthest first, so that each is seen through those before it.
+  // The farthest first, so that each is visible through those before it.
   std::vector<const Pane*> order;
   order.reserve(panes.size());
   for (const Pane& pane : panes) order.push_back(&pane);

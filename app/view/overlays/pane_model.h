@@ -8,12 +8,12 @@
 
 namespace thimble::view {
 
-/// Draws panes: what can be seen through, over all that is drawn already.
+/// Draws translucent panes over everything drawn before.
 /// Precondition of all: the context it was made in is current.
 class PaneModel {
  public:
   PaneModel();
-  /// Draws by the program `plain`, the farthest first.
+  /// Draws with the program `plain`, the farthest first.
   void draw(const std::vector<Pane>& panes, const Camera& camera, const GlProgram& plain) const;
 
  private:

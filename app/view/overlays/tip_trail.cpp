@@ -6,8 +6,8 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kStep = 3e-4;                      // m: a pixel of a usual picture
-constexpr std::int64_t kLeastTime_ns = 10'000'000;  // so that there are 400 points at most
+constexpr double kStep = 3e-4;                      // m: a pixel of a typical picture
+constexpr std::int64_t kLeastTime_ns = 10'000'000;  // limits the trail to 400 points
 
 }  // namespace
 
@@ -17,7 +17,7 @@ void TipTrail::add(const driver::TickRecord& tick) {
          static_cast<double>(tick.time_ns - kept_.front().time_ns) > kSeconds * 1e9) {
     kept_.pop_front();
   }
-  // On the surface, where it can be seen, while the tip is in it.
+  // During contact on the surface, where it is visible.
   const Eigen::Map<const Eigen::Vector3d> p_WT(tick.in_contact ? tick.p_WP.data()
                                                                : tick.p_WT.data());
   const double force = Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm();
@@ -25,7 +25,7 @@ void TipTrail::add(const driver::TickRecord& tick) {
   if (!kept_.empty()) {
     Kept& last = kept_.back();
     const bool moved = (p_WT - last.point.p_WT).norm() >= kStep;
-    // Between two points the strongest counts, or a short blow would not be seen.
+    // Between two points the largest force counts, so that a short impact is visible.
     if (!moved || tick.time_ns - last.time_ns < kLeastTime_ns) {
       last.point.force = std::max(last.point.force, force);
       return;

@@ -9,18 +9,18 @@
 
 namespace thimble::view {
 
-/// Keeps where the tip was in the last seconds, with the force on the hand there: on the surface
-/// while it touches one.
+/// Keeps the path of the tip of the last seconds, with the force on the hand: on the surface during
+/// contact.
 /// Real-time: never from the servo thread.
 class TipTrail {
  public:
-  static constexpr double kSeconds = 4;  ///< What is kept. Chosen: a stroke there and back.
+  static constexpr double kSeconds = 4;  ///< Kept duration. Chosen: a stroke in both directions.
 
-  /// Takes one tick; one that is older than the last begins anew. A tip that rests adds nothing,
-  /// one that is not finite neither.
+  /// Takes one tick. A tick older than the last one means a new run and clears the path. A tip at
+  /// rest adds nothing, nor does one that is not finite.
   void add(const driver::TickRecord& tick);
   void clear() { kept_.clear(); }
-  /// Gives the path, oldest first, into `trail`.
+  /// Writes the path, oldest first, to `trail`.
   void give(std::vector<TrailPoint>& trail) const;
 
  private:

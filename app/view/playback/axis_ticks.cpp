@@ -9,10 +9,10 @@
 namespace thimble::view {
 namespace {
 
-// What rounding leaves of a number that should be round, as a share of a step.
+// Rounding error of a number that should be round, as a fraction of a step.
 constexpr double kSlack = 1e-6;
 
-// Returns the round number that is no less than `value` > 0.
+// Returns the smallest round number that is at least `value` > 0.
 double round_step(double value) {
   const double power = std::pow(10, std::floor(std::log10(value)));
   for (const double step : {1.0, 2.0, 5.0}) {
@@ -26,7 +26,7 @@ int decimals_of(double step) {
 }
 
 bool sound(double least, double most) {
-  // No step of doubles lies between two that are nearly the same.
+  // Two nearly equal doubles have no representable step between them.
   return std::isfinite(least) && std::isfinite(most) &&
          most - least > 1e-12 * std::max({std::abs(least), std::abs(most), 1e-300});
 }
@@ -47,7 +47,7 @@ std::string AxisTicks::text(std::size_t i) const {
 AxisTicks ticks_within(double least, double most, std::size_t most_count) {
   if (!sound(least, most)) return {};
   double step = round_step((most - least) / static_cast<double>(most_count));
-  // The first step may give more than there is room for by one.
+  // The first step may give one number too many.
   while (true) {
     const AxisTicks ticks =
         from_to(std::ceil(least / step - kSlack), std::floor(most / step + kSlack), step);

@@ -17,7 +17,7 @@ std::size_t bytes_of(const render::TriangleMesh& mesh) {
 
 }  // namespace
 
-// Shapes are shared by many moments: each is counted once, with the oldest that has it.
+// Moments share shapes: each shape is counted once, with the oldest moment that has it.
 std::size_t MomentRing::size_of(const Kept& kept) {
   std::size_t bytes = sizeof(Kept) + bytes_of(kept.poses) + bytes_of(kept.points) +
                       bytes_of(kept.triangles) + bytes_of(kept.sources) + bytes_of(kept.arm) +

@@ -11,28 +11,28 @@
 
 namespace thimble::view {
 
-/// The last minute of a run as it was drawn, to look back while it goes on. The viewer keeps it by
-/// itself; the run knows nothing of it. Memory is bounded: where moments are large, fewer seconds
-/// are kept. Real-time: never from the servo thread.
+/// The drawn moments of the last minute of a run, for looking back while it continues. Only the
+/// viewer keeps them; the run is not affected. Memory is bounded: if moments are large, fewer
+/// seconds are kept. Real-time: never from the servo thread.
 class MomentRing {
  public:
-  static constexpr double kSeconds = 60;     ///< That are kept, of the run's time.
-  static constexpr double kStep = 1.0 / 30;  ///< Between two moments at least, s. [chosen]
-  static constexpr std::size_t kBytesMost = 64'000'000;  ///< Of all moments. [chosen]
-  /// Between two new shapes of an object at least, s: a shape is a whole mesh. [chosen]
+  static constexpr double kSeconds = 60;     ///< Duration that is kept, in the run's time.
+  static constexpr double kStep = 1.0 / 30;  ///< Minimum time between two moments, s. [chosen]
+  static constexpr std::size_t kBytesMost = 64'000'000;  ///< Maximum size of all moments. [chosen]
+  /// Minimum time between two new shapes of an object, s: a shape is a whole mesh. [chosen]
   static constexpr double kShapeStep = 0.5;
 
-  /// Keeps a moment if it is time for one. One that is older than the last begins anew: it is of
-  /// another run.
+  /// Keeps a moment if kStep has passed since the last. An older timestamp means a new run, so the
+  /// ring is cleared.
   void keep(const DrawnMoment& moment);
   void clear();
 
-  /// Brings `moment` to the newest that is no later than `time` (s of the run), to the oldest if
-  /// there is none. Returns false, and changes nothing, if nothing is kept.
+  /// Sets `moment` to the newest one that is no later than `time` (s of the run), or to the oldest
+  /// if there is none. Returns false, and changes nothing, if the ring is empty.
   bool show(double time, DrawnMoment& moment) const;
 
-  /// Returns when the moment was that is `steps` after the one shown at `time`, s; that of the
-  /// oldest or the newest if there is none. Precondition: not empty.
+  /// Returns the time (s) of the moment `steps` after the one shown at `time`, clamped to the
+  /// oldest and the newest. Precondition: not empty.
   double beside(double time, int steps) const;
 
   /// Returns the times of the oldest and the newest moment, s. Precondition: not empty.
@@ -40,11 +40,11 @@ class MomentRing {
   double newest() const { return kept_.back().time; }
   bool empty() const { return kept_.empty(); }
   std::size_t moments() const { return kept_.size(); }
-  /// Returns how much memory the moments take, bytes.
+  /// Returns the memory of the moments, bytes.
   std::size_t bytes() const { return bytes_; }
 
  private:
-  /// A moment with no more of its dent than there is.
+  /// A moment with only the used part of its dent.
   struct Kept {
     double time = 0;  // s
     driver::TickRecord tick;
@@ -67,7 +67,7 @@ class MomentRing {
 
   std::deque<Kept> kept_;
   std::size_t bytes_ = 0;
-  double shapes_time_ = -1e300;  // when shapes were taken last, s
+  double shapes_time_ = -1e300;  // time of the last shapes, s
 };
 
 }  // namespace thimble::view

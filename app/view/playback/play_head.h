@@ -2,38 +2,38 @@
 
 namespace thimble::view {
 
-/// Where on a line of time one looks, s: at the newest moment of a run, at one of its last, or at
-/// one of a recording. Knows no picture and no clock. Real-time: never from the servo thread.
+/// The position on a time line, s: the newest moment of a run, a kept one, or one of a recording.
+/// Independent of drawing and of clocks. Real-time: never from the servo thread.
 class PlayHead {
  public:
-  static constexpr double kSlowest = 0.1;  ///< Of the speeds, as shares of the time that was.
-  static constexpr double kFastest = 4;    ///< As above.
+  static constexpr double kSlowest = 0.1;  ///< Slowest speed, as a multiple of the recorded time.
+  static constexpr double kFastest = 4;    ///< Fastest speed, as above.
 
-  /// Looks along a run that goes on: first at what is newest.
+  /// Returns the head of a live run, at the newest moment.
   static PlayHead of_run() { return PlayHead(true); }
-  /// Looks along a recording: first at its begin, and plays.
+  /// Returns the head of a recording, at its begin, playing.
   static PlayHead of_recording() { return PlayHead(false); }
 
-  /// Says from when until when there are moments. The first span of a recording takes the head to
-  /// its begin; a head that moments have been lost from under goes to the oldest.
+  /// Sets the time span with moments. The first span of a recording moves the head to its begin. If
+  /// the moment at the head was discarded, the head moves to the oldest.
   void set_span(double begin, double end);
-  /// Lets `dt` s of a person's time go by. At its end a recording stands still and a run is live.
+  /// Advances by `dt` s of wall-clock time. At the end, a recording stops and a run becomes live.
   void step(double dt);
 
-  /// Looks at a time, or as near as there is one. Of a run, one that is no less than the end is
-  /// its newest moment, whatever comes. It goes on playing if it did.
+  /// Moves to a time, clamped to the span. For a run, a time at or after the end means the newest
+  /// moment from now on. A head that plays continues to play.
   void go(double time);
-  /// Looks at a time and stands still there.
+  /// Moves to a time and stops there.
   void stand_at(double time);
-  /// Moves to the moment that is there for the time looked at, and stays behind what is newest.
+  /// Moves to the moment shown for the current time, without becoming live.
   void settle(double time) { time_ = time; }
   void to_start() { go(begin_); }
   void to_end() { go(end_); }
-  /// Plays if it stood still, and the other way round. A recording at its end begins anew; a run at
-  /// its newest moment stands still there.
+  /// Switches between playing and stopped. A recording at its end starts again; a live run stops at
+  /// its newest moment.
   void toggle();
   void stop() { plays_ = false; }
-  /// Sets how fast it plays, within kSlowest and kFastest.
+  /// Sets the playback speed, within kSlowest and kFastest.
   void set_speed(double speed);
 
   double time() const { return live() ? end_ : time_; }
@@ -41,11 +41,11 @@ class PlayHead {
   double end() const { return end_; }
   double speed() const { return speed_; }
   bool plays() const { return plays_; }
-  /// Returns whether what is newest of a run is looked at; never of a recording.
+  /// Returns whether the newest moment of a run is shown; never for a recording.
   bool live() const { return live_; }
-  /// Returns whether this is of a run.
+  /// Returns whether this is the head of a run.
   bool of_a_run() const { return run_; }
-  /// Returns how far behind what is newest one looks, s.
+  /// Returns the delay behind the newest moment, s.
   double behind() const { return end_ - time(); }
 
  private:

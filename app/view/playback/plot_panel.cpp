@@ -1,7 +1,7 @@
 #include "view/playback/plot_panel.h"
 
 #include <imgui.h>
-// After the above, which it needs.
+// After the header above, which it needs.
 #include <imgui_internal.h>
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kWheel = 0.8;       // of the range's width that is left by one step; chosen
+constexpr double kWheel = 0.8;       // range left by one step of the wheel; chosen
 constexpr float kClickPixels = 4;    // a drag is longer; chosen
-constexpr float kPlotHeight = 4.6F;  // in heights of the font, at least; chosen
+constexpr float kPlotHeight = 4.6F;  // minimum, in heights of the font; chosen
 
 ImU32 veil() {
   return ImGui::ColorConvertFloat4ToU32({kDepthColour[0], kDepthColour[1], kDepthColour[2], 0.15F});
@@ -24,7 +24,7 @@ TimeRange PlotPanel::range(const Plots& plots, const PlotTime& time) const {
   if (zoom_) return *zoom_;
   const TimeRange all = plots.kept();
   if (time.recorded) return all.width() > 0 ? all : TimeRange{all.begin, all.begin + 1};
-  // One who looks back sees where in the minute.
+  // Shows the position in the minute while looking back.
   return time.looked ? TimeRange{all.begin, std::max(all.end, all.begin + Plots::kShownSeconds)}
                      : plots.newest();
 }
@@ -101,7 +101,7 @@ std::optional<double> PlotPanel::draw(const Plots& plots, const PlotTime& time, 
   asked_.reset();
   cursor_ = next_cursor_;
   next_cursor_.reset();
-  // What was zoomed to may be over, or of a run before.
+  // The zoomed range may be outside of the kept ticks or belong to a previous run.
   const TimeRange all = plots.kept();
   if (zoom_ && (zoom_->end < all.begin || zoom_->begin > all.end)) zoom_.reset();
   const float top = ImGui::GetCursorPosY();

@@ -8,28 +8,29 @@
 
 namespace thimble::view {
 
-/// When it is that plots are looked at.
+/// The time that plots show.
 struct PlotTime {
-  std::optional<double> looked;  ///< The moment that is looked at, s; none: the newest of a run.
-  bool recorded = false;         ///< All of a recording is there at once.
-  std::int64_t period_ns = 1'000'000;  ///< Of the loop.
+  std::optional<double> looked;        ///< The moment that is shown, s; none: the newest of a run.
+  bool recorded = false;               ///< The data are a complete recording.
+  std::int64_t period_ns = 1'000'000;  ///< Period of the loop.
 };
 
-/// Plots under one another over the same time: what the mouse does to one it does to all.
+/// Plots below each other over the same time: mouse actions apply to all of them.
 ///
-/// Over a plot: the value at the mouse is told in all of them; wheel: closer and farther; left
-/// drag: that part alone; right drag: along; double click: all of it again; click: that moment is
-/// looked at. Real-time: never from the servo thread.
+/// Over a plot: the value at the mouse is shown in all plots; wheel: zoom; left drag: zoom to that
+/// part; right drag: move; double click: show all; click: go to that moment. Real-time: never from
+/// the servo thread.
 class PlotPanel {
  public:
-  /// Draws what is chosen into the current ImGui window, `height` pixels high at most: where there
-  /// is no room for all, the first. Returns the time that a click asks to be looked at, s.
+  /// Draws the chosen plots into the current ImGui window, at most `height` pixels high; without
+  /// room for all, only the first. Returns the time that was clicked, s.
   std::optional<double> draw(const Plots& plots, const PlotTime& time, float height);
 
-  /// Shows a channel, or leaves it out.
+  /// Shows or hides a channel.
   void show(Channel channel, bool shown) { shown_[static_cast<std::size_t>(channel)] = shown; }
   bool shows(Channel channel) const { return shown_[static_cast<std::size_t>(channel)]; }
-  /// Returns what is shown of the time: what was zoomed to, else the newest of a run, or all.
+  /// Returns the visible range of time: the zoomed part, otherwise the newest of a run, or all of a
+  /// recording.
   TimeRange range(const Plots& plots, const PlotTime& time) const;
   bool is_zoomed() const { return zoom_.has_value(); }
 
@@ -42,9 +43,9 @@ class PlotPanel {
   std::array<bool, kChannels> shown_{true, true, true, false, false, false, false, false};
   bool periods_ = true;
   std::optional<TimeRange> zoom_;
-  std::optional<double> cursor_, next_cursor_;  // s; of the picture before, and of this one
-  std::optional<double> drag_from_;             // s: a part is being chosen
-  std::optional<double> asked_;                 // s
+  std::optional<double> cursor_, next_cursor_;  // s; cursor of the last picture and of this one
+  std::optional<double> drag_from_;             // s: start of a drag that selects a part
+  std::optional<double> asked_;                 // time that was clicked, s
 };
 
 }  // namespace thimble::view

@@ -83,7 +83,7 @@ std::size_t Plots::first_at(double time) const {
 }
 
 std::optional<double> Plots::value_at(Channel channel, double time) const {
-  // Ticks come in whole nanoseconds; what is nearer is the same time.
+  // Ticks are whole nanoseconds, so a smaller difference is the same time.
   constexpr double kSame = 0.5e-9;
   if (samples_.empty() ||
       !(time >= samples_.front().time - kSame && time <= samples_.back().time + kSame)) {

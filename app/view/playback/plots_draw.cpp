@@ -1,4 +1,4 @@
-// How plots look; what they keep is in plots.cpp.
+// Drawing of plots; their data are in plots.cpp.
 #include <fmt/core.h>
 #include <imgui.h>
 
@@ -13,13 +13,13 @@
 namespace thimble::view {
 namespace {
 
-// What is told of a channel beside its numbers.
+// Presentation of a channel.
 struct ChannelLook {
   const char* name;
   Quantity quantity;
   const Colour& colour;
-  bool from_zero;     // its axis begins there
-  double most_least;  // what its axis shows at least, SI; chosen
+  bool from_zero;     // its axis begins at zero
+  double most_least;  // minimum upper end of its axis, SI; chosen
 };
 
 const ChannelLook& look_of(Channel channel) {
@@ -40,12 +40,12 @@ ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
 }
 
-// A channel's colour, as the theme has it.
+// Returns a channel's colour in the current theme.
 Colour shown(const Colour& colour) {
   return text_colour(colour, shown_theme());
 }
 
-// The colour of text, as the theme has it.
+// Returns the colour of text in the current theme.
 Colour text_ink() {
   const ImVec4& ink = ImGui::GetStyleColorVec4(ImGuiCol_Text);
   return {ink.x, ink.y, ink.z};
@@ -55,7 +55,7 @@ float small_size() {
   return std::round(0.78F * ImGui::GetFontSize());
 }
 
-// Writes in the size of numbers at an axis; `align` is the share of the text left of `x`.
+// Draws text in the size of axis numbers; `align` is the fraction of the text left of `x`.
 void write_small(ImDrawList& list, float x, float y, float align, const std::string& text) {
   const float size = small_size();
   const float width = ImGui::GetFont()->CalcTextSizeA(size, 1e9F, 0, text.c_str()).x;
@@ -63,7 +63,7 @@ void write_small(ImDrawList& list, float x, float y, float align, const std::str
                ImGui::GetColorU32(ImGuiCol_TextDisabled), text.c_str());
 }
 
-// Writes the title and, at the right, a value.
+// Draws the title and, at the right, a value.
 void write_title(ImDrawList& list, const ScreenPart& part, const std::string& title,
                  const std::string& value, const Colour& colour) {
   const float y = part.y + 0.1F * ImGui::GetFontSize();
@@ -80,7 +80,7 @@ void draw_frame(ImDrawList& list, const ScreenPart& inner) {
   list.AddLine({inner.x, inner.y}, {inner.x, inner.y + inner.height}, packed(kGridColour));
 }
 
-// The numbers of the axis at the left, as many as there is room for; their unit is in the title.
+// Draws the numbers of the left axis that fit; their unit is in the title.
 void draw_left_axis(ImDrawList& list, const ScreenPart& inner, const AxisTicks& axis) {
   const float small = small_size();
   for (std::size_t i = 0; i < axis.count; ++i) {
@@ -101,7 +101,7 @@ void draw_time_axis(ImDrawList& list, const ScreenPart& inner, const TimeRange& 
     const float x = inner.x + share * inner.width;
     list.AddLine({x, inner.y}, {x, inner.y + inner.height}, packed(kGridColour, 0.25F));
     if (!numbers) continue;
-    // The last one brings the unit, and none leaves the plot.
+    // The last number has the unit, and none extends beyond the plot.
     const std::string text = axis.text(i) + (i + 1 == axis.count ? " s" : "");
     const float align = share < 0.04F ? 0 : share > 0.94F ? 1 : 0.5F;
     write_small(list, x, inner.y + inner.height + 0.15F * small, align, text);
@@ -138,7 +138,7 @@ void Plots::draw_line(ImDrawList& list, const ScreenPart& inner, Channel channel
   };
   const ChannelLook& look = look_of(channel);
   const auto columns = static_cast<std::size_t>(std::max(1.0F, inner.width));
-  // One more at each side, so that the line goes to the rim.
+  // One more sample at each side, so that the line reaches the border.
   const std::size_t first = first_at(range.begin);
   const std::size_t last = first_at(range.end);
   std::vector<ImVec2> line;
@@ -150,7 +150,7 @@ void Plots::draw_line(ImDrawList& list, const ScreenPart& inner, Channel channel
                       y(samples_[i].value[static_cast<std::size_t>(channel)])});
     }
   } else {
-    // From the least to the most within each column of pixels, so that no spike is lost.
+    // From the minimum to the maximum within each column of pixels, so that no spike is lost.
     std::size_t from = first;
     for (std::size_t i = 0; i < columns; ++i) {
       const double end =
@@ -188,7 +188,7 @@ void Plots::draw(ImDrawList& list, const ScreenPart& part, Channel channel, cons
   if (extent.empty()) extent = {0, 0};
   double least = look.from_zero ? 0 : static_cast<double>(extent.least);
   double most = std::max(static_cast<double>(extent.most), look.from_zero ? look.most_least : -1e9);
-  if (look.from_zero && !(extent.most > 0)) most = 100 * look.most_least;  // nothing yet
+  if (look.from_zero && !(extent.most > 0)) most = 100 * look.most_least;  // no data yet
   if (most - least < look.most_least) {
     const double middle = 0.5 * (least + most);
     least = look.from_zero ? 0 : middle - 0.5 * look.most_least;
@@ -248,7 +248,7 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRan
   const int most = std::max(1, *std::max_element(count.begin(), count.end()));
   for (std::size_t i = 0; i < kBins; ++i) {
     if (count[i] == 0) continue;
-    // By the logarithm: one late tick in ten thousand must be seen.
+    // Logarithmic: one late tick in ten thousand must be visible.
     const double share = (std::log(count[i]) + 1) / (std::log(most) + 1);
     const float width = inner.width / kBins;
     const float x = inner.x + width * static_cast<float>(i);

@@ -12,7 +12,7 @@ namespace thimble::view {
 /// Plays a recording into a window. Real-time: never from the servo thread.
 class RecordingPlayer final : public TouchSource {
  public:
-  /// Keeps `recording`, which must outlive this. `name` is what its pictures are named by.
+  /// Keeps `recording`, which must outlive this. `name` is used for the names of its pictures.
   RecordingPlayer(const RecordingView& recording, std::string name);
 
   bool step(double dt) override;
@@ -32,7 +32,7 @@ class RecordingPlayer final : public TouchSource {
  private:
   const RecordingView& recording_;
   std::string name_;
-  std::string notice_;  // none: its head says what moves
+  std::string notice_;  // empty: the time line shows the state
   PlayHead head_ = PlayHead::of_recording();
   std::unique_ptr<DrawnMoment> moment_ = std::make_unique<DrawnMoment>();
   bool first_ = true;

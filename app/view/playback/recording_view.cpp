@@ -18,7 +18,7 @@ std::int64_t in_ns(double time) {
   return std::llround(1e9 * time);
 }
 
-// The last of some times that is no later than `time_ns`, or the first.
+// Returns the last of some times that is no later than `time_ns`, or the first.
 template <class Times, class Key>
 std::size_t place_of(const Times& times, std::int64_t time_ns, const Key& key) {
   const auto after =
@@ -167,7 +167,7 @@ void RecordingView::show_dent(std::int64_t time_ns, DrawnMoment& moment) const {
 }
 
 void RecordingView::show(double time, DrawnMoment& moment) const {
-  // Half a nanosecond of rounding must not show the tick before.
+  // A rounding error of half a nanosecond must not show the tick before.
   const std::int64_t time_ns = in_ns(time);
   moment.tick = ticks()[tick_at(arms_.front().ticks, time_ns)];
   show_bodies(moment.tick.time_ns, moment);

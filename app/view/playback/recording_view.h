@@ -17,32 +17,32 @@
 
 namespace thimble::view {
 
-/// A recording as it is drawn, at any of its ticks. The ticks are the recorded ones; where objects
-/// were, how they were dented and shaped comes from a replay, since no recording tells it.
-/// Real-time: never from the servo thread.
+/// A recording to draw, at any of its ticks. The ticks are the recorded ones. Poses, dents and
+/// shapes of objects come from a replay, because recordings do not contain them. Real-time: never
+/// from the servo thread.
 class RecordingView {
  public:
-  /// Reads recordings, of a scene with several arms one of each, and lets their hands touch the
-  /// scene again. The error says what a file is not, or what the scene lacks.
+  /// Reads recordings, one per arm of the scene, and replays their touches of the scene. The error
+  /// describes an invalid file or what the scene lacks.
   static driver::Result<std::unique_ptr<RecordingView>> open(
       const std::vector<std::filesystem::path>& files);
 
-  /// Returns what does not change.
+  /// Returns the constant part of the scene.
   const DrawnScene& scene() const { return drawn_; }
   /// Returns the ticks of an arm of the scene, in its order. Not empty.
   std::span<const driver::TickRecord> ticks(std::size_t arm = 0) const { return arms_[arm].ticks; }
   std::size_t arms() const { return arms_.size(); }
-  /// Returns when the first and the last tick were, s on the recorded loop's clock.
+  /// Returns the times of the first and the last tick, s on the recorded loop's clock.
   TimeRange time() const;
-  /// Returns when the tick was that is `steps` after the one of a time, s; the first or the last if
-  /// there is none.
+  /// Returns the time (s) of the tick `steps` after the one at a time, clamped to the first and the
+  /// last.
   double beside(double time, int steps) const;
   const Plots& plots() const { return plots_; }
-  /// Returns what it is and what of it cannot be known, a sentence each.
+  /// Returns a description of the recording and what it lacks, a sentence each.
   const std::vector<std::string>& about() const { return about_; }
 
-  /// Brings `moment` to a time, s: to the last tick that is no later, or to the first. Objects are
-  /// where they were then; between two pictures of the replay in proportion.
+  /// Sets `moment` to a time, s: to the last tick that is no later, or to the first. Poses of
+  /// objects are interpolated between two pictures of the replay.
   void show(double time, DrawnMoment& moment) const;
 
  private:

@@ -21,7 +21,7 @@ void ShapeFilm::take(const driver::TickRecord& tick) {
   times_ns_.push_back(tick.time_ns);
   for (Shaped& shaped : shaped_) {
     auto now = objects().mesh_bent(shaped.object);
-    // An object that nobody touches stays one mesh in memory, and is drawn as one.
+    // An object without contact stays a single mesh in memory.
     const bool same = !shaped.meshes.empty() && shaped.meshes.back()->vertices == now.vertices &&
                       shaped.meshes.back()->triangles == now.triangles;
     shaped.meshes.push_back(same ? shaped.meshes.back()

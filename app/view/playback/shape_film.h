@@ -10,14 +10,14 @@
 
 namespace thimble::view {
 
-/// The film of a replay with the shapes that objects were left in for good, now and then.
-/// Real-time: never from the servo thread.
+/// Records the permanent shapes of objects during a replay, at intervals. Real-time: never from the
+/// servo thread.
 class ShapeFilm final : public session::ReplayFilm {
  public:
-  /// Between two shapes at least, ns. [chosen]
+  /// Minimum time between two shapes, ns. [chosen]
   static constexpr std::int64_t kStep_ns = 250'000'000;
-  /// Shapes of each object: once there are more, every other goes and they are taken half as often.
-  /// [chosen]
+  /// Maximum number of shapes of each object. If it is exceeded, every other shape is removed and
+  /// the interval doubles. [chosen]
   static constexpr std::size_t kShapesMost = 128;
 
   using Mesh = std::shared_ptr<const render::TriangleMesh>;
@@ -26,18 +26,18 @@ class ShapeFilm final : public session::ReplayFilm {
              std::shared_ptr<const scene::SceneObjects> objects) override;
   void take(const driver::TickRecord& tick) override;
 
-  /// Returns what an object had been shaped to at a time, ns, where the object was at first (B, m);
-  /// null if it has no shape to be left in.
+  /// Returns the permanent shape of an object at a time, ns, in the object's first pose (B, m);
+  /// null if it has none.
   Mesh shape_at(std::size_t object, std::int64_t time_ns) const;
-  /// Returns whether any object is shaped for good.
+  /// Returns whether any object has a permanent shape.
   bool shapes() const { return !shaped_.empty(); }
-  /// Returns how far apart two shapes are, s.
+  /// Returns the time between two shapes, s.
   double step() const { return 1e-9 * static_cast<double>(step_ns_); }
 
  private:
   struct Shaped {
     std::size_t object;
-    std::vector<Mesh> meshes;  // one for each of the times
+    std::vector<Mesh> meshes;  // one for each time
   };
   void halve();
 

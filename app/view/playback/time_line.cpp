@@ -1,7 +1,7 @@
 #include "view/playback/time_line.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
 #include <imgui.h>
@@ -13,14 +13,14 @@
 namespace thimble::view {
 namespace {
 
-constexpr float kOneRow = 34;     // in heights of the font: so wide must a part be for one row
+constexpr float kOneRow = 34;     // minimum width for one row, in heights of the font
 constexpr double kBigStep = 1.0;  // s, with shift; chosen
 
 ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
 }
 
-// What a button shows: drawn, since the font has no such letters.
+// Symbol of a button. It is drawn, because the font lacks these characters.
 enum class Sign { kStart, kBack, kPlay, kStop, kForward, kEnd };
 
 void draw_sign(ImDrawList& list, Sign sign, const ImVec2& middle, float r) {
@@ -131,7 +131,7 @@ void draw_bar(const ScreenPart& bar, TouchSource& source) {
   list.AddRectFilled({bar.x, middle - half}, {bar.x + bar.width, middle + half},
                      packed(kGridColour, 0.35F), round);
   if (!(span > 0)) return;
-  // Where something is touched.
+  // Times with contact.
   const auto columns = static_cast<int>(bar.width);
   for (int i = 0; i < columns; ++i) {
     const double width = span / columns;
@@ -215,7 +215,7 @@ void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
   const bool narrow = !one_row(part.width);
   const float row = ImGui::GetFrameHeight();
   const std::string words = words_of(head);
-  // As wide as the longest, so that the bar stays where it is.
+  // Width of the longest text, so that the bar does not move.
   const float words_width =
       std::max(ImGui::CalcTextSize("60.0 s behind").x, ImGui::CalcTextSize(words.c_str()).x);
   const float right = part.x + part.width - pad.x;

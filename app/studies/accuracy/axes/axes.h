@@ -4,13 +4,12 @@
 
 namespace thimble::studies {
 
-/// How far a wall gives that is felt as rigid (24 N/mm), mm/N: below it no hand tells one from
-/// another, so every diagram of the stiffest wall is shaded there [PHYSICS 6, after Tan et al.].
+/// Compliance of a wall that feels rigid (24 N/mm), mm/N. Smaller values cannot be distinguished by
+/// hand, so every diagram of the stiffest wall is shaded there [PHYSICS 6, after Tan et al.].
 inline constexpr double kRigidGive = 1 / 24.0;
 inline constexpr const char* kRigidWords = "the give of a wall that is felt as rigid (24 N/mm)";
 
-// One function per axis; each makes it, measuring nothing yet. Real-time: never from the servo
-// thread.
+// One function per axis, which makes it without measuring. Real-time: never from the servo thread.
 
 AccuracyAxis tessellation_axis();
 AccuracyAxis tessellation_direction_axis();

@@ -19,8 +19,8 @@ constexpr double kFrameTime = 1e-3;  // s
 constexpr int kFrames = 60;
 constexpr int kWorkFrames = 10;
 
-// A membrane as stiff as that of `thimble study integrators`, of fewer nodes, so that the finest
-// steps stay affordable.
+// A membrane with the stiffness of that in `thimble study integrators`, but fewer nodes, so that
+// the finest steps are affordable.
 const Membrane& drum() {
   static const Membrane membrane{.n = 10, .poke = 0.03};
   return membrane;
@@ -28,7 +28,7 @@ const Membrane& drum() {
 
 using Field = std::vector<double>;
 
-// The true heights at the end of each frame, worked out once.
+// Returns the true heights at the end of each frame, computed once.
 const std::vector<Field>& truth() {
   static const std::vector<Field> fields = [] {
     std::vector<Field> all;
@@ -57,7 +57,7 @@ double height(const Motion& motion, std::int32_t node) {
   return motion.u()[static_cast<std::size_t>(node)][0];
 }
 
-/// Takes each frame in equal pieces: exact steps stay exact however they are cut.
+/// Divides each frame into equal steps: an exact method stays exact with any step.
 class CutModes {
  public:
   explicit CutModes(int pieces)
@@ -87,7 +87,7 @@ double height(const CutModes& motion, std::int32_t node) {
   return motion.height(node);
 }
 
-// The largest error over all nodes and frames, as a share of the largest height, in percent.
+// Returns the largest error over all nodes and frames, relative to the largest height, in percent.
 template <class Any>
 double error_of(Any motion) {
   double error = 0;
@@ -106,7 +106,7 @@ double error_of(Any motion) {
   return error < 10 * size ? 100 * error / size : NAN;
 }
 
-// Goes on from where the last stroke left it: poked for one half of it, then let go.
+// Continues from the state of the last stroke: pushed for half of a stroke, then released.
 template <class Any>
 Stroke work_of(Any motion) {
   const auto kept = std::make_shared<Any>(std::move(motion));

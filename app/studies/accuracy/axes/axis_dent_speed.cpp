@@ -20,25 +20,26 @@ constexpr double kSpring = 50;     // N/m
 constexpr double kDented = 0.002;  // m
 constexpr double kWorkTicks = 200;
 
-/// A vertex of a soft ring on its spring, without springs to others, brought 2 mm away and let go.
+/// A vertex of a soft ring on its spring, without springs to others, displaced by 2 mm and
+/// released.
 class LetGo {
  public:
   LetGo(double omega_h, double rate, SpringScheme scheme) : motion_(build(omega_h, rate, scheme)) {
-    // A very stiff cursor brings it there and holds it.
+    // A very stiff cursor moves the vertex there and holds it.
     for (int i = 0; i < 400; ++i) hold();
     start_ = motion_.u(kVertex).x();
     speed_ = motion_.v(kVertex).x();
     motion_.release();
   }
 
-  double start() const noexcept { return start_; }  ///< Returns where it was let go, m.
-  double speed() const noexcept { return speed_; }  ///< Returns its speed then, m/s.
-  /// Moves on by a tick and returns where the vertex is, m.
+  double start() const noexcept { return start_; }  ///< Returns the position at release, m.
+  double speed() const noexcept { return speed_; }  ///< Returns the speed at release, m/s.
+  /// Advances by a tick and returns the position of the vertex, m.
   double step() noexcept {
     motion_.step();
     return motion_.u(kVertex).x();
   }
-  /// Brings the vertex to where it is let go.
+  /// Moves the vertex to the release position.
   void hold() noexcept {
     const std::int32_t vertex = kVertex;
     motion_.gather({&vertex, 1});
@@ -50,7 +51,7 @@ class LetGo {
 
  private:
   static DentMotion build(double omega_h, double rate, SpringScheme scheme) {
-    // A ring is closed and its settings are this file's, so nothing of it can be refused.
+    // Cannot fail: a ring is closed, and the settings are valid.
     const auto mesh = render::ContactMesh::build(kCostRing.mesh(8, 4)).value();
     render::DentSettings settings;
     settings.stiffness = kSpring;
@@ -67,7 +68,7 @@ class LetGo {
   double start_ = 0, speed_ = 0;
 };
 
-// The largest error over half a period, as a share of the dent, in percent.
+// Returns the largest error over half a period, relative to the dent, in percent.
 double error_of(double omega_h, double rate, SpringScheme scheme) {
   LetGo vertex(omega_h, rate, scheme);
   double error = 0;

@@ -12,12 +12,12 @@
 namespace thimble::studies {
 namespace {
 
-// The subjects are the program's own; one that is refused is a mistake of theirs.
+// The subjects are built in, so a rejected one is a programming error.
 std::unique_ptr<render::ObjectTouch> built(const CostSubject& subject) {
   return subject.build().value();
 }
 
-// What is missing without the effect, mN RMS over the ticks of contact.
+// Returns the force that is missing without the effect, mN RMS over the ticks of contact.
 double missing(const CostSubject& with, const CostSubject& bare) {
   const auto full = built(with);
   const auto plain = built(bare);

@@ -24,7 +24,7 @@ struct Wall {
   double corner = 0;  // Hz
 };
 
-// The wall's force on places that are counted in steps, against the same without steps; mN RMS.
+// Returns the error of the wall's force by quantised positions, mN RMS.
 double error_of(const Wall& wall, double step) {
   const auto counted_speed = product_estimate(wall.corner, kTick);
   const auto smooth_speed = product_estimate(wall.corner, kTick);

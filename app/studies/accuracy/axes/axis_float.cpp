@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 
 constexpr double kPlaces[] = {0.01, 0.1, 1, 3, 10, 30, 100};  // m
 
-// The ring's own depth and normal, in numbers of single precision throughout.
+// Returns the force from the ring's exact depth and normal, computed in single precision
+// throughout.
 Vector3d single_force(const Eigen::Vector3f& p_W, const Eigen::Vector3f& centre,
                       const Eigen::Vector3f& v_W) {
   const Eigen::Vector3f p = p_W - centre;
@@ -40,7 +41,8 @@ std::vector<Vector3d> single_forces(double place) {
   return forces;
 }
 
-// The largest change of force against the same ring at the origin, in percent of the largest force.
+// Returns the largest change of force relative to the same ring at the origin, in percent of the
+// largest force.
 double difference(const std::vector<Vector3d>& here, const std::vector<Vector3d>& at_origin) {
   double error = 0;
   double size = 0;
@@ -120,7 +122,7 @@ AccuracyAxis float_axis() {
                           };
                         }};
     point.ticks = kRingTicks;
-    point.fits = place >= 1;  // nearer, the arithmetic rounds more than the place
+    point.fits = place >= 1;  // closer, rounding in the arithmetic exceeds that of the position
     single.points.push_back(std::move(point));
   }
   axis.lines.push_back(std::move(single));

@@ -8,8 +8,8 @@
 namespace thimble::studies {
 namespace {
 
-constexpr double kForce = 0.5;  // N, what Coulomb's friction gives
-// How far a stuck bristle gives before it slides, mm.
+constexpr double kForce = 0.5;  // N, Coulomb friction
+// Deflection of a stuck bristle before it slides, mm.
 constexpr double kLengths[] = {0.05, 0.1, 0.2, 0.4, 0.8, 1.6};
 
 enum class Wrong { kLimitCycle, kTooLight };

@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kTick = 1e-3;      // s
 constexpr double kStiffness = 800;  // N/m, the vintage arm's declared one
-constexpr double kViscous = 1e-4;   // N s/m: next to none, so that e = 1 is the truth
+constexpr double kViscous = 1e-4;   // N s/m: almost zero, so that e = 1 is the truth
 
-// A number in [0, 1) that depends on run and tick alone.
+// Returns a pseudo-random number in [0, 1) that depends only on run and tick.
 double chance(int run, int k) {
   std::uint64_t z = static_cast<std::uint64_t>(run) * 1000003u + static_cast<std::uint64_t>(k) + 1;
   z *= 0x9e3779b97f4a7c15ull;  // splitmix64 [S Steele, Lea, Flood 2014]
@@ -27,7 +27,7 @@ double chance(int run, int k) {
   return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-// What makes ticks late or uneven: the k-th tick of a run, s, and what the laws need of it.
+// The durations of late or uneven ticks: the k-th tick of a run, s, and the parameters of the laws.
 struct Times {
   double period = kTick;
   double spread = 0;  // s, standard deviation

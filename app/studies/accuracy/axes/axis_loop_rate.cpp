@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStrokeMs = 1000;
 
-// A second of touch on the ring at this rate: what more ticks cost.
+// Prepares a second of touch on the ring at this rate, for the cost of more ticks.
 Stroke work_at(double rate) {
   const std::shared_ptr<render::ObjectTouch> touch = build_ring({});
   const auto ticks = static_cast<int>(rate);

@@ -24,8 +24,8 @@ const Membrane& drum() {
   return membrane;
 }
 
-/// Moves the slowest modes of the membrane exactly and sees its poked node alone. With `rest`, the
-/// modes that are left out follow the force at once, as springs without mass would (the static
+/// Moves the slowest modes of the membrane exactly, with only its pushed node as output. With
+/// `rest`, the omitted modes follow the force statically, like massless springs (the static
 /// correction of structural dynamics).
 class FewModes {
  public:
@@ -61,7 +61,7 @@ class FewModes {
     v_.resize(steps_.size());
   }
 
-  /// Moves on by a frame under `force` (N) at the poked node and tells its height, m.
+  /// Advances by a frame under `force` (N) at the pushed node and returns its height, m.
   double step(double force) noexcept {
     double height = give_ * force;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -74,26 +74,26 @@ class FewModes {
  private:
   std::vector<render::OscillatorStep> steps_;
   std::vector<double> shapes_, x_, v_;
-  double give_ = 0;  // of all modes left out, m/N
+  double give_ = 0;  // compliance of all omitted modes, m/N
 };
 
-// The force of the hand in a frame, N: it presses and lets go within 30 ms each, softly enough that
-// what is left out can follow.
+// Returns the hand's force in a frame, N. It rises and falls within 30 ms each, smoothly enough for
+// the static correction.
 double hand_force(int frame) {
   const double s = std::sin(std::numbers::pi * (frame + 1) / kFrames);
   return drum().force * s * s;
 }
 
-// The height of the touched node after each frame, m: the dense stiffness matrix, assembled spring
-// by spring, its eigenvectors, and the motion of each by its complex root in long double. Shares no
-// code with what is judged.
+// Returns the height of the touched node after each frame, m. It uses the dense stiffness matrix,
+// assembled spring by spring, its eigenvectors, and the motion of each by its complex root in long
+// double. Shares no code with the tested methods.
 std::vector<double> dense_heights() {
   constexpr int n = kNodes * kNodes;
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
   for (int row = 0; row < kNodes; ++row) {
     for (int column = 0; column < kNodes; ++column) {
       const int node = row * kNodes + column;
-      K(node, node) = 4 * drum().stiffness;  // four neighbours, of the outer nodes the frame
+      K(node, node) = 4 * drum().stiffness;  // four neighbours; for outer nodes the frame
       if (column > 0) K(node, node - 1) = K(node - 1, node) = -drum().stiffness;
       if (row > 0) K(node, node - kNodes) = K(node - kNodes, node) = -drum().stiffness;
     }
@@ -106,7 +106,7 @@ std::vector<double> dense_heights() {
   for (int i = 0; i < n; ++i) {
     const long double stiffness = solver.eigenvalues()[i];
     const long double shape = solver.eigenvectors()(drum().poked(), i);
-    // x = rest + Re(c e^(r t)) with r = -fade + j w; a frame multiplies c by e^(r h).
+    // x = rest + Re(c e^(r t)) with r = -fade + j w; each frame multiplies c by e^(r h).
     const Complex root(-fade, std::sqrt(stiffness / mass - fade * fade));
     const Complex turn = std::exp(root * static_cast<long double>(kFrameTime));
     long double x = 0, v = 0;
@@ -122,7 +122,7 @@ std::vector<double> dense_heights() {
   return {heights.begin(), heights.end()};
 }
 
-// The largest error of the height, in percent of the largest height.
+// Returns the largest error of the height, in percent of the largest height.
 double error_of(int count, bool rest) {
   static const std::vector<double> truth = dense_heights();
   FewModes few(count, rest);

@@ -19,9 +19,9 @@ using render::BlendProfile;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kBentAcross = 32;  // edges around the tube: 4 mm long, 11 degrees between two faces
-constexpr double kWalk = 0.2;    // m, some 70 triangles
+constexpr double kWalk = 0.2;    // m, across about 70 triangles
 
-/// A ring whose triangles are felt by a shading, to walk on.
+/// A ring with a shading of its triangles, for the walk.
 struct ShadedRing {
   ShadedRing()
       : mesh(render::ContactMesh::build(kCostRing.mesh(2 * kBentAcross, kBentAcross)).value()),
@@ -30,8 +30,8 @@ struct ShadedRing {
   render::SmoothNormals normals;
 };
 
-// The largest change of the normal's turning rate from one tick to the next on a straight walk of
-// this step (m), degrees per mm.
+// Returns the largest change of the normal's rotation per length between two ticks of a straight
+// walk with this step (m), degrees per mm.
 template <class Shading>
 double rate_jump(const Shading& shading, double step) {
   static const ShadedRing ring;
@@ -84,7 +84,7 @@ AccuracyLine rate_line(const std::string& name, const std::string& title,
                         .error = [=] { return error(1e-6 * um); },
                         .prepare = [ring] { return ring_work(ring); }};
     point.ticks = kRingTicks;
-    point.fits = um <= 30;  // farther, a step is no small part of a band
+    point.fits = um <= 30;  // beyond, a step is no small part of a band
     line.points.push_back(std::move(point));
   }
   return line;

@@ -27,7 +27,7 @@ const FreeSpin& spin() {
 
 enum class Method { kEuler, kMidpoint, kRungeKutta };
 
-/// Spins by Euler's equations and the quaternion's rate, stepped as textbooks offer.
+/// Spins by Euler's equations and the quaternion's derivative, with textbook integrators.
 class Textbook {
  public:
   Textbook(Method method, double step) : method_(method), h_(step), w_(spin().omega) {}
@@ -73,7 +73,7 @@ class Textbook {
   Vector3d w_;
 };
 
-/// Spins by the product.
+/// Spins by the product's rigid body.
 class Product {
  public:
   explicit Product(double step) : body_(build()), h_(step) {}
@@ -85,7 +85,7 @@ class Product {
     render::RigidBodySettings settings;
     settings.mass.mass = 0.1;
     settings.mass.inertia = spin().inertia;
-    render::RigidBody body = render::RigidBody::build(settings).value();  // a body that may be
+    render::RigidBody body = render::RigidBody::build(settings).value();  // valid settings
     body.set_momentum({0, 0, 0}, spin().inertia.cwiseProduct(spin().omega));
     return body;
   }
@@ -93,11 +93,11 @@ class Product {
   double h_;
 };
 
-// The largest error of the turning rate within kTime, in percent of it.
+// Returns the largest error of the angular velocity within kTime, in percent of it.
 template <class Any>
 double error_of(Any motion, double step) {
   const auto steps = static_cast<int>(std::lround(kTime / step));
-  // The truth is looked at 50 times, at times that every step meets.
+  // Compares 50 times, at times that are multiples of every step.
   const int stride = std::max(steps / 50, 1);
   double error = 0;
   for (int i = 1; i <= steps; ++i) {
@@ -110,8 +110,7 @@ double error_of(Any motion, double step) {
   return 100 * error / spin().omega.norm();
 }
 
-// The second that the error is looked at, some times over. Beyond it explicit Euler would end in
-// numbers that are none.
+// Repeats the same second several times: later, explicit Euler would overflow.
 template <class Any>
 Stroke work_of(const Any& rest, double step) {
   return [rest, steps = static_cast<int>(std::lround(kTime / step))] {

@@ -11,12 +11,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAround = 32, kAcross = 16;  // 512 vertices: as many as can move at once
+constexpr int kAround = 32, kAcross = 16;  // 512 vertices: the maximum that can move at once
 constexpr int kTicks = 200;
 constexpr std::int32_t kTriangle = 2;
 constexpr double kPress = 0.003;  // m
 
-/// A soft ring that is pressed at the middle of a triangle and let go, over and over.
+/// A soft ring that is repeatedly pressed at the middle of a triangle and released.
 class SoftRing {
  public:
   SoftRing(int rings, bool whole, double reach) : body_(build(rings, whole, reach)) {
@@ -24,7 +24,7 @@ class SoftRing {
     n_ = body_.mesh().cell(kTriangle).face.n;
   }
 
-  /// Goes on by tick `tick` of the press and tells the pull on the hand, N.
+  /// Advances by tick `tick` of the press and returns the force on the hand, N.
   Vector3d step(int tick) noexcept {
     const double share = static_cast<double>(tick % kTicks) / kTicks;
     const double depth = kPress * (share < 0.5 ? 2 * share : 2 - 2 * share);
@@ -34,13 +34,13 @@ class SoftRing {
 
  private:
   static render::BendablePolygon build(int rings, bool whole, double reach) {
-    // A ring is closed and its settings are this file's, so nothing of it can be refused.
+    // Cannot fail: a ring is closed, and the settings are valid.
     auto mesh = render::ContactMesh::build(kCostRing.mesh(kAround, kAcross)).value();
     render::DentSettings settings;
     settings.rings = rings;
     settings.whole = whole;
     settings.reach = reach;
-    settings.remainder = 1e-5;  // so that rounds are not what is seen
+    settings.remainder = 1e-5;  // so that the number of rounds does not dominate
     return render::BendablePolygon::build(
                std::make_shared<const render::ContactMesh>(std::move(mesh)), settings)
         .value();

@@ -16,8 +16,8 @@ namespace {
 using driver::EnergyStage;
 
 constexpr double kTick = GuardedArm::kTick;
-constexpr double kSpeed = 0.2;  // m/s, of the impact
-constexpr double kStep = 3e-5;  // m, of the encoder [PHYSICS 0]
+constexpr double kSpeed = 0.2;  // m/s, impact speed
+constexpr double kStep = 3e-5;  // m, encoder step [PHYSICS 0]
 constexpr double kPull = 1;     // N, towards the wall [PHYSICS 1.6]
 constexpr int kBounces = 20;
 constexpr int kBouncingTicks = 40000;
@@ -26,24 +26,24 @@ constexpr int kWorkTicks = 4000;
 constexpr double kStiffnesses[] = {250, 500, 1000, 2000, 4000};  // N/m
 constexpr double kUsual = 1000;                                  // N/m
 
-// The speed that an arm which a hand's pull brings back gains in its 20th bounce, in percent; 0 if
-// it loses some, or does not leave the wall any more. A budget of energy lets the first bounces
-// through, so the 20th tells what goes on for ever.
+// Returns the gain of speed in the 20th bounce of an arm that a hand pulls back to the wall, in
+// percent. It is 0 if speed is lost, or if the arm stays on the wall. A budget of energy allows the
+// first bounces, so the 20th shows the long-term behaviour.
 double gained(const WallGuard& guard, double stiffness) {
   double sum = 0;
   for (int phase = 0; phase < kPhases; ++phase) {
     GuardedWall wall(guard, stiffness);
-    // Depth and its rate; two free ticks first.
+    // Depth and its rate; the first two ticks are free.
     LineMotion now{-kSpeed * kTick * (1 + (phase + 0.5) / kPhases), kSpeed};
     double in = kSpeed;
-    double last = 1;  // speed out over speed in, of the last bounce
+    double last = 1;  // speed out divided by speed in, of the last bounce
     int bounces = 0;
     for (int i = 0; i < kBouncingTicks && bounces < kBounces; ++i) {
       const LineMotion before = now;
       now = moved_by_held_force(now, GuardedArm::kMass, GuardedArm::kViscous,
                                 kPull - wall.force(now.x), kTick);
       if (!(std::abs(now.x) < 1e3)) return NAN;
-      // By energy, what the pull does between the tick and the surface is not the wall's.
+      // Uses energy, because the pull between the tick and the surface does not belong to the wall.
       const double at_surface =
           std::sqrt(std::max(now.v * now.v - 2 * kPull / GuardedArm::kMass * now.x, 0.0));
       if (before.x <= 0 && now.x > 0) in = at_surface;
@@ -57,7 +57,7 @@ double gained(const WallGuard& guard, double stiffness) {
   return std::max(100 * (sum / kPhases - 1), 0.0);
 }
 
-// The stiffness that is missing when a hand presses 1 mm deep within 0.2 s and waits, in percent.
+// Returns the loss of stiffness when a hand presses 1 mm deep within 0.2 s and waits, in percent.
 double softened(const WallGuard& guard, double stiffness) {
   GuardedWall wall(guard, stiffness);
   constexpr double kDepth = 0.001;
@@ -66,11 +66,11 @@ double softened(const WallGuard& guard, double stiffness) {
   return 100 * std::max(1 - force / (stiffness * kDepth), 0.0);
 }
 
-// The force that the encoder's steps add while a hand presses in and out, mN RMS.
+// Returns the error of force by the encoder's steps while a hand presses in and out, mN RMS.
 double encoder_noise(const WallGuard& guard, double stiffness) {
   GuardedWall stepped(guard, stiffness);
   GuardedWall smooth(guard, stiffness);
-  constexpr double kShare = 0.1;  // of the hand's strokes: 2 mm
+  constexpr double kShare = 0.1;  // of the hand's amplitude: 2 mm
   double squares = 0;
   for (int i = 0; i < kWorkTicks; ++i) {
     const double depth = kShare * hand_signal(i * kTick).x;

@@ -21,13 +21,13 @@ constexpr int kAcross[] = {8, 16, 32, 64, 96};
 constexpr int kDefaultAcross = 32;
 constexpr int kQuestions = 500;
 
-/// A ring to be searched. The mesh stays where it is, for the search keeps a reference to it.
+/// A ring to be searched. The search keeps a reference to the mesh, whose address must not change.
 struct Searched {
   Searched(int across, SearchChoice choice)
       : mesh(build(across)), search(render::make_search(mesh, choice)) {}
 
   static render::ContactMesh build(int across) {
-    // A ring is closed, so it is not refused.
+    // A ring is closed, so this cannot fail.
     return render::ContactMesh::build(kCostRing.mesh(2 * across, across)).value();
   }
 
@@ -35,7 +35,7 @@ struct Searched {
   std::shared_ptr<const render::ContactSearch> search;
 };
 
-// Ways of a hand at 0.3 m/s that passes the ring closely; some of them enter.
+// Returns the path of a hand at 0.3 m/s that passes close to the ring; some paths enter it.
 std::pair<Vector3d, Vector3d> way(int question) {
   const double around = 0.37 * question;
   const double across = 0.11 * question;
@@ -43,7 +43,7 @@ std::pair<Vector3d, Vector3d> way(int question) {
           kCostRing.at(around + 0.004, across, question % 3 == 0 ? -2e-4 : 3e-4)};
 }
 
-// Answers that differ from those of a look at every triangle, in percent.
+// Returns the answers that differ from an exhaustive search, in percent.
 double error_of(int across, SearchChoice choice) {
   const Searched some(across, choice);
   const Searched all(across, SearchChoice::kLinear);

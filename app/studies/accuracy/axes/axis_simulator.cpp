@@ -15,7 +15,7 @@ using Arm = PushedArm;
 
 enum class Method { kEuler, kMidpoint, kRungeKutta };
 
-/// Steps the same motion by what textbooks offer.
+/// Integrates the same motion with textbook methods.
 class Stepped {
  public:
   Stepped(Method method, int substeps, bool dry)
@@ -27,14 +27,14 @@ class Stepped {
   }
 
  private:
-  // Dry friction for methods that take several looks per step: smoothed at 1 mm/s.
+  // Dry friction for methods with several evaluations per step: smoothed at 1 mm/s.
   double pull(const LineMotion& at, double force) const noexcept {
     double f = force - Arm::kViscous * at.v;
     if (dry_) return (f - Arm::kCoulomb * std::tanh(at.v / 1e-3)) / Arm::kMass;
     f -= Arm::kHandStiffness * at.x + Arm::kHandDamping * at.v;
     return f / Arm::kMass;
   }
-  // Dry friction that stops at zero and no farther.
+  // Dry friction that stops at zero speed.
   double rubbed(double v, double time) const noexcept {
     if (!dry_) return v;
     const double most = Arm::kCoulomb / Arm::kMass * time;
@@ -86,7 +86,7 @@ class Stepped {
   LineMotion now_;
 };
 
-/// Steps it by the simulator's own exact map.
+/// Integrates it with the simulator's exact map.
 class Exact {
  public:
   Exact(int substeps, bool dry)
@@ -119,7 +119,7 @@ class Exact {
 
 enum class Wrong { kPlace, kSpeed };
 
-// The largest error, um or mm/s.
+// Returns the largest error, um or mm/s.
 template <class Any>
 double error_of(Any motion, bool dry, Wrong wrong) {
   const std::vector<LineMotion> truth = dry ? pushed_with_dry_friction() : pushed_in_hand();
@@ -171,7 +171,7 @@ AccuracyAxis axis_of(bool dry, Wrong wrong) {
                         {Method::kRungeKutta, "rk4", dry ? "RK4, smoothed friction" : "RK4", 4}};
   for (const Line& one : lines) {
     AccuracyLine line{.name = one.name, .title = one.title, .order = {}, .points = {}};
-    // A step that jumps over the moment of a stop costs every method its order.
+    // A step across the moment of a stop reduces the order of every method.
     if (!dry) line.order = one.order;
     for (int substeps = 1; substeps <= 64; substeps *= 2) {
       const Stepped motion(one.method, substeps, dry);

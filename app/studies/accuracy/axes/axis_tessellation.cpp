@@ -14,10 +14,10 @@ using render::BlendingChoice;
 using render::TrackerChoice;
 
 constexpr int kAcross[] = {8, 12, 16, 24, 32, 48, 64};
-// Coarser ones are not touched at all in places, and a force that is not there has no direction.
+// Coarser rings have places without contact, where the force has no direction.
 constexpr int kAcrossTouched[] = {24, 28, 32, 40, 48, 56, 64};
 constexpr int kDefaultAcross = 32;
-// Orders show where triangles are much smaller than the curvature.
+// Orders are visible only if triangles are much smaller than the curvature.
 constexpr int kFitsFrom = 24;
 
 struct Way {
@@ -26,14 +26,14 @@ struct Way {
   TrackerChoice tracker;
   std::optional<BlendingChoice> blending;
   std::optional<bool> curved;
-  double force_order;  // 0: none is asked for
+  double force_order;  // 0: no expected order
   double direction_order;
 };
 
-// The flat normal turns by up to L / R within a triangle, the smooth one and the depth below the
-// triangles are off by (L / R)^2 [PHYSICS 3]. The flat force has both in it, and the depth below
-// the smooth surface is better than that where triangles are alike: no order is asked of either.
-// Nor of the 99th percentile of smooth directions, in which few places count.
+// The flat normal deviates by up to L / R within a triangle; the smooth normal and the depth below
+// the triangles by (L / R)^2 [PHYSICS 3]. The flat force contains both errors, and the depth below
+// the smooth surface is better where triangles are similar, so no order is expected of either. Nor
+// of the 99th percentile of smooth directions, which depends on few places.
 constexpr Way kWays[] = {
     {"flat", "flat", TrackerChoice::kEdgePlanes, BlendingChoice::kFlat, false, 0, 1},
     {"band", "blended band", TrackerChoice::kEdgePlanes, BlendingChoice::kSizedBand, false, 2, 0},
@@ -44,7 +44,8 @@ constexpr Way kWays[] = {
     {"compact", "compact", TrackerChoice::kPacked, {}, {}, 0, 0},
 };
 
-// What a scene gets that names nothing: each tracker's first line is as it is without blending.
+// Returns whether this is the default of a scene without settings: the first line of each tracker
+// has no blending.
 bool is_product_default(const Way& way) {
   return way.tracker == render::ContactChoice{}.tracker &&
          way.blending.value_or(BlendingChoice::kFlat) == BlendingChoice::kFlat;

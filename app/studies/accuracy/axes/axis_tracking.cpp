@@ -27,16 +27,16 @@ constexpr int kAcross = 64;                        // 16,384 triangles with edge
 constexpr double kHills = 4e-4;                    // m, up and down
 constexpr double kDeep = 1e-3;                     // m below the ring without hills
 constexpr double kTick = 1e-3;                     // s
-constexpr int kTicks = 400;                        // of a stroke
+constexpr int kTicks = 400;                        // in a stroke
 constexpr int kRepeats = 100;                      // of the worst tick
 constexpr double kSpeeds[] = {0.1, 0.3, 1, 2, 4};  // m/s
 constexpr double kUsualSpeed = 0.3;
-// A face is wrong if it is farther from the tip than the nearest one by what the spring of the
-// other studies, 800 N/m, turns into 20 mN [PHYSICS 6].
+// Extra distance at which a triangle counts as wrong: there the spring of the other studies, 800
+// N/m, has a force of 20 mN [PHYSICS 6].
 const double kFelt = 0.02 / kCostSpring.stiffness;
 
-/// The ring with hills and hollows of one triangle each, so that there are places at which many
-/// triangles are about as near.
+/// The ring with bumps and pits of one triangle each, so that many triangles have similar distances
+/// at some places.
 const FollowedSurface& surface() {
   static const FollowedSurface one = [] {
     render::TriangleMesh mesh = kCostRing.mesh(2 * kAcross, kAcross);
@@ -44,7 +44,7 @@ const FollowedSurface& surface() {
     for (Vector3d& p : mesh.vertices) p += draw.uniform(-kHills, kHills) * kCostRing.normal(p);
     FollowedSurface found;
     found.mesh = std::make_shared<const render::ContactMesh>(
-        render::ContactMesh::build(mesh).value());  // closed still, for the hills are low
+        render::ContactMesh::build(mesh).value());  // still closed, because the hills are low
     found.tree = render::make_search(*found.mesh, SearchChoice::kTree);
     found.linear = render::make_search(*found.mesh, SearchChoice::kLinear);
     return found;
@@ -52,11 +52,11 @@ const FollowedSurface& surface() {
   return one;
 }
 
-// A stroke around ring and tube at once, from outside in: its place at each tick.
+// Returns the positions of a stroke around ring and tube at once, from outside in, one per tick.
 std::vector<Vector3d> course_at(double speed) {
   std::vector<Vector3d> places;
   for (int i = 0; i < kTicks; ++i) {
-    // As far around the ring as around the tube in each tick.
+    // The same distance around the ring and around the tube in each tick.
     const double way = speed * kTick * i / std::sqrt(2);
     const double around = way / (kCostRing.ring_radius + kCostRing.tube_radius);
     places.push_back(kCostRing.at(around, way / kCostRing.tube_radius, i == 0 ? kDeep : -kDeep));
@@ -70,8 +70,9 @@ double distance_to_edge(const Vector3d& p, const Vector3d& a, const Vector3d& b)
   return (p - a - t * edge).norm();
 }
 
-// The distance to a triangle, m, in a way of its own so that the truth shares no code with what is
-// judged: to the plane where the foot lies inside all three edges, else to the nearest edge.
+// Returns the distance to a triangle, m. It is written separately, so that the truth shares no code
+// with the tested methods: to the plane if the projection is inside all three edges, otherwise to
+// the nearest edge.
 double distance_to(std::int32_t triangle, const Vector3d& p) {
   const auto& mesh = *surface().mesh;
   const Vector3d corners[] = {mesh.position(triangle, 0), mesh.position(triangle, 1),
@@ -88,7 +89,7 @@ double distance_to(std::int32_t triangle, const Vector3d& p) {
   return inside ? std::abs(n.dot(p - corners[0])) / n.norm() : nearest;
 }
 
-// How far the surface is at each of these places, found by looking at every triangle; m.
+// Returns the distance of the surface at each of these positions, by exhaustive search; m.
 const std::vector<double>& nearest_at(double speed) {
   static std::map<double, std::vector<double>> found;
   const auto [at, fresh] = found.try_emplace(speed);
@@ -103,7 +104,7 @@ const std::vector<double>& nearest_at(double speed) {
   return at->second;
 }
 
-// Ticks whose triangle is a wrong one, or that have none though the tip is inside; in percent.
+// Returns the ticks with a wrong triangle, or with none although the tip is inside; in percent.
 double wrong_faces(const FollowerChoice& choice, double speed) {
   const std::vector<Vector3d> places = course_at(speed);
   const std::vector<double>& nearest = nearest_at(speed);
@@ -118,7 +119,7 @@ double wrong_faces(const FollowerChoice& choice, double speed) {
   return 100.0 * wrong / (kTicks - 1);
 }
 
-/// The tick of a stroke that is the most work: who follows, as before it, and where it goes.
+/// The most expensive tick of a stroke: the follower before it, and the new position.
 struct WorstTick {
   std::shared_ptr<const Follower> before;
   Vector3d p_WT{0, 0, 0};
@@ -134,7 +135,7 @@ WorstTick worst_tick(const FollowerChoice& choice, double speed) {
   for (std::size_t i = 1; i < places.size(); ++i) {
     last->stand_where(*follower);
     follower->follow(places[i]);
-    // The tick that enters is a search's, whoever follows.
+    // The tick that enters always needs a search.
     if (i == 1 || !(follower->effort() > most)) continue;
     most = follower->effort();
     worst = {last->copy(), places[i]};
@@ -142,7 +143,7 @@ WorstTick worst_tick(const FollowerChoice& choice, double speed) {
   return worst;
 }
 
-// The worst tick again and again; without `follows` only what it takes to begin anew.
+// Repeats the worst tick; without `follows` only the reset of the follower.
 Stroke work_of(const FollowerChoice& choice, double speed, bool follows) {
   const WorstTick worst = worst_tick(choice, speed);
   const std::shared_ptr<Follower> follower = worst.before->copy();

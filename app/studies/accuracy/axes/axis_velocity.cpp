@@ -14,17 +14,17 @@ namespace thimble::studies {
 namespace {
 
 constexpr double kTick = 1e-3;      // s
-constexpr double kStep = 3e-5;      // m, an encoder's at the tip [PHYSICS 0]
-constexpr double kDamping = 1;      // N s/m, what most scenes' surfaces have
-constexpr double kHand = 1;         // N s/m, a light one
+constexpr double kStep = 3e-5;      // m, encoder step at the tip [PHYSICS 0]
+constexpr double kDamping = 1;      // N s/m, typical of scenes' surfaces
+constexpr double kHand = 1;         // N s/m, a light grip
 constexpr double kWallDamping = 2;  // N s/m [PHYSICS 1.1]
 constexpr int kTicks = 8000;
-constexpr int kSettle = 500;            // ticks that are not counted
+constexpr int kSettle = 500;            // ticks before the evaluation
 constexpr double kDefaultCorner = 100;  // Hz, app/arms/vintage_phantom.yaml
 
 using Make = std::function<std::unique_ptr<VelocityEstimate>()>;
 
-// The error of the force of a damper of 1 N s/m, mN RMS.
+// Returns the error of the force of a damper of 1 N s/m, mN RMS.
 double error_of(const Make& make) {
   const auto estimate = make();
   double squares = 0;
@@ -36,7 +36,8 @@ double error_of(const Make& make) {
   return 1e3 * kDamping * std::sqrt(squares / (kTicks - kSettle));
 }
 
-// How far the stiffest wall with a damper of 2 N s/m gives in a hand, mm/N: the lag's price.
+// Returns the compliance of the stiffest wall with a damper of 2 N s/m and a hand, mm/N: the cost
+// of the estimator's lag.
 double give_of(const Make& make) {
   RestedWall wall;
   wall.viscous = kHand;
@@ -91,7 +92,7 @@ std::vector<AccuracyLine> lines_of(Price price) {
   AccuracyLine levant{
       .name = "levant", .title = "Levant's differentiator", .order = {}, .points = {}};
   for (const double most : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
-    // It answers within about the time in which that acceleration crosses a step.
+    // Its response time is about the time in which that acceleration crosses a step.
     const double knob = 1e3 * std::sqrt(2 * kStep / most);
     levant.points.push_back(point_of(
         std::to_string(static_cast<int>(1000 * most)), knob,

@@ -21,7 +21,7 @@ namespace {
 constexpr int kRounds = 5;
 
 using Adjust = std::function<void(scene::Scene&)>;
-using Meshes = std::shared_ptr<scene::SharedMeshes>;  // of all runs that are compared
+using Meshes = std::shared_ptr<scene::SharedMeshes>;  // shared by all compared runs
 
 driver::Result<std::unique_ptr<session::Session>> open_with(const std::filesystem::path& scene,
                                                             const Adjust& adjust,
@@ -52,7 +52,7 @@ double compare(std::span<const driver::TickRecord> full, std::span<const driver:
   return size > 0 ? std::sqrt(squares / size) : 0;
 }
 
-// ns per tick of both, in turns, by the processor time of this thread.
+// Returns ns per tick of both, alternating, in CPU time of this thread.
 driver::Result<std::pair<double, double>> time_both(const std::filesystem::path& scene,
                                                     const Adjust& reduced, const Meshes& meshes) {
   std::vector<double> ns[2];
@@ -107,14 +107,14 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   GatingReport report;
   report.force = seen.force_rms;
   report.decisions = decide((*session)->scene(), seen);
-  // Each effect alone, whatever was decided: the check on the rule.
+  // Omits one effect at a time, whatever was decided, to check the rule.
   for (GateDecision& one : report.decisions) {
     if (!one.changes) continue;
     const auto rows = trace_of(
         scene, [&](scene::Scene& changed) { leave_out(one.name, changed); }, meshes);
     if (!rows) return rows.error();
     one.change = compare(full, *rows);
-    // Rules look at sizes; only the run knows what a hand makes of them.
+    // Rules compare magnitudes; only the run shows the response of the hand.
     if (one.left_out && !(*one.change <= kShareFelt)) {
       one.left_out = false;
       one.rule += "; it is, but the check below says no";
