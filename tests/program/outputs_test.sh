@@ -159,6 +159,11 @@ pid=$!
 for _ in $(seq 500); do [ -e busy.h5 ] && break; sleep 0.02; done
 expect_words 2 "busy.h5 $pid" "$thimble" "${run[@]}" --record busy.h5 --force
 expect_words 2 "busy $pid" "$thimble" "${run[@]}" --report busy
+# The file exists before the first tick; on a busy machine that tick comes later than the two refusals.
+for _ in $(seq 100); do
+  "$thimble" export busy.h5 --csv live.csv >/dev/null 2>&1 && [ "$(wc -l <live.csv)" -gt 1 ] && break
+  sleep 0.1
+done
 kill -INT $pid
 wait $pid
 expect_ticks busy.h5 -ge 1
