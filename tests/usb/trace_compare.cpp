@@ -175,8 +175,8 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
   // The trace has a line per frame, so of two reports in one frame it lacks one. Such a report must
   // not be taken for a later one with the same counts: the arm moves to and fro, and all ticks
   // after it would then be compared with reports of the future.
-  constexpr std::size_t kAhead =
-      8;  // reports beyond one for each tick since the last match [chosen]
+  // Reports that are searched beyond one for each tick since the last match [chosen].
+  constexpr std::size_t kAhead = 8;
   std::size_t at = 0, last_tick = 0, unknown = 0, lacking = 0;
   std::vector<std::size_t> seen(ticks.size(), SIZE_MAX);
   double worst_count = 0;
