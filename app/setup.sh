@@ -46,6 +46,7 @@ if [ ${#parts[@]} -gt 0 ]; then
   mapfile -t -O "${#packages[@]}" packages <<<"$optional"
 fi
 [ "$preset" != clang ] || packages+=(clang)
+[ "$(uname -m)" = x86_64 ] || packages+=(libsimde-dev)  # SSE2's functions on other processors
 
 mapfile -t missing < <(missing_packages "${packages[@]}")
 if [ ${#missing[@]} -gt 0 ]; then

@@ -4,7 +4,7 @@ import re
 EQUIVALENT = "equivalent"  # a reason with this prefix means that no test can detect the mutant
 HEAD = """# Mutants
 
-Made by `tests/mutate.sh`: single places of driver and render are broken, one at a time (a relation, an operator, a
+Made by `tests/mutate.sh`: single places of driver, render, scene and session are broken, one at a time (a relation, an operator, a
 constant, a sign, a negated condition, swapped arguments, a removed statement), and the unit tests that come by the
 place run until one fails. The reasons are written by hand and kept by the script; one that begins with *equivalent*
 says that no test could fail, and the mutant does not count. At least 90 % of the others must be killed.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -57,7 +58,7 @@ struct LatticePoint {
 LatticePoint on_lattice(const Vector3d& p) noexcept {
   const auto whole = [](double u) noexcept {
     // Rounds to the nearest, halves to the even one.
-    return _mm_cvtsd_si32(_mm_set_sd(std::clamp(u, -kLatticeHalf, kLatticeHalf)));
+    return static_cast<std::int32_t>(std::lrint(std::clamp(u, -kLatticeHalf, kLatticeHalf)));
   };
   return {whole(p.x()), whole(p.y()), whole(p.z())};
 }

@@ -1,11 +1,10 @@
 #pragma once
 
-// Lanes of 16 bytes: x86-64's own, or the same functions for any other processor.
+// Vectors of 16 bytes by the names of SSE2: of the processor itself on x86-64, of SIMDe elsewhere. Both give bit-identical
+// results for the functions in use (sse2_test, which tests/arm64.sh also runs), except for what the test names.
 #if defined(__x86_64__)
 #include <emmintrin.h>
 #else
-#include "compact_mesh/sse2_elsewhere.h"
-namespace thimble::render {
-using namespace sse2_elsewhere;
-}
+#define SIMDE_ENABLE_NATIVE_ALIASES
+#include <simde/x86/sse2.h>
 #endif
