@@ -8,16 +8,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source=$PWD
-work=$source/build/core_test
-rm -rf "$work"
-mkdir -p "$work"
-fail() {
-  echo "FAILED: $1" >&2
-  exit 1
-}
-quiet() {  # quiet LOG COMMAND...
-  "${@:2}" >"$work/$1.log" 2>&1 || fail "$(printf '%s ' "${@:2}"): $(tail -n 30 "$work/$1.log")"
-}
+source tests/build_check.sh
+empty_folder "$source/build/core_test"
 
 for part in MESH_FORMATS RECORDINGS BAGS VIEW WEB STUDIES COMMISSIONING COMPAT ROS2 PYTHON MPI BENCHMARKS TESTS; do
   echo "Configuring without THIMBLE_$part ..."

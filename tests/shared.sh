@@ -9,16 +9,8 @@ static=${1:+$(realpath "$1")}
 shared=${2:+$(realpath "$2")}
 cd "$(dirname "$0")/.."
 source=$PWD
-work=$source/build/shared_test
-rm -rf "$work"
-mkdir -p "$work"
-fail() {
-  echo "FAILED: $1" >&2
-  exit 1
-}
-quiet() {  # quiet LOG COMMAND...
-  "${@:2}" >"$work/$1.log" 2>&1 || fail "$(printf '%s ' "${@:2}"): $(tail -n 30 "$work/$1.log")"
-}
+source tests/build_check.sh
+empty_folder "$source/build/shared_test"
 unset LD_LIBRARY_PATH XDG_DATA_DIRS
 libraries="driver device_sim render scene session"
 version=$(sed -n 's/^project(thimble VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
