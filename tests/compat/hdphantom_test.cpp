@@ -79,7 +79,7 @@ TEST(FaceHdPhantom, CountsATorqueThatIsNotFelt) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(hdPhantomSetTorque(0, &torque, &zero, &zero), 0);
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
   EXPECT_EQ(hdPhantomClose(0), 1);
-  EXPECT_NE(rig.end().find("Torque    asked for 5 times"), std::string::npos);
+  EXPECT_NE(rig.end().find("Torque    requested 5 times"), std::string::npos);
 }
 
 TEST(FaceHdPhantom, FailsByMinusOneWhateverItIsGiven) {

@@ -19,7 +19,7 @@ def test_run_is_published_and_reported(monkeypatch):
         raise
     with live:
         assert live.tick is None or live.running
-    assert "ticks published; 0 forces taken" in live.topics
+    assert "ticks published; 0 forces received" in live.topics
 
 
 def test_no_topics_unless_asked():
