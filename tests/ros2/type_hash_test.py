@@ -1,4 +1,4 @@
-"""The hashes of types that ROS 2 compares, computed anew from ros_messages.idl by the recipe of REP 2016
+"""The hashes of types that ROS 2 compares, computed again from ros_messages.idl by the rules of REP 2016
 (a type's description as JSON, its SHA-256), against the table in the source.
 
     type_hash_test.py ros_messages.idl type_hashes.cpp

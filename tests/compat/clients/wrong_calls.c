@@ -1,5 +1,4 @@
-/* Calls what is wrong and looks at the error that comes back: three numbers in one struct, by
- * value. */
+/* Makes wrong calls and checks the returned errors: three numbers in one struct, by value. */
 #include <HD/hd.h>
 #include <stdio.h>
 
