@@ -26,7 +26,7 @@ int main(void) {
   hdGetDoublev(0xfade, p);
   hdEndFrame(second);
   right &= is("no such parameter", HD_INVALID_ENUM, second);
-  right &= is("all told", HD_SUCCESS, HD_INVALID_HANDLE);
+  right &= is("no more errors", HD_SUCCESS, HD_INVALID_HANDLE);
   hdDisableDevice(second);
   hdDisableDevice(0);
   if (right) printf("errors by value: right\n");

@@ -84,7 +84,7 @@ async def first_message():
     (grip,) = arm.first["wireless_verse_grip"]
     check(set(grip["state"]["buttons"]) == {"a", "b", "c"}, "no buttons")
     later = await arm.exchange({"session": {"configure": {"profile": {"name": "test:program"}}}})
-    check("session_id" not in later and "config" not in later["inverse3"][0], "a later message tells everything")
+    check("session_id" not in later and "config" not in later["inverse3"][0], "a later message has the full state")
     full = await arm.exchange({"session": {"force_render_full_state": {}}})
     check("session_id" in full and "config" in full["inverse3"][0], "force_render_full_state changes nothing")
     # Two messages, two answers, and no third.
@@ -94,7 +94,7 @@ async def first_message():
         await asyncio.wait_for(arm.socket.recv(), 5)
     try:
         await asyncio.wait_for(arm.socket.recv(), 0.2)
-        check(False, "a message that nobody asked for")
+        check(False, "a message without a request")
     except asyncio.TimeoutError:
         pass
     await arm.socket.close()
@@ -124,7 +124,7 @@ async def force(log):
             print(-y - 0.130, x, z - 0.170, -v, u, w, -b, a, c, file=lines)
             if turn > 1000:
                 told = three(state["current_cursor_force"])
-                check(math.dist(told, asked) < 1e-9, f"asked for {asked}, and {told} went out")
+                check(math.dist(told, asked) < 1e-9, f"requested {asked}, sent {told}")
     await arm.socket.close()
 
 
@@ -139,7 +139,7 @@ async def lets_go():
             break
         await asyncio.sleep(0.002)
     else:
-        check(False, "the force stands though nobody asks for it")
+        check(False, "the force remains without requests")
     for _ in range(50):
         check(length((await other.probe())["current_cursor_force"]) == 0, "the force came back by itself")
     await opened(arm)
@@ -192,7 +192,7 @@ async def two(clock="wall"):
     await opened(first, (0.3, 0.0, 0.0))
     if clock == "virtual":
         state = await second.push((0.0, 0.1, 0.0))
-        check(state["current_cursor_force"]["x"] == 0.3, "who comes second opens the first one's force anew")
+        check(state["current_cursor_force"]["x"] == 0.3, "the second program restarts the soft start of the first")
     for _ in range(1000):
         await second.push((0.0, 0.4, 0.0))
         state = await first.push((0.3, 0.0, 0.0))
@@ -222,7 +222,7 @@ async def cut():
             break
         await asyncio.sleep(0.002)
     else:
-        check(False, "the force stands though its program is gone")
+        check(False, "the force remains after its program has ended")
     check(not (await other.exchange("{}"))["inverse3"][0]["status"]["in_use"], "it is still in use")
     await opened(other)
 
@@ -259,7 +259,7 @@ async def doors():
             return
         except (OSError, asyncio.TimeoutError, websockets.exceptions.WebSocketException):
             await asyncio.sleep(0.05)
-    check(False, "nobody is let in any more")
+    check(False, "no client is accepted any more")
 
 
 async def hold():
