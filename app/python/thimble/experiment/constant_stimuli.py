@@ -12,7 +12,7 @@ from .psychometric import Array, Psychometric, count, fit
 
 
 class ConstantStimuli(Trials):
-    """Levels in a shuffled order. A trial has its level as ``condition["level"]``, an answer has the key `says`."""
+    """Levels in a shuffled order. A trial has ``condition["level"]``, its answer has the key `says`."""
 
     def __init__(
         self,
@@ -26,9 +26,9 @@ class ConstantStimuli(Trials):
     ) -> None:
         """Create the trials.
 
-        levels: in any unit. repeats: trials of each level. says: key of the answer whose value is True or
-        False; True is more frequent at higher levels. order, seed, subject: as in :class:`Trials`;
-        "balanced" needs the subject.
+        levels: in any unit. repeats: trials of each level.
+        says: key of the answer whose value is True or False; True is more frequent at higher levels.
+        order, seed, subject: as in :class:`Trials`; "balanced" needs the subject.
         """
         each = {"level": [float(one) for one in levels]}
         super().__init__(each, repeats=repeats, order=order, seed=seed, subject=subject)
