@@ -1,6 +1,6 @@
-"""Builds the wheel: CMake builds module and program, and installs the files of all its parts beside the module.
+"""Builds the wheel: CMake builds module and program, and installs their files next to the module.
 
-THIMBLE_BUILD_FOLDER in the environment names a build folder (preset release) to take them from instead.
+If the environment variable THIMBLE_BUILD_FOLDER names a build folder (preset release), its files are used.
 """
 
 import os
@@ -17,7 +17,7 @@ SOURCE = Path(__file__).resolve().parent
 
 
 class BuildByCMake(build_ext):
-    """Fills the package's folder in the wheel: _core, bin/thimble, libexec/thimble, lib/thimble, share/thimble."""
+    """Fills the package's folder of the wheel: _core, bin/thimble, libexec/thimble, lib/thimble, share/thimble."""
 
     def build_extension(self, ext: Extension) -> None:
         package = Path(self.get_ext_fullpath(ext.name)).resolve().parent
@@ -27,7 +27,7 @@ class BuildByCMake(build_ext):
             self._build(build)
         modules = list(Path(build, "app/python/thimble").glob("_core*.so"))
         if len(modules) != 1:
-            sys.exit(f"{build} has no Python module: install python3-dev and pybind11-dev, and build anew.")
+            sys.exit(f"{build} has no Python module. Install python3-dev and pybind11-dev, and build again.")
         package.mkdir(parents=True, exist_ok=True)
         shutil.copy2(modules[0], package)
         for component in ("program", "viewer", "studies", "mesh_formats", "compat"):

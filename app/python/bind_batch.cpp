@@ -48,11 +48,11 @@ class HeldBatch {
   /// the newest tick of each, and which hands the arms can reach.
   py::tuple step(const Counts& ticks, const py::object& hands) {
     const auto count = static_cast<py::ssize_t>(size());
-    if (ticks.size() != count) throw ArgumentError("ticks: expected one number for each run.");
+    if (ticks.size() != count) throw ArgumentError("ticks: expected one number for each arm.");
     std::vector<Eigen::Vector3d> places;
     if (!hands.is_none()) {
       const auto rows = hands.cast<Places>();
-      if (rows.size() != 3 * count) throw ArgumentError("hands: expected a point for each run.");
+      if (rows.size() != 3 * count) throw ArgumentError("hands: expected a point for each arm.");
       for (py::ssize_t i = 0; i < count; ++i) {
         places.emplace_back(Eigen::Map<const Eigen::Vector3d>(rows.data() + 3 * i));
       }
@@ -65,11 +65,11 @@ class HeldBatch {
 
   /// Restarts some of the runs, each with its seed.
   void restart(const Counts& which, const Seeds& seeds) {
-    if (which.size() != seeds.size()) throw ArgumentError("seeds: expected one for each run.");
+    if (which.size() != seeds.size()) throw ArgumentError("seeds: expected a seed for each arm.");
     alone([&] {
       for (py::ssize_t k = 0; k < which.size(); ++k) {
         const std::size_t i = which.data()[k];
-        if (i >= size()) throw ArgumentError("There is no such run.");
+        if (i >= size()) throw ArgumentError("which: there is no arm of this number.");
         if (auto begun = batch_->restart(i, seeds.data()[k]); !begun) {
           throw ThimbleError(begun.error().message);
         }
@@ -80,7 +80,7 @@ class HeldBatch {
  private:
   template <class Work>
   void alone(const Work& work) {
-    if (busy_) throw ThimbleError("These runs are already being stepped.");
+    if (busy_) throw ThimbleError("These arms are already being stepped.");
     busy_ = true;
     try {
       const py::gil_scoped_release others;

@@ -108,11 +108,11 @@ void run_all(HeldRun& held) {
 bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
   session::Session& session = held.run->session();
   if (hand && session.arms() > 1) {
-    throw ThimbleError("A hand can be led where the scene has one arm; this one has " +
+    throw ThimbleError("hand: requires a scene with one arm; this one has " +
                        std::to_string(session.arms()) + ".");
   }
   if (hand && session.simulation() != nullptr && !session.lead_hand(*hand)) {
-    throw ArgumentError("The arm does not reach that point of the world (m); move the hand.");
+    throw ArgumentError("hand: the arm does not reach this point (m, world). Choose another one.");
   }
   const bool more = held.run->step();
   held.rethrow();
@@ -120,7 +120,8 @@ bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
 }
 
 py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object) {
-  if (held.run->running()) throw ThimbleError("The run goes on; stop() it to see its meshes.");
+  if (held.run->running())
+    throw ThimbleError("The run has not ended. Call stop() before you read its meshes.");
   const session::Session& session = held.run->session();
   int number = -1;
   if (object) {
@@ -145,7 +146,8 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
 
 /// Returns the index of an arm given by Python.
 std::size_t arm_of(const HeldRun& held, std::size_t arm) {
-  if (arm >= held.run->session().arms()) throw ArgumentError("The scene has no such arm.");
+  if (arm >= held.run->session().arms())
+    throw ArgumentError("arm: the scene has no arm of this number.");
   return arm;
 }
 
@@ -158,7 +160,7 @@ py::list knobs_of(const HeldRun& held) {
 }
 
 void turn(HeldRun& held, const std::string& name, double value) {
-  if (held.run->end()) throw ThimbleError("The run is over: no knob of it turns any more.");
+  if (held.run->end()) throw ThimbleError("The run is over; its knobs cannot be changed.");
   const auto turned = held.run->session().turn_knob(name, value);
   if (!turned) throw ArgumentError(turned.error().message);
 }

@@ -4,7 +4,7 @@
 
 namespace thimble::python {
 
-/// Registers the Python class Run: a session that runs at once, tick by tick, or in real time.
+/// Registers the Python class Run: a session that runs as a whole, tick by tick, or in real time.
 void bind_run(pybind11::module_& core);
 
 }  // namespace thimble::python

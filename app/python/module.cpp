@@ -82,7 +82,7 @@ py::array step_all(const std::vector<SimulatorSession*>& arms, const Rows& force
   for (std::size_t i = 0; hands && i < arms.size(); ++i) {
     if (arms[i]->reaches(hand_of(i))) continue;
     throw ArgumentError("hand: arm " + std::to_string(i) +
-                        " does not reach that point of the world (m); move it.");
+                        " does not reach its point (m, world). Choose another one.");
   }
   for (std::size_t i = 0; hands && i < arms.size(); ++i) arms[i]->lead(hand_of(i));
   std::vector<driver::TickRecord> ticks;
@@ -105,7 +105,7 @@ void bind_simulator(py::module_& core) {
              const std::optional<Eigen::Vector3d>& hand) {
             if (hand && !session.lead(*hand)) {
               throw ArgumentError(
-                  "The arm does not reach that point of the world (m); move the hand.");
+                  "hand: the arm does not reach this point (m, world). Choose another one.");
             }
             return one(session.step(force));
           },
@@ -130,12 +130,14 @@ PYBIND11_MODULE(_core, core) {
   using namespace thimble;
   using namespace thimble::python;
   py::object error = py::register_exception<ThimbleError>(core, "Error", PyExc_RuntimeError);
-  error.attr("__doc__") = "What went wrong, and what to do; every error of this package is one.";
+  error.attr("__doc__") =
+      "Base class of the errors of this package. The message has the problem and its remedy.";
   py::object argument_error = py::register_exception<ArgumentError>(
       core, "ArgumentError", py::make_tuple(error, py::handle(PyExc_ValueError)));
   argument_error.attr("__doc__") =
-      "An argument that names nothing that there is, or misses its bounds; the sentence says what "
-      "would do.";
+      "An argument that names nothing that exists, or is out of bounds. The message has the "
+      "allowed "
+      "values.";
   for (py::object& one : {std::ref(error), std::ref(argument_error)}) {
     one.attr("__module__") = "thimble";
   }

@@ -16,14 +16,14 @@ namespace py = pybind11;
 namespace thimble::python {
 namespace {
 
-/// Returns three numbers returned by Python.
+/// Converts the return value of a Python law to a force (N, world).
 Eigen::Vector3d force_of(const py::object& answer) {
   const auto force = py::array_t<double, py::array::forcecast>::ensure(answer);
   if (!force || force.ndim() != 1 || force.shape(0) != 3) {
     PyErr_Clear();
     throw py::value_error(
-        "The force law must answer with three numbers (N, in the world), or None for the "
-        "scene's own force; it answered " +
+        "law: expected a return value of three numbers (N, in the world), or None for the force of "
+        "the scene; found " +
         py::repr(answer).cast<std::string>() + ".");
   }
   return {force.at(0), force.at(1), force.at(2)};
@@ -70,7 +70,7 @@ class PythonLaw final : public OwnLaw {
   void change(const driver::DeviceState& state, driver::ForceCommand& command) noexcept override {
     const py::gil_scoped_acquire python;
     try {
-      if (error_ || !law_) throw py::value_error("The law has failed before.");
+      if (error_ || !law_) throw py::value_error("law: it has already raised an exception.");
       const py::object answer = law_(one(driver::record_of(state, command)));
       if (!answer.is_none()) answer_with(force_of(answer), command);
       return;

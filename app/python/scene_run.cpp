@@ -34,7 +34,7 @@ class Claim {
   bool& busy_;
 };
 
-/// Prints the conditions for a real arm to stderr, like other warnings of a program.
+/// Prints warnings to stderr, e.g. the limits of a real arm.
 void tell(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) {
     scene::logger().warn("{}", sentence);
@@ -62,15 +62,15 @@ session::SessionOptions session_options(const RunOptions& options) {
       plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
   if (options.device == "auto" && !asked.real_arm) {
     throw ThimbleError(
-        "No arm is plugged in that Thimble drives: `thimble doctor` says why. device=\"sim\" takes "
-        "the "
-        "simulated one.");
+        "No arm is plugged in that Thimble supports. Run `thimble doctor` to find the reason, or "
+        "use "
+        "the simulated arm: device=\"sim\".");
   }
   if (asked.real_arm && !options.agreed) {
     throw ThimbleError(
         asked.real_arm->arm + " " + asked.real_arm->name() +
-        " would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
-        "say agree=True.");
+        " will move by itself. Keep clear of it, hold its grip, keep its switch within reach, and "
+        "pass agree=True.");
   }
   if (!options.arm_file.empty()) asked.arm_file = named_by(scene::find_arm_file(options.arm_file));
   asked.knobs = true;
@@ -89,7 +89,8 @@ session::SessionOptions session_options(const RunOptions& options) {
   const auto hold = session::hold_named(options.hold_to_run);
   if (!hold) throw ArgumentError("hold_to_run: " + hold.error().message);
   if (hold->by_caller) {
-    throw ArgumentError("hold_to_run: in Python a button of the arm is held, no key.");
+    throw ArgumentError(
+        "hold_to_run: a key cannot be used in Python. Name a button of the arm, e.g. \"button\".");
   }
   asked.hold = *hold;
   asked.several_arms = true;
@@ -112,7 +113,7 @@ SceneRun::SceneRun(const RunOptions& options) {
   tell(session_->told());
   if (!options.topics) return;
   if (!options.real_time) {
-    throw ThimbleError("ros2: topics tell of a run in real time; see thimble.open.");
+    throw ThimbleError("ros2: topics require a run in real time. Use thimble.open.");
   }
   asked_topics_ = value_of(ros2::ros_options(*options.topics));
 }
@@ -143,7 +144,7 @@ std::optional<driver::ServoEnd> SceneRun::end() noexcept {
 }
 
 bool SceneRun::step() {
-  if (session_->real_time()) throw ThimbleError("A run in real time is not stepped by hand.");
+  if (session_->real_time()) throw ThimbleError("A run in real time cannot be stepped.");
   const Claim claim(busy_);
   return take_step();
 }
@@ -157,7 +158,7 @@ bool SceneRun::take_step() {
 }
 
 void SceneRun::run(const std::function<bool()>& stop_asked) {
-  if (session_->real_time()) throw ThimbleError("A run in real time runs by start().");
+  if (session_->real_time()) throw ThimbleError("A run in real time must be started by start().");
   const Claim claim(busy_);
   for (int ticks = 1; take_step(); ++ticks) {
     if (ticks % kTicksBetweenQuestions == 0 && stop_asked()) ask_to_stop();
@@ -165,8 +166,9 @@ void SceneRun::run(const std::function<bool()>& stop_asked) {
 }
 
 void SceneRun::start() {
-  if (!session_->real_time()) throw ThimbleError("A run in virtual time has no thread.");
-  if (servo_ || end_) throw ThimbleError("This run has begun before.");
+  if (!session_->real_time())
+    throw ThimbleError("A run in virtual time cannot be started; use run() or step().");
+  if (servo_ || end_) throw ThimbleError("This run was already started.");
   for (std::size_t arm = 0; asked_topics_ && arm < session_->arms(); ++arm) {
     topics_.push_back(value_of(ros2::RosRun::open(*session_, *asked_topics_, arm)));
   }
@@ -192,7 +194,7 @@ void SceneRun::finish() {
   servo_.reset();  // no longer keeps the processor awake
   if (const auto kept = session_->keep_black_boxes(true); kept) {
     for (const auto& file : *kept) {
-      scene::logger().warn("the last seconds before the fault are in {}", file.string());
+      scene::logger().warn("The last seconds before the fault were saved to {}.", file.string());
     }
   }
   if (const auto ended = session_->end_recording(); !ended)
@@ -200,12 +202,13 @@ void SceneRun::finish() {
 }
 
 std::span<const driver::TickRecord> SceneRun::ticks(std::size_t arm) const {
-  if (running()) throw ThimbleError("The run goes on; stop() it to see its ticks.");
+  if (running())
+    throw ThimbleError("The run has not ended. Call stop() before you read its ticks.");
   return session_->ticks(arm);
 }
 
 session::RunFigures SceneRun::figures(std::size_t arm) {
-  if (!end()) throw ThimbleError("The run is not over: nothing to sum up yet.");
+  if (!end()) throw ThimbleError("The run has not ended, so it has no figures yet.");
   return session_->figures(grant_, arm);
 }
 

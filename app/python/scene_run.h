@@ -38,12 +38,12 @@ struct RunOptions {
   std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< Shared with other runs; null: its own.
 };
 
-/// Returns the options of a session. Throws ThimbleError or ArgumentError with a sentence.
+/// Returns the options of a session. Throws ThimbleError or ArgumentError.
 session::SessionOptions session_options(const RunOptions& options);
 
-/// A session held by Python: run at once, tick by tick, or in real time on its own thread. All
-/// functions except those of `driver::` throw ThimbleError with a sentence for the user. Real-time:
-/// never from the servo thread, all of it.
+/// A session for Python: runs as a whole, tick by tick, or in real time on its own thread. All
+/// functions except those of `driver::` throw ThimbleError with a message for the user. Real-time:
+/// no function may be called from the servo thread.
 class SceneRun {
  public:
   explicit SceneRun(const RunOptions& options);

@@ -14,8 +14,8 @@
 namespace thimble::python {
 
 /// A simulated arm without a scene, in virtual time. The caller sets the force of each tick, which
-/// passes the same gate and wire as any other. Throws ThimbleError with a sentence for the user.
-/// Real-time: never from the servo thread, all of it.
+/// passes the same gate and wire as any other. Throws ThimbleError with a message for the user.
+/// Real-time: no function may be called from the servo thread.
 class SimulatorSession {
  public:
   /// Opens the arm of a file or name, held by a hand at `p_WH` (m), ready for forces.

@@ -10,8 +10,8 @@
 
 namespace thimble::python {
 
-/// thimble.Error in Python: a sentence that says what to do. Invalid UTF-8 is replaced, because
-/// Python accepts only UTF-8 but file names may contain any bytes.
+/// thimble.Error in Python: a message with the problem and its remedy. Invalid UTF-8 is replaced,
+/// because Python accepts only UTF-8 but file names may contain any bytes.
 struct ThimbleError : std::runtime_error {
   explicit ThimbleError(const std::string& sentence)
       : std::runtime_error(scene::as_utf8(sentence)) {}

@@ -12,21 +12,21 @@ ArmHealth health_of(const driver::TickRecord& tick) {
     std::string message(driver::describe(tick.fault));
     // The fault is the first cause; the arm may be unplugged later.
     if (tick.link == driver::LinkState::kLost && tick.fault != driver::Fault::kTransportLost) {
-      message += " The arm is gone from the wire now.";
+      message += " The arm is now disconnected.";
     }
     return {ArmHealth::kError, std::move(message)};
   }
   if (tick.stage == driver::DeviceStage::kWaiting) {
-    return {ArmHealth::kWarn, "No forces: the enabling input is not held."};
+    return {ArmHealth::kWarn, "Forces are off: the enabling input is not held."};
   }
   if (tick.stage != driver::DeviceStage::kActive) {
-    return {ArmHealth::kWarn, "No forces: the arm is not activated."};
+    return {ArmHealth::kWarn, "Forces are off: the arm is not activated."};
   }
   const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
   if (heat >= driver::HeatGuard::kWarning) {
-    return {ArmHealth::kWarn, "A motor is hot; the force is lowered until it cools."};
+    return {ArmHealth::kWarn, "A motor is hot; the force is reduced until it cools."};
   }
-  return {ArmHealth::kOk, "Forces go through the safety gate."};
+  return {ArmHealth::kOk, "Forces are enabled."};
 }
 
 }  // namespace thimble::ros2

@@ -1,4 +1,4 @@
-// The module thimble-ros2.so: a run's peer by Cyclone DDS.
+// The module thimble-ros2.so: a run's peer that uses Cyclone DDS.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -114,8 +114,8 @@ RosPeer* begun(std::unique_ptr<Peer> peer, std::uint32_t domain, char* error, st
   if (const dds_return_t status = peer->begin(); status < 0) {
     std::snprintf(
         error, size,
-        "ROS 2 topics of domain %u cannot be opened: Cyclone DDS says \"%s\". Check that the "
-        "loopback interface is up (with --ros-network: the network's interfaces and "
+        "ROS 2 topics of domain %u cannot be opened: Cyclone DDS reports \"%s\". Check that the "
+        "loopback interface is up (with --ros-network, the network interfaces and "
         "CYCLONEDDS_URI), and use a domain below 233.",
         domain, dds_strretcode(status));
     return nullptr;

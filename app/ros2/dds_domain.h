@@ -8,7 +8,7 @@ namespace thimble::ros2 {
 /// A peer's use of a DDS domain. Local-only traffic is enforced twice: Cyclone DDS is configured to
 /// use only the loopback interface, and its sockets, which it opens on all interfaces nevertheless,
 /// drop all packets not sent from 127.0.0.0/8. Peers of one process share a domain, which is closed
-/// with the last of them. Real-time: never from the servo thread, all of it.
+/// with the last of them. Real-time: no function may be called from the servo thread.
 class DdsDomain {
  public:
   DdsDomain() = default;

@@ -36,9 +36,8 @@ driver::Result<session::Histogram> measure_ros_latency(const std::string& scene,
   const session::Histogram ages = (*run)->law()->ages();
   if (ages.count() == 0) {
     return driver::Error{
-        "No force came back over the topics: check that the loopback interface is up (ip link set "
-        "lo "
-        "up)."};
+        "No force was received from the topics. Check that the loopback interface is up "
+        "(ip link set lo up)."};
   }
   return ages;
 }

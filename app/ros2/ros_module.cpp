@@ -52,9 +52,9 @@ driver::Result<RosModule> load_module() {
   const std::filesystem::path file = module_file();
   if (file.empty()) {
     return driver::Error{
-        "ROS 2 topics need the module thimble-ros2.so, which is not there: install the package "
-        "thimble-ros2; or, where Thimble is built, cyclonedds-dev and cyclonedds-tools, and build "
-        "the target thimble_ros2 after cmake was run anew."};
+        "ROS 2 topics require the module thimble-ros2.so, which was not found. Install the package "
+        "thimble-ros2. In a build from source, install cyclonedds-dev and cyclonedds-tools, run "
+        "cmake again, and build the target thimble_ros2."};
   }
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) {
@@ -67,9 +67,10 @@ driver::Result<RosModule> load_module() {
   void* echo = dlsym(module, kRosModuleEcho);
   if (version == nullptr || open == nullptr || echo == nullptr ||
       std::strcmp(version, THIMBLE_VERSION) != 0) {
-    return driver::Error{fmt::format(
-        "{} is of version {}, this program of {}: install thimble and thimble-ros2 of one version.",
-        file.string(), version != nullptr ? version : "unknown", THIMBLE_VERSION)};
+    return driver::Error{
+        fmt::format("{} has version {}, but this program has {}. Install the same version of "
+                    "thimble-ros2 and thimble.",
+                    file.string(), version != nullptr ? version : "unknown", THIMBLE_VERSION)};
   }
   return RosModule{reinterpret_cast<RosModuleOpen>(open), reinterpret_cast<RosModuleEcho>(echo)};
 }

@@ -7,18 +7,18 @@
 
 namespace thimble::ros2 {
 
-/// Fails if the module is missing, cannot be loaded, or has another version; the error says what to
-/// install. Real-time: never from the servo thread.
+/// Returns an error if the module is missing, cannot be loaded, or has another version. It names
+/// the package to install. Real-time: never from the servo thread.
 driver::Result<void> check_ros_module();
 
-/// Publishes a run by the module of the package thimble-ros2, which is loaded now, so that no other
-/// part of Thimble needs a DDS library. `channel` must outlive the peer. The error says what to
-/// install. Real-time: never from the servo thread.
+/// Publishes a run with the module of the package thimble-ros2. The module is loaded now, so that
+/// no other part of Thimble needs a DDS library. `channel` must outlive the peer. The error names
+/// the package to install. Real-time: never from the servo thread.
 driver::Result<std::unique_ptr<RosPeer>> open_ros_peer(const RosOptions& options,
                                                        const RosScene& scene, RosChannel& channel);
 
-/// Starts to answer the poses of a run with zero forces, stamped as the poses, as another program
-/// would (EchoPeer). As above.
+/// Starts a peer that answers the poses of a run with zero forces, with the stamps of the poses,
+/// like another program (EchoPeer). Otherwise as above.
 driver::Result<std::unique_ptr<RosPeer>> open_ros_echo(const RosOptions& options);
 
 /// Symbols of the module. Its functions return a peer, or write an error of at most `size` bytes

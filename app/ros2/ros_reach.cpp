@@ -32,10 +32,8 @@ driver::Result<RosReach> ros_reach(bool network) {
         "{}: expected LOCALHOST, SUBNET, OFF or SYSTEM_DEFAULT, found \"{}\".", kRange, range)};
   }
   if (network && !narrowed.empty()) {
-    return driver::Error{
-        fmt::format("--ros-network lets other computers in, but {} keeps them out: remove one of "
-                    "both.",
-                    narrowed)};
+    return driver::Error{fmt::format(
+        "--ros-network allows other computers, but {} excludes them. Remove one.", narrowed)};
   }
   if (network) return RosReach::kNetwork;
   return range == "OFF" ? RosReach::kUnseen : RosReach::kThisComputer;

@@ -82,23 +82,23 @@ void RosRun::take(const driver::TickRecord& record) noexcept {
 std::string RosRun::report() const {
   const RosCounts& counts = channel_.counts;
   std::string s = fmt::format("ROS 2     {} ticks published", counts.published.load());
-  if (law_)
-    s += fmt::format("; {} forces taken, {} cut to the limit", counts.taken.load(), law_->cut());
-  if (options_.lead_hand) s += fmt::format("; {} places of the hand taken", counts.places.load());
+  if (law_) s += fmt::format("; {} forces received, {} limited", counts.taken.load(), law_->cut());
+  if (options_.lead_hand) s += fmt::format("; {} hand targets received", counts.places.load());
   s += ".\n";
   const auto tell = [&s](std::uint64_t number, const char* what) {
     if (number > 0) s += fmt::format("ROS 2     {} {}\n", number, what);
   };
-  tell(counts.skipped.load(), "messages skipped: newer ones stood behind them.");
-  tell(counts.not_finite.load(), "messages refused: they were not finite.");
-  tell(counts.wrong_frame.load(), "messages refused: they were not in the world's frame.");
-  tell(places_refused_, "places of the hand were beyond the arm's reach: it stayed.");
-  tell(counts.with_torque.load(), "forces had a torque, for which the arm has no motor.");
+  tell(counts.skipped.load(), "messages skipped, because newer ones had arrived.");
+  tell(counts.not_finite.load(), "messages refused, because a number was not finite.");
+  tell(counts.wrong_frame.load(), "messages refused, because their frame was not the world frame.");
+  tell(places_refused_, "hand targets refused, because the arm could not reach them.");
+  tell(counts.with_torque.load(),
+       "forces had a torque, which was ignored: the arm has no motor for it.");
   if (!law_) return s;
-  tell(law_->stalls(), "times a force was not renewed within its time, and was zero until it was.");
+  tell(law_->stalls(), "times a force was not renewed in time; it was zero until the next one.");
   if (const session::Histogram& ages = law_->ages(); ages.count() > 0) {
     s += fmt::format(
-        "ROS 2     forces answered positions that were {:.2f} ms old (median), {:.2f} ms (99 %)\n",
+        "ROS 2     delay from a position to its force: {:.2f} ms (median), {:.2f} ms (99 %)\n",
         1e-6 * ages.percentile(0.5), 1e-6 * ages.percentile(0.99));
   }
   return s;

@@ -20,7 +20,7 @@ class RosRun final : public session::TickObserver {
   /// Opens the topics of one arm of a session. Each of several arms has topics under its name, and
   /// the first publishes the objects. Precondition: the arm is open and no tick has run. The
   /// session must outlive this. `clock`: the session's clock in a stepped run, otherwise null. The
-  /// error says what to do. Real-time: never from the servo thread.
+  /// error message has the remedy. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<RosRun>> open(session::Session& session,
                                                       const RosOptions& options,
                                                       std::size_t arm = 0,

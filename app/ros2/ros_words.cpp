@@ -50,21 +50,21 @@ driver::Result<RosOptions> ros_options(const RosWords& words) {
   RosOptions options;
   const auto style = style_of(words.names);
   if (!style) {
-    return driver::Error{fmt::format(
-        "Names of ROS 2 topics: expected plain, crtk or omni, found \"{}\".", words.names)};
+    return driver::Error{
+        fmt::format("--ros-names: expected plain, crtk or omni, found \"{}\".", words.names)};
   }
   options.style = *style;
   const auto force = force_of(words.force);
   if (!force) {
-    return driver::Error{fmt::format(
-        "Forces from ROS 2 topics: expected none, add or replace, found \"{}\".", words.force)};
+    return driver::Error{
+        fmt::format("--ros-force: expected none, add or replace, found \"{}\".", words.force)};
   }
   options.force = *force;
   options.name_space = words.name_space;
   if (*style == RosStyle::kOmni && words.name_space.empty()) options.name_space = "/phantom";
   if (!name_space(options.name_space)) {
     return driver::Error{fmt::format(
-        "--ros-namespace \"{}\" is no name of ROS 2: write words of letters, digits and _, each "
+        "--ros-namespace: \"{}\" is not a ROS 2 name. Use words of letters, digits and _, each "
         "after a slash, as in /phantom.",
         options.name_space)};
   }
@@ -73,11 +73,11 @@ driver::Result<RosOptions> ros_options(const RosWords& words) {
   options.tip_frame = comma == std::string::npos ? "" : words.frames.substr(comma + 1);
   for (const std::string& frame : {options.world_frame, options.tip_frame}) {
     if (frame.empty() || frame.size() > 100) {
-      return driver::Error{"--ros-frames: the name of a frame has 1 to 100 letters."};
+      return driver::Error{"--ros-frames: the name of a frame must have 1 to 100 characters."};
     }
   }
   if (options.world_frame == options.tip_frame) {
-    return driver::Error{"--ros-frames: world and tip need two names, as in world,tip."};
+    return driver::Error{"--ros-frames: expected two different names, as in world,tip."};
   }
   constexpr std::uint32_t kDomainMost = 232;  // [S OMG DDSI-RTPS 2.5, 9.6.1.1: ports end there]
   if (words.domain > kDomainMost) {
@@ -89,13 +89,13 @@ driver::Result<RosOptions> ros_options(const RosWords& words) {
   if (!reach) return reach.error();
   options.reach = *reach;
   if (!(words.force_limit >= 0) || !std::isfinite(words.force_limit)) {
-    return driver::Error{fmt::format(
-        "The largest force from a topic: expected newtons above 0, found {}.", words.force_limit)};
+    return driver::Error{
+        fmt::format("--ros-limit: expected a force of 0 N or more, found {}.", words.force_limit)};
   }
   options.force_limit = words.force_limit;
   if (!(words.stale_ms >= 1 && words.stale_ms <= 1000)) {
     return driver::Error{
-        fmt::format("A force from a topic counts for 1 to 1000 ms; found {}.", words.stale_ms)};
+        fmt::format("--ros-stale: expected 1 to 1000 ms, found {}.", words.stale_ms)};
   }
   options.stale_ns = std::llround(1e6 * words.stale_ms);
   return options;

@@ -20,7 +20,7 @@ struct RosWords {
   double force_limit = 0;            ///< N; 0: the arm's own limit
 };
 
-/// Parses the words; the error says which is wrong and what to write instead.
+/// Parses the words. The error names the wrong one and the allowed values.
 driver::Result<RosOptions> ros_options(const RosWords& words);
 
 }  // namespace thimble::ros2

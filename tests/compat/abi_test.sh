@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The libraries of the compatibility layer export exactly the names of their tables and need only system
 # libraries, and a struct of 12 bytes is returned by value as callers of either ABI read it.
-#   abi_test.sh FACES_LIB_DIR SOURCE_DIR FACE=LIBRARY...
+#   abi_test.sh LIBRARY_DIR SOURCE_DIR FOLDER=LIBRARY...
 set -euo pipefail
 libraries=$1 source=$2
 shift 2

@@ -4,7 +4,7 @@
 # shared between the two processors has the same layout. Only with THIMBLE_LONG.
 #   arm64_test.sh THIMBLE SOURCE_DIR WORK_DIR EIGEN_INCLUDE_DIR VERSION_INCLUDE_DIR
 skip() {
-  echo "SKIPPED: other makers' interfaces were NOT tested on 64-bit ARM: $1" >&2
+  echo "SKIPPED: the compatibility layer was NOT tested on 64-bit ARM: $1" >&2
   exit 77
 }
 [ -n "${THIMBLE_LONG:-}" ] || skip "THIMBLE_LONG=1 is not set"
@@ -18,7 +18,7 @@ compat=$source_dir/app/compat
 headers=$compat/include/thimble/compat
 mkdir lib clients
 
-# library NAME FACE [FLAG...]: libNAME.so from the sources of an API and of the core, as app/compat/CMakeLists.txt makes it.
+# library NAME API [FLAG...]: libNAME.so from the sources of an API and of the core, as app/compat/CMakeLists.txt makes it.
 library() {
   local name=$1 face=$2 source objects=()
   mkdir -p "$face"

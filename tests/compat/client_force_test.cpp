@@ -1,4 +1,4 @@
-// The program's force as a law, tick by tick on the virtual clock.
+// The program's force as a force law, tick by tick in virtual time.
 #include "compat/server/client_force.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 namespace thimble::compat {
 namespace {
 
-/// Runs an arm for a second; a fault comes at 0.2 s, and the program switches the force on again at
-/// 0.5 s. Returns whether the arm is in fault at 0.9 s.
+/// Runs an arm for a second, with a fault at 0.2 s. The program enables the force again at 0.5 s.
+/// Returns whether the arm is in fault at 0.9 s.
 bool fault_stays(bool may_activate) {
   auto opened = scene::SimulatedDevice::open("vintage_phantom", {{0, {0, 0, 0}}, {2, {0, 0, 0}}});
   EXPECT_TRUE(opened) << opened.error().message;
@@ -43,7 +43,7 @@ TEST(ClientForce, EnablingForceClearsAFaultOfASimulatedArm) {
   EXPECT_FALSE(fault_stays(true));
 }
 
-TEST(ClientForce, LeavesAFaultOfARealArmToAPerson) {
+TEST(ClientForce, FaultOfARealArmNeedsAPerson) {
   EXPECT_TRUE(fault_stays(false));
 }
 

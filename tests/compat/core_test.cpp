@@ -1,4 +1,4 @@
-// The core that all faces stand on: what a program asks for reaches the motors through the gate.
+// The core of all compatibility libraries: requested forces reach the motors through the gate.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ Vector3d vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// Asks for a force in each tick, so many times.
+/// Requests a force in each of `ticks` ticks.
 void hold(int arm, const std::array<double, 3>& f_W, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     arms::ask_force(arm, {.f_W = f_W});
@@ -32,7 +32,7 @@ void hold(int arm, const std::array<double, 3>& f_W, int ticks) {
   }
 }
 
-TEST(FaceCore, GivesTheMotorsTheForceThatWasAskedFor) {
+TEST(CompatCore, MotorsGetTheRequestedForce) {
   ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
@@ -45,7 +45,7 @@ TEST(FaceCore, GivesTheMotorsTheForceThatWasAskedFor) {
   EXPECT_TRUE(arms::close(0));
 }
 
-TEST(FaceCore, SendsNothingBeforeForceIsEnabledAndOpensSlowlyThen) {
+TEST(CompatCore, ForceIsZeroUntilEnabledAndThenRisesSlowly) {
   ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   hold(0, {0.3, 0, 0}, 400);
@@ -60,7 +60,7 @@ TEST(FaceCore, SendsNothingBeforeForceIsEnabledAndOpensSlowlyThen) {
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
 }
 
-TEST(FaceCore, CutsAForceToTheArmsLimitAndSaysSo) {
+TEST(CompatCore, LimitsTheForceAndReportsIt) {
   ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
@@ -79,13 +79,13 @@ TEST(FaceCore, CutsAForceToTheArmsLimitAndSaysSo) {
   EXPECT_GT(most, 0);
 }
 
-TEST(FaceCore, TakesAwayAForceThatIsNotRenewedAndGivesItBackSlowly) {
+TEST(CompatCore, ForceWithoutRenewalBecomesZeroAndReturnsSlowly) {
   ExecRig rig;
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
   hold(0, {0.3, 0, 0}, 500);
   ASSERT_GT(rig.motors.force_W().x(), 0.25);
-  // A machine that is busy may take too long for the look at it; one good look is enough.
+  // On a busy machine a check may come too late, so one successful check is enough.
   bool slowly = false;
   for (int look = 0; look < 20 && !slowly; ++look) {
     rig.wait(0, 40);  // twice the gate's stall
@@ -102,7 +102,7 @@ TEST(FaceCore, TakesAwayAForceThatIsNotRenewedAndGivesItBackSlowly) {
   EXPECT_NE(rig.end().find("test did not renew its force"), std::string::npos);
 }
 
-TEST(FaceCore, LatchesAForceThatIsNoNumberUntilForceIsEnabledAnew) {
+TEST(CompatCore, NaNForceLatchesUntilForceIsEnabledAgain) {
   ExecRig rig(in_step());
   ASSERT_EQ(arms::open(0, "test"), "");
   arms::enable_force(0, true);
@@ -120,7 +120,7 @@ TEST(FaceCore, LatchesAForceThatIsNoNumberUntilForceIsEnabledAnew) {
   EXPECT_NEAR(rig.motors.force_W().x(), 0.2, kQuantum);
 }
 
-TEST(FaceCore, PacesALoopByItsTicks) {
+TEST(CompatCore, PacesALoopByItsTicks) {
   ExecRig rig;
   ASSERT_EQ(arms::open(0, "test"), "");
   const auto begin = std::chrono::steady_clock::now();
@@ -129,7 +129,7 @@ TEST(FaceCore, PacesALoopByItsTicks) {
   EXPECT_GT(took.count(), 0.29);
 }
 
-TEST(FaceCore, HasTwoArmsAtOnceThatKnowNothingOfEachOther) {
+TEST(CompatCore, TwoArmsAreIndependent) {
   ExecOptions options = in_step();
   options.arms = {{.arm_file = "vintage_phantom"}, {.arm_file = "polhem"}};
   ExecRig rig(options);
@@ -156,7 +156,7 @@ TEST(FaceCore, HasTwoArmsAtOnceThatKnowNothingOfEachOther) {
   EXPECT_NEAR(two.f_sent_W[0], 0, kQuantum);
 }
 
-TEST(FaceCore, OpensAnArmAgainWithoutTheForceOfBefore) {
+TEST(CompatCore, ReopenedArmStartsWithoutForce) {
   ExecRig rig(in_step());
   for (int again = 0; again < 3; ++again) {
     ASSERT_EQ(arms::open(0, "test"), "");
@@ -171,7 +171,7 @@ TEST(FaceCore, OpensAnArmAgainWithoutTheForceOfBefore) {
   }
 }
 
-TEST(FaceCore, ReadsAHandsPathAndSaysWhichLineIsWrong) {
+TEST(CompatCore, ReadsAHandPathAndNamesWrongLines) {
   const std::string file = support::scratch_folder() / "hand_path.txt";
   const auto read = [&](const char* text) {
     std::ofstream(file) << text;
@@ -192,7 +192,7 @@ TEST(FaceCore, ReadsAHandsPathAndSaysWhichLineIsWrong) {
   EXPECT_FALSE(read_hand_path("/nonexistent/path"));
 }
 
-TEST(FaceCore, RefusesWhatIsNotThere) {
+TEST(CompatCore, RefusesUnknownAndClosedArms) {
   ExecRig rig;
   ArmReading reading;
   for (const int arm : {-1, 0, 1, kArmsMost, 1'000'000}) {
@@ -210,7 +210,7 @@ TEST(FaceCore, RefusesWhatIsNotThere) {
   EXPECT_NE(arms::open(-1, "test"), "");
 }
 
-TEST(FaceCore, LetsNobodyWaitForAnArmWhoseRunHasEnded) {
+TEST(CompatCore, WaitsEndWithTheRun) {
   ExecRig rig;
   ASSERT_EQ(arms::open(0, "test"), "");
   std::atomic<int> turns{0};
@@ -240,7 +240,7 @@ TEST(FaceCore, LetsNobodyWaitForAnArmWhoseRunHasEnded) {
 /// Another program of the same `thimble exec`, in a separate process.
 class OtherProgram {
  public:
-  /// Starts it; `work` begins when `go` is called, and its exit code is what it returns.
+  /// Starts the process. `work` begins when `go` is called; its return value is the exit code.
   template <class Work>
   OtherProgram(ExecRig& rig, Work work) {
     if (pipe(go_) != 0 || pipe(done_) != 0) throw std::runtime_error("no pipe");
@@ -252,7 +252,7 @@ class OtherProgram {
     use_channel(&rig.channel(), rig.address());
     const int result = work();
     if (write(done_[1], "d", 1) != 1) _exit(91);
-    // It holds what it has until it is killed, or the test is over.
+    // It keeps its locks until it is killed, or the test ends.
     if (result == kStays) static_cast<void>(read(go_[0], &byte, 1));
     _exit(result);
   }
@@ -265,7 +265,7 @@ class OtherProgram {
 
   static constexpr int kStays = 80;
 
-  /// Lets it work, and waits until it has.
+  /// Runs `work`, and waits for its end.
   void go() {
     char byte = 'g';
     EXPECT_EQ(write(go_[1], &byte, 1), 1);
@@ -292,7 +292,7 @@ int refused_to_other() {
   return arms::open(0, "other").find("Another program") != std::string::npos ? 0 : 1;
 }
 
-TEST(FaceCore, ProgramThatComesSecondIsRefused) {
+TEST(CompatCore, SecondProgramIsRefused) {
   ExecRig rig;
   OtherProgram other(rig, refused_to_other);
   ASSERT_EQ(arms::open(0, "test"), "");
@@ -300,7 +300,7 @@ TEST(FaceCore, ProgramThatComesSecondIsRefused) {
   EXPECT_EQ(other.end(), 0);
 }
 
-TEST(FaceCore, ProgramThatComesSecondChangesNoLimit) {
+TEST(CompatCore, SecondProgramChangesNoLimit) {
   ExecRig rig;
   OtherProgram other(rig, refused_to_other);
   ASSERT_EQ(arms::open(0, "test"), "");
@@ -317,17 +317,17 @@ TEST(FaceCore, ProgramThatComesSecondChangesNoLimit) {
   EXPECT_STREQ(arm.face.data(), "test");
 }
 
-TEST(FaceCore, ArmStaysOpenWhenRefusedProgramEnds) {
+TEST(CompatCore, ArmStaysOpenWhenRefusedProgramEnds) {
   ExecRig rig;
   OtherProgram other(rig, refused_to_other);
   ASSERT_EQ(arms::open(0, "test"), "");
   other.go();
   ASSERT_EQ(other.end(), 0);
-  ExecRig::wait(0, 300);  // many looks of the server
+  ExecRig::wait(0, 300);  // many checks by the server
   EXPECT_TRUE(arms::is_running(0));
 }
 
-TEST(FaceCore, ArmOfKilledProgramIsFree) {
+TEST(CompatCore, ArmOfKilledProgramIsFree) {
   ExecRig rig;
   OtherProgram other(rig, [] { return arms::open(0, "other").empty() ? OtherProgram::kStays : 1; });
   other.go();
@@ -336,10 +336,10 @@ TEST(FaceCore, ArmOfKilledProgramIsFree) {
   EXPECT_EQ(arms::open(0, "test"), "");
 }
 
-TEST(FaceCore, ProgramKilledWhileItAskedLeavesArmFree) {
+TEST(CompatCore, ArmIsFreeAfterProgramDiesDuringRequest) {
   ExecRig rig;
   OtherProgram other(rig, [&] {
-    // As far as a program is that is killed before the server has answered.
+    // The state of a program that is killed before the server has answered.
     if (!driver::lock_byte(channel_file(), kFirstOwnerByte)) return 1;
     rig.channel().arms[0].trouble[0] = 'x';
     rig.channel().arms[0].state.store(ChannelState::kFailed);

@@ -22,8 +22,8 @@
 
 namespace thimble::compat {
 
-/// What the simulated motors of the first arm pull with, tick by tick: what is true, not what was
-/// sent.
+/// Records the true force of the first arm's simulated motors in each tick, instead of the sent
+/// force.
 class MotorWatch final : public session::TickObserver {
  public:
   void take(const driver::TickRecord&) noexcept override {
@@ -44,8 +44,8 @@ class MotorWatch final : public session::TickObserver {
   driver::Snapshot<std::array<double, 3>> force_;
 };
 
-/// Options of a rig whose ticks wait for the program: on a busy machine none of its forces comes
-/// too late. `arm`: name or file; empty: the vintage PHANTOM.
+/// Returns options of a rig whose ticks wait for the program, so that on a busy machine no force is
+/// late. `arm`: name or file; empty: the vintage PHANTOM.
 inline ExecOptions in_step(const char* arm = "") {
   ExecOptions options;
   options.arms = {{.arm_file = arm}};
@@ -53,12 +53,12 @@ inline ExecOptions in_step(const char* arm = "") {
   return options;
 }
 
-/// `thimble exec` in this process: the server on a thread of its own, and its channel in place of
-/// the one that the environment names.
+/// `thimble exec` in this process: the server runs on its own thread, and its channel replaces the
+/// one that the environment names.
 class ExecRig {
  public:
   explicit ExecRig(ExecOptions options = {}) {
-    // What is kept of faults goes nowhere else.
+    // Recordings of faults must not leave the folder of the test.
     setenv("XDG_STATE_HOME", support::scratch_folder().c_str(), 1);
     options.program = "test";
     options.opened = [this](std::size_t arm, session::Session& session) {
@@ -83,7 +83,7 @@ class ExecRig {
     use_channel(nullptr);
   }
 
-  /// Returns what the server shares, and its file.
+  /// Returns the shared memory of the server, and its file.
   Channel& channel() { return server_->channel(); }
   std::string address() const { return server_->address(); }
 
@@ -96,7 +96,7 @@ class ExecRig {
     }
     return server_->report();
   }
-  /// Waits for so many ticks of an arm.
+  /// Waits for `ticks` ticks of an arm.
   static void wait(int arm, int ticks) {
     ArmReading reading;
     arms::read(arm, reading);

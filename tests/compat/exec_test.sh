@@ -16,7 +16,7 @@ expect 0 'hello_sphere .*HDAPI.* [0-9]{4} ' run --hand press.txt "$clients/hello
 # In the recording: the gate got exactly the force that the program asked for (its axes: right, up, to the user), and the
 # motors got that force.
 expect 0 '' "$thimble" export sphere.h5 --csv sphere.csv
-expect 0 '^[0-9]{3,} ticks with force, 0 that nobody asked for, most 0\.0' awk '
+expect 0 '^[0-9]{3,} ticks with force, 0 not requested, at most 0\.0' awk '
   NR == FNR { asked[sprintf("%.9f %.9f %.9f", $3, $1, $2)] = 1; next }
   FNR == 1 { FS = ","; $0 = $0; for (i = 1; i <= NF; ++i) { if ($i ~ /^f_wanted_W.x/) w = i; if ($i ~ /^f_sent_W.z/) s = i } next }
   $(w + 2) > 0.5 {
@@ -24,7 +24,7 @@ expect 0 '^[0-9]{3,} ticks with force, 0 that nobody asked for, most 0\.0' awk '
     if (n > 100 && d > most) most = d
     if (!(sprintf("%.9f %.9f %.9f", $w, $(w + 1), $(w + 2)) in asked)) ++unknown
   }
-  END { printf "%d ticks with force, %d that nobody asked for, most %.3f N\n", n, unknown, most }' asked.txt sphere.csv
+  END { printf "%d ticks with force, %d not requested, at most %.3f N\n", n, unknown, most }' asked.txt sphere.csv
 
 expect_own 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' run "$clients/calibration"
 expect_own 0 'calibrated after 1, 160 x 160 x 160 mm, 5 N, 6 in' run --arm polhem "$clients/calibration"

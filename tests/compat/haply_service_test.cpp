@@ -1,5 +1,5 @@
-// The service that stands in for an Inverse3's, with our own back end for one as its program: all
-// in this process.
+// The service compatible with an Inverse3's, with Thimble's own driver for that arm as its client.
+// Both run in this process.
 #include "compat/haply/haply_service.h"
 
 #include <arpa/inet.h>
@@ -39,7 +39,7 @@ class HaplyService : public ::testing::Test {
         haply::Service::listen(0, [this](const std::string& sentence) { refusal_ = sentence; });
     EXPECT_TRUE(listening) << listening.error().message;
     if (listening) service_ = std::move(listening).value();
-    // Opening takes its time on a busy machine, and our back end does not wait for it.
+    // Opening is slow on a busy machine, and the driver does not wait for it.
     for (int look = 0; look < 30'000 && service_ && !service_->ready(); ++look) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -49,7 +49,7 @@ class HaplyService : public ::testing::Test {
     service_.reset();
   }
 
-  /// Opens the first arm as a run on an Inverse3 does; patiently, for the machine may be busy.
+  /// Opens the first arm like a run on an Inverse3, with retries, because the machine may be busy.
   std::unique_ptr<driver::Device> open(driver::Clock& clock) const {
     const auto arm = scene::load_arm("inverse3");
     auto link = driver::haply::open_link("0001", service_->port(), clock);
@@ -91,7 +91,7 @@ TEST_F(HaplyService, OwnClientMovesTheSimulatedArm) {
   const Vector3d f_W(0.3, -0.2, 0.4);
   EXPECT_TRUE(
       ticks_until(*device_, f_W, [&] { return (rig_.motors.force_W() - f_W).norm() < 0.02; }))
-      << "the motors pull with " << rig_.motors.force_W().transpose();
+      << "force of the motors: " << rig_.motors.force_W().transpose();
   ArmReading there;
   ASSERT_TRUE(arms::read(0, there));
   const Vector3d p_WT = Eigen::Map<const Vector3d>(there.p_WT.data());
@@ -99,7 +99,7 @@ TEST_F(HaplyService, OwnClientMovesTheSimulatedArm) {
   EXPECT_EQ(device_->fault(), driver::Fault::kNone) << driver::describe(device_->fault());
 }
 
-TEST_F(HaplyService, AProgramThatGoesTakesItsForceWithIt) {
+TEST_F(HaplyService, ExitOfAProgramRemovesItsForce) {
   device_ = open(clock_);
   ASSERT_NE(device_, nullptr);
   ASSERT_TRUE(ticks_until(*device_, {0.4, 0, 0}, [&] { return rig_.motors.force_W().x() > 0.3; }));
@@ -110,7 +110,7 @@ TEST_F(HaplyService, AProgramThatGoesTakesItsForceWithIt) {
   EXPECT_LT(rig_.motors.force_W().norm(), 0.02);
 }
 
-TEST_F(HaplyService, EndsUnderAProgramThatPushes) {
+TEST_F(HaplyService, EndsWhileAProgramRequestsForces) {
   device_ = open(clock_);
   ASSERT_NE(device_, nullptr);
   ASSERT_TRUE(ticks_until(*device_, {0.4, 0, 0}, [&] { return rig_.motors.force_W().x() > 0.3; }));
@@ -139,7 +139,7 @@ TEST_F(HaplyService, ProgramOfOtherUserIsRefused) {
     const std::string request =
         "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
-    // Closed without a word; a reset is as good.
+    // Closed without an answer; a reset is allowed too.
     if (send(program, request.data(), request.size(), MSG_NOSIGNAL) < 0) _exit(0);
     char byte = 0;
     _exit(recv(program, &byte, 1, 0) > 0 ? 4 : 0);
@@ -152,13 +152,13 @@ TEST_F(HaplyService, ProgramOfOtherUserIsRefused) {
   EXPECT_NE(refusal_.find("a process of user 65534"), std::string::npos) << refusal_;
 }
 
-TEST_F(HaplyService, IsKnownAsStandIn) {
+TEST_F(HaplyService, IsRecognisedAsThimble) {
   const auto arms = driver::haply::find_arms(service_->port(), 30'000'000'000);
   ASSERT_TRUE(arms) << arms.error().message;
   EXPECT_TRUE(arms->front().stand_in);
 }
 
-TEST_F(HaplyService, IsNoArmForAuto) {
+TEST_F(HaplyService, IsIgnoredByDeviceAuto) {
   setenv("THIMBLE_HAPLY_PORT", std::to_string(service_->port()).c_str(), 1);
   const auto found = driver::find_linked_arms();
   unsetenv("THIMBLE_HAPLY_PORT");
@@ -167,16 +167,16 @@ TEST_F(HaplyService, IsNoArmForAuto) {
   ASSERT_TRUE(chosen) << chosen.error().message;
   EXPECT_FALSE(chosen->has_value());
   EXPECT_NE(scene::boards_left_out(found).find("--serve haply"), std::string::npos);
-  EXPECT_TRUE(scene::choose_arm(found, "0001")->has_value()) << "by its name it is meant";
+  EXPECT_TRUE(scene::choose_arm(found, "0001")->has_value()) << "a name selects it explicitly";
 }
 
-TEST_F(HaplyService, TwoOnOnePortAreRefusedWithASentence) {
+TEST_F(HaplyService, SecondServiceOnAPortIsRefused) {
   const auto second = haply::Service::listen(service_->port());
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message.find("choose another port"), std::string::npos);
 }
 
-TEST(HaplyServiceMessage, IsUnderstoodByOurOwnBackEnd) {
+TEST(HaplyServiceMessage, OwnDriverParsesTheMessages) {
   haply::ToldArm arm;
   arm.device_id = haply::device_id_of(0);
   arm.reading.p_WT = {0.01, -0.02, 0.03};
@@ -206,7 +206,7 @@ TEST(HaplyServiceMessage, IsUnderstoodByOurOwnBackEnd) {
             driver::haply::StateRead::kRejected);
 }
 
-TEST(HaplyServiceMessage, TakesTheForcesThatOurOwnBackEndAsksFor) {
+TEST(HaplyServiceMessage, ParsesForcesOfOwnDriver) {
   const haply::Request request =
       haply::read_request(driver::haply::force_message("0001", {1, -2, 0.5}));
   EXPECT_TRUE(request.wrong.empty());

@@ -1,4 +1,4 @@
-// The scheduler of HDAPI: order, ends, threads, and callbacks that hang.
+// The scheduler of HDAPI: order of callbacks, their end, threads, and callbacks that hang.
 #include <HD/hd.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct FaceHdScheduler : ::testing::Test {
-  FaceHdScheduler() {
+struct CompatHdScheduler : ::testing::Test {
+  CompatHdScheduler() {
     while (HD_DEVICE_ERROR(hdGetError())) {
     }
   }
-  ~FaceHdScheduler() override {
+  ~CompatHdScheduler() override {
     hdStopScheduler();
     for (const HDSchedulerHandle handle : scheduled) hdUnschedule(handle);
     for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
@@ -53,14 +53,14 @@ HDCallbackCode note(void* data) {
   return HD_CALLBACK_CONTINUE;
 }
 
-TEST_F(FaceHdScheduler, RunsTheHighestPriorityFirstInEachTick) {
+TEST_F(CompatHdScheduler, RunsTheHighestPriorityFirstInEachTick) {
   hdInitDevice(nullptr);
   Order order;
   schedule(note<3>, &order, HD_MIN_SCHEDULER_PRIORITY);
   schedule(note<1>, &order, HD_MAX_SCHEDULER_PRIORITY);
   schedule(note<2>, &order, HD_DEFAULT_SCHEDULER_PRIORITY);
   hdStartScheduler();
-  ExecRig::wait(0, 500);  // on a busy machine not each of them has its callbacks
+  ExecRig::wait(0, 500);  // on a busy machine some ticks have no callbacks
   hdStopScheduler();
   ASSERT_GE(order.calls.size(), 90u);
   for (std::size_t i = 0; i < order.calls.size(); ++i) {
@@ -68,7 +68,7 @@ TEST_F(FaceHdScheduler, RunsTheHighestPriorityFirstInEachTick) {
   }
 }
 
-TEST_F(FaceHdScheduler, LetsOneFrameSpanTwoCallbacks) {
+TEST_F(CompatHdScheduler, FrameMaySpanTwoCallbacks) {
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   hdEnable(HD_FORCE_OUTPUT);
   schedule(
@@ -91,10 +91,10 @@ TEST_F(FaceHdScheduler, LetsOneFrameSpanTwoCallbacks) {
   hdStopScheduler();
   EXPECT_EQ(hdGetError().errorCode, HD_SUCCESS);
   ExecRig::wait(0, 5);
-  EXPECT_EQ(rig.motors.force_W().norm(), 0) << "no force stands behind a stopped scheduler";
+  EXPECT_EQ(rig.motors.force_W().norm(), 0) << "a stopped scheduler leaves no force";
 }
 
-TEST_F(FaceHdScheduler, EndsAFrameThatWasForgotten) {
+TEST_F(CompatHdScheduler, EndsAnOpenFrameAfterTheCallbacks) {
   hdInitDevice(nullptr);
   schedule(
       [](void*) -> HDCallbackCode {
@@ -111,7 +111,7 @@ TEST_F(FaceHdScheduler, EndsAFrameThatWasForgotten) {
   scheduled.clear();
 }
 
-TEST_F(FaceHdScheduler, RunsACallbackThatIsDoneOnce) {
+TEST_F(CompatHdScheduler, RunsAFinishedCallbackOnce) {
   hdInitDevice(nullptr);
   std::atomic<int> calls{0};
   const HDSchedulerHandle handle = hdScheduleAsynchronous(
@@ -128,7 +128,7 @@ TEST_F(FaceHdScheduler, RunsACallbackThatIsDoneOnce) {
   EXPECT_EQ(calls.load(), 1);
 }
 
-TEST_F(FaceHdScheduler, CopiesStateSynchronouslyOnItsOwnThread) {
+TEST_F(CompatHdScheduler, SynchronousCallbackRunsOnSchedulerThread) {
   hdInitDevice(nullptr);
   hdStartScheduler();
   struct Copy {
@@ -153,7 +153,7 @@ TEST_F(FaceHdScheduler, CopiesStateSynchronouslyOnItsOwnThread) {
   EXPECT_LT(copy.stamp, 0.1);
 }
 
-TEST_F(FaceHdScheduler, WaitsInUnscheduleUntilTheCallbackIsOver) {
+TEST_F(CompatHdScheduler, UnscheduleWaitsForTheCallback) {
   hdInitDevice(nullptr);
   static std::atomic<bool> inside, gone;
   inside = gone = false;
@@ -176,7 +176,7 @@ TEST_F(FaceHdScheduler, WaitsInUnscheduleUntilTheCallbackIsOver) {
   EXPECT_EQ(hdGetError().errorCode, HD_INVALID_VALUE);
 }
 
-TEST_F(FaceHdScheduler, MayBeStoppedAndStartedByItsOwnCallbacks) {
+TEST_F(CompatHdScheduler, CallbacksMayStopAndStartTheScheduler) {
   hdInitDevice(nullptr);
   static std::atomic<int> calls;
   calls = 0;
@@ -198,7 +198,7 @@ TEST_F(FaceHdScheduler, MayBeStoppedAndStartedByItsOwnCallbacks) {
   }
 }
 
-TEST_F(FaceHdScheduler, CallbackThatStopsItLeavesNoForce) {
+TEST_F(CompatHdScheduler, ForceIsZeroAfterACallbackStopsTheScheduler) {
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
   static std::atomic<bool> stop, stopped;
@@ -218,7 +218,7 @@ TEST_F(FaceHdScheduler, CallbackThatStopsItLeavesNoForce) {
         hdEndFrame(0);
         if (!stop.load()) return HD_CALLBACK_CONTINUE;
         stopped = true;
-        // It asks on, far beyond the gate's stall.
+        // It continues to request forces, for much longer than the gate's stall.
         for (int tick = 0; tick < 300; ++tick) {
           hdBeginFrame(0);
           hdSetDoublev(HD_CURRENT_FORCE, f.data());
@@ -247,10 +247,10 @@ TEST_F(FaceHdScheduler, CallbackThatStopsItLeavesNoForce) {
     most = std::max(most, rig.motors.force_W().norm());
     std::this_thread::sleep_for(1ms);
   }
-  EXPECT_EQ(most, 0) << "no force stands behind a stopped scheduler";
+  EXPECT_EQ(most, 0) << "a stopped scheduler leaves no force";
   ExecRig::wait(0, 50);
-  EXPECT_EQ(others.load(), 0) << "the callbacks behind it must not run any more";
-  // Frames outside of a scheduler ask for forces as before.
+  EXPECT_EQ(others.load(), 0) << "later callbacks must not run any more";
+  // Frames outside of a scheduler still request forces.
   bool pushes = false;
   for (int tick = 0; tick < 5000 && !pushes; ++tick) {
     hdBeginFrame(0);
@@ -262,7 +262,7 @@ TEST_F(FaceHdScheduler, CallbackThatStopsItLeavesNoForce) {
   EXPECT_TRUE(pushes);
 }
 
-TEST_F(FaceHdScheduler, RunsEachSecondTickAtHalfTheRate) {
+TEST_F(CompatHdScheduler, RunsEverySecondTickAtHalfTheRate) {
   hdInitDevice(nullptr);
   hdSetSchedulerRate(500);
   std::atomic<int> calls{0};
@@ -274,7 +274,8 @@ TEST_F(FaceHdScheduler, RunsEachSecondTickAtHalfTheRate) {
       &calls, 1);
   hdStartScheduler();
   ExecRig::wait(0, 100);
-  // On a busy machine callbacks are left out: one good stretch shows the rate, and none is faster.
+  // On a busy machine callbacks are skipped: one undisturbed interval shows the rate, none is
+  // faster.
   int most = 0;
   for (int stretch = 0; stretch < 10 && most < 150; ++stretch) {
     const int before = calls.load();
@@ -290,7 +291,7 @@ TEST_F(FaceHdScheduler, RunsEachSecondTickAtHalfTheRate) {
   }
 }
 
-TEST_F(FaceHdScheduler, TakesTheForceFromACallbackThatHangs) {
+TEST_F(CompatHdScheduler, ForceOfAHangingCallbackBecomesZero) {
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
   static std::atomic<bool> hang, hangs;
@@ -314,13 +315,13 @@ TEST_F(FaceHdScheduler, TakesTheForceFromACallbackThatHangs) {
   hang = true;
   while (!hangs.load()) std::this_thread::sleep_for(1ms);
   ExecRig::wait(0, 30);
-  EXPECT_EQ(rig.motors.force_W().norm(), 0) << "20 ms are the gate's stall";
+  EXPECT_EQ(rig.motors.force_W().norm(), 0) << "the gate's stall is 20 ms";
   hang = false;
   ExecRig::wait(0, 500);
   EXPECT_NEAR(rig.motors.force_W().y(), 0.3, 0.005);
 }
 
-TEST_F(FaceHdScheduler, RunsACallbackAtOnceWhereNoSchedulerRuns) {
+TEST_F(CompatHdScheduler, SynchronousCallbackRunsWithoutAScheduler) {
   int calls = 0;
   hdScheduleSynchronous(
       [](void* data) -> HDCallbackCode {
@@ -332,7 +333,7 @@ TEST_F(FaceHdScheduler, RunsACallbackAtOnceWhereNoSchedulerRuns) {
   hdStopScheduler();
 }
 
-TEST_F(FaceHdScheduler, RefusesCallbacksBeyondAllSense) {
+TEST_F(CompatHdScheduler, RefusesTooManyCallbacks) {
   std::vector<HDSchedulerHandle> handles;
   const auto callback = [](void*) -> HDCallbackCode { return HD_CALLBACK_CONTINUE; };
   for (int i = 0; i < 300; ++i) {

@@ -22,7 +22,7 @@ HDErrorInfo drain() {
   return oldest;
 }
 
-/// Runs `work` in a frame of each of so many ticks.
+/// Runs `work` in a frame of each of `ticks` ticks.
 template <class Work>
 void frames(HHD device, int ticks, Work work) {
   for (int i = 0; i < ticks; ++i) {
@@ -34,18 +34,18 @@ void frames(HHD device, int ticks, Work work) {
   }
 }
 
-struct FaceHd : ::testing::Test {
-  FaceHd() { drain(); }
-  ~FaceHd() override {
+struct CompatHd : ::testing::Test {
+  CompatHd() { drain(); }
+  ~CompatHd() override {
     hdStopScheduler();
     for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
     drain();
   }
 };
 
-TEST_F(FaceHd, GivesTheMotorsAForceInItsOwnAxes) {
+TEST_F(CompatHd, MotorsGetTheForceInHdapiAxes) {
   ExecRig rig;
-  EXPECT_EQ(hdGetCurrentDevice(), 0u) << "before an arm is open, as ctypes clients ask";
+  EXPECT_EQ(hdGetCurrentDevice(), 0u) << "ctypes clients call it before they open an arm";
   ASSERT_EQ(hdInitDevice(HD_DEFAULT_DEVICE), 0u);
   hdEnable(HD_FORCE_OUTPUT);
   const std::array<double, 3> f{0.2, 0.1, -0.15};  // right, up, to the user
@@ -62,7 +62,7 @@ TEST_F(FaceHd, GivesTheMotorsAForceInItsOwnAxes) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(asked[i], f[i]);
     EXPECT_NEAR(sent[i], f[i], kQuantum);
-    EXPECT_NEAR(p[i], 1e3 * f[i] / 300, 0.4) << "mm: a hand of 300 N/m gives way";
+    EXPECT_NEAR(p[i], 1e3 * f[i] / 300, 0.4) << "mm; the hand of 300 N/m yields";
     EXPECT_NEAR(T[12 + i], p[i], 0.1);
     EXPECT_EQ(T[5 * i], 1);
   }
@@ -70,7 +70,7 @@ TEST_F(FaceHd, GivesTheMotorsAForceInItsOwnAxes) {
   EXPECT_EQ(hdGetError().errorCode, HD_SUCCESS);
 }
 
-TEST_F(FaceHd, KeepsAForceThatIsNotSetAnewInLaterFrames) {
+TEST_F(CompatHd, KeepsTheForceInLaterFrames) {
   ExecRig rig;
   hdInitDevice("Default Device");
   hdEnable(HD_FORCE_OUTPUT);
@@ -80,7 +80,7 @@ TEST_F(FaceHd, KeepsAForceThatIsNotSetAnewInLaterFrames) {
   EXPECT_NEAR(rig.motors.force_W().y(), 0.2, kQuantum);
 }
 
-TEST_F(FaceHd, KnowsArmsByTheNamesThatProgramsUse) {
+TEST_F(CompatHd, FindsArmsByCommonNames) {
   ExecRig rig({.arms = {{.arm_file = "vintage_phantom"}, {.arm_file = "falcon"}}});
   const std::map<const char*, HHD> names{
       {nullptr, 0},       {"", 0},         {"Default Device", 0},  {"DEFAULT DEVICE", 0},
@@ -100,7 +100,7 @@ TEST_F(FaceHd, KnowsArmsByTheNamesThatProgramsUse) {
   }
 }
 
-TEST_F(FaceHd, SaysThatAnArmIsOpenAlready) {
+TEST_F(CompatHd, ReportsAnArmThatIsAlreadyOpen) {
   ExecRig rig;
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   EXPECT_EQ(hdInitDevice("PHANToM 1"), HD_INVALID_HANDLE);
@@ -109,7 +109,7 @@ TEST_F(FaceHd, SaysThatAnArmIsOpenAlready) {
   EXPECT_EQ(hdInitDevice("PHANToM 1"), 0u);
 }
 
-TEST_F(FaceHd, AsksForCalibrationOnceAndIsCalibratedThen) {
+TEST_F(CompatHd, RequiresCalibrationOnlyOnce) {
   ExecRig rig;
   hdInitDevice(nullptr);
   EXPECT_EQ(hdCheckCalibration(), HD_CALIBRATION_NEEDS_UPDATE);
@@ -122,7 +122,7 @@ TEST_F(FaceHd, AsksForCalibrationOnceAndIsCalibratedThen) {
   EXPECT_EQ(hdGetError().errorCode, HD_INVALID_VALUE);
 }
 
-TEST_F(FaceHd, ShowsOneTickInAFrameAndTheFrameBeforeAsLast) {
+TEST_F(CompatHd, FrameShowsOneTickAndThePreviousFrame) {
   ExecRig rig({.arms = {{.arm_file = "polhem"}}, .scene = "", .hand = "path"});
   hdInitDevice(nullptr);
   std::array<double, 3> before{}, now{}, later{}, last{};
@@ -140,10 +140,10 @@ TEST_F(FaceHd, ShowsOneTickInAFrameAndTheFrameBeforeAsLast) {
   EXPECT_EQ(last, before);
   EXPECT_NE(now, before) << "the hand turns the stylus";
   hdGetDoublev(HD_CURRENT_GIMBAL_ANGLES, later.data());
-  EXPECT_NE(now, later) << "outside of a frame: the newest";
+  EXPECT_NE(now, later) << "outside of a frame, the newest tick is returned";
 }
 
-TEST_F(FaceHd, RefusesFramesThatDoNotFit) {
+TEST_F(CompatHd, RefusesMismatchedFrames) {
   ExecRig rig;
   hdInitDevice(nullptr);
   const std::array<double, 3> f{0.1, 0, 0};
@@ -162,7 +162,7 @@ TEST_F(FaceHd, RefusesFramesThatDoNotFit) {
   EXPECT_EQ(hdGetError().errorCode, HD_BAD_HANDLE);
 }
 
-TEST_F(FaceHd, GivesErrorsNewestFirstAndByValue) {
+TEST_F(CompatHd, ReturnsTheNewestErrorFirst) {
   ExecRig rig({.arms = {{.arm_file = "vintage_phantom"}, {.arm_file = "falcon"}}});
   ASSERT_EQ(hdInitDevice("falcon"), 1u);
   hdEndFrame(1);
@@ -177,7 +177,7 @@ TEST_F(FaceHd, GivesErrorsNewestFirstAndByValue) {
   static_assert(sizeof(HDErrorInfo) == 12);
 }
 
-TEST_F(FaceHd, RampsAForceUpWhereItIsAskedTo) {
+TEST_F(CompatHd, RampsTheForceIfEnabled) {
   ExecRig rig;
   hdInitDevice(nullptr);
   const double rate = 0.5;  // N/s
@@ -203,7 +203,7 @@ TEST_F(FaceHd, RampsAForceUpWhereItIsAskedTo) {
   EXPECT_NEAR(rig.motors.force_W().z(), 0.3, kQuantum);
 }
 
-TEST_F(FaceHd, SaysThatTheGateCutAForce) {
+TEST_F(CompatHd, ReportsForcesLimitedByTheGate) {
   ExecRig rig;
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
@@ -216,7 +216,7 @@ TEST_F(FaceHd, SaysThatTheGateCutAForce) {
   EXPECT_GT(seen[HD_EXCEEDED_MAX_FORCE], 0);
 }
 
-TEST_F(FaceHd, ClampsAForceWithoutAnErrorWhereItIsAskedTo) {
+TEST_F(CompatHd, ClampsTheForceWithoutErrorIfEnabled) {
   ExecRig rig;
   hdInitDevice(nullptr);
   hdEnable(HD_MAX_FORCE_CLAMPING);
@@ -235,7 +235,7 @@ TEST_F(FaceHd, ClampsAForceWithoutAnErrorWhereItIsAskedTo) {
   EXPECT_DOUBLE_EQ(most, arms::facts(0).force_max);
 }
 
-TEST_F(FaceHd, ReportsAFaultUntilForceIsEnabledAgain) {
+TEST_F(CompatHd, ReportsAFaultUntilForceIsEnabledAgain) {
   ExecRig rig;
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
@@ -253,11 +253,11 @@ TEST_F(FaceHd, ReportsAFaultUntilForceIsEnabledAgain) {
   EXPECT_NEAR(rig.motors.force_W().y(), 0.1, kQuantum);
 }
 
-TEST_F(FaceHd, TakesTheSpeedLimitOfTheProgram) {
+TEST_F(CompatHd, AppliesTheSpeedLimitOfTheProgram) {
   ExecRig rig({.hand = THIMBLE_SOURCE_DIR "/tests/compat/fast_hand.txt"});
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
-  const double slow = 20;  // mm/s; the hand goes ten times as fast
+  const double slow = 20;  // mm/s; the hand moves ten times as fast
   hdSetDoublev(HD_SOFTWARE_VELOCITY_LIMIT, &slow);
   std::map<HDerror, int> seen;
   frames(0, 300, [&] {
@@ -266,7 +266,7 @@ TEST_F(FaceHd, TakesTheSpeedLimitOfTheProgram) {
   EXPECT_EQ(seen[HD_EXCEEDED_MAX_VELOCITY], 1);
 }
 
-TEST_F(FaceHd, MovesTheTipAsItsJacobianSays) {
+TEST_F(CompatHd, JacobianMatchesTheMotionOfTheTip) {
   ExecRig rig({.hand = THIMBLE_SOURCE_DIR "/tests/compat/fast_hand.txt"});
   hdInitDevice(nullptr);
   ExecRig::wait(0, 150);
@@ -294,7 +294,7 @@ TEST_F(FaceHd, MovesTheTipAsItsJacobianSays) {
   EXPECT_GT(moved, 0.5) << "mm";
 }
 
-TEST_F(FaceHd, TurnsJointTorquesIntoTheForceThatTheyMake) {
+TEST_F(CompatHd, ConvertsJointTorquesToTipForce) {
   ExecRig rig;
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
@@ -305,7 +305,7 @@ TEST_F(FaceHd, TurnsJointTorquesIntoTheForceThatTheyMake) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(made[i], tau[i], 0.5);
 }
 
-TEST_F(FaceHd, GivesNumbersByAllFiveTypes) {
+TEST_F(CompatHd, ReturnsNumbersInAllFiveTypes) {
   ExecRig rig;
   hdInitDevice(nullptr);
   HDint i = 0;
@@ -332,7 +332,7 @@ TEST_F(FaceHd, GivesNumbersByAllFiveTypes) {
   EXPECT_STREQ(hdGetString(HD_DEVICE_MODEL_TYPE), "vintage_phantom");
 }
 
-TEST_F(FaceHd, ContinuousForceDefaultsToTheLargestForce) {
+TEST_F(CompatHd, ContinuousForceDefaultsToMaximumForce) {
   ExecRig rig({.arms = {{.arm_file = "falcon"}}});
   hdInitDevice(nullptr);
   HDdouble most = 0, continuous = 0;
@@ -342,7 +342,7 @@ TEST_F(FaceHd, ContinuousForceDefaultsToTheLargestForce) {
   EXPECT_EQ(continuous, most);
 }
 
-TEST_F(FaceHd, SaysHowAProgramGetsAnArmWhereNoneIs) {
+TEST_F(CompatHd, ErrorWithoutAnArmNamesThimbleExec) {
   use_channel(nullptr);
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(hdInitDevice(nullptr), HD_INVALID_HANDLE);

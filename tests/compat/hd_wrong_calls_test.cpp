@@ -1,4 +1,5 @@
-// Every function of HDAPI with every wrong argument, and in any order: an error, never a crash.
+// Every function of HDAPI with every wrong argument and in any order returns an error, and never
+// crashes.
 #include <HD/hd.h>
 
 #include <array>
@@ -22,7 +23,7 @@ void clear_errors() {
   }
 }
 
-/// Returns what one call gives as its error; HD_SUCCESS if none.
+/// Returns the error of a call; HD_SUCCESS if there was none.
 template <class Call>
 HDerror error_of(Call call) {
   clear_errors();
@@ -34,8 +35,8 @@ HDCallbackCode done(void*) {
   return HD_CALLBACK_DONE;
 }
 
-struct FaceHdWrongCalls : ::testing::Test {
-  ~FaceHdWrongCalls() override {
+struct CompatHdWrongCalls : ::testing::Test {
+  ~CompatHdWrongCalls() override {
     hdStopScheduler();
     for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
     clear_errors();
@@ -48,7 +49,7 @@ struct FaceHdWrongCalls : ::testing::Test {
   std::array<HDboolean, 64> b{};
 };
 
-TEST_F(FaceHdWrongCalls, GiveBadHandleWhereNoArmIsOpen) {
+TEST_F(CompatHdWrongCalls, ReturnBadHandleWithoutAnOpenArm) {
   const HDenum force = HD_CURRENT_FORCE;
   const std::vector<std::function<void()>> calls{
       [&] { hdGetDoublev(force, d.data()); },
@@ -78,7 +79,7 @@ TEST_F(FaceHdWrongCalls, GiveBadHandleWhereNoArmIsOpen) {
   }
 }
 
-TEST_F(FaceHdWrongCalls, GiveInvalidValueForNullPointers) {
+TEST_F(CompatHdWrongCalls, ReturnInvalidValueForNullPointers) {
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   const HDenum force = HD_CURRENT_FORCE;
   const std::vector<std::function<void()>> calls{
@@ -106,7 +107,7 @@ TEST_F(FaceHdWrongCalls, GiveInvalidValueForNullPointers) {
   EXPECT_EQ(hdDeploymentLicense("a", "b", "c"), HD_TRUE);
 }
 
-TEST_F(FaceHdWrongCalls, GiveInvalidEnumForNumbersOfNothing) {
+TEST_F(CompatHdWrongCalls, ReturnInvalidEnumForUnknownConstants) {
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   for (const HDenum number : {0u, 1u, 0x1fffu, 0x2fffu, 0x4005u, HD_INVALID_HANDLE}) {
     EXPECT_EQ(error_of([&] { hdGetDoublev(number, d.data()); }), HD_INVALID_ENUM) << number;
@@ -121,7 +122,7 @@ TEST_F(FaceHdWrongCalls, GiveInvalidEnumForNumbersOfNothing) {
   EXPECT_EQ(error_of([&] { hdSetDoublev(HD_CURRENT_POSITION, d.data()); }), HD_INVALID_ENUM);
 }
 
-TEST_F(FaceHdWrongCalls, HaveNoWayToTheMotorsBesideTheGate) {
+TEST_F(CompatHdWrongCalls, CannotBypassTheGate) {
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   hdEnable(HD_FORCE_OUTPUT);
   for (long& value : l) value = 30'000;
@@ -135,7 +136,7 @@ TEST_F(FaceHdWrongCalls, HaveNoWayToTheMotorsBesideTheGate) {
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
 }
 
-TEST_F(FaceHdWrongCalls, StayInTheRoomThatTheParameterHas) {
+TEST_F(CompatHdWrongCalls, WriteOnlyTheValuesOfTheParameter) {
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   for (const hd::Parameter& parameter : hd::parameters()) {
     d.fill(1e300);
@@ -152,14 +153,14 @@ TEST_F(FaceHdWrongCalls, StayInTheRoomThatTheParameterHas) {
   }
 }
 
-TEST_F(FaceHdWrongCalls, HaveWordsForEveryError) {
+TEST_F(CompatHdWrongCalls, EveryErrorHasAText) {
   for (HDerror error = 0; error < 0x700; ++error) {
     ASSERT_NE(hdGetErrorString(error), nullptr);
     EXPECT_GT(std::string(hdGetErrorString(error)).size(), 5u);
   }
 }
 
-/// Calls any function with any arguments.
+/// Calls a random function with random arguments.
 void any_call(std::mt19937& random, std::vector<HDSchedulerHandle>& handles) {
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   const auto number = [&]() -> HDenum {
@@ -296,7 +297,7 @@ void any_call(std::mt19937& random, std::vector<HDSchedulerHandle>& handles) {
   }
 }
 
-TEST(FaceHdFuzz, BearsAnyCallsInAnyOrderFromSeveralThreads) {
+TEST(CompatHdFuzz, SurvivesAnyCallsFromSeveralThreads) {
   ExecRig rig({.arms = {{.arm_file = "vintage_phantom"}, {.arm_file = "polhem"}}});
   constexpr int kCalls = 3000;
   constexpr unsigned kThreads = 3;
@@ -318,7 +319,7 @@ TEST(FaceHdFuzz, BearsAnyCallsInAnyOrderFromSeveralThreads) {
   hdStopScheduler();
   for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
   clear_errors();
-  // It is usable as before.
+  // The library is still usable.
   ASSERT_EQ(hdInitDevice(nullptr), 0u);
   hdEnable(HD_FORCE_OUTPUT);
   const std::array<double, 3> f{0, 0.1, 0};

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double kQuantum = 0.005;  // N
 
-TEST(FaceHdPhantom, GivesWhatCHAI3DAsksForInItsOrderAndAxes) {
+TEST(CompatHdPhantom, ReturnsValuesInTheAxesOfCHAI3D) {
   ExecRig rig;
   EXPECT_EQ(hdPhantomGetNumDevices(), 1);
   double radius = 0;
@@ -31,7 +31,7 @@ TEST(FaceHdPhantom, GivesWhatCHAI3DAsksForInItsOrderAndAxes) {
   std::array<double, 9> R;
   const Vector3d f(0.1, 0.2, -0.15), none(0, 0, 0);
   for (int i = 0; i < 700; ++i) {
-    // What a getter returns is the truth of its success there.
+    // Getters return whether they succeeded.
     ASSERT_NE(hdPhantomGetPosition(0, &p.x(), &p.y(), &p.z()), 0);
     hdPhantomGetRotation(0, &R[0], &R[1], &R[2], &R[3], &R[4], &R[5], &R[6], &R[7], &R[8]);
     EXPECT_EQ(hdPhantomGetButtons(0), 0);
@@ -39,7 +39,7 @@ TEST(FaceHdPhantom, GivesWhatCHAI3DAsksForInItsOrderAndAxes) {
         hdPhantomSetForceAndTorque(0, &f.x(), &f.y(), &f.z(), &none.x(), &none.y(), &none.z()), 0);
   }
   EXPECT_LT((rig.motors.force_W() - f).norm(), kQuantum);
-  // A hand of 300 N/m gives way to the force, less what friction holds.
+  // The hand, of 300 N/m, yields to the force minus friction.
   EXPECT_LT((p - f / 300).norm(), 0.0004) << p.transpose();
   EXPECT_NE(hdPhantomGetLinearVelocity(0, &v.x(), &v.y(), &v.z()), 0);
   EXPECT_LT(v.norm(), 0.05);
@@ -50,7 +50,7 @@ TEST(FaceHdPhantom, GivesWhatCHAI3DAsksForInItsOrderAndAxes) {
   EXPECT_EQ(hdPhantomClose(0), 1);
 }
 
-TEST(FaceHdPhantom, WaitsInEachSetForceForATick) {
+TEST(CompatHdPhantom, SetForceWaitsForATick) {
   ExecRig rig;
   ASSERT_EQ(hdPhantomOpen(0), 0);
   const double zero = 0;
@@ -60,7 +60,7 @@ TEST(FaceHdPhantom, WaitsInEachSetForceForATick) {
   EXPECT_GT(took.count(), 0.19);
 }
 
-TEST(FaceHdPhantom, TellsHowTheStylusOfAnArmWithAGimbalIsTurned) {
+TEST(CompatHdPhantom, ReturnsTheRotationOfAStylusWithGimbal) {
   ExecRig rig({.arms = {{.arm_file = "polhem"}}});
   ASSERT_EQ(hdPhantomOpen(0), 0);
   ExecRig::wait(0, 400);
@@ -69,20 +69,20 @@ TEST(FaceHdPhantom, TellsHowTheStylusOfAnArmWithAGimbalIsTurned) {
   ASSERT_EQ(hdPhantomGetRotation(0, r, r + 1, r + 2, r + 3, r + 4, r + 5, r + 6, r + 7, r + 8), 1);
   EXPECT_NEAR(R.determinant(), 1, 1e-6);
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-6);
-  EXPECT_GT((R - Eigen::Matrix3d::Identity()).norm(), 0.01) << "the hand turns it";
+  EXPECT_GT((R - Eigen::Matrix3d::Identity()).norm(), 0.01) << "the hand rotates the stylus";
 }
 
-TEST(FaceHdPhantom, CountsATorqueThatIsNotFelt) {
+TEST(CompatHdPhantom, CountsIgnoredTorques) {
   ExecRig rig;
   ASSERT_EQ(hdPhantomOpen(0), 0);
   const double torque = 0.01, zero = 0;
   for (int i = 0; i < 5; ++i) EXPECT_EQ(hdPhantomSetTorque(0, &torque, &zero, &zero), 0);
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
   EXPECT_EQ(hdPhantomClose(0), 1);
-  EXPECT_NE(rig.end().find("Torque    asked for 5 times"), std::string::npos);
+  EXPECT_NE(rig.end().find("Torque    requested 5 times"), std::string::npos);
 }
 
-TEST(FaceHdPhantom, FailsByMinusOneWhateverItIsGiven) {
+TEST(CompatHdPhantom, ReturnsMinusOneForWrongArguments) {
   ExecRig rig;
   ASSERT_EQ(hdPhantomOpen(0), 0);
   double d = 7;
@@ -92,7 +92,7 @@ TEST(FaceHdPhantom, FailsByMinusOneWhateverItIsGiven) {
     EXPECT_EQ(hdPhantomOpen(id), -1);
     EXPECT_EQ(hdPhantomClose(id), -1);
     EXPECT_EQ(hdPhantomGetPosition(id, &d, &d, &d), -1);
-    EXPECT_EQ(d, 0) << "a program that does not look shall not use what was there";
+    EXPECT_EQ(d, 0) << "outputs must be zero for programs that ignore the return value";
     EXPECT_EQ(hdPhantomGetLinearVelocity(id, &d, &d, &d), -1);
     EXPECT_EQ(hdPhantomGetRotation(id, &d, &d, &d, &d, &d, &d, &d, &d, &d), -1);
     EXPECT_EQ(hdPhantomGetButtons(id), 0);
@@ -110,7 +110,7 @@ TEST(FaceHdPhantom, FailsByMinusOneWhateverItIsGiven) {
   EXPECT_EQ(hdPhantomSetForceAndTorque(0, &d, &d, &d, nullptr, &d, &d), -1);
   EXPECT_EQ(hdPhantomGetWorkspaceRadius(0, nullptr), -1);
   EXPECT_EQ(hdPhantomGetType(0, nullptr), -1);
-  EXPECT_EQ(hdPhantomSetForce(0, &nan, &d, &d), 0) << "the gate answers for it";
+  EXPECT_EQ(hdPhantomSetForce(0, &nan, &d, &d), 0) << "the gate handles it";
   ArmReading reading;
   arms::read(0, reading);
   EXPECT_EQ(reading.fault, driver::Fault::kForceNotFinite);

@@ -1,4 +1,4 @@
-"""Where things are: the package as it was built (PYTHONPATH), the program, the sources."""
+"""Fixtures: the program and the sources. PYTHONPATH has the built package."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ def source() -> Path:
 
 @pytest.fixture
 def told(program, tmp_path):
-    """Runs the program in a folder of its own, and gives what it printed."""
+    """Runs the program in a separate folder, and returns its output."""
 
     def tell(*arguments: str) -> str:
         return subprocess.run(

@@ -1,4 +1,4 @@
-"""Runs that are dropped, left at the end of the program, or part of a reference cycle; laws that fail."""
+"""Runs that are deleted, still open at the end of the program, or part of a reference cycle; laws that fail."""
 
 import gc
 import subprocess
@@ -100,7 +100,7 @@ def test_failed_law_raises_at_each_step():
 
 
 @pytest.mark.parametrize("law", [lambda tick: "no force", lambda tick: [1, 2], lambda tick: [1, 2, 3, 4]])
-def test_wrong_answer_of_a_law_raises_at_each_step(law):
+def test_wrong_return_value_of_a_law_raises_at_each_step(law):
     stepper = thimble.Stepper("box", law=law)
     for _ in range(3):
         with pytest.raises(ValueError, match="three numbers"):
@@ -108,7 +108,7 @@ def test_wrong_answer_of_a_law_raises_at_each_step(law):
 
 
 class Law:
-    """A law that holds what runs it."""
+    """A law that refers to the run that calls it."""
 
     def __init__(self, fails):
         self.fails = fails
@@ -157,7 +157,7 @@ def test_cycle_through_a_compiled_law_is_freed():
     assert sum(one() is not None for one in gone) == 0
 
 
-def test_collector_may_run_while_a_run_is_made():
+def test_garbage_collector_may_run_while_a_run_is_created():
     gc.set_threshold(1)
     try:
         for _ in range(5):

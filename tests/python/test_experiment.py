@@ -1,4 +1,4 @@
-"""Experiments: orders, staircases, psychometric functions; each against simulated observers and over many seeds."""
+"""Orders, staircases and psychometric functions, tested with simulated observers and many seeds."""
 
 import itertools
 import math
@@ -29,7 +29,7 @@ def test_all_combinations_come_equally_often_in_every_order():
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 8])
-def test_balanced_orders_have_each_place_and_each_neighbour_equally_often(count):
+def test_balanced_orders_balance_positions_and_neighbours(count):
     subjects = count * (1 + count % 2)
     rows = [experiment.balanced_row(count, subject) for subject in range(subjects)]
     for column in zip(*rows):
@@ -51,7 +51,7 @@ def test_target_is_where_steps_balance(down, up, target):
 
 
 def test_weighted_steps_move_the_target():
-    # Up by three steps, down by one: three of four answers are correct at rest.
+    # Up by three steps, down by one: at equilibrium three of four answers are correct.
     assert experiment.Staircase(1, 0.1, down=1, up_ratio=3).target == pytest.approx(0.75, abs=1e-9)
 
 
@@ -59,7 +59,7 @@ def test_weighted_steps_move_the_target():
     "down, ratio, guess, widest",
     [(2, 1.0, 0.5, 0.7), (3, 1.0, 0.5, 0.5), (1, 3.0, 0.5, 0.85), (1, 1.0, 0.0, 0.45)],
 )
-def test_staircase_converges_to_the_known_threshold_over_many_seeds(down, ratio, guess, widest):
+def test_staircase_converges_to_the_known_threshold(down, ratio, guess, widest):
     middle, width = 10.0, 1.0
     found = []
     for seed in range(400):
@@ -76,7 +76,7 @@ def test_staircase_converges_to_the_known_threshold_over_many_seeds(down, ratio,
     assert spread < widest * width
 
 
-def test_multiplying_steps_converge_alike_in_every_unit():
+def test_multiplied_steps_are_invariant_to_the_unit():
     found = {}
     for unit in (1.0, 1e-6):
         thresholds = []
@@ -109,7 +109,7 @@ def test_staircase_step_by_step():
 
 @pytest.mark.parametrize("shape", ["logistic", "probit"])
 @pytest.mark.parametrize("guess", [0.0, 0.5])
-def test_fit_recovers_the_parameters_and_its_errors_are_what_they_say(shape, guess):
+def test_fit_recovers_parameters_with_correct_standard_errors(shape, guess):
     levels = np.linspace(7, 13, 9)
     true = experiment.Psychometric(shape, 10.0, 1.5, guess, 0.0, 0.0, 0.0, 0.0)
     fits = []
@@ -144,7 +144,7 @@ def test_fit_is_the_likeliest_curve_near_it(shape):
             assert likelihood(found.middle * middle, found.width * width) < best
 
 
-def test_fit_is_the_same_from_single_trials_and_in_another_unit():
+def test_fit_is_invariant_to_grouping_and_unit():
     levels, said = [1, 2, 3, 4, 5], [1, 4, 11, 17, 19]
     counted = experiment.fit(levels, said, 20)
     single = experiment.fit(np.repeat(levels, 20), np.concatenate([np.arange(20) < one for one in said]))
@@ -158,7 +158,7 @@ def test_levels_of_a_probability_and_the_jnd():
         curve = experiment.Psychometric(shape, 10.0, 2.0, 0.5, 0.02, 0, 0, 0)
         for p in (0.6, 0.75, 0.9):
             assert float(curve(curve.level(p))) == pytest.approx(p, abs=1e-9)
-        with pytest.raises(thimble.ArgumentError, match="does not pass"):
+        with pytest.raises(thimble.ArgumentError, match="does not reach"):
             curve.level(0.99)
         curve = experiment.Psychometric(shape, 10.0, 2.0, 0, 0, 0, 0, 0)
         assert curve.jnd == pytest.approx((curve.level(0.75) - curve.level(0.25)) / 2)
@@ -178,11 +178,11 @@ def test_lapses_are_found_and_do_not_widen_the_curve():
     assert np.mean(widths[0.0]) > 1.15 * np.mean(widths["fit"])
 
 
-def test_answers_without_a_width_are_warned_of_and_flat_ones_refused():
-    with pytest.warns(RuntimeWarning, match="do not hold the curve's width"):
+def test_fit_warns_without_a_width_and_refuses_flat_answers():
+    with pytest.warns(RuntimeWarning, match="do not determine the width"):
         found = experiment.fit([1, 2, 3, 4], [0, 0, 10, 10], 10)
     assert 2 < found.middle < 3 and math.isnan(found.middle_error) and math.isnan(found.width_error)
-    with pytest.warns(RuntimeWarning, match="do not hold the curve's width"):  # the attribute exists without a value
+    with pytest.warns(RuntimeWarning, match="do not determine the width"):  # the attribute exists without a value
         found = experiment.fit([1, 2, 3, 4], [5, 6, 10, 10], 10, guess=0.5)
     assert math.isnan(found.middle_error) and math.isnan(found.width_error)
     for said in ([5, 5, 5], [9, 5, 1], [10, 10, 10], [0, 0, 0]):
@@ -200,7 +200,7 @@ def test_constant_stimuli_are_balanced_over_subjects():
 
 
 def dense_loss(x, k, n, guess, lapse):
-    """Least loss of logistic curves over a grid of middles and widths that is much finer than what fit() begins at."""
+    """Returns the minimum loss of logistic curves over a grid much finer than the start grid of fit()."""
     x = (x - x[0]) / (x[-1] - x[0])
     middles, widths = np.linspace(-0.5, 1.5, 201), np.exp(np.linspace(math.log(0.002), math.log(20), 160))
     z = (x - middles[:, None, None]) / widths[None, :, None]
@@ -210,7 +210,7 @@ def dense_loss(x, k, n, guess, lapse):
 
 @pytest.mark.filterwarnings("ignore:The answers do not hold:RuntimeWarning")
 @pytest.mark.parametrize("guess", [0.0, 0.5])
-def test_no_curve_of_a_dense_grid_is_likelier(guess):
+def test_fit_is_at_least_as_likely_as_a_dense_grid(guess):
     random = np.random.default_rng(7)
     fits = 0
     for _ in range(200):
@@ -229,7 +229,7 @@ def test_no_curve_of_a_dense_grid_is_likelier(guess):
     assert fits > 120
 
 
-def test_constant_stimuli_end_in_a_fit():
+def test_constant_stimuli_fit_their_answers():
     stimuli = experiment.ConstantStimuli(np.linspace(0.7, 1.3, 7), 40, says="rougher", seed=5)
     random = np.random.default_rng(2)
     while (condition := stimuli.condition()) is not None:
@@ -250,8 +250,8 @@ def test_constant_stimuli_end_in_a_fit():
         (lambda: experiment.Staircase(1, 1).take({"right": True}), "correct=True or False"),
         (lambda: experiment.Trials({"a": [1]}, order="wild"), "given, random, blocks, balanced"),
         (lambda: experiment.Trials({"a": []}), "at least one"),
-        (lambda: experiment.Trials({"a": [1, 2]}, order="balanced"), "subject: .*give each its number"),
-        (lambda: experiment.ConstantStimuli([1, 2], 2, order="balanced"), "subject: .*give each its number"),
+        (lambda: experiment.Trials({"a": [1, 2]}, order="balanced"), "subject: .*requires the number"),
+        (lambda: experiment.ConstantStimuli([1, 2], 2, order="balanced"), "subject: .*requires the number"),
         (lambda: experiment.Trials({"a": [1, 2]}, order="balanced", subject=-1), "subject: expected a whole number"),
         (lambda: experiment.ConstantStimuli([1, 2], 2).take({}), "correct=True or False"),
         (lambda: experiment.Interleaved({}), "at least one"),
@@ -261,6 +261,6 @@ def test_constant_stimuli_end_in_a_fit():
         (lambda: experiment.fit([1, 2], [0, 1], guess=0.5, lapse=0.6), "lapse"),
     ],
 )
-def test_mistakes_are_answered_with_a_sentence(wrong, said):
+def test_wrong_arguments_raise_a_clear_error(wrong, said):
     with pytest.raises(thimble.ArgumentError, match=said):
         wrong()

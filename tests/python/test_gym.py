@@ -1,4 +1,4 @@
-"""Environments: Gymnasium's interface, the same to the bit alone and side by side, processes that end."""
+"""Environments: Gymnasium's interface, bit-identical results in several processes, ends of the processes."""
 
 import functools
 import os
@@ -33,7 +33,7 @@ def into(k, z=-0.02):
 
 
 def told(env, seed, steps=40):
-    """All that an environment tells, through the ends of its episodes."""
+    """Returns all results of an environment over several episodes."""
     observation, info = env.reset(seed=seed)
     told = [observation.tobytes(), info]
     over = False
@@ -71,7 +71,7 @@ def test_interface():
         env.step((0, 0, 0))
 
 
-def test_observation_is_what_the_last_tick_tells():
+def test_observation_equals_the_last_tick():
     env = thimble.gym.TouchEnv("rubber", seconds=3)
     env.reset(seed=1)
     touched = 0
@@ -86,7 +86,7 @@ def test_observation_is_what_the_last_tick_tells():
     assert touched > 5
 
 
-def test_is_the_same_as_a_stepper_that_is_led_the_same_way():
+def test_environment_equals_a_stepper_with_the_same_targets():
     env = thimble.gym.TouchEnv("rubber", seconds=1, frame_skip=7)
     env.reset(seed=4, options={"seed": 9})
     stepper = thimble.Stepper("rubber", seconds=2, seed=9)
@@ -98,7 +98,7 @@ def test_is_the_same_as_a_stepper_that_is_led_the_same_way():
         assert observation[:3].tobytes() == stepper.tick.tip.tobytes()
 
 
-def test_a_seed_repeats_to_the_bit_over_episodes_and_another_does_not():
+def test_same_seed_repeats_all_episodes_bit_identically():
     assert told(SHORT(), 3) == told(SHORT(), 3)
     assert told(SHORT(), 3) != told(SHORT(), 4)
     env = SHORT()
@@ -122,7 +122,7 @@ def test_episodes_end_by_time_and_by_the_goal():
     assert terminated and not truncated and observation[9] > 0.003
 
 
-def test_out_of_reach_the_hand_stays_and_the_step_says_so():
+def test_unreachable_target_keeps_the_hand_and_clears_reached():
     env, same = SHORT(), SHORT()
     env.reset(seed=0)
     same.reset(seed=0)
@@ -143,13 +143,13 @@ def test_out_of_reach_the_hand_stays_and_the_step_says_so():
         (lambda: thimble.gym.VectorEnv(SHORT, 2, workers=0), "workers"),
     ],
 )
-def test_mistakes_are_answered_with_a_sentence(wrong, said):
+def test_wrong_arguments_raise_a_clear_error(wrong, said):
     with pytest.raises(thimble.Error, match=said):
         wrong()
 
 
 @pytest.mark.parametrize("start, workers", [("spawn", 2), ("forkserver", 3)])
-def test_side_by_side_is_to_the_bit_what_each_is_alone(start, workers):
+def test_vector_env_is_bit_identical_to_single_environments(start, workers):
     count, steps = 5, 40
     alone = [told(SHORT(), 20 + i, steps) for i in range(count)]
     with_ends = sum(True in one for one in alone)
@@ -172,14 +172,14 @@ def test_seeds_one_for_each():
     with thimble.gym.VectorEnv([SHORT, SHORT], workers=1) as envs:
         first, _ = envs.reset(seed=[7, 7])
         assert first[0].tobytes() == first[1].tobytes()
-        with pytest.raises(thimble.Error, match="2 of them"):
+        with pytest.raises(thimble.Error, match="2 seeds"):
             envs.reset(seed=[7])
         with pytest.raises(thimble.Error, match="shape"):
             envs.step(np.zeros((3, 3)))
 
 
 def gone(number):
-    """Whether a process has ended; one that nobody waited for counts."""
+    """Returns whether a process has ended; a zombie counts as ended."""
     try:
         with open(f"/proc/{number}/stat") as stat:
             return stat.read().rsplit(")", 1)[1].split()[0] == "Z"
@@ -196,7 +196,7 @@ def all_gone(numbers):
     return False
 
 
-def test_processes_end_when_closed_and_when_forgotten():
+def test_processes_end_when_closed_or_deleted():
     envs = thimble.gym.VectorEnv(SHORT, 2, workers=2)
     running = envs.processes
     assert len(running) == 2 and not any(map(gone, running))
@@ -211,7 +211,7 @@ def test_processes_end_when_closed_and_when_forgotten():
     assert all_gone(running)
 
 
-def test_a_process_that_is_killed_ends_all_with_a_sentence():
+def test_a_killed_process_closes_all_with_an_error():
     with thimble.gym.VectorEnv(SHORT, 2, workers=2) as envs:
         envs.reset(seed=0)
         running = envs.processes
@@ -222,7 +222,7 @@ def test_a_process_that_is_killed_ends_all_with_a_sentence():
         assert all_gone(running)
 
 
-def test_an_exception_in_an_environment_comes_out_here():
+def test_an_exception_in_an_environment_reaches_the_caller():
     make = functools.partial(thimble.gym.TouchEnv, "rubber", broken)
     envs = thimble.gym.VectorEnv([SHORT, make], workers=1)
     running = envs.processes
@@ -236,7 +236,7 @@ def test_an_exception_in_an_environment_comes_out_here():
 
 @pytest.mark.parametrize("start", ["spawn", "forkserver"])
 def test_processes_end_when_the_parent_is_killed(start, tmp_path):
-    script = tmp_path / "parent.py"  # without a main guard: a process that needs nothing from the script does not run it
+    script = tmp_path / "parent.py"  # no main guard: processes that do not need the script do not run it
     script.write_text(
         f"""
 import functools, time, thimble.gym
@@ -256,8 +256,8 @@ time.sleep(60)
         assert all_gone(running)
 
 
-def test_stands_on_gymnasium_where_there_is_one(tmp_path):
-    """As far as can be told without it: a module with the classes that are derived from, as bare as its own are."""
+def test_uses_the_base_classes_of_gymnasium_if_installed(tmp_path):
+    """Uses a minimal module with the base classes, because Gymnasium itself may be missing."""
     (tmp_path / "gymnasium/vector").mkdir(parents=True)
     (tmp_path / "gymnasium/__init__.py").write_text(
         """
@@ -310,7 +310,7 @@ print(observation.tobytes().hex())
     assert done.stdout.strip() == thimble.gym.TouchEnv("rubber", seconds=1).reset(seed=3)[0].tobytes().hex()
 
 
-def test_gymnasium_itself_is_content():
+def test_gymnasium_checks_the_environment():
     pytest.importorskip("gymnasium")
     from gymnasium.utils.env_checker import check_env
 

@@ -1,4 +1,4 @@
-"""Many arms of one scene in one process: each as alone, to the bit, over meshes that are there once."""
+"""Many arms of one scene in one process: bit-identical to single environments, with shared meshes."""
 
 import functools
 import pickle
@@ -32,7 +32,7 @@ def ones(ticks, actions):
 
 
 def into(k, i):
-    """Into the object; the first arm stays above it, so that time ends its episodes."""
+    """Returns a target in the object. The first arm stays above it, so that time ends its episodes."""
     return np.array([0.002 * np.sin(k), 0.001 * i, 0.01 - 0.0015 * k if i > 0 else 0.03])
 
 
@@ -41,7 +41,7 @@ def of(infos, i):
 
 
 def told_alone(env, number, seed, steps):
-    """All that one environment tells, through the ends of its episodes."""
+    """Returns all results of one environment over several episodes."""
     observation, info = env.reset(seed=seed)
     told, over = [observation.tobytes(), info], False
     for k in range(steps):
@@ -57,7 +57,7 @@ def told_alone(env, number, seed, steps):
 
 
 def told_together(envs, seed, steps):
-    """The same of each of several."""
+    """Returns the same results of each arm of a vector environment."""
     observations, infos = envs.reset(seed=seed)
     told = [[observations[i].tobytes(), of(infos, i)] for i in range(COUNT)]
     for k in range(steps):
@@ -68,7 +68,7 @@ def told_together(envs, seed, steps):
 
 
 @pytest.mark.parametrize("scene", ["rubber", "clay"])
-def test_each_arm_is_to_the_bit_what_it_is_alone(scene):
+def test_each_arm_is_bit_identical_to_a_single_environment(scene):
     steps = 45
     common = {"seconds": 0.305, "frame_skip": 10}
     alone = [
@@ -82,7 +82,7 @@ def test_each_arm_is_to_the_bit_what_it_is_alone(scene):
     assert told_together(envs, 20, steps) == alone  # and again
 
 
-def test_tells_what_a_vector_over_processes_tells():
+def test_results_equal_those_of_vector_env():
     make = functools.partial(thimble.gym.TouchEnv, "rubber", seconds=0.1, meshes=thimble.Meshes())
     envs = thimble.gym.TouchVectorEnv("rubber", COUNT, seconds=0.1)
     with thimble.gym.VectorEnv(make, COUNT, workers=1) as others:
@@ -99,7 +99,7 @@ def test_tells_what_a_vector_over_processes_tells():
             assert (mine[-1][key] == theirs[-1][key]).all() and mine[-1][key].dtype == theirs[-1][key].dtype, key
 
 
-def test_out_of_reach_one_hand_stays_and_the_others_go():
+def test_unreachable_target_affects_only_its_own_arm():
     envs = thimble.gym.TouchVectorEnv("rubber", 2)
     envs.reset(seed=0)
     *_, infos = envs.step([(0.1, 0.1, 0.1), (0.0, 0.0, 0.02)])
@@ -107,7 +107,7 @@ def test_out_of_reach_one_hand_stays_and_the_others_go():
     assert envs.ticks.tip.shape == (2, 3) and envs.seconds_per_step == pytest.approx(0.01)
 
 
-def test_a_step_that_begins_an_episode_gives_no_reward_and_heeds_no_action():
+def test_step_that_begins_an_episode_ignores_action_and_reward():
     envs = thimble.gym.TouchVectorEnv("rubber", 2, ones, seconds=0.02, frame_skip=10)
     envs.reset(seed=0)
     goals = np.zeros((2, 3))
@@ -118,7 +118,7 @@ def test_a_step_that_begins_an_episode_gives_no_reward_and_heeds_no_action():
     assert envs.observation_space.contains(observations)
 
 
-def test_mistakes_are_answered_with_a_sentence():
+def test_wrong_arguments_raise_a_clear_error():
     make = functools.partial(thimble.gym.TouchVectorEnv, "rubber", 2)
     for wrong, said in (
         (lambda: thimble.gym.TouchVectorEnv("no_such", 2), "Known by name"),
@@ -127,7 +127,7 @@ def test_mistakes_are_answered_with_a_sentence():
         (lambda: make(frame_skip=0), "frame_skip"),
         (lambda: make(quality="best"), "quality"),
         (lambda: make().step(np.zeros((2, 3))), r"reset\(\)"),
-        (lambda: make().reset(seed=[1]), "2 of them"),
+        (lambda: make().reset(seed=[1]), "2 seeds"),
     ):
         with pytest.raises(thimble.Error, match=said):
             wrong()
@@ -144,7 +144,7 @@ def test_mistakes_are_answered_with_a_sentence():
         envs.reset(seed=0)
 
 
-def test_meshes_are_there_once_and_change_no_bit():
+def test_shared_meshes_are_loaded_once_without_other_results():
     meshes = thimble.Meshes()
     alone = thimble.run("clay", seconds=1.2)
     shared = [thimble.run("clay", seconds=1.2, meshes=meshes) for _ in range(2)]

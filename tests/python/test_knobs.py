@@ -1,4 +1,4 @@
-"""Settings of a scene that are turned from Python while it is felt."""
+"""Knobs: settings of a scene that Python changes during the run."""
 
 import time
 
@@ -8,7 +8,7 @@ import thimble
 
 
 def _stepped(turns, seconds=1.5, **options):
-    """Steps a scene, turns knobs at ticks, and gives its ticks."""
+    """Steps a scene, changes knobs at the given ticks, and returns the stepper."""
     stepper = thimble.Stepper("rubber", seconds=seconds, **options)
     for tick in range(round(1000 * seconds)):
         for name, value in turns.get(tick, {}).items():
@@ -17,7 +17,7 @@ def _stepped(turns, seconds=1.5, **options):
     return stepper
 
 
-def test_knobs_are_listed_with_units_bounds_and_what_they_are_now():
+def test_knobs_are_listed_with_unit_bounds_and_value():
     knobs = thimble.Stepper("rubber").knobs
     assert "ball: stiffness" in knobs and len(knobs) == len(list(knobs)) == len(knobs.keys()) > 1
     stiffness = knobs["ball: stiffness"]
@@ -29,7 +29,7 @@ def test_knobs_are_listed_with_units_bounds_and_what_they_are_now():
     assert "<td>ball: stiffness</td>" in knobs._repr_html_()
 
 
-def test_a_knob_that_nobody_turns_changes_no_bit_and_a_turn_repeats_to_the_bit():
+def test_changes_of_knobs_repeat_bit_identically():
     plain = _stepped({}).ticks().columns.tobytes()
     assert plain == thimble.run("rubber", seconds=1.5).columns.tobytes()
     turned = _stepped({400: {"ball: stiffness": 50}}).ticks()
@@ -39,7 +39,7 @@ def test_a_knob_that_nobody_turns_changes_no_bit_and_a_turn_repeats_to_the_bit()
     assert np.abs(turned.force_wanted - plain.force_wanted).max() > 0.1  # N
 
 
-def test_a_turn_begins_with_the_next_tick_and_ends_on_the_very_value():
+def test_change_starts_at_the_next_tick_and_reaches_its_value():
     stepper = thimble.Stepper("rubber")
     stepper.step()
     before = stepper.knobs.ball_stiffness.value
@@ -47,27 +47,27 @@ def test_a_turn_begins_with_the_next_tick_and_ends_on_the_very_value():
     assert stepper.knobs.ball_stiffness.value == before
     stepper.step()
     assert 123 <= stepper.knobs.ball_stiffness.value < before
-    for _ in range(60):  # nothing is touched yet: 50 ms at the most
+    for _ in range(60):  # no contact yet, so the change takes at most 50 ms
         stepper.step()
     assert stepper.knobs.ball_stiffness.value == 123
 
 
-def test_no_turn_of_a_felt_knob_is_a_step_of_force():
+def test_change_in_contact_causes_no_step_of_force():
     turns = {tick: {"ball: stiffness": 800 if tick // 100 % 2 else 50} for tick in range(300, 1500, 100)}
     stepper = _stepped(turns)
     plain = thimble.run("rubber", seconds=1.5)
     step = np.abs(np.diff(stepper.ticks().force_wanted, axis=0)).max()
     assert step < np.abs(np.diff(plain.force_wanted, axis=0)).max() + 0.1  # N
-    assert np.abs(stepper.ticks().force_wanted - plain.force_wanted).max() > 0.1  # and yet it is felt
+    assert np.abs(stepper.ticks().force_wanted - plain.force_wanted).max() > 0.1  # the change has an effect
 
 
-def test_a_law_of_ones_own_sees_the_scene_as_the_knobs_have_it():
+def test_custom_law_gets_the_force_with_changed_knobs():
     turns = {200: {"ball: stiffness": 50}}
     with_law = _stepped(turns, law=lambda tick: None)
     assert with_law.ticks().force_wanted.tobytes() == _stepped(turns).ticks().force_wanted.tobytes()
 
 
-def test_mistakes_tell_the_knobs_and_the_bounds_and_turn_nothing():
+def test_wrong_knob_raises_and_changes_nothing():
     stepper = thimble.Stepper("rubber")
     knobs, before = stepper.knobs, stepper.knobs.values()
     most = f"{knobs.ball_stiffness.most:g}"
@@ -93,7 +93,7 @@ def test_mistakes_tell_the_knobs_and_the_bounds_and_turn_nothing():
         several["anything"] = 1
 
 
-def test_knobs_of_a_run_in_real_time_turn_from_the_side():
+def test_knobs_change_a_run_in_real_time():
     with thimble.open("rubber", "sim", seconds=60) as live:
         live.knobs["ball: stiffness"] = 123
         deadline = time.monotonic() + 30

@@ -1,4 +1,4 @@
-"""Compiled force laws, and laws over many arms at once."""
+"""Compiled force laws, and forces of many arms at once."""
 
 import ctypes
 import os
@@ -24,11 +24,11 @@ def _unset(time, tip, velocity, wanted, force, data):
 
 @thimble.LawFunction
 def _told(time, tip, velocity, wanted, force, data):
-    """A force of each thing that it is told, and of its data."""
+    """Sets the force from time, tip and data."""
     force[0], force[1], force[2] = time, tip[2], ctypes.cast(data, ctypes.POINTER(ctypes.c_double))[1]
 
 
-def test_a_compiled_law_is_a_law_in_python_to_the_bit():
+def test_compiled_law_is_bit_identical_to_a_python_law():
     python = thimble.run("elephant", seconds=2, law=lambda tick: 0.5 * tick.force_wanted)
     for law in (_half, thimble.compiled_law(_half), thimble.compiled_law(ctypes.cast(_half, ctypes.c_void_p).value)):
         compiled = thimble.run("elephant", seconds=2, law=law)
@@ -36,7 +36,7 @@ def test_a_compiled_law_is_a_law_in_python_to_the_bit():
     assert np.linalg.norm(python.force, axis=1).max() > 0.1  # N
 
 
-def test_a_compiled_law_gets_time_tip_and_its_data_which_may_change_between_steps():
+def test_compiled_law_gets_time_tip_and_changing_data():
     data = np.array([0.0, 0.25])
     stepper = thimble.Stepper("box", seconds=0.1, law=thimble.compiled_law(_told, data))
     for _ in range(50):
@@ -51,7 +51,7 @@ def test_a_compiled_law_gets_time_tip_and_its_data_which_may_change_between_step
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_a_compiled_law_that_raises_leaves_zero_force_and_the_reason():
+def test_compiled_law_that_raises_gives_zero_force():
     run = thimble.run("box", seconds=0.3, law=_unset)
     assert run.end == "fault" and run[-1].fault == "force_not_finite"
     assert run.time[-1] == pytest.approx(0.051) and (run[-1].force == 0).all()
@@ -69,7 +69,7 @@ def test_numba_compiles_a_law():
     assert thimble.run("box", seconds=1, law=half).columns.tobytes() == thimble.run("box", seconds=1, law=_half).columns.tobytes()
 
 
-def test_a_law_of_numba_that_raises_leaves_zero_force():
+def test_numba_law_that_raises_gives_zero_force():
     if "THIMBLE_LONG" not in os.environ:
         pytest.skip("the long form (THIMBLE_LONG=1) compiles more by numba")
     numba = pytest.importorskip("numba", reason="install python3-numba")
@@ -100,13 +100,13 @@ def test_a_law_of_numba_that_raises_leaves_zero_force():
     assert not thimble.run("box", seconds=0.1, law=none).force.any()
 
 
-def test_laws_that_are_none_are_told_before_anything_runs():
+def test_wrong_laws_are_refused_before_the_run():
     for wrong, error, said in [
-        (lambda: thimble.compiled_law(0), thimble.ArgumentError, "address of no function"),
-        (lambda: thimble.compiled_law(-4), thimble.ArgumentError, "address of no function"),
+        (lambda: thimble.compiled_law(0), thimble.ArgumentError, "not the address of a function"),
+        (lambda: thimble.compiled_law(-4), thimble.ArgumentError, "not the address of a function"),
         (lambda: thimble.compiled_law("law"), TypeError, "a function or its address"),
         (lambda: thimble.compiled_law(_half, [1.0]), thimble.ArgumentError, "array of float64"),
-        (lambda: thimble.compiled_law(_half, np.zeros(4)[::2]), thimble.ArgumentError, "in one piece"),
+        (lambda: thimble.compiled_law(_half, np.zeros(4)[::2]), thimble.ArgumentError, "C-contiguous"),
         (lambda: thimble.run("box", law=3), TypeError, "law: expected a function of a tick"),
         (lambda: thimble.run("two_hands", law=_half), thimble.Error, "for one arm"),
     ]:
@@ -114,7 +114,7 @@ def test_laws_that_are_none_are_told_before_anything_runs():
             wrong()
 
 
-def test_numba_that_is_missing_is_named(monkeypatch):
+def test_missing_numba_is_reported_with_its_package(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "numba", None)
     with pytest.raises(ImportError, match="python3-numba"):
         thimble.compiled_law(lambda time, tip, velocity, wanted, force: None)
@@ -124,7 +124,7 @@ def _spring(ticks):
     return -200 * ticks.tip - 1 * ticks.velocity
 
 
-def test_many_arms_at_once_are_each_as_alone_to_the_bit():
+def test_each_of_many_arms_is_bit_identical_to_a_single_arm():
     hands = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.01], [0.0, -0.02, 0.0]])
     many = thimble.Simulators(3, hand=hands, seed=5)
     alone = [thimble.Simulator(hand=hand, seed=5 + i) for i, hand in enumerate(hands)]
@@ -139,7 +139,7 @@ def test_many_arms_at_once_are_each_as_alone_to_the_bit():
     assert (many.name, many.force_max) == (alone[0].name, alone[0].force_max)
 
 
-def test_a_fault_of_one_arm_is_its_own():
+def test_fault_of_one_arm_leaves_the_others():
     arms = thimble.Simulators(3)
     forces = np.full((3, 3), 0.2)
     forces[1, 0] = np.nan
@@ -154,7 +154,7 @@ def test_a_fault_of_one_arm_is_its_own():
     assert (ticks.force > 0.15).all()
 
 
-def test_wrong_rows_are_told_and_step_no_arm():
+def test_wrong_shapes_are_refused_and_step_no_arm():
     arms = thimble.Simulators(2)
     begin = arms.step().time[0]
     for wrong, said in [
@@ -162,7 +162,7 @@ def test_wrong_rows_are_told_and_step_no_arm():
         (lambda: arms.step(hand=(0, 0, np.nan)), "hand: expected"),
         (lambda: arms.step("hard"), "force: expected"),
         (lambda: thimble.Simulators(0), "count: expected a whole number from 1"),
-        (lambda: thimble.Simulators(2, seed=[1, 2, 3]), "seed: expected 2 of them, found 3"),
+        (lambda: thimble.Simulators(2, seed=[1, 2, 3]), "seed: expected 2 seeds, found 3"),
         (lambda: thimble.Simulators(2, "box"), "no arm file of that name"),
     ]:
         with pytest.raises(thimble.ArgumentError, match=said):

@@ -1,4 +1,4 @@
-"""Pictures in notebooks, and the notebooks that are shipped: their code runs, and nothing of it is stored."""
+"""Pictures in notebooks, and the shipped notebooks: their code runs, and they are stored without results."""
 
 import ast
 import json
@@ -16,7 +16,7 @@ def notebook(source):
 
 
 def _run_cell(code, names):
-    """Runs a cell, and gives what a notebook would show below it: the value of its last line."""
+    """Runs a cell, and returns what a notebook displays below it: the value of its last line."""
     tree = ast.parse(code)
     last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, "cell", "exec"), names)
@@ -24,7 +24,7 @@ def _run_cell(code, names):
 
 
 @pytest.mark.parametrize("name", NOTEBOOKS)
-def test_the_code_of_each_notebook_runs_and_shows_what_it_says(name, notebook, tmp_path, monkeypatch):
+def test_code_of_each_notebook_runs_and_shows_its_results(name, notebook, tmp_path, monkeypatch):
     matplotlib = pytest.importorskip("matplotlib", reason="install python3-matplotlib")
     matplotlib.use("Agg")
     monkeypatch.chdir(tmp_path)
@@ -60,14 +60,14 @@ def test_jupyter_runs_the_notebooks_and_shows_each_picture_once(name, source, tm
     assert [len(one) for one in pictures] == {"first_touch": [1, 0, 1, 0, 1, 1], "texture_experiment": [1, 1, 0, 1]}[name]
 
 
-def test_a_run_is_drawn_as_it_was_and_one_that_cannot_be_repeated_says_so(tmp_path):
+def test_shot_repeats_the_run_or_gives_the_reason(tmp_path):
     run = thimble.run("box", seconds=0.5, seed=4, set={"entry_face.stiffness": 300})
     picture = run.shot(at=0.4, size=(160, 120), caption=False)
     assert repr(picture) == "Shot(160 x 120 pixels)"
     picture.save(tmp_path / "box.png")
     assert (tmp_path / "box.png").read_bytes() == picture.png == picture._repr_png_()
     own = thimble.run("box", seconds=0.1, law=lambda tick: None)
-    with pytest.raises(thimble.Error, match="force law of its own; thimble.shot"):
+    with pytest.raises(thimble.Error, match="custom force law. .*thimble.shot"):
         own.shot()
     with pytest.raises(thimble.Error, match="its quality was draft"):
         thimble.run("box", seconds=0.1, quality="draft").shot()

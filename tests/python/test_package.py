@@ -1,4 +1,4 @@
-"""What the package answers beside a run: names, mistakes, arms, real time, studies."""
+"""Functions of the package besides run(): names, errors, arms, real time, studies."""
 
 import inspect
 import os
@@ -37,13 +37,13 @@ def test_knows_scenes_and_arms_by_name(source):
         (lambda: thimble.Simulator(hand=(1, 1, 1)), "does not reach"),
         (lambda: thimble.Simulator(rate=0), "rate: expected"),
         (lambda: thimble.Stepper("box").mesh("no_such_object"), "no object"),
-        (lambda: thimble.Stepper("box").summary(), "not over"),
+        (lambda: thimble.Stepper("box").summary(), "has not ended"),
         (lambda: thimble.open("box", "WH99", agree=True), "WH99"),
         (lambda: thimble.study("no_such_study"), 'no study "no_such_study"; there are cost, friction, '),
         (lambda: thimble.study("box", no_such_option=3), "study box: .*--no-such-option"),
     ],
 )
-def test_mistakes_are_answered_with_a_sentence(wrong, said):
+def test_wrong_arguments_raise_a_clear_error(wrong, said):
     with pytest.raises(thimble.Error, match=said):
         wrong()
 
@@ -57,7 +57,7 @@ def test_a_stepper_refuses_options_of_open():
         thimble.Stepper("box", device="sim")
 
 
-def test_wrong_types_are_told_before_anything_runs():
+def test_wrong_types_are_refused_before_the_run():
     stepper = thimble.Stepper("box")
     with pytest.raises(ValueError, match="hand: expected three numbers"):
         stepper.step(hand=(0, 0))
@@ -92,7 +92,7 @@ def test_wrong_types_are_told_before_anything_runs():
         (lambda: thimble.study("nope"), "there are cost"),
     ],
 )
-def test_arguments_that_name_nothing_or_miss_their_bounds_are_argument_errors(wrong, said):
+def test_unknown_names_and_values_out_of_bounds_are_refused(wrong, said):
     with pytest.raises(thimble.ArgumentError, match=said) as caught:
         wrong()
     assert isinstance(caught.value, thimble.Error) and isinstance(caught.value, ValueError)
@@ -108,7 +108,7 @@ def test_arguments_that_name_nothing_or_miss_their_bounds_are_argument_errors(wr
         (lambda: thimble.run("box", quality=1), "quality: expected draft"),
         (lambda: thimble.run("box", record=3), "record: expected a file"),
         (lambda: thimble.run("box", set=[("ball.stiffness", 3)]), "set: expected a dict"),
-        (lambda: thimble.run("box", set={3: 4}), "set: expected places as text, found 3"),
+        (lambda: thimble.run("box", set={3: 4}), "set: expected paths as text, found 3"),
         (lambda: thimble.run("box", law="half"), "law: expected a function"),
         (lambda: thimble.Simulator(rate=None), "rate: expected a number, found None"),
         (lambda: thimble.open("box", 3), "device: expected"),
@@ -117,12 +117,12 @@ def test_arguments_that_name_nothing_or_miss_their_bounds_are_argument_errors(wr
         (lambda: thimble.study("box", 3), "arguments: expected a file"),
     ],
 )
-def test_arguments_of_the_wrong_type_are_type_errors_that_say_what_was_expected(wrong, said):
+def test_wrong_types_are_type_errors_with_the_expected_type(wrong, said):
     with pytest.raises(TypeError, match=said):
         wrong()
 
 
-def test_what_is_wrong_in_a_file_is_no_argument_error(tmp_path):
+def test_mistake_in_a_file_is_no_argument_error(tmp_path):
     (tmp_path / "bad.yaml").write_text("name: bad\n")
     (tmp_path / "bad.h5").write_text("no recording")
     for wrong in (lambda: thimble.run(tmp_path / "bad.yaml"), lambda: thimble.read_recording(tmp_path / "bad.h5")):
@@ -139,7 +139,7 @@ def test_bad_scenes_name_file_and_line(tmp_path, source):
         thimble.run(bad)
 
 
-def test_a_wall_that_is_too_stiff_is_warned_of(tmp_path, source):
+def test_too_stiff_wall_raises_a_warning(tmp_path, source):
     text = (source / "app/scenes/box.yaml").read_text()
     lines = ["    stiffness: 50000" if "stiffness:" in line else line for line in text.splitlines()]
     (tmp_path / "stiff.yaml").write_text("\n".join(lines))
@@ -147,8 +147,8 @@ def test_a_wall_that_is_too_stiff_is_warned_of(tmp_path, source):
         thimble.run(tmp_path / "stiff.yaml", seconds=0.01)
 
 
-def test_the_warnings_of_one_scene_are_not_told_of_another():
-    for _ in range(2):  # the second time out of memory
+def test_cached_warnings_belong_to_their_scene():
+    for _ in range(2):  # the second time from the cache
         with pytest.warns(RuntimeWarning, match="50000 N/m"):
             thimble.run("rubber", set={"ball.stiffness": 50000}, seconds=0.01)
         with warnings.catch_warnings():
@@ -158,7 +158,7 @@ def test_the_warnings_of_one_scene_are_not_told_of_another():
             thimble.run("rubber", set={"ball.stiffness": 40000}, seconds=0.01)
 
 
-def test_scenes_are_listed_whatever_bytes_the_users_have(tmp_path):
+def test_scenes_with_names_of_any_bytes_are_listed(tmp_path):
     folder = tmp_path / "thimble" / "scenes"
     folder.mkdir(parents=True)
     (folder / "latin1.yaml").write_bytes(b"name: a\ndescription: caf\xe9\n")
@@ -187,7 +187,7 @@ except thimble.ArgumentError as wrong:
     assert "ArgumentError" in done.stdout and "caf\\ufffd" in done.stdout  # the known names
 
 
-def test_hands_are_led_only_if_all_arms_reach_theirs():
+def test_hands_move_only_if_all_arms_reach_their_targets():
     arms = thimble.Simulators(2)
     alone = thimble.Simulators(2)
     for _ in range(50):
@@ -201,7 +201,7 @@ def test_hands_are_led_only_if_all_arms_reach_theirs():
     assert np.abs(after.tip - before.tip).max() < 2e-3
 
 
-def test_a_simulated_arm_is_pushed_by_hand():
+def test_force_displaces_the_hand_of_a_simulated_arm():
     arm = thimble.Simulator("vintage_phantom", hand=(0, 0, 0))
     rest = [arm.step() for _ in range(300)][-1]
     pushed = [arm.step(force=(0.5, 0, 0)) for _ in range(600)][-1]
@@ -214,7 +214,7 @@ def test_a_simulated_arm_is_pushed_by_hand():
     assert [again.step().tip.tobytes() for _ in range(300)][-1] == rest.tip.tobytes()
 
 
-def test_a_force_that_is_no_number_switches_the_arm_off_until_somebody_says_so():
+def test_nan_force_is_a_fault_until_activate():
     arm = thimble.Simulator()
     arm.step(force=(float("nan"), 0, 0))
     assert arm.step(force=(0.5, 0, 0)).fault == "force_not_finite"
@@ -227,7 +227,7 @@ def test_a_force_that_is_no_number_switches_the_arm_off_until_somebody_says_so()
 _BEHIND_SOFTWARE = {"inverse3", "omega3", "touch"}
 
 
-def test_every_arm_with_a_wire_of_its_own_can_be_simulated():
+def test_every_arm_without_vendor_software_can_be_simulated():
     for arm in thimble.arms():
         if arm.name in _BEHIND_SOFTWARE:
             with pytest.raises(thimble.Error, match="simulat"):
@@ -253,13 +253,13 @@ def _reached(name):
     raise AssertionError(f"{name} reaches nothing")
 
 
-def test_real_time_is_watched_from_the_side():
+def test_ticks_of_a_run_in_real_time_can_be_read():
     with thimble.open("elephant", "sim", seconds=30) as live:
         begin = time.monotonic()
         while (live.tick is None or live.tick.time < 0.05) and time.monotonic() < begin + 20:
             time.sleep(0.005)
         assert live.running and live.tick.time >= 0.05
-        with pytest.raises(thimble.Error, match="goes on"):
+        with pytest.raises(thimble.Error, match="has not ended"):
             live.ticks()
     assert not live.running and live.end == "stopped"
     assert live.ticks()[-1].time >= 0.05
@@ -267,11 +267,11 @@ def test_real_time_is_watched_from_the_side():
     live.stop()  # a second close has no effect
 
 
-def test_real_time_takes_no_law_and_no_steps():
+def test_run_in_real_time_refuses_laws_and_steps():
     core = thimble._core
     with pytest.raises(thimble.Error, match="virtual time alone"):
         core.Run("box", real_time=True, law=lambda tick: None)
-    with pytest.raises(thimble.Error, match="not stepped by hand"):
+    with pytest.raises(thimble.Error, match="cannot be stepped"):
         core.Run("box", real_time=True).step()
 
 
@@ -284,19 +284,19 @@ def test_hold_to_run_gives_no_force_without_the_button():
 
 
 @pytest.mark.parametrize("held", ["foot", "key", "button17", "button0", ""])
-def test_hold_to_run_refuses_what_cannot_be_held(held):
+def test_hold_to_run_refuses_unknown_buttons(held):
     with pytest.raises(ValueError, match="hold_to_run"):
         thimble.open("box", "sim", hold_to_run=held)
 
 
-def test_arguments_that_name_nothing_are_value_errors_too(tmp_path):
+def test_wrong_studies_and_options_are_value_errors(tmp_path):
     with pytest.raises(ValueError, match="there are cost"):
         thimble.study("no_such_study", out=tmp_path)
     with pytest.raises(ValueError, match="no-such-option"):
         thimble.study("box", out=tmp_path, no_such_option=3)
 
 
-def test_auto_without_an_arm_is_an_error_and_not_the_simulated_one():
+def test_auto_without_an_arm_is_an_error():
     if not _arms_plugged_in():
         with pytest.raises(thimble.Error, match='No arm is plugged in.*thimble doctor.*device="sim"'):
             thimble.open("box", agree=True)
@@ -309,13 +309,13 @@ def _arms_plugged_in():
         return []
 
 
-def test_nobody_is_surprised_by_a_real_arm():
+def test_real_arm_requires_agreement():
     with pytest.raises(thimble.Error, match="agree=True"):
         thimble.open("box", "WH02")
 
 
 def _python(script):
-    """Starts a Python that hears SIGINT even if the tests run in the background."""
+    """Starts a Python that handles SIGINT even if the tests run in the background."""
     return subprocess.Popen(
         [sys.executable, "-c", script],
         stdout=subprocess.PIPE,
@@ -328,7 +328,7 @@ def _python(script):
 @pytest.mark.parametrize(
     "way_out", ["end", "exception", "SIGTERM", "SIGINT", "SIGHUP", "SIGQUIT", "SIGUSR1", "SIGALRM"]
 )
-def test_every_way_out_of_python_ends_with_zero_force(way_out, tmp_path):
+def test_every_end_of_python_sends_zero_force(way_out, tmp_path):
     record = tmp_path / "left.h5"
     last = {"end": "", "exception": "raise SystemExit(3)"}.get(way_out, "time.sleep(60)")
     script = f"""
@@ -366,7 +366,7 @@ except KeyboardInterrupt:
         assert python.wait(timeout=60) == 0
 
 
-def test_a_study_gives_its_figures(tmp_path):
+def test_study_returns_its_figures(tmp_path):
     figures = thimble.study("box", out=tmp_path / "box")
     assert figures and all(figure.met for figure in figures)
     assert (tmp_path / "box/figures.json").is_file()

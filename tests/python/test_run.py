@@ -1,4 +1,4 @@
-"""A run from Python is a run of the program."""
+"""Runs from Python equal runs of the program."""
 
 import math
 import pickle
@@ -12,7 +12,7 @@ SCENES = ["elephant", "tin_can", "rubber", "charges"]
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_feels_the_same_to_the_bit_as_the_program(scene, told, tmp_path):
+def test_run_is_bit_identical_to_the_program(scene, told, tmp_path):
     told("run", scene, "--duration", "1.5", "--record", "program.h5")
     program = thimble.read_recording(tmp_path / "program.h5")
     python = thimble.run(scene, seconds=1.5)
@@ -22,7 +22,7 @@ def test_feels_the_same_to_the_bit_as_the_program(scene, told, tmp_path):
             assert python.columns[column].tobytes() == program.columns[column].tobytes(), column
 
 
-def test_stepping_is_running():
+def test_stepping_is_bit_identical_to_run():
     stepper = thimble.Stepper("elephant", seconds=2)
     steps = 0
     while stepper.step():
@@ -49,7 +49,7 @@ def test_gives_arrays_with_shapes_and_units():
         assert array.shape == (n, 3) and array.dtype == np.float64
     assert run.in_contact.dtype == np.bool_ and run.in_contact.any() and not run.in_contact.all()
     np.testing.assert_allclose(np.diff(run.time), 1e-3, rtol=1e-9)  # s
-    assert np.abs(run.tip).max() < 0.3  # m, above an arm on a desk
+    assert np.abs(run.tip).max() < 0.3  # m, more than the workspace of a desktop arm
     assert 0.1 < np.linalg.norm(run.force, axis=1).max() < 9  # N
     # The velocity is that of the tip: its integral is the path, except for the lag of the estimate.
     way = np.cumsum(run.velocity, axis=0) * 1e-3
@@ -63,7 +63,7 @@ def test_gives_arrays_with_shapes_and_units():
     assert set(units) == set(run.columns.dtype.names)
 
 
-def test_tells_how_the_stylus_is_turned_where_the_arm_does():
+def test_orientation_is_there_if_the_arm_measures_it():
     turned = thimble.run("rubber", arm="polhem", seconds=0.5)
     assert turned.orientation.shape == (500, 4) and turned.gimbal.shape == (500, 3)
     np.testing.assert_allclose(np.linalg.norm(turned.orientation, axis=1), 1, atol=1e-6)
@@ -72,7 +72,7 @@ def test_tells_how_the_stylus_is_turned_where_the_arm_does():
     assert not thimble.run("rubber", seconds=0.1).orientation.any()
 
 
-def test_a_run_tells_itself_as_the_program_does(told, tmp_path):
+def test_summary_and_figures_equal_those_of_the_program(told, tmp_path):
     run = thimble.run("rubber", seconds=1)
     assert run.summary() in told("run", "rubber", "--duration", "1")
     figures = {figure.name: figure for figure in run.figures()}
@@ -103,7 +103,7 @@ def test_records_what_it_returns(tmp_path):
     assert stepper.end == "stopped" and len(thimble.read_recording(tmp_path / "cut.h5")) == 100
 
 
-def test_meshes_are_as_they_are_now(source):
+def test_mesh_returns_the_present_shape(source):
     stepper = thimble.Stepper("clay")
     vertices, triangles = stepper.mesh()
     assert vertices.shape[1] == triangles.shape[1] == 3
@@ -114,7 +114,7 @@ def test_meshes_are_as_they_are_now(source):
     assert 1e-4 < np.abs(sculpted - vertices).max() < 0.05  # m
 
 
-def test_a_hand_is_led():
+def test_hand_moves_to_its_target():
     stepper = thimble.Stepper("box", seconds=1)
     stepper.step()
     goal = stepper.tick.tip + [0.0, 0.0, 0.02]
@@ -124,7 +124,7 @@ def test_a_hand_is_led():
     assert np.linalg.norm(stepper.tick.tip - goal) < 5e-3
 
 
-def test_a_law_of_ones_own_goes_through_the_gate():
+def test_force_of_a_custom_law_goes_through_the_gate():
     asked = []
 
     def push(tick):
@@ -140,12 +140,12 @@ def test_a_law_of_ones_own_goes_through_the_gate():
     assert np.linalg.norm(strong.force, axis=1).max() <= thimble.Simulator().force_max * 1.001
 
 
-def test_a_law_that_answers_none_leaves_the_scenes_force():
+def test_law_that_returns_none_keeps_the_force_of_the_scene():
     own = thimble.run("elephant", seconds=2, law=lambda tick: None)
     assert own.columns.tobytes() == thimble.run("elephant", seconds=2).columns.tobytes()
 
 
-def test_a_law_that_fails_is_zero_force_and_its_own_error():
+def test_law_that_raises_gives_zero_force_and_its_exception():
     def fail(tick):
         if tick.time > 0.05:
             raise ZeroDivisionError("mine")
@@ -171,7 +171,7 @@ def test_a_law_may_not_step_its_own_run():
         stepper.step()
 
 
-def test_other_threads_of_python_go_on_meanwhile():
+def test_other_python_threads_continue_during_a_run():
     counted = [0]
     done = threading.Event()
 

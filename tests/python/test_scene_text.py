@@ -1,4 +1,4 @@
-"""Scenes that are given as a dict or as text, and values of scenes that are set."""
+"""Scenes that are given as a dict or as text, and changes of their values by `set`."""
 
 import subprocess
 
@@ -58,7 +58,7 @@ def test_a_dict_a_text_and_a_file_are_the_same_scene(tmp_path):
     assert _same(from_file, stepper.ticks())
 
 
-def test_set_is_the_scene_written_otherwise():
+def test_set_equals_a_scene_with_that_value():
     softer = thimble.run(BALL, set={"ball.stiffness": 300, "ball.effects.friction.coefficient": 0.1})
     written = {**BALL, "objects": [{**BALL["objects"][0], "stiffness": 300}]}
     written["objects"][0]["effects"] = [{"friction": "bristle", "coefficient": 0.1}]
@@ -76,7 +76,7 @@ def test_set_changes_scenes_known_by_name():
     assert _same(thimble.run("box", seconds=0.5), thimble.run("box", seconds=0.5, set={}))
 
 
-def test_recordings_of_them_are_replayed(tmp_path, program):
+def test_recordings_of_dicts_and_texts_can_be_replayed(tmp_path, program):
     thimble.run(BALL, set={"ball.stiffness": 450}, record=tmp_path / "ball.h5")
     recording = thimble.read_recording(tmp_path / "ball.h5")
     assert "450" in recording.info["scene_text"]
@@ -101,12 +101,12 @@ def test_recordings_of_them_are_replayed(tmp_path, program):
         (lambda: thimble.run("./nobody.yaml", set={"rate": 500}), "nobody.yaml: cannot be read"),
     ],
 )
-def test_mistakes_in_them_are_told(wrong, said):
+def test_mistakes_in_scenes_are_reported(wrong, said):
     with pytest.raises(thimble.Error, match=said):
         wrong()
 
 
-def test_nothing_stays_of_a_scene_that_was_not_recorded(tmp_path):
+def test_files_of_unrecorded_scenes_are_removed(tmp_path):
     import os
     import sys
 

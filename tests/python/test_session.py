@@ -1,4 +1,4 @@
-"""Sessions: the log of a subject, and going on after whatever ended the program."""
+"""Sessions: the log of a subject, and its continuation after an interruption."""
 
 import contextlib
 import json
@@ -26,7 +26,7 @@ def staircases(start=8.0):
 
 
 def felt(trial):
-    """A subject whose answers come of the trial's own random numbers."""
+    """A subject whose answers depend on the random numbers of the trial."""
     level = trial.condition["level"] + (1.0 if trial.condition["track"] == "coarse" else 0.0)
     felt = level + 2.0 * trial.random.normal()
     return {"correct": bool(felt > 6), "felt": np.float64(felt), "heard": (1, 2)}
@@ -51,7 +51,7 @@ def test_every_trial_is_a_line(tmp_path):
     assert (tmp_path / "b.jsonl").read_text() == text and np.isfinite(threshold)
 
 
-def test_a_line_is_there_before_the_next_trial_begins(tmp_path):
+def test_line_is_written_before_the_next_trial(tmp_path):
     path = tmp_path / "a.jsonl"
 
     def present(trial):
@@ -62,7 +62,7 @@ def test_a_line_is_there_before_the_next_trial_begins(tmp_path):
         session.run(present)
 
 
-def test_each_line_is_brought_to_the_disk(tmp_path, monkeypatch):
+def test_each_line_is_synced_to_disk(tmp_path, monkeypatch):
     synced = []
     sync = os.fsync
     monkeypatch.setattr(os, "fsync", lambda number: (synced.append(os.fstat(number).st_size), sync(number)))
@@ -74,7 +74,7 @@ def test_each_line_is_brought_to_the_disk(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("stop", [0, 1, 5, 17])
-def test_a_session_that_is_ended_goes_on_as_if_it_had_not_been(stop, tmp_path):
+def test_interrupted_session_continues_with_the_same_trials(stop, tmp_path):
     whole(tmp_path / "whole.jsonl")
 
     def leaves(trial):
@@ -96,7 +96,7 @@ def test_a_session_that_is_ended_goes_on_as_if_it_had_not_been(stop, tmp_path):
     assert whole(path) == whole(tmp_path / "whole.jsonl")  # a complete log is only read
 
 
-def test_a_half_written_line_is_dropped_with_a_warning_wherever_it_was_cut(tmp_path):
+def test_incomplete_last_line_is_dropped_with_a_warning(tmp_path):
     whole(tmp_path / "whole.jsonl")
     text = (tmp_path / "whole.jsonl").read_bytes()
     lines = text.splitlines(keepends=True)
@@ -105,32 +105,32 @@ def test_a_half_written_line_is_dropped_with_a_warning_wherever_it_was_cut(tmp_p
     tails = [lines[6][:cut] for cut in (1, 20, len(lines[6]) - 1)] + [b"\0" * 40, b"\0" * 40 + b"\n"]
     for tail in tails:
         path.write_bytes(before + tail)
-        with pytest.warns(RuntimeWarning, match="half written"):
+        with pytest.warns(RuntimeWarning, match="incomplete"):
             session = experiment.Session(path, staircases(), seed=7, about={"subject": 7})
         with session:
             assert session.resumed == 5 and path.read_bytes() == before
             session.run(felt)
         assert path.read_bytes() == text
     path.write_bytes(lines[0][:10])  # the log ends within its first line
-    with pytest.warns(RuntimeWarning, match="half written"):
+    with pytest.warns(RuntimeWarning, match="incomplete"):
         whole(path)
     assert path.read_bytes() == text
 
 
-def test_a_log_of_something_else_is_not_touched(tmp_path):
+def test_log_of_another_experiment_is_not_changed(tmp_path):
     path = tmp_path / "a.jsonl"
     whole(path)
     text = path.read_bytes()
     for other, said in (
-        (lambda: experiment.Session(path, staircases(), seed=8, about={"subject": 7}), "differs in seed"),
-        (lambda: experiment.Session(path, staircases(), seed=7, about={"subject": 8}), "differs in about"),
-        (lambda: experiment.Session(path, staircases(9.0), seed=7, about={"subject": 7}), "differs in plan"),
+        (lambda: experiment.Session(path, staircases(), seed=8, about={"subject": 7}), "different seed"),
+        (lambda: experiment.Session(path, staircases(), seed=7, about={"subject": 8}), "different about"),
+        (lambda: experiment.Session(path, staircases(9.0), seed=7, about={"subject": 7}), "different plan"),
     ):
         with pytest.raises(thimble.Error, match=said):
             other()
     damaged = text.replace(b'"trial": 3', b'"trial" 3')
     path.write_bytes(damaged)
-    with pytest.raises(thimble.Error, match=r"a\.jsonl:5: no line"):
+    with pytest.raises(thimble.Error, match=r"a\.jsonl:5: not a line"):
         whole(path)
     exchanged = text.replace(b'"trial": 3', b'"trial": 4')
     path.write_bytes(exchanged)
@@ -140,11 +140,11 @@ def test_a_log_of_something_else_is_not_touched(tmp_path):
     path.write_bytes(text)
     with pytest.raises(thimble.Error, match="cannot be written"):
         whole(tmp_path / "no" / "such.jsonl")
-    with pytest.raises(thimble.Error, match="is no log"):
+    with pytest.raises(thimble.Error, match="is not the log"):
         experiment.read_log(__file__)
 
 
-def test_one_session_at_a_time_writes_a_log(tmp_path):
+def test_only_one_session_may_use_a_log(tmp_path):
     path = tmp_path / "a.jsonl"
     with experiment.Session(path, staircases(), seed=7):
         with pytest.raises(thimble.Error, match="in use"):
@@ -152,7 +152,7 @@ def test_one_session_at_a_time_writes_a_log(tmp_path):
     experiment.Session(path, staircases(), seed=7).close()
 
 
-def test_an_answer_that_cannot_be_taken_is_not_logged(tmp_path):
+def test_refused_answer_is_not_logged(tmp_path):
     path = tmp_path / "a.jsonl"
     with experiment.Session(path, staircases(), seed=7) as session:
         begun = path.read_bytes()
@@ -184,7 +184,7 @@ with experiment.Session(sys.argv[1], staircases(), seed=7, about={{"subject": 7}
 
 
 @pytest.mark.parametrize("at", [0, 3, 11, 12])
-def test_killed_in_the_middle_it_goes_on_with_the_next_trial(at, tmp_path):
+def test_killed_session_continues_with_the_next_trial(at, tmp_path):
     whole(tmp_path / "whole.jsonl")
     text = (tmp_path / "whole.jsonl").read_bytes()
     path = tmp_path / "killed.jsonl"
@@ -200,7 +200,7 @@ def test_killed_in_the_middle_it_goes_on_with_the_next_trial(at, tmp_path):
     assert path.read_bytes() == text
 
 
-def test_the_example_finds_what_its_subject_is_made_of_and_goes_on_when_killed(source, tmp_path):
+def test_example_finds_the_parameters_of_its_subject(source, tmp_path):
     example = [sys.executable, "-B", source / "app/examples/10_texture_discrimination.py", tmp_path]
     log = tmp_path / "staircase.jsonl"
     with subprocess.Popen(example, stdout=subprocess.DEVNULL) as left:

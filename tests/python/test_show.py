@@ -1,4 +1,4 @@
-"""Ticks cut, kept, tabled and drawn."""
+"""Slices, pickles, tables and pictures of ticks."""
 
 import multiprocessing
 import pickle
@@ -13,7 +13,7 @@ def run():
     return thimble.run("water_balloon", seconds=3)
 
 
-def test_slices_masks_and_lists_are_ticks_again(run):
+def test_slices_masks_and_lists_return_ticks(run):
     part = run[1000:1010]
     assert type(part) is thimble.Ticks and len(part) == 10
     assert (part.time == run.time[1000:1010]).all() and (part.tip == run.tip[1000:1010]).all()
@@ -27,7 +27,7 @@ def test_slices_masks_and_lists_are_ticks_again(run):
         run[3000]
 
 
-def test_a_pickled_run_tells_all_that_it_told(run):
+def test_pickled_run_keeps_all_its_results(run):
     kept = pickle.loads(pickle.dumps(run))
     assert type(kept) is thimble.Run and kept.columns.tobytes() == run.columns.tobytes()
     assert kept.summary() == run.summary() and kept.figures() == run.figures() and kept.info == run.info
@@ -97,7 +97,7 @@ def test_matplotlib_draws_force_and_depth(run, tmp_path):
     assert (tmp_path / "run.png").read_bytes()[1:4] == b"PNG"
 
 
-def test_what_is_missing_is_named(run, monkeypatch):
+def test_missing_packages_are_reported(run, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
     monkeypatch.setitem(__import__("sys").modules, "matplotlib", None)
     with pytest.raises(ImportError, match="python3-pandas"):

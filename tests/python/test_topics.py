@@ -1,4 +1,4 @@
-"""A run as topics of ROS 2 from Python."""
+"""ROS 2 topics of runs from Python."""
 import pytest
 import thimble
 
@@ -9,7 +9,7 @@ ALONE = (
 )
 
 
-def test_a_run_is_published_and_says_so(monkeypatch):
+def test_run_is_published_and_reported(monkeypatch):
     monkeypatch.setenv("CYCLONEDDS_URI", ALONE)
     try:
         live = thimble.open("box", "sim", seconds=1, ros2={"namespace": "/python", "domain": 71, "force": "add"})
@@ -19,7 +19,7 @@ def test_a_run_is_published_and_says_so(monkeypatch):
         raise
     with live:
         assert live.tick is None or live.running
-    assert "ticks published; 0 forces taken" in live.topics
+    assert "ticks published; 0 forces received" in live.topics
 
 
 def test_no_topics_unless_asked():
@@ -28,7 +28,7 @@ def test_no_topics_unless_asked():
     assert live.topics == ""
 
 
-def test_words_that_mean_nothing_are_refused():
+def test_unknown_options_of_topics_are_refused():
     for ros2, word in [({"name": "x"}, "namespace"), ({"names": "omnis"}, "omni"), ({"domain": 300}, "232")]:
         with pytest.raises(thimble.Error, match=word):
             thimble.open("box", "sim", seconds=0.1, ros2=ros2)

@@ -1,4 +1,4 @@
-"""What the package says of itself: docstrings, and types for those who check theirs."""
+"""Docstrings and types of the package."""
 
 import ast
 import inspect
@@ -21,7 +21,7 @@ def _public(members):
     return {name for name in members if not name.startswith("_") or name in ("__init__", "__len__")}
 
 
-def test_the_types_of_the_module_beneath_name_what_is_there_and_nothing_else():
+def test_stub_file_lists_exactly_the_members_of_core():
     tree = ast.parse((PACKAGE / "_core.pyi").read_text(encoding="utf-8"))
     stub = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     values = {node.target.id for node in tree.body if isinstance(node, ast.AnnAssign)}
@@ -42,7 +42,7 @@ def test_the_types_of_the_module_beneath_name_what_is_there_and_nothing_else():
 
 
 def _same_arguments(told, here):
-    """pybind11 writes a function's arguments into the first line of its docstring."""
+    """Compares a stub with the first line of a docstring, where pybind11 writes the arguments."""
     first = here.__doc__.splitlines()[0]
     arguments = [one.arg for one in told.args.args + told.args.kwonlyargs if one.arg != "self"]
     named = [part.split(":")[0].strip() for part in _split(first[first.index("(") + 1 : first.rindex(") ->")])]
@@ -52,7 +52,7 @@ def _same_arguments(told, here):
 
 
 def _split(text):
-    """Cuts at commas that stand in no brackets."""
+    """Splits a text at commas outside brackets."""
     parts, depth = [""], 0
     for letter in text:
         depth += (letter in "([") - (letter in ")]")
@@ -64,7 +64,7 @@ def _split(text):
 
 
 @pytest.mark.parametrize("module", [thimble, thimble.gym, thimble.experiment])
-def test_everything_that_a_person_calls_says_what_it_does_and_has_types(module):
+def test_public_functions_have_docstrings_and_types(module):
     for name in module.__all__:
         one = getattr(module, name)
         assert inspect.getdoc(one), name
@@ -80,14 +80,14 @@ def test_everything_that_a_person_calls_says_what_it_does_and_has_types(module):
                 assert argument.name == "self" or argument.annotation is not inspect.Parameter.empty, f"{name}.{function.__name__}"
 
 
-def test_mypy_agrees_with_every_type(tmp_path):
+def test_mypy_accepts_all_types(tmp_path):
     if "THIMBLE_LONG" not in os.environ:
         pytest.skip("the long form (THIMBLE_LONG=1) runs mypy")
     pytest.importorskip("mypy", reason="install mypy")
     settings = tmp_path / "mypy.ini"
     settings.write_text("[mypy]\ndisallow_untyped_defs = True\ndisallow_any_generics = True\nwarn_unreachable = True\nignore_missing_imports = True\n")
     allowed = tmp_path / "allowed"
-    allowed.write_text("thimble._core.Run\nthimble._core.SimulatorSession\n")  # pybind11's metaclass; members are looked at
+    allowed.write_text("thimble._core.Run\nthimble._core.SimulatorSession\n")  # pybind11's metaclass; another test compares the members
     for command in (["mypy", "--config-file", str(settings), "--cache-dir", str(tmp_path), "-p", "thimble"],
                     ["mypy.stubtest", "thimble._core", "--concise", "--allowlist", str(allowed)]):
         told = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False, cwd=PACKAGE.parent)

@@ -5,7 +5,7 @@
 namespace thimble::ros2 {
 namespace {
 
-TEST(ArmHealth, NamesAFaultBeforeAllElse) {
+TEST(ArmHealth, FaultHasPriority) {
   driver::TickRecord tick;
   tick.stage = driver::DeviceStage::kActive;
   EXPECT_EQ(health_of(tick).level, ArmHealth::kOk);
@@ -23,12 +23,12 @@ TEST(ArmHealth, NamesAFaultBeforeAllElse) {
   EXPECT_EQ(health_of(tick).message, driver::describe(driver::Fault::kOverSpeed));
 }
 
-TEST(ArmHealth, NamesALossAfterAnotherFault) {
+TEST(ArmHealth, ReportsALossAfterAnotherFault) {
   driver::TickRecord tick;
   tick.stage = driver::DeviceStage::kFault;
   tick.fault = driver::Fault::kOverSpeed;
   tick.link = driver::LinkState::kLost;
-  EXPECT_NE(health_of(tick).message.find("gone from the wire"), std::string::npos);
+  EXPECT_NE(health_of(tick).message.find("now disconnected"), std::string::npos);
 }
 
 }  // namespace

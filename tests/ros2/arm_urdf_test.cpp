@@ -1,5 +1,4 @@
-// The arm as ROS 2 sees it: what its joints make of the URDF must be where the driver says the tip
-// is.
+// The arm as a URDF: its joint angles must put the tip where the driver's geometry has it.
 #include "ros2/arm_urdf.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@
 namespace thimble::ros2 {
 namespace {
 
-/// A joint of a URDF; the little that is needed of the format, read apart from what writes it.
+/// A joint of a URDF. The test has its own small parser, independent of the writer.
 struct Joint {
   std::string name, type, parent, child, mimic;
   Eigen::Vector3d xyz{0, 0, 0}, rpy{0, 0, 0}, axis{1, 0, 0};
@@ -58,7 +57,7 @@ std::vector<Joint> joints_of(const std::string& urdf) {
   return joints;
 }
 
-/// Returns where a link is in the root, the joints at these angles.
+/// Returns the pose of a link in the root frame at these joint angles.
 Eigen::Isometry3d place_of(const std::string& link, const std::vector<Joint>& joints,
                            const std::map<std::string, double>& angles) {
   for (const Joint& joint : joints) {
@@ -80,10 +79,10 @@ Eigen::Isometry3d place_of(const std::string& link, const std::vector<Joint>& jo
   return Eigen::Isometry3d::Identity();
 }
 
-TEST(ArmUrdf, PutsTheTipOfASerialArmWhereTheDriverDoes) {
+TEST(ArmUrdf, TipOfASerialArmAgreesWithTheDriver) {
   for (const char* name : {"vintage_phantom", "woodenhaptics"}) {
     scene::ArmFile arm = scene::load_arm(name).value();
-    // Turned in all axes, so that no order of turns is right by chance.
+    // Rotated about all axes, so that a wrong order of rotations is detected.
     arm.R_WB = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
                 Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitY()) *
                 Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()))
@@ -101,7 +100,7 @@ TEST(ArmUrdf, PutsTheTipOfASerialArmWhereTheDriverDoes) {
   }
 }
 
-TEST(ArmUrdf, PutsTheElbowOfALinkageWhereTheDriverDoes) {
+TEST(ArmUrdf, ElbowOfALinkageAgreesWithTheDriver) {
   const scene::ArmFile arm = scene::load_arm("polhem").value();
   const auto joints = joints_of(arm_urdf(arm, "world"));
   const auto& build = std::get<driver::LinkageArm>(arm.model.geometry);
@@ -109,7 +108,7 @@ TEST(ArmUrdf, PutsTheElbowOfALinkageWhereTheDriverDoes) {
   Eigen::Vector3d p_BT;
   Eigen::Matrix3d J;
   build.forward(q, p_BT, J);
-  // The elbow is where the forearm begins: length_5 behind the tip along it.
+  // The elbow is the start of the forearm: length_5 behind the tip, along the forearm.
   const Eigen::Vector3d along = build.last_link(q, p_BT).col(0);
   const Eigen::Vector3d elbow = arm.p_WB + arm.R_WB * (p_BT - build.length_5 * along);
   const auto T =
@@ -117,7 +116,7 @@ TEST(ArmUrdf, PutsTheElbowOfALinkageWhereTheDriverDoes) {
   EXPECT_LT((T * Eigen::Vector3d(build.length_1, 0, 0) - elbow).norm(), 1e-8);
 }
 
-TEST(ArmUrdf, IsATreeWithOneRootForEveryArmThatIsShipped) {
+TEST(ArmUrdf, IsATreeWithOneRootForEveryShippedArm) {
   for (const char* name :
        {"vintage_phantom", "woodenhaptics", "polhem", "falcon", "touch", "omega3"}) {
     SCOPED_TRACE(name);
@@ -141,7 +140,7 @@ TEST(ArmUrdf, IsATreeWithOneRootForEveryArmThatIsShipped) {
     }
     EXPECT_EQ(roots, 1);
     EXPECT_EQ(parents.at("map"), 0);
-    // As many ends as beginnings.
+    // Opening and closing tags must balance.
     const auto count = [&urdf](const std::string& what) {
       std::size_t found = 0;
       for (std::size_t at = urdf.find(what); at != std::string::npos; at = urdf.find(what, at + 1))

@@ -1,6 +1,6 @@
-// The bytes of every message that goes over the wire, against bytes written by hand after the rules
-// of plain CDR (OMG DDSI-RTPS 2.5, 10.5; XTypes 1.3, 7.4.1): little endian, each number at a
-// multiple of its size counted behind the header of 4 bytes, texts with their length and a zero.
+// The bytes of every message on the wire, compared with bytes written by hand from the rules of
+// plain CDR (OMG DDSI-RTPS 2.5, 10.5; XTypes 1.3, 7.4.1): little endian, each number at a multiple
+// of its size counted after the header of 4 bytes, texts with their length and a terminating zero.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,13 +16,13 @@
 namespace thimble::ros2 {
 namespace {
 
-// Numbers as they are on the wire.
+// Numbers in wire format.
 const std::string k0 = "0000000000000000", k1 = "000000000000f03f", k2 = "0000000000000040",
                   k3 = "0000000000000840", kHalf = "000000000000e03f";
 const std::string kZero = "00000000", kOne = "01000000", kTwo = "02000000", kThree = "03000000";
 // A header of 1 s, 2 ns, frame "w": 14 bytes.
 const std::string kHeader = kOne + kTwo + kTwo + "7700";
-const std::string kEmpty = kOne + "00";  // a text without letters: 5 bytes
+const std::string kEmpty = kOne + "00";  // an empty text: 5 bytes
 
 /// A writer and a reader of one topic in one process; nothing leaves this machine.
 class Wire {
@@ -39,7 +39,7 @@ class Wire {
   }
   bool up() const { return participant_ > 0; }
 
-  /// Returns the bytes of a message as the topic's readers get them, in hexadecimal digits.
+  /// Returns the bytes of a message as its readers get them, in hexadecimal digits.
   std::string bytes_of(const dds_topic_descriptor_t& type, const void* message) {
     const std::string name = "rt/t" + std::to_string(++topics_);
     const dds_entity_t topic =
@@ -76,7 +76,7 @@ class Cdr : public testing::Test {
   void SetUp() override {
     if (!wire_.up()) GTEST_SKIP() << "the interface lo is down; as root: ip link set lo up";
   }
-  /// Compares behind the header, whose last byte says how many zeros at the end do not count.
+  /// Compares the bytes after the header. Its last byte is the number of padding bytes at the end.
   void expect_bytes(const dds_topic_descriptor_t& type, const void* message,
                     const std::string& expected) {
     const std::string bytes = wire_.bytes_of(type, message);
@@ -92,7 +92,7 @@ class Cdr : public testing::Test {
   Wire wire_;
 };
 
-TEST_F(Cdr, OfTextsAndCounts) {
+TEST_F(Cdr, EncodesTextsAndCounts) {
   const std_msgs_msg_dds__String_ text{.data = abc_.data()};
   expect_bytes(std_msgs_msg_dds__String__desc, &text,
                "04000000"
@@ -103,7 +103,7 @@ TEST_F(Cdr, OfTextsAndCounts) {
   expect_bytes(rosgraph_msgs_msg_dds__Clock__desc, &clock, kOne + kTwo);
 }
 
-TEST_F(Cdr, OfPosesTwistsAndWrenches) {
+TEST_F(Cdr, EncodesPosesTwistsAndWrenches) {
   const geometry_msgs_msg_dds__PoseStamped_ pose{.header = header_,
                                                  .pose = {{1, 2, 3}, {0, 0, 0, 1}}};
   expect_bytes(geometry_msgs_msg_dds__PoseStamped__desc, &pose,
@@ -117,7 +117,7 @@ TEST_F(Cdr, OfPosesTwistsAndWrenches) {
   expect_bytes(geometry_msgs_msg_dds__WrenchStamped__desc, &wrench, six);
 }
 
-TEST_F(Cdr, OfFrames) {
+TEST_F(Cdr, EncodesFrames) {
   std::array<geometry_msgs_msg_dds__TransformStamped_, 1> one{
       {{header_, ab_.data(), {{1, 2, 3}, {0, 0, 0, 1}}}}};
   tf2_msgs_msg_dds__TFMessage_ tf{};
@@ -128,7 +128,7 @@ TEST_F(Cdr, OfFrames) {
                    k0 + k1);
 }
 
-TEST_F(Cdr, OfJointsAndButtons) {
+TEST_F(Cdr, EncodesJointsAndButtons) {
   std::array<char*, 2> names{w_.data(), ab_.data()};
   std::array<double, 2> angles{1, 2};
   sensor_msgs_msg_dds__JointState_ joints{};
@@ -149,7 +149,7 @@ TEST_F(Cdr, OfJointsAndButtons) {
                kHeader + "0000" + kOne + "0000803f" + kTwo + kZero + kOne);
 }
 
-TEST_F(Cdr, OfHealth) {
+TEST_F(Cdr, EncodesDiagnostics) {
   std::array<diagnostic_msgs_msg_dds__KeyValue_, 1> values{{{w_.data(), ab_.data()}}};
   std::array<diagnostic_msgs_msg_dds__DiagnosticStatus_, 1> status{};
   status[0].level = 2;
@@ -167,7 +167,7 @@ TEST_F(Cdr, OfHealth) {
                    "616200");
 }
 
-TEST_F(Cdr, OfMarkers) {
+TEST_F(Cdr, EncodesMarkers) {
   std::array<geometry_msgs_msg_dds__Point_, 1> points{{{1, 2, 3}}};
   std::array<visualization_msgs_msg_dds__Marker_, 1> markers{};
   visualization_msgs_msg_dds__Marker_& marker = markers[0];
@@ -212,7 +212,7 @@ TEST_F(Cdr, OfMarkers) {
   expect_bytes(visualization_msgs_msg_dds__MarkerArray__desc, &all, expected);
 }
 
-TEST_F(Cdr, OfTheOmnisMessages) {
+TEST_F(Cdr, EncodesOmniMessages) {
   const omni_msgs_msg_dds__OmniButtonEvent_ event{.grey_button = 1, .white_button = 2};
   expect_bytes(omni_msgs_msg_dds__OmniButtonEvent__desc, &event, kOne + kTwo);
   const omni_msgs_msg_dds__OmniFeedback_ feedback{.force = {1, 2, 3}, .position = {0.5, 0, 1}};

@@ -23,7 +23,8 @@
 namespace thimble::ros2 {
 namespace {
 
-constexpr const char* kForeign = "10.9.8.7";  // an address of this computer, but not of loopback
+constexpr const char* kForeign =
+    "10.9.8.7";  // an address of this computer that is not a loopback address
 
 bool change_loopback(const char* name, const char* address) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
@@ -43,8 +44,8 @@ bool change_loopback(const char* name, const char* address) {
   return done;
 }
 
-/// Returns the ports that this network namespace hears datagrams on, but for that of `except`, and
-/// how many datagrams the kernel has dropped there in all [/proc/net/udp].
+/// Returns the UDP ports of this network namespace, except that of `except`, and the total number
+/// of datagrams that the kernel has dropped on them [/proc/net/udp].
 struct Heard {
   std::vector<std::uint16_t> ports;
   unsigned long drops = 0;
@@ -81,8 +82,8 @@ void send_to_all(const std::vector<std::uint16_t>& ports, const char* from) {
   close(socket);
 }
 
-/// Runs `work` in a network of its own, where this computer has a second address. Returns its exit
-/// code; none where the kernel forbids that.
+/// Runs `work` in a separate network namespace, in which this computer has a second address.
+/// Returns its exit code; empty if the kernel forbids the namespace.
 template <class Work>
 std::optional<int> in_own_network(Work work) {
   constexpr int kForbidden = 99;
@@ -101,8 +102,8 @@ std::optional<int> in_own_network(Work work) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// Returns 0 if a domain of this reach drops what comes from another address than loopback's, 1 if
-/// it takes it, and more where something else is wrong.
+/// Returns 0 if a domain of this reach drops packets from addresses other than loopback, 1 if it
+/// accepts them, and more on other errors.
 int drops_foreign(RosReach reach) {
   RosOptions options;
   options.domain = 7;
@@ -121,17 +122,17 @@ int drops_foreign(RosReach reach) {
   return dropped ? 0 : 1;
 }
 
-TEST(DdsDomain, DropsWhatComesFromOutside) {
+TEST(DdsDomain, DropsPacketsFromOtherComputers) {
   for (const RosReach reach : {RosReach::kThisComputer, RosReach::kUnseen}) {
     const auto result = in_own_network([reach] { return drops_foreign(reach); });
-    if (!result) GTEST_SKIP() << "no network of its own: run it as root";
+    if (!result) GTEST_SKIP() << "no network namespace: run as root";
     EXPECT_EQ(*result, 0);
   }
 }
 
-TEST(DdsDomain, NetworkTakesWhatComesFromOutside) {
+TEST(DdsDomain, NetworkAcceptsPacketsFromOtherComputers) {
   const auto result = in_own_network([] { return drops_foreign(RosReach::kNetwork); });
-  if (!result) GTEST_SKIP() << "no network of its own: run it as root";
+  if (!result) GTEST_SKIP() << "no network namespace: run as root";
   EXPECT_EQ(*result, 1);
 }
 
@@ -148,7 +149,7 @@ TEST(DdsDomain, IsSharedByPeersOfOneProcess) {
     const dds_entity_t participant = dds_create_participant(options.domain, nullptr, nullptr);
     return participant < 0 ? 3 : 0;
   });
-  if (!result) GTEST_SKIP() << "no network of its own: run it as root";
+  if (!result) GTEST_SKIP() << "no network namespace: run as root";
   EXPECT_EQ(*result, 0);
 }
 

@@ -1,11 +1,12 @@
-// A program of another vendor's DDS, which hears, asks for forces, leads the hand and misbehaves.
-//   peer DOMAIN SECONDS FORCE      hears all topics and asks for FORCE (N, x) once it hears a pose
-//   peer DOMAIN SECONDS garbage    sends what nobody should: not finite, wrong frame, huge, a flood
-//   peer DOMAIN SECONDS hand       leads the hand in a circle, and asks for no force
-//   peer DOMAIN SECONDS omni       hears and speaks as programs for the Omni's drivers do
-//   peer DOMAIN STEPS step         moves a run on by so many steps of 10 ticks
-//   peer DOMAIN STEPS step_two     the same for a run of the arms left and right
-// Prints what it heard, a line for each topic, then the sums of the last second.
+// A program with another vendor's DDS. It receives topics, requests forces, moves the hand, and
+// sends invalid messages.
+//   peer DOMAIN SECONDS FORCE      receives all topics, and requests FORCE (N, x) after the first
+//   pose peer DOMAIN SECONDS garbage    sends invalid messages: not finite, wrong frame, huge, too
+//   many peer DOMAIN SECONDS hand       moves the hand in a circle, and requests no force peer
+//   DOMAIN SECONDS omni       uses topics like programs for the Omni's drivers peer DOMAIN STEPS
+//   step         advances a run by STEPS steps of 10 ticks peer DOMAIN STEPS step_two     the same
+//   for a run with the arms left and right
+// Prints the received messages, one line per topic, then the sums of the last second.
 #include "peer.h"
 
 #include <array>
@@ -25,7 +26,8 @@ using visualization_msgs::msg::dds_::MarkerArray_;
 
 namespace {
 
-/// Counts the messages whose header is not as it must be: time of the world, frame.
+/// Counts the messages with a wrong header: the time must be near the wall clock's, the frame
+/// known.
 long bad = 0;
 void check(const std_msgs::msg::dds_::Header_& header) {
   const auto now =
@@ -64,9 +66,9 @@ int main(int argc, char** argv) {
   double f_last = 0, f_most = 0;
   PoseStamped_ there;
   std::array<double, 3> p{}, p_tf{}, led{};
-  double off = 0;  // of the tip from where it is led, m
+  double off = 0;  // distance of the tip from the hand's target, m
   long sent = 0, triangles = 0;
-  std::map<std::string, double> moved;  // how far frames of objects went, m
+  std::map<std::string, double> moved;  // distances that frames of objects moved, m
   const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argv[2]));
   for (long round = 0; Clock::now() < end; ++round) {
     joints.each([](JointState_& m) {
@@ -77,7 +79,7 @@ int main(int argc, char** argv) {
     });
     pose.each([&p, &ask](PoseStamped_& m) {
       check(m.header());
-      ask.header().stamp(m.header().stamp());  // which the force answers
+      ask.header().stamp(m.header().stamp());  // the stamp of the pose that the force answers
       p = {m.pose().position().x(), m.pose().position().y(), m.pose().position().z()};
       const auto& q = m.pose().orientation();
       const double length = q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w();
@@ -140,7 +142,7 @@ int main(int argc, char** argv) {
       ask.wrench().torque().z(round % 4 == 3 ? 1 : 0);
       for (int i = 0; i < 10; ++i) sent += command->write(&ask) ? 1 : 0;
     } else if (leads && pose.count() > 0) {
-      // A circle of 10 mm in 2 s; a person's hand is 50 ms behind.
+      // A circle of 10 mm in 2 s; the simulated hand lags by 50 ms.
       off = std::hypot(p[0] - led[0], p[1] - led[1], p[2] - led[2]);
       const double angle = 3.14159 * 1e-3 * static_cast<double>(round);
       led = {0.01 * std::cos(angle), 0.01 * std::sin(angle), 0.02};

@@ -1,5 +1,5 @@
-// What the programs of another vendor's DDS (Fast DDS) have in common: they know nothing of Thimble
-// but the names of ROS 2.
+// Common code of the programs with another vendor's DDS (Fast DDS). They know only the ROS 2 names
+// of Thimble.
 #pragma once
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -24,10 +24,10 @@
 
 #include "ros_messagesPubSubTypes.h"
 
-using namespace eprosima::fastdds::dds;  // NOLINT: it is a program of its own
+using namespace eprosima::fastdds::dds;  // NOLINT: part of one program only
 using Clock = std::chrono::steady_clock;
 
-/// Keeps what writers say of themselves beside their messages: the hash of their type, by topic.
+/// Stores the user data of writers by topic: the hash of their type.
 class Discovery : public DomainParticipantListener {
  public:
   void on_publisher_discovery(DomainParticipant*,
@@ -53,7 +53,7 @@ inline DomainParticipant* participant = nullptr;
 inline Publisher* publisher = nullptr;
 inline Subscriber* subscriber = nullptr;
 
-/// Enters a domain; false if it cannot.
+/// Joins a domain; false on failure.
 inline bool enter(const char* domain) {
   participant = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(std::atoi(domain)), PARTICIPANT_QOS_DEFAULT, &discovery,
@@ -74,7 +74,7 @@ Topic* topic(const std::string& name) {
 template <class Message, class Type>
 class Heard {
  public:
-  /// `late`: wants what was said before it came.
+  /// `late`: also receives messages that were sent before it joined.
   explicit Heard(const std::string& name, bool late = false) : name_(name) {
     DataReaderQos qos = DATAREADER_QOS_DEFAULT;
     qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
@@ -83,7 +83,7 @@ class Heard {
     if (late) qos.durability().kind = TRANSIENT_LOCAL_DURABILITY_QOS;
     reader_ = subscriber->create_datareader(topic<Type>(name), qos);
   }
-  /// Calls with each message that came.
+  /// Calls `work` with each received message.
   template <class Call>
   void each(Call call) {
     SampleInfo info;
@@ -109,8 +109,8 @@ DataWriter* writer(const std::string& name) {
   return publisher->create_datawriter(topic<Type>(name), DATAWRITER_QOS_DEFAULT);
 }
 
-/// Hears and speaks as a program that was written for the Omni's drivers.
+/// Uses the topics like a program that was written for the Omni's drivers.
 int play_omni(double seconds);
-/// Moves a run on by steps, and if it has one arm pulls at it; `spaces`: the namespace of each of
-/// its arms, "/left", or "".
+/// Advances a run by steps. If it has one arm, also requests a force. `spaces`: the namespace of
+/// each arm, "/left", or "".
 int play_steps(long steps, const std::vector<std::string>& spaces);

@@ -40,7 +40,7 @@ int play_omni(double seconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   pose.print(), joints.print(), state.print(), button.print();
-  // The state is told in millimetres.
+  // The state is in millimetres.
   const double apart =
       std::hypot(p[0] - 1e-3 * p_state[0], p[1] - 1e-3 * p_state[1], p[2] - 1e-3 * p_state[2]);
   std::printf("bad %ld\nposition %.4f %.4f %.4f\napart %.4f\n", bad, p[0], p[1], p[2], apart);

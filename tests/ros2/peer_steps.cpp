@@ -1,5 +1,5 @@
-// A test of another program: it moves a run on by steps, faster than the world's time, and has an
-// answer after each.
+// A test by another program: it advances a run by steps, faster than real time, and gets an answer
+// after each step.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ double seconds(const builtin_interfaces::msg::dds_::Time_& stamp) {
   return stamp.sec() + 1e-9 * stamp.nanosec();
 }
 
-/// The topics of one arm, and what they told last.
+/// The topics of one arm, and their last values.
 struct Arm {
   explicit Arm(const std::string& space)
       : pose("rt" + space + "/pose"),
@@ -34,7 +34,8 @@ struct Arm {
     command->get_publication_matched_status(matched);
     return matched.current_count > 0;
   }
-  /// Asks for a spring towards the axis, from what was told last; false if it did not arrive.
+  /// Requests the force of a spring towards the axis, from the last values; false if it was not
+  /// delivered.
   bool pull() {
     WrenchStamped_ force;
     force.header().frame_id("world");
@@ -70,9 +71,9 @@ int play_steps(long steps, const std::vector<std::string>& spaces) {
   std::list<Arm> arms;
   for (const std::string& space : spaces) arms.emplace_back(space);
   DataWriter* step = writer<std_msgs::msg::dds_::UInt64_PubSubType>("rt/step");
-  const bool pull = arms.size() == 1;  // several take no forces
-  // A force that nobody hears yet would be missed: wait until who takes it is there, and then for
-  // ten times that the run tells where it stands, for it has to find us as well.
+  const bool pull = arms.size() == 1;  // with several arms, topics take no forces
+  // A force without a reader would be lost. Wait until the reader exists, then for ten reports of
+  // the run's progress, because the run has to discover this program as well.
   constexpr long kTold = 10;
   const auto late = Clock::now() + std::chrono::seconds(50);
   bool heard = false;
@@ -101,7 +102,7 @@ int play_steps(long steps, const std::vector<std::string>& spaces) {
     auto again = Clock::now();
     while (!all_told()) {
       if (Clock::now() > late) return 5;
-      if (Clock::now() >= again) {  // no harm in asking again
+      if (Clock::now() >= again) {  // a repeated request has no effect
         step->write(&ask);
         again += std::chrono::milliseconds(200);
       }
@@ -112,7 +113,7 @@ int play_steps(long steps, const std::vector<std::string>& spaces) {
       });
       for (Arm& arm : arms) {
         arm.hear();
-        // Where an arm stamped by the world's clock, it would be decades ahead.
+        // A stamp from the wall clock would be decades ahead.
         if (arm.time_pose > wanted + 1e-6) ++early;
       }
       std::this_thread::sleep_for(std::chrono::microseconds(50));

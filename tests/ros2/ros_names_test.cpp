@@ -17,21 +17,21 @@ namespace {
 
 constexpr RosStyle kAll[] = {RosStyle::kPlain, RosStyle::kCrtk, RosStyle::kOmni};
 
-TEST(RosNames, TurnVectorsThereAndBackInEveryStyle) {
+TEST(RosNames, ConvertVectorsBothWaysInEveryStyle) {
   const std::array<double, 3> v{0.1, -0.2, 0.3};
   for (const RosStyle style : kAll) EXPECT_EQ(from_style(style, to_style(style, v)), v);
   EXPECT_EQ(to_style(RosStyle::kPlain, v), v);
 }
 
-TEST(RosNames, GiveTheOmnisAxesToItsPrograms) {
-  // x to the user, y to the right, z up; theirs: x right, y away from the user, z up.
+TEST(RosNames, OmniStyleHasTheAxesOfTheOmniDrivers) {
+  // World: x to the user, y to the right, z up. Omni: x right, y away from the user, z up.
   using V = std::array<double, 3>;
   EXPECT_EQ(to_style(RosStyle::kOmni, V{1, 0, 0}), (V{0, -1, 0}));
   EXPECT_EQ(to_style(RosStyle::kOmni, V{0, 1, 0}), (V{1, 0, 0}));
   EXPECT_EQ(to_style(RosStyle::kOmni, V{0, 0, 1}), (V{0, 0, 1}));
 }
 
-TEST(RosNames, TurnARotationAsTheyTurnVectors) {
+TEST(RosNames, RotationsConvertLikeVectors) {
   const Eigen::Quaterniond q_WT = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.3).normalized();
   const Eigen::Vector3d v_T(0.3, 0.4, -0.2);
   const Eigen::Vector3d v_W = q_WT * v_T;
@@ -45,7 +45,7 @@ TEST(RosNames, TurnARotationAsTheyTurnVectors) {
   }
 }
 
-TEST(RosNames, ShiftTheOmnisJointsAsItsDriversDo) {
+TEST(RosNames, OmniJointsHaveTheOffsetsOfTheOmniDrivers) {
   const std::array<double, 6> told =
       joint_angles(RosStyle::kOmni, {0.1, 0.2, 0.7}, {0.25F, 0.5F, 0.75F});
   const double pi = std::numbers::pi;
@@ -56,7 +56,7 @@ TEST(RosNames, ShiftTheOmnisJointsAsItsDriversDo) {
   EXPECT_EQ(joint_names(RosStyle::kPlain, 6).back(), "gimbal3");
 }
 
-TEST(RosNames, MakeWordsOfAnyName) {
+TEST(RosNames, ConvertAnyNameToAValidFrame) {
   EXPECT_EQ(frame_word("the ball-1"), "the_ball_1");
   EXPECT_EQ(frame_word(""), "_");
 }
@@ -77,7 +77,7 @@ TEST(SteppedClock, WaitsForPermits) {
   });
   for (const std::uint64_t all : {3U, 10U}) {
     clock.steps().permit(all);
-    clock.steps().permit(2);  // said late: it is done already
+    clock.steps().permit(2);  // without effect: these ticks are already done
     std::uint64_t done = 0;
     while (done < all) done = clock.steps().wait_for_ticks(std::chrono::milliseconds(100));
     EXPECT_EQ(done, all);
@@ -90,7 +90,7 @@ TEST(SteppedClock, WaitsForPermits) {
   EXPECT_EQ(times.size(), 10U);
 }
 
-TEST(RosSteps, AreToldOnceTheTopicsOfAllArmsHave) {
+TEST(RosSteps, CompleteAfterTheTopicsOfAllArms) {
   RosSteps steps;
   steps.expect(2);
   steps.permit(5);

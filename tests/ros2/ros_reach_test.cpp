@@ -10,7 +10,7 @@
 namespace thimble::ros2 {
 namespace {
 
-/// The variables of ROS 2, as they are not in the environment of these tests.
+/// Tests without the ROS 2 variables in their environment.
 class RosReachTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -20,17 +20,17 @@ class RosReachTest : public ::testing::Test {
   void TearDown() override { SetUp(); }
 };
 
-TEST_F(RosReachTest, StaysOnThisComputer) {
+TEST_F(RosReachTest, IsThisComputerByDefault) {
   EXPECT_EQ(ros_reach(false).value(), RosReach::kThisComputer);
   EXPECT_EQ(ros_options({}).value().reach, RosReach::kThisComputer);
 }
 
-TEST_F(RosReachTest, NetworkIsAskedForByName) {
+TEST_F(RosReachTest, NetworkMustBeRequested) {
   EXPECT_EQ(ros_reach(true).value(), RosReach::kNetwork);
   EXPECT_EQ(ros_options({.network = true}).value().reach, RosReach::kNetwork);
 }
 
-TEST_F(RosReachTest, VariablesDoNotOpenNetwork) {
+TEST_F(RosReachTest, VariablesCannotEnableTheNetwork) {
   setenv("ROS_LOCALHOST_ONLY", "0", 1);
   for (const char* range : {"SUBNET", "SYSTEM_DEFAULT", ""}) {
     setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);

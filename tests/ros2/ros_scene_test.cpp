@@ -1,4 +1,4 @@
-// Several arms of one run on one wire: names that must differ do.
+// Several arms of one run in one domain: names that must differ do differ.
 #include "ros2/ros_scene.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ std::vector<std::string> links_of(const std::string& urdf) {
   return links;
 }
 
-TEST(RosScene, TwoArmsOfOneKindHaveNamesOfTheirOwn) {
+TEST(RosScene, TwoArmsOfOneKindHaveDifferentNames) {
   auto session = session::Session::open("two_hands", {.several_arms = true});
   ASSERT_TRUE(session) << session.error().message;
   const RosOptions options;
@@ -33,7 +33,7 @@ TEST(RosScene, TwoArmsOfOneKindHaveNamesOfTheirOwn) {
   ASSERT_GT(left_links.size(), 4U);
   const std::set<std::string> of_left(left_links.begin(), left_links.end());
   for (const std::string& link : right_links) {
-    if (link == options.world_frame) continue;  // in which both stand
+    if (link == options.world_frame) continue;  // shared by both
     EXPECT_EQ(of_left.count(link), 0U) << link;
     EXPECT_EQ(link.rfind("right_", 0), 0U) << link;
     EXPECT_NE(link, "right_tip") << "which /tf has";

@@ -6,9 +6,9 @@
 #include "ros2/ros_run.h"
 #include "thimble/session/session.h"
 
-// Opens a scene and runs its first ticks in virtual time, without topics of ROS 2 or with them, so
-// that somebody else can count what they execute:
-//   TOPICS=none|publish|force topics_ticks SCENE TICKS      prints how many of them were in contact
+// Opens a scene and runs its first ticks in virtual time, with or without ROS 2 topics, so that
+// another program can count their instructions:
+//   TOPICS=none|publish|force topics_ticks SCENE TICKS      prints the number of ticks in contact
 int main(int argc, char** argv) {
   using namespace thimble;
   const char* const asked = std::getenv("TOPICS");

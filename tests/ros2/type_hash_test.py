@@ -1,4 +1,4 @@
-"""The hashes of types that ROS 2 compares, computed anew from ros_messages.idl by the recipe of REP 2016
+"""The hashes of types that ROS 2 compares, computed again from ros_messages.idl by the rules of REP 2016
 (a type's description as JSON, its SHA-256), against the table in the source.
 
     type_hash_test.py ros_messages.idl type_hashes.cpp
@@ -82,7 +82,7 @@ def main():
         package, _, _, short = dds_name.split("::")
         computed = hash_of(types, f"{package}/msg/{short[:-1]}")
         if computed != told:
-            print(f"{dds_name}: the table says {told}, the IDL {computed}")
+            print(f"{dds_name}: the table has {told}, the IDL gives {computed}")
             wrong += 1
     # Hashes that ROS 2 Kilted generates for these [S hpmicro/hpm_sdk, middleware/microros/kilted].
     published = {

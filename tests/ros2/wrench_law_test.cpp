@@ -1,4 +1,4 @@
-// Forces that come by a topic, tick by tick: limits, staleness, and what is refused.
+// Forces received by a topic, tick by tick: limits, maximum age, and refused messages.
 #include "ros2/wrench_law.h"
 
 #include <gtest/gtest.h>
@@ -20,11 +20,11 @@ constexpr driver::GateLimits kLimits{.force_max = 3,
                                      .stall_ns = 20'000'000,
                                      .watchdog_ns = 200'000'000};
 
-/// A law of its own with a scene that pulls up with 1 N, ticked every millisecond.
+/// A law with a scene whose force is 1 N upwards, ticked every millisecond.
 struct Rig {
   explicit Rig(RosOptions options) : law(channel, driver::ForceLaw(scene), options, kLimits) {}
 
-  /// Asks for a force that comes as the next tick begins.
+  /// Requests a force that arrives at the start of the next tick.
   void ask(double x, double y = 0, double z = 0) {
     channel.wrench.store({++number, time_ns + 1'000'000, answers_ns, {x, y, z}});
   }
@@ -40,7 +40,7 @@ struct Rig {
     }
     return f_W;
   }
-  /// Asks for a force anew in each tick.
+  /// Requests a force of `x` (N) in each of `ticks` ticks.
   Eigen::Vector3d hold(double x, int ticks) {
     Eigen::Vector3d f_W{0, 0, 0};
     for (int i = 0; i < ticks; ++i) {
@@ -63,27 +63,27 @@ struct Rig {
   WrenchLaw law;
   std::uint64_t number = 0;
   std::int64_t time_ns = 0;
-  std::int64_t answers_ns = 0;  // the stamp of what is asked for
-  bool touching = false;        // what the last tick told the gate
+  std::int64_t answers_ns = 0;  // stamp of the requested force
+  bool touching = false;        // contact as the last tick reported it to the gate
 };
 
-TEST(WrenchLaw, TellsHowOldThePositionsAreThatForcesAnswer) {
+TEST(WrenchLaw, MeasuresTheAgeOfAnsweredPositions) {
   Rig rig({.force = RosForce::kAdd});
   for (int i = 0; i < 100; ++i) {
-    // Asked for between two ticks, of a position of 3 ms before the tick that takes it.
+    // Requested between two ticks, for a position read 3 ms before the tick that takes the force.
     rig.answers_ns = i < 10 ? 0 : rig.time_ns - 2'000'000;
     rig.ask(1);
     rig.tick(1);
   }
-  EXPECT_EQ(rig.law.ages().count(), 90U) << "what has no stamp tells nothing";
+  EXPECT_EQ(rig.law.ages().count(), 90U) << "forces without a stamp are not counted";
   EXPECT_NEAR(rig.law.ages().percentile(0.5), 3e6, 3e3);
   rig.answers_ns = rig.time_ns + 1'000'000'000;
   rig.ask(1);
   rig.tick(1);
-  EXPECT_EQ(rig.law.ages().count(), 90U) << "a stamp ahead of the run is of another clock";
+  EXPECT_EQ(rig.law.ages().count(), 90U) << "a stamp in the future belongs to another clock";
 }
 
-TEST(WrenchLaw, AddsToTheScenesForceOrStandsInItsPlace) {
+TEST(WrenchLaw, AddsToOrReplacesTheForceOfTheScene) {
   Rig add({.force = RosForce::kAdd});
   EXPECT_EQ(add.tick(), Eigen::Vector3d(0, 0, 1));
   EXPECT_TRUE(add.hold(2, 200).isApprox(Eigen::Vector3d(2, 0, 1)));
@@ -91,16 +91,16 @@ TEST(WrenchLaw, AddsToTheScenesForceOrStandsInItsPlace) {
   Rig replace({.force = RosForce::kReplace});
   EXPECT_EQ(replace.tick(), Eigen::Vector3d(0, 0, 0));
   EXPECT_TRUE(replace.hold(2, 200).isApprox(Eigen::Vector3d(2, 0, 0)));
-  EXPECT_FALSE(replace.touching) << "springs that are not felt hold no energy";
+  EXPECT_FALSE(replace.touching) << "replaced springs store no energy";
 }
 
-TEST(WrenchLaw, OpensTheFirstForceWithinTheSoftStart) {
+TEST(WrenchLaw, FirstForceRisesWithinTheSoftStart) {
   Rig rig({.force = RosForce::kReplace});
   EXPECT_NEAR(rig.hold(2, 50).x(), 1.0, 1e-9);
   EXPECT_NEAR(rig.hold(2, 50).x(), 2.0, 1e-9);
 }
 
-TEST(WrenchLaw, DropsAForceThatIsNotRenewedAndReopensIt) {
+TEST(WrenchLaw, ForceWithoutRenewalBecomesZeroAndReopens) {
   Rig rig({.force = RosForce::kReplace});
   rig.hold(2, 200);
   EXPECT_NEAR(rig.tick(50).x(), 2.0, 1e-9);
@@ -113,32 +113,32 @@ TEST(WrenchLaw, DropsAForceThatIsNotRenewedAndReopensIt) {
   EXPECT_NEAR(rig.hold(2, 50).x(), 1.0, 1e-9);  // longer: within soft_start
 }
 
-TEST(WrenchLaw, CountsFromWhenAForceCameNotFromWhenATickTookIt) {
+TEST(WrenchLaw, AgeOfAForceCountsFromItsArrival) {
   Rig rig({.force = RosForce::kReplace});
   rig.hold(2, 200);
-  // It came 30 ms before the loop went on.
+  // It arrived 30 ms before the loop continued.
   rig.ask(2);
   rig.time_ns += 30'000'000;
   EXPECT_NEAR(rig.tick(21).x(), 2.0, 1e-9);
   EXPECT_EQ(rig.tick(1).x(), 0.0);
-  // One that came too long ago is none.
+  // A force that arrived too long ago is ignored.
   rig.ask(2);
   rig.time_ns += 60'000'000;
   EXPECT_EQ(rig.tick(60).x(), 0.0);
   EXPECT_EQ(rig.law.stalls(), 1U);
 }
 
-TEST(WrenchLaw, CutsAForceToTheLimitWhateverIsAsked) {
+TEST(WrenchLaw, LimitsAnyForce) {
   Rig own({.force = RosForce::kReplace, .force_limit = 1.5});
   EXPECT_NEAR(own.hold(-2, 200).x(), -1.5, 1e-9);
   EXPECT_EQ(own.law.cut(), 200U);
-  // A limit above the arm's is the arm's.
+  // A limit above the arm's is reduced to it.
   Rig arms({.force = RosForce::kReplace, .force_limit = 100});
   EXPECT_NEAR(arms.hold(50, 200).x(), 3.0, 1e-9);
   EXPECT_NEAR(arms.hold(std::numeric_limits<double>::max(), 1).x(), 3.0, 1e-9);
 }
 
-TEST(WrenchCheck, NamesWhatIsWrong) {
+TEST(WrenchCheck, ReturnsTheProblem) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(check_message({1, 2, 3}, {0, 0, 0}, "world", "world"), MessageVerdict::kGood);
@@ -149,7 +149,7 @@ TEST(WrenchCheck, NamesWhatIsWrong) {
   EXPECT_EQ(check_message({1, 2, 3}, {0, 0, kInf}, "world", "world"), MessageVerdict::kNotFinite);
 }
 
-TEST(RosWords, RefuseWhatRosWouldNotTake) {
+TEST(RosWords, RefuseInvalidOptions) {
   EXPECT_TRUE(ros_options({}));
   EXPECT_TRUE(ros_options({.name_space = "/lab/phantom_1"}));
   for (const char* bad : {"phantom", "/", "/phantom/", "/1st", "/a b", "/a//b", "/ä"}) {
@@ -167,11 +167,11 @@ TEST(RosWords, RefuseWhatRosWouldNotTake) {
   EXPECT_FALSE(ros_options({.force_limit = std::numeric_limits<double>::quiet_NaN()}));
 }
 
-TEST(RosWords, MeanWhatTheySay) {
+TEST(RosWords, SetTheOptions) {
   const auto omni = ros_options({.names = "omni", .force = "replace", .frames = "map,stylus"});
   ASSERT_TRUE(omni);
   EXPECT_EQ(omni->style, RosStyle::kOmni);
-  EXPECT_EQ(omni->name_space, "/phantom") << "as its drivers have it";
+  EXPECT_EQ(omni->name_space, "/phantom") << "the namespace of the Omni's drivers";
   EXPECT_EQ(omni->force, RosForce::kReplace);
   EXPECT_EQ(omni->world_frame, "map");
   EXPECT_EQ(omni->tip_frame, "stylus");

@@ -210,7 +210,7 @@ std::string open(int arm, const char* face) {
   Channel* channel = open_channel(&trouble);
   if (channel == nullptr) return trouble;
   if (!is_number(arm) || arm >= channel->arm_count) {
-    return "`thimble exec` has fewer arms; name one --arm more.";
+    return "`thimble exec` has fewer arms. Add another --arm option.";
   }
   const std::lock_guard lock(opening());
   OwnArm& own_arm = own(arm);
@@ -220,7 +220,7 @@ std::string open(int arm, const char* face) {
   }
   ArmChannel& shared = channel->arms[static_cast<std::size_t>(arm)];
   if (!win(arm, shared)) {
-    return is_server_alive() ? "Another program that `thimble exec` started has this arm."
+    return is_server_alive() ? "Another program of this `thimble exec` already uses this arm."
                              : "The `thimble exec` that started this program has ended.";
   }
   trouble = ask_for(*channel, shared, face);

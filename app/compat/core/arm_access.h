@@ -21,7 +21,7 @@ int count() noexcept;
 
 /// Opens an arm, or opens it once more if it is open, and starts its loop. Its force is off until
 /// `enable_force`. `face`: name of the interface for the report ("HDAPI"). Returns an empty text,
-/// or the problem and what to do. Waits until the arm is open.
+/// or the problem and its remedy. Waits until the arm is open.
 std::string open(int arm, const char* face);
 /// Closes an arm. After as many calls as `open`, its force goes to zero and it may be opened again.
 /// Returns false if it was not open.
@@ -51,9 +51,8 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept;
 /// there will be no tick, returns false after a sleep of one period.
 bool wait_until_taken(int arm) noexcept;
 
-/// Sets whether only the calling thread permits ticks that wait for the program: a thread that
-/// renews the force by itself, while other threads wait for ticks too. The same thread must end
-/// this.
+/// Sets whether only the calling thread permits ticks that wait for the program. For a thread that
+/// renews the force while other threads also wait for ticks. The same thread must reset it.
 void lead(int arm, bool leads) noexcept;
 
 /// Returns the program's time, ns since some start: wall-clock time, or the time of the first open

@@ -37,7 +37,7 @@ struct ArmFacts {
   double stiffness_max = 0;               ///< Declared by its maker, N/m.
   double damping_max = 0;                 ///< Declared by its maker, N s/m.
   double speed_max = 0;                   ///< The gate's limit, m/s.
-  std::int64_t stall_ns = 0;              ///< Gap after which the gate opens again slowly, ns.
+  std::int64_t stall_ns = 0;              ///< Pause after which the force rises slowly again, ns.
   std::array<double, 3> workspace_min{};  ///< Minimum corner of the workspace of the tip, m.
   std::array<double, 3> workspace_max{};  ///< Maximum corner, m.
 };

@@ -57,7 +57,8 @@ bool has_our_layout(int file) noexcept {
 void map_channel(Opened& only) {
   const char* path = std::getenv(kChannelVariable);
   if (path == nullptr || *path == 0) {
-    only.trouble = "Start this program with `thimble exec PROGRAM`: that gives it an arm.";
+    only.trouble =
+        "Start this program with `thimble exec PROGRAM`, which gives it access to an arm.";
     return;
   }
   const int file = open_file(path);
@@ -68,14 +69,14 @@ void map_channel(Opened& only) {
   if (!has_our_layout(file)) {
     close(file);
     only.trouble =
-        "`thimble exec` is of another build than the library that stands in for an arm's; start "
-        "the program by the `thimble exec` that the library came with.";
+        "The compatibility library and `thimble exec` are from different builds. Start the program "
+        "with the `thimble exec` of the library's installation.";
     return;
   }
   void* at = mmap(nullptr, sizeof(Channel), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (at == MAP_FAILED) {
     close(file);
-    only.trouble = "There is no memory to map what `thimble exec` shares.";
+    only.trouble = "The memory shared by `thimble exec` cannot be mapped (out of memory).";
     return;
   }
   only.file.store(file);
@@ -108,7 +109,7 @@ void use_channel(Channel* channel, const std::string& path) {
   if (const int before = only.file.exchange(-1); before >= 0) close(before);
   if (channel != nullptr) only.file.store(open_file(path.c_str()));
   only.channel = channel;
-  only.trouble = channel == nullptr ? "No channel is there." : "";
+  only.trouble = channel == nullptr ? "There is no channel." : "";
 }
 
 }  // namespace thimble::compat

@@ -14,8 +14,8 @@ Channel* open_channel(std::string* trouble = nullptr);
 /// (arm_channel.h); -1 if there is no channel. Never from the servo thread.
 int channel_file();
 
-/// Uses a channel of this process instead, with the file `path`; null: none any more. For clients
-/// served inside `thimble exec`, and for tests. Call only while no arm is open.
+/// Uses a channel of this process instead, with the file `path`; null ends this. For clients served
+/// inside `thimble exec`, and for tests. Call only while no arm is open.
 void use_channel(Channel* channel, const std::string& path = {});
 
 }  // namespace thimble::compat

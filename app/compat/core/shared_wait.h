@@ -13,8 +13,8 @@ namespace thimble::compat {
 
 // Waiting on a word of memory shared by processes: std::atomic::wait works only within one process.
 
-/// Waits until `word` differs from `old`, its waiters are woken, or the time is over. Real-time:
-/// never from the servo thread.
+/// Waits until `word` differs from `old`, its waiters are woken, or the timeout has expired.
+/// Real-time: never from the servo thread.
 template <class Word>
 void wait_while(const std::atomic<Word>& word, Word old, std::int64_t timeout_ns) noexcept {
   static_assert(sizeof(Word) == 4 && std::atomic<Word>::is_always_lock_free);

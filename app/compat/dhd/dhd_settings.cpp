@@ -18,7 +18,7 @@ std::atomic<bool> expert{false};
 int set_number(const char* function, char id, std::atomic<double> OpenArm::*where, double value) {
   OpenArm* arm = open_arm(function, id);
   if (!arm) return -1;
-  if (!std::isfinite(value)) return fail(function, DHD_ERROR_INVALID, "not a finite number");
+  if (!std::isfinite(value)) return fail(function, DHD_ERROR_INVALID, "a number is not finite");
   (arm->*where) = value;
   return 0;
 }
@@ -27,7 +27,7 @@ int get_number(const char* function, char id, std::atomic<double> OpenArm::*wher
                double unit) {
   const OpenArm* arm = open_arm(function, id);
   if (!arm) return -1;
-  if (!value) return fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!value) return fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   *value = (arm->*where) / unit;
   return 0;
 }
@@ -75,7 +75,7 @@ int dhdReset(char id) {
 
 int dhdWaitForReset(int timeout_ms, char id) {
   if (!open_arm("dhdWaitForReset", id)) return -1;
-  return timeout_ms >= 0 ? 0 : fail("dhdWaitForReset", DHD_ERROR_INVALID, "a time below zero");
+  return timeout_ms >= 0 ? 0 : fail("dhdWaitForReset", DHD_ERROR_INVALID, "the time is negative");
 }
 
 // The next three cause no force: our arms support their own weight (README.md).
@@ -87,7 +87,7 @@ int dhdSetBrakes(int on, char id) {
 }
 int dhdSetEffectorMass(double mass, char id) {
   if (mass < 0 && open_arm("dhdSetEffectorMass", id)) {
-    return fail("dhdSetEffectorMass", DHD_ERROR_INVALID, "a mass below zero");
+    return fail("dhdSetEffectorMass", DHD_ERROR_INVALID, "the mass is negative");
   }
   return set_number("dhdSetEffectorMass", id, &OpenArm::effector_mass, mass);
 }
@@ -146,7 +146,7 @@ int dhdSetMaxForce(double newtons, char id) {
   OpenArm* arm = open_arm("dhdSetMaxForce", id);
   if (!arm) return -1;
   if (!std::isfinite(newtons)) {
-    return fail("dhdSetMaxForce", DHD_ERROR_INVALID, "not a finite number");
+    return fail("dhdSetMaxForce", DHD_ERROR_INVALID, "a number is not finite");
   }
   // Zero would mean the gate's limit, so a limit of zero is a force too small to be felt.
   const double limit = newtons < 0 ? 0 : std::max(newtons, 1e-9);
@@ -185,7 +185,7 @@ int dhdSetWatchdog(unsigned char steps, char id) {
 int dhdGetWatchdog(unsigned char* steps, char id) {
   const OpenArm* arm = open_arm("dhdGetWatchdog", id);
   if (!arm) return -1;
-  if (!steps) return fail("dhdGetWatchdog", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!steps) return fail("dhdGetWatchdog", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   *steps = arm->watchdog;
   return 0;
 }
@@ -206,7 +206,7 @@ int dhdSetVelocityThreshold(unsigned speed, char id) {
 int dhdGetVelocityThreshold(unsigned* speed, char id) {
   const OpenArm* arm = open_arm("dhdGetVelocityThreshold", id);
   if (!arm) return -1;
-  if (!speed) return fail("dhdGetVelocityThreshold", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!speed) return fail("dhdGetVelocityThreshold", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   *speed = arm->velocity_threshold;
   return 0;
 }
@@ -214,11 +214,12 @@ int dhdGetVelocityThreshold(unsigned* speed, char id) {
 // Functions that bypass the gate or the arm's calibration are refused in expert mode, too.
 int dhdPreset(int*, unsigned char, char id) {
   if (!open_arm("dhdPreset", id)) return -1;
-  return fail("dhdPreset", DHD_ERROR_NOT_AVAILABLE, "the arm is calibrated by its own file");
+  return fail("dhdPreset", DHD_ERROR_NOT_AVAILABLE, "calibration is defined by the arm file");
 }
 int dhdSetMot(unsigned short*, unsigned char, char id) {
   if (!open_arm("dhdSetMot", id)) return -1;
-  return fail("dhdSetMot", DHD_ERROR_NOT_AVAILABLE, "motors get forces through the gate only");
+  return fail("dhdSetMot", DHD_ERROR_NOT_AVAILABLE,
+              "the motors accept forces only through the safety gate");
 }
 
 }  // extern "C"

@@ -78,14 +78,14 @@ char dhdKbGet(void) {
 
 int dhdStartThread(void* function(void*), void* argument, int) {
   using thimble::compat::dhd::fail;
-  if (!function) return fail("dhdStartThread", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!function) return fail("dhdStartThread", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   pthread_t thread{};
   const int made = pthread_create(&thread, &attributes, function, argument);
   pthread_attr_destroy(&attributes);
-  return made == 0 ? 0 : fail("dhdStartThread", DHD_ERROR, "the system starts no thread");
+  return made == 0 ? 0 : fail("dhdStartThread", DHD_ERROR, "the thread cannot be created");
 }
 
 }  // extern "C"

@@ -6,13 +6,13 @@
 #define THIMBLE_NOT_ANSWERED(name)                                      \
   int name() {                                                          \
     return thimble::compat::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, \
-                                      "not answered by Thimble");       \
+                                      "not implemented by Thimble");    \
   }
 // The same for functions that return a real number.
 #define THIMBLE_NO_NUMBER(name)                                         \
   double name() {                                                       \
     return thimble::compat::dhd::fail(#name, DHD_ERROR_NOT_IMPLEMENTED, \
-                                      "not answered by Thimble");       \
+                                      "not implemented by Thimble");    \
   }
 
 extern "C" {

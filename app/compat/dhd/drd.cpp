@@ -17,7 +17,7 @@ OpenArm* regulated_arm(const char* function, char id) noexcept {
   OpenArm* arm = open_arm(function, id);
   if (!arm) return nullptr;
   if (arm->regulator.running()) return arm;
-  fail(function, DHD_ERROR_NO_REGULATION, "regulation does not run");
+  fail(function, DHD_ERROR_NO_REGULATION, "regulation is not running");
   return nullptr;
 }
 
@@ -26,14 +26,14 @@ OpenArm* regulated_arm(const char* function, char id) noexcept {
 bool goal_of(const char* function, const OpenArm& arm, const Eigen::Vector3d& p_U,
              Eigen::Vector3d& p_W) noexcept {
   if (!p_U.allFinite()) {
-    fail(function, DHD_ERROR_INVALID, "not a finite number");
+    fail(function, DHD_ERROR_INVALID, "a number is not finite");
     return false;
   }
   p_W = user_rotation(arm).transpose() * p_U;
   const ArmFacts& facts = arms::facts(arm.number);
   const bool inside = (p_W.array() >= vector_of(facts.workspace_min).array()).all() &&
                       (p_W.array() <= vector_of(facts.workspace_max).array()).all();
-  if (!inside) fail(function, DHD_ERROR_GEOMETRY, "a point outside of the arm's workspace");
+  if (!inside) fail(function, DHD_ERROR_GEOMETRY, "the point is outside the workspace of the arm");
   return inside;
 }
 
@@ -57,13 +57,14 @@ int move(const char* function, char id, const Eigen::Vector3d& p_U, bool wait) n
   const std::int64_t begin_ns = reading.time_ns;
   while (arm->regulator.moving()) {
     if (1e-9 * static_cast<double>(reading.time_ns - begin_ns) > longest) {
-      return fail(function, DHD_ERROR_TIMEOUT, "the arm does not arrive");
+      return fail(function, DHD_ERROR_TIMEOUT, "the arm did not reach the point in time");
     }
     arms::wait_for_tick(arm->number, reading.tick);
     if (!read_arm(function, *arm, reading)) return -1;
   }
   if (arm->regulator.running()) return 0;
-  return fail(function, DHD_ERROR_NO_REGULATION, "regulation was stopped before the arm arrived");
+  return fail(function, DHD_ERROR_NO_REGULATION,
+              "regulation was stopped before the arm reached the point");
 }
 
 int follow(const char* function, char id, const Eigen::Vector3d& p_U) noexcept {
@@ -83,7 +84,7 @@ int set_bounds(const char* function, char id, void (Regulator::*set)(const PathB
   if (!arm) return -1;
   const auto good = [](double value) { return std::isfinite(value) && value > 0; };
   if (!good(bounds.acceleration) || !good(bounds.speed) || !good(bounds.jerk)) {
-    return fail(function, DHD_ERROR_INVALID, "a bound that is not above zero");
+    return fail(function, DHD_ERROR_INVALID, "a bound is not finite and positive");
   }
   (arm->regulator.*set)(bounds);
   return 0;
@@ -94,7 +95,7 @@ int get_bounds(const char* function, char id, PathBounds (Regulator::*get)() noe
   OpenArm* arm = open_arm(function, id);
   if (!arm) return -1;
   if (!acceleration || !speed || !jerk)
-    return fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+    return fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   const PathBounds bounds = (arm->regulator.*get)();
   *acceleration = bounds.acceleration, *speed = bounds.speed, *jerk = bounds.jerk;
   return 0;
@@ -126,10 +127,10 @@ int drdStart(char id) {
   OpenArm* arm = open_arm("drdStart", id);
   if (!arm) return -1;
   if (!switch_on_if_untold(*arm)) {
-    return fail("drdStart", DHD_ERROR_NOT_ENABLED, "the force is switched off");
+    return fail("drdStart", DHD_ERROR_NOT_ENABLED, "force is disabled");
   }
   if (!arm->regulator.start(arm->number))
-    return fail("drdStart", DHD_ERROR, "no thread can be made");
+    return fail("drdStart", DHD_ERROR, "the thread cannot be created");
   return 0;
 }
 
@@ -196,7 +197,8 @@ int drdEnableFilter(bool on, char id) {
 int drdSetMotRatioMax(double ratio, char id) {
   OpenArm* arm = open_arm("drdSetMotRatioMax", id);
   if (!arm) return -1;
-  if (!(ratio >= 0 && ratio <= 1)) return fail("drdSetMotRatioMax", DHD_ERROR_INVALID, "0 to 1");
+  if (!(ratio >= 0 && ratio <= 1))
+    return fail("drdSetMotRatioMax", DHD_ERROR_INVALID, "the ratio is not between 0 and 1");
   arm->regulator.set_force_ratio(ratio);
   return 0;
 }
@@ -210,7 +212,7 @@ int drdMoveToPos(double x, double y, double z, bool wait, char id) {
 }
 int drdMoveTo(double* goal, bool wait, char id) {
   if (!open_arm("drdMoveTo", id)) return -1;
-  if (!goal) return fail("drdMoveTo", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!goal) return fail("drdMoveTo", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   return move("drdMoveTo", id, {goal[0], goal[1], goal[2]}, wait);
 }
 int drdTrackPos(double x, double y, double z, char id) {
@@ -218,7 +220,7 @@ int drdTrackPos(double x, double y, double z, char id) {
 }
 int drdTrack(double* goal, char id) {
   if (!open_arm("drdTrack", id)) return -1;
-  if (!goal) return fail("drdTrack", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!goal) return fail("drdTrack", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   return follow("drdTrack", id, {goal[0], goal[1], goal[2]});
 }
 int drdHold(char id) {
@@ -247,9 +249,10 @@ int drdSetForceAndTorqueAndGripperForce(double* force, char id) {
   constexpr const char* kFunction = "drdSetForceAndTorqueAndGripperForce";
   OpenArm* arm = regulated_arm(kFunction, id);
   if (!arm) return -1;
-  if (!force) return fail(kFunction, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!force) return fail(kFunction, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   for (int i = 0; i < 7; ++i) {
-    if (!std::isfinite(force[i])) return fail(kFunction, DHD_ERROR_INVALID, "not a finite number");
+    if (!std::isfinite(force[i]))
+      return fail(kFunction, DHD_ERROR_INVALID, "a number is not finite");
   }
   const Eigen::Matrix3d R_WU = user_rotation(*arm).transpose();
   const Eigen::Vector3d f_W = R_WU * Eigen::Vector3d(force[0], force[1], force[2]);

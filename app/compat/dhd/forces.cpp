@@ -56,7 +56,7 @@ int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
     return fail(function, DHD_ERROR_COM, "the run of thimble exec has ended");
   }
   arm.force_sent = true;
-  if (!finite) return fail(function, DHD_ERROR_INVALID, "a force that is not a finite number");
+  if (!finite) return fail(function, DHD_ERROR_INVALID, "the force is not finite");
   double most = arms::facts(arm.number).force_max;
   if (const double told = arm.max_force; told >= 0) most = std::min(most, told);
   return f_W.norm() > most ? DHD_MOTOR_SATURATED : 0;
@@ -93,7 +93,7 @@ int put_force(const char* function, char id, std::array<double*, 3> force,
   const auto null = [](const double* p) { return p == nullptr; };
   if (std::any_of(force.begin(), force.end(), null) ||
       std::any_of(rest.begin(), rest.begin() + rests, null)) {
-    return fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+    return fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   }
   ArmReading reading;
   if (!read_arm(function, *arm, reading)) return -1;
@@ -127,7 +127,7 @@ int dhdSetVibration(double frequency, double amplitude, int, char id) {
   OpenArm* arm = open_arm("dhdSetVibration", id);
   if (!arm) return -1;
   if (!(frequency >= 0 && frequency <= kVibrationMost) || !std::isfinite(amplitude)) {
-    return fail("dhdSetVibration", DHD_ERROR_INVALID, "0 to 500 Hz, and a finite force");
+    return fail("dhdSetVibration", DHD_ERROR_INVALID, "expected 0 to 500 Hz and a finite force");
   }
   arm->vibration_frequency = frequency;
   arm->vibration_amplitude = amplitude;

@@ -24,7 +24,7 @@ OpenArm* arm_with_gripper(const char* function, char id, const void* pointer,
   OpenArm* arm = open_arm(function, id);
   if (!arm) return nullptr;
   if (!pointer) {
-    fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+    fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
     return nullptr;
   }
   if (!arms::facts(arm->number).has_gripper) {
@@ -114,7 +114,7 @@ int dhdGetButton(int index, char id) {
   unsigned buttons = 0;
   if (!open_arm("dhdGetButton", id)) return -1;
   if (index < 0 || index >= DHD_MAX_BUTTONS) {
-    return fail("dhdGetButton", DHD_ERROR_INVALID_INDEX, "there is no button of this number");
+    return fail("dhdGetButton", DHD_ERROR_INVALID_INDEX, "no button has this number");
   }
   if (!buttons_of("dhdGetButton", id, buttons)) return -1;
   return (buttons >> index) & 1 ? DHD_ON : DHD_OFF;

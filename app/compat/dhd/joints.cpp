@@ -27,11 +27,11 @@ OpenArm* arm_with_joints(const char* function, char id, bool pointers,
   OpenArm* arm = open_arm(function, id);
   if (!arm) return nullptr;
   if (!pointers) {
-    fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+    fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
     return nullptr;
   }
   if (!arms::facts(arm->number).has_joints) {
-    fail(function, DHD_ERROR_NOT_AVAILABLE, "the joints of this arm are not known");
+    fail(function, DHD_ERROR_NOT_AVAILABLE, "the joints of this arm are unknown");
     return nullptr;
   }
   return read_arm(function, *arm, reading) ? arm : nullptr;
@@ -73,7 +73,7 @@ int dhdGetJointVelocities(double* velocities, char id) {
   if (!arm_with_joints("dhdGetJointVelocities", id, velocities, reading)) return -1;
   const Eigen::Matrix3d J = matrix_of(reading.J_WT);
   if (!solvable(J)) {
-    return fail("dhdGetJointVelocities", DHD_ERROR_GEOMETRY, "the arm is at the edge of its reach");
+    return fail("dhdGetJointVelocities", DHD_ERROR_GEOMETRY, "the arm is in a singular pose");
   }
   const Eigen::Vector3d speeds = J.partialPivLu().solve(vector_of(reading.v_WT));
   std::fill_n(velocities, DHD_MAX_DOF, 0.0);
@@ -104,7 +104,7 @@ int dhdSetJointTorques(double* torques, unsigned char mask, char id) {
   }
   const Eigen::Matrix3d J = matrix_of(reading.J_WT);
   if (!solvable(J)) {
-    return fail("dhdSetJointTorques", DHD_ERROR_GEOMETRY, "the arm is at the edge of its reach");
+    return fail("dhdSetJointTorques", DHD_ERROR_GEOMETRY, "the arm is in a singular pose");
   }
   Eigen::Vector3d tau{0, 0, 0};
   for (int i = 0; i < 3; ++i) {
@@ -117,13 +117,14 @@ int dhdSetJointTorques(double* torques, unsigned char mask, char id) {
 }
 
 int dhdGetEncVelocities(double*, char id) {
-  return not_available("dhdGetEncVelocities", id, "joint velocities are: dhdGetJointVelocities");
+  return not_available("dhdGetEncVelocities", id, "not available; use dhdGetJointVelocities");
 }
 int dhdGetWristJacobian(double (*)[3], char id) {
-  return not_available("dhdGetWristJacobian", id, "no motor turns the wrist");
+  return not_available("dhdGetWristJacobian", id, "the wrist has no motors");
 }
 int dhdGetJointAngleRange(double*, double*, char id) {
-  return not_available("dhdGetJointAngleRange", id, "an arm file knows a workspace, and no range");
+  return not_available("dhdGetJointAngleRange", id,
+                       "arm files have a workspace, but no joint ranges");
 }
 
 int dhdJointAnglesToInertiaMatrix(double* angles, double rows[6][6], char id) {
@@ -133,7 +134,8 @@ int dhdJointAnglesToInertiaMatrix(double* angles, double rows[6][6], char id) {
   if (!arm) return -1;
   const double mass = arm->effector_mass;
   if (!(mass > 0))
-    return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "only what dhdSetEffectorMass said");
+    return fail(kFunction, DHD_ERROR_NOT_AVAILABLE,
+                "the inertia is unknown; set a mass with dhdSetEffectorMass");
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) rows[i][j] = i == j && i < 3 ? mass : 0;
   }
@@ -150,7 +152,7 @@ int dhdJointAnglesToGravityJointTorques(double* angles, double* torques, unsigne
   const double mass = arm->effector_mass;
   for (std::size_t i = 0; mass > 0 && i < 3; ++i) {
     if (!(std::abs(angles[i] - reading.q[i]) < kSameAngle)) {
-      return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "only at the angles that the arm has now");
+      return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "available only at the present joint angles");
     }
   }
   const Eigen::Vector3d tau =

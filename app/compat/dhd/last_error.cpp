@@ -13,27 +13,27 @@ thread_local int last = DHD_NO_ERROR;
 constexpr std::array<const char*, 23> kTexts{
     "no error",
     "the call failed",
-    "the arm's loop does not answer: the run has ended",
+    "the servo loop does not respond: the run has ended",
     "the controller is busy",
     "no driver was found",
-    "no arm was found: start the program by `thimble exec`",
-    "this arm has nothing of the kind",
-    "it took too long",
-    "the arm does not reach there",
-    "expert mode is off: dhdEnableExpertMode",
-    "Thimble does not answer this function",
+    "no arm was found: start the program with `thimble exec`",
+    "this arm does not have this feature",
+    "the operation timed out",
+    "the arm cannot reach this point",
+    "expert mode is off: call dhdEnableExpertMode",
+    "Thimble does not implement this function",
     "out of memory",
     "the arm is not open, or a fault keeps its force off",
     "the file was not found",
-    "the configuration is wrong",
-    "there is no arm, button or part of this number",
-    "this function is out of use",
+    "the configuration is invalid",
+    "no arm, button or part has this number",
+    "this function is deprecated",
     "a pointer is null",
     "the redundant encoders disagree",
-    "force is switched off: dhdEnableForce",
-    "the arm is regulated: drdStop, or drdRegulatePos(false)",
+    "force is disabled: call dhdEnableForce",
+    "the arm is regulated: call drdStop or drdRegulatePos(false)",
     "a number is not finite or out of bounds",
-    "regulation does not run: drdStart",
+    "regulation is not running: call drdStart",
 };
 
 }  // namespace
@@ -63,8 +63,7 @@ const char* dhdErrorGetLastStr(void) {
 }
 
 const char* dhdErrorGetStr(int error) {
-  if (error < 0 || error >= static_cast<int>(kTexts.size()))
-    return "there is no error of this number";
+  if (error < 0 || error >= static_cast<int>(kTexts.size())) return "no error has this number";
   return kTexts[static_cast<std::size_t>(error)];
 }
 

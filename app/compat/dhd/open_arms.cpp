@@ -57,14 +57,14 @@ OpenArm* open_arm(const char* function, char id) noexcept {
     }
   }
   if (number < 0 || number >= kArmsMost) {
-    fail(function, DHD_ERROR_INVALID_INDEX, "there is no arm of this number");
+    fail(function, DHD_ERROR_INVALID_INDEX, "no arm has this number");
     return nullptr;
   }
   OpenArm& arm = table().arms[static_cast<std::size_t>(number)];
   if (!arm.open) {
     const bool known = number < arms::count();
     fail(function, known ? DHD_ERROR_DEVICE_NOT_READY : DHD_ERROR_INVALID_INDEX,
-         known ? "the arm is not open" : "there is no arm of this number");
+         known ? "the arm is not open" : "no arm has this number");
     return nullptr;
   }
   return &arm;
@@ -76,7 +76,7 @@ int open_number(const char* function, int number) noexcept {
     return fail(function, DHD_ERROR_NO_DEVICE_FOUND, "the program was not started by thimble exec");
   }
   if (number < 0 || number >= arms::count() || number >= kArmsMost) {
-    return fail(function, DHD_ERROR_INVALID_INDEX, "there is no arm of this number");
+    return fail(function, DHD_ERROR_INVALID_INDEX, "no arm has this number");
   }
   OpenArm& arm = table().arms[static_cast<std::size_t>(number)];
   if (!arm.open) {

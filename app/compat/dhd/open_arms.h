@@ -14,7 +14,7 @@ namespace thimble::compat::dhd {
 
 /// State of an arm's force: on, off, or never set by the program.
 enum class ForceSwitch : std::uint8_t {
-  kUntold,  ///< Not set: the first force enables it.
+  kUntold,  ///< Never set by the program: its first force enables it.
   kOn,      ///< The force is on.
   kOff,     ///< The program or its watchdog switched it off: dhdEnableForce switches it on.
 };

@@ -62,7 +62,7 @@ int drdGetDeviceID(void) {
 int dhdGetSerialNumber(unsigned short* serial, char id) {
   const OpenArm* arm = open_arm("dhdGetSerialNumber", id);
   if (!arm) return -1;
-  if (!serial) return fail("dhdGetSerialNumber", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!serial) return fail("dhdGetSerialNumber", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   *serial = static_cast<unsigned short>(arm->number + 1);
   return 0;
 }
@@ -78,13 +78,12 @@ int dhdOpenType(int type) {
   for (int number = 0; number < arms::count(); ++number) {
     if (type_of_number(number) == type) return open_number("dhdOpenType", number);
   }
-  return fail("dhdOpenType", DHD_ERROR_NO_DEVICE_FOUND, "there is no arm of this type");
+  return fail("dhdOpenType", DHD_ERROR_NO_DEVICE_FOUND, "no arm has this type");
 }
 
 int dhdOpenSerial(int serial) {
   if (serial < 1 || serial > arms::count()) {
-    return fail("dhdOpenSerial", DHD_ERROR_NO_DEVICE_FOUND,
-                "there is no arm of this serial number");
+    return fail("dhdOpenSerial", DHD_ERROR_NO_DEVICE_FOUND, "no arm has this serial number");
   }
   return open_number("dhdOpenSerial", serial - 1);
 }
@@ -130,7 +129,7 @@ const char* dhdGetSDKVersionStr(void) {
 int dhdGetStatus(int status[DHD_MAX_STATUS], char id) {
   const OpenArm* arm = open_arm("dhdGetStatus", id);
   if (!arm) return -1;
-  if (!status) return fail("dhdGetStatus", DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  if (!status) return fail("dhdGetStatus", DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   ArmReading reading;
   if (!read_arm("dhdGetStatus", *arm, reading)) return -1;
   using thimble::driver::Fault;

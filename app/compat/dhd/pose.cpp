@@ -22,7 +22,7 @@ struct Pose {
 template <class... Pointers>
 bool none_null(const char* function, const Pointers*... pointers) noexcept {
   if ((pointers && ...)) return true;
-  fail(function, DHD_ERROR_NULL_ARGUMENT, "null pointer");
+  fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
   return false;
 }
 

@@ -132,7 +132,7 @@ class Program {
   void refuse(http::status status) {
     http::response<http::string_body> response(status, 11);
     response.set(http::field::content_type, "text/plain");
-    response.body() = "This is a WebSocket for programs of this computer.\n";
+    response.body() = "This is a WebSocket server for programs on this computer.\n";
     response.prepare_payload();
     run([&](auto done) { http::async_write(stream_.next_layer(), response, done); });
   }
@@ -175,7 +175,8 @@ class Service::Listener {
   /// Starts to listen.
   driver::Result<void> begin(std::uint16_t port) {
     const auto listens = driver::listen_on_loopback(
-        acceptor_, port, "If Haply's own service runs, stop it, or choose another port (--port).");
+        acceptor_, port,
+        "If Haply's own service is running, stop it, or choose another port (--port).");
     if (!listens) return listens.error();
     port_ = *listens;
     thread_ = std::thread([this] { listen(); });
@@ -229,7 +230,7 @@ class Service::Listener {
   void refuse(const std::string& stranger) {
     if (refused_.load(std::memory_order_relaxed) == 0 && report_) {
       report_("Refused " + stranger + " on port " + std::to_string(port_) +
-              ": forces are taken from programs of your own user and of root only.");
+              ": only programs of your user or of root may request forces.");
     }
     refused_.fetch_add(1, std::memory_order_release);
   }

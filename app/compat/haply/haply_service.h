@@ -22,15 +22,16 @@ inline constexpr std::uint16_t kPort = 10001;
 ///
 /// Only programs on this computer that belong to this user or to root are accepted, as the kernel
 /// reports the owner of each connection. Web pages of other origins are refused. A message may have
-/// 256 KiB. Invalid messages cause no force. Real-time: never from the servo thread, all of it.
+/// 256 KiB. Invalid messages cause no force. Real-time: no function may be called from the servo
+/// thread.
 class Service {
  public:
   using Report = std::function<void(const std::string& sentence)>;
 
   /// Listens on a port; 0: any free port. The channel to the arms must be in use (use_channel)
   /// until the service is destroyed. Starts by opening all arms, so the thread that serves the arms
-  /// must continue to do so. `report`, if given, gets a sentence when the first program of another
-  /// user is refused, from a thread of the service. The error says what to do.
+  /// must continue to do so. `report`, if given, gets a message when the first program of another
+  /// user is refused, from a thread of the service. The error message has the remedy.
   static driver::Result<std::unique_ptr<Service>> listen(std::uint16_t port, Report report = {});
   /// Closes all connections and waits for the threads.
   ~Service();

@@ -22,7 +22,7 @@ std::string ServedArms::answer(int session, std::string_view text) {
     for (int number = 0; number < kArmsMost; ++number) {
       known = known || (is_open(number) && command.device_id == device_id_of(number));
     }
-    if (!known) arms::wrong_call("device_id", "there is no arm of this name");
+    if (!known) arms::wrong_call("device_id", "no arm has this name");
   }
   for (int number = 0; number < kArmsMost; ++number) {
     if (!is_open(number)) continue;

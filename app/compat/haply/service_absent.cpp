@@ -13,8 +13,8 @@ Service::~Service() = default;
 
 driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t, Report) {
   return driver::Error{
-      "This build serves no programs of the Inverse3: install libboost-dev and nlohmann-json3-dev, "
-      "and build it anew."};
+      "--serve haply is not part of this build. Install libboost-dev and nlohmann-json3-dev, "
+      "and build again."};
 }
 
 std::uint16_t Service::port() const noexcept {

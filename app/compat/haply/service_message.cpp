@@ -54,13 +54,13 @@ constexpr const char* kLeftOut[] = {"set_cursor_position", "set_angular_torques"
 void read_arm(const json& arm, Request& request) {
   const json& id = member(arm, "device_id");
   if (!id.is_string()) {
-    request.wrong.push_back({"inverse3", "an entry names no arm (device_id)"});
+    request.wrong.push_back({"inverse3", "an entry lacks device_id"});
     return;
   }
   const json& commands = member(arm, "commands");
   for (const char* name : kLeftOut) {
     if (member(commands, name).is_null()) continue;
-    request.wrong.push_back({name, "not stood in for: forces alone are taken (set_cursor_force)"});
+    request.wrong.push_back({name, "not supported; only set_cursor_force is"});
   }
   const json& force = member(commands, "set_cursor_force");
   if (force.is_null()) return;
@@ -69,7 +69,8 @@ void read_arm(const json& arm, Request& request) {
   if (read_force(force, command.f_B)) {
     request.forces.push_back(std::move(command));
   } else {
-    request.wrong.push_back({"set_cursor_force", "no three numbers x, y, z (vector or values)"});
+    request.wrong.push_back(
+        {"set_cursor_force", "expected three numbers x, y, z (vector or values)"});
   }
 }
 
@@ -169,7 +170,7 @@ Request read_request(std::string_view text) {
   Request request;
   const json message = json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!message.is_object()) {
-    request.wrong.push_back({"message", "no JSON object (NaN and infinity are none)"});
+    request.wrong.push_back({"message", "not a JSON object (JSON has no NaN or infinity)"});
     return request;
   }
   request.full = !member(member(message, "session"), "force_render_full_state").is_null();
@@ -177,7 +178,7 @@ Request read_request(std::string_view text) {
   if (arms.is_array()) {
     for (const json& arm : arms) read_arm(arm, request);
   } else if (!arms.is_null()) {
-    request.wrong.push_back({"inverse3", "no list of arms"});
+    request.wrong.push_back({"inverse3", "expected a list of arms"});
   }
   return request;
 }

@@ -134,7 +134,7 @@ bool is_open(HHD device) noexcept {
 Device* current_open(const char* function) noexcept {
   const HHD current = current_device();
   if (is_open(current)) return &devices().all[current];
-  keep_wrong_call(HD_BAD_HANDLE, function, "no arm is open and current");
+  keep_wrong_call(HD_BAD_HANDLE, function, "no arm is open and current (hdMakeCurrentDevice)");
   return nullptr;
 }
 
@@ -152,7 +152,7 @@ void end_forgotten_frames() noexcept {
     Device& device = devices().all[handle];
     if (!device.frame.open || device.frame.owner != std::this_thread::get_id()) continue;
     keep_error(HD_FRAME_ERROR, handle);
-    arms::wrong_call("hdBeginFrame", "the frame was left open when the tick's callbacks were over");
+    arms::wrong_call("hdBeginFrame", "the frame was still open after the callbacks of the tick");
     end_frame(handle, device);
   }
 }
@@ -174,7 +174,7 @@ HHD hdInitDevice(HDstring name) {
   {
     const std::lock_guard lock(devices().mutex);
     if (is_open(handle)) {
-      keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is open already");
+      keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is already open");
       return HD_INVALID_HANDLE;
     }
   }
@@ -189,7 +189,7 @@ HHD hdInitDevice(HDstring name) {
   if (is_open(handle)) {  // another thread opened it meanwhile, so this opening is surplus
     lock.unlock();
     arms::close(arm);
-    keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is open already");
+    keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is already open");
     return HD_INVALID_HANDLE;
   }
   Device& device = devices().all[handle];
@@ -237,13 +237,13 @@ void hdBeginFrame(HHD handle) {
   Device& device = devices().all[handle];
   Frame& frame = device.frame;
   if (frame.open) {
-    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "a frame was begun inside of a frame");
+    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "hdBeginFrame was called inside a frame");
     return;
   }
   ArmReading newest;
   if (!arms::read(static_cast<int>(handle), newest)) newest = frame.now;
   if (device.one_frame_limit && device.framed_tick == newest.tick + 1) {
-    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "a second frame in one tick");
+    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "more than one frame in a tick");
     return;
   }
   device.framed_tick = newest.tick + 1;
@@ -263,7 +263,7 @@ void hdEndFrame(HHD handle) {
   }
   Device& device = devices().all[handle];
   if (!device.frame.open) {
-    keep_wrong_call(HD_ILLEGAL_END, __func__, "a frame was ended that was not begun");
+    keep_wrong_call(HD_ILLEGAL_END, __func__, "hdEndFrame was called without hdBeginFrame");
     return;
   }
   end_frame(handle, device);
@@ -287,7 +287,7 @@ void hdUpdateCalibration(HDenum style) {
   constexpr HDenum kStyles =
       HD_CALIBRATION_ENCODER_RESET | HD_CALIBRATION_AUTO | HD_CALIBRATION_INKWELL;
   if (style == 0 || (style & ~kStyles) != 0) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "no style of calibration has this number");
+    keep_wrong_call(HD_INVALID_VALUE, __func__, "no calibration style has this number");
     return;
   }
   // Our arms are calibrated when they are opened (thimble calibrate).
@@ -300,7 +300,7 @@ void hdUpdateCalibrationMessage(HDenum style) {
 
 HDboolean hdDeploymentLicense(const char* vendor, const char* application, const char* password) {
   if (vendor != nullptr && application != nullptr && password != nullptr) return HD_TRUE;
-  keep_wrong_call(HD_INVALID_LICENSE, __func__, "a text is null");
+  keep_wrong_call(HD_INVALID_LICENSE, __func__, "a string is null");
   return HD_FALSE;
 }
 

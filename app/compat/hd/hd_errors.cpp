@@ -57,47 +57,48 @@ HDstring hdGetErrorString(HDerror error) {
     case HD_INVALID_ENUM:
       return "no parameter or capability has this number";
     case HD_INVALID_VALUE:
-      return "a value that is not allowed here";
+      return "the value is not allowed here";
     case HD_INVALID_OPERATION:
-      return "a call that is not allowed here";
+      return "the call is not allowed here";
     case HD_INVALID_INPUT_TYPE:
       return "the parameter has no values of this type";
     case HD_BAD_HANDLE:
       return "no open arm has this handle";
     case HD_WARM_MOTORS:
-      return "a motor is hot; the force is lowered";
+      return "a motor is hot; the force is reduced";
     case HD_EXCEEDED_MAX_FORCE:
-      return "the force was cut to what the arm may give";
+      return "the force was limited to the maximum of the arm";
     case HD_EXCEEDED_MAX_FORCE_IMPULSE:
-      return "the force grew too fast and was held back";
+      return "the force rose too fast; its rate was limited";
     case HD_EXCEEDED_MAX_VELOCITY:
-      return "the tip moved too fast: the force is off until it is enabled anew";
+      return "the tip moved too fast: the force is off until it is enabled again";
     case HD_FORCE_ERROR:
-      return "the force cannot be given";
+      return "the arm cannot exert the force";
     case HD_DEVICE_FAULT:
-      return "the arm is in fault: the force is off until it is enabled anew";
+      return "the arm has a fault: the force is off until it is enabled again";
     case HD_DEVICE_ALREADY_INITIATED:
-      return "the arm is open already";
+      return "the arm is already open";
     case HD_COMM_ERROR:
-      return "the arm cannot be reached: start the program by `thimble exec`, which says why";
+      return "the arm cannot be opened: start the program with `thimble exec`, which reports the "
+             "reason";
     case HD_COMM_CONFIG_ERROR:
       return "no arm has this name";
     case HD_TIMER_ERROR:
       return "the scheduler cannot run";
     case HD_ILLEGAL_BEGIN:
-      return "a frame was begun inside of a frame";
+      return "hdBeginFrame was called inside a frame";
     case HD_ILLEGAL_END:
-      return "a frame was ended that was not begun";
+      return "hdEndFrame was called without hdBeginFrame";
     case HD_FRAME_ERROR:
-      return "this belongs into a frame, or a frame was left open";
+      return "the call requires a frame, or a frame was left open";
     case HD_INVALID_PRIORITY:
-      return "no callback can have this priority";
+      return "callbacks cannot have this priority";
     case HD_SCHEDULER_FULL:
-      return "the scheduler has no room for a callback more";
+      return "the scheduler cannot take more callbacks";
     case HD_INVALID_LICENSE:
       return "the licence is not valid";
     default:
-      return "an error of a number that is not known";
+      return "unknown error number";
   }
 }
 

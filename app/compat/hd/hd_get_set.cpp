@@ -37,7 +37,7 @@ const Parameter* parameter_of(const char* function, HDenum number, const void* v
   const Parameter* parameter = find_parameter(number);
   if (parameter != nullptr) return parameter;
   if (is_text(number)) {
-    keep_wrong_call(HD_INVALID_INPUT_TYPE, function, "the parameter is a text (hdGetString)");
+    keep_wrong_call(HD_INVALID_INPUT_TYPE, function, "the parameter is a string; use hdGetString");
   } else {
     keep_wrong_call(HD_INVALID_ENUM, function, "no parameter has this number");
   }
@@ -158,7 +158,7 @@ HDstring hdGetString(HDenum parameter) {
   if (!is_text(parameter)) {
     const bool known = find_parameter(parameter) != nullptr;
     keep_wrong_call(known ? HD_INVALID_INPUT_TYPE : HD_INVALID_ENUM, __func__,
-                    known ? "the parameter is no text" : "no parameter has this number");
+                    known ? "the parameter is not a string" : "no parameter has this number");
     return "";
   }
   if (parameter == HD_DEVICE_VENDOR) return "Thimble";

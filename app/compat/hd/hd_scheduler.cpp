@@ -214,7 +214,7 @@ void hdStopScheduler(void) {
 void hdSetSchedulerRate(HDulong hertz) {
   // Every tick of the arm, or every second, third and so on.
   if (hertz == 0 || hertz > kFullRate || kFullRate % hertz != 0) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "the rate must be 1000 Hz or a whole part of it");
+    keep_wrong_call(HD_INVALID_VALUE, __func__, "the rate must be 1000 Hz divided by an integer");
     return;
   }
   Scheduler& s = scheduler();
@@ -284,7 +284,7 @@ HDboolean hdWaitForCompletion(HDSchedulerHandle handle, HDWaitCode code) {
   std::unique_lock lock(s.mutex);
   if (code == HD_WAIT_CHECK_STATUS) return find(s, handle) != nullptr ? HD_TRUE : HD_FALSE;
   if (code != HD_WAIT_INFINITE) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "no way of waiting has this number");
+    keep_wrong_call(HD_INVALID_VALUE, __func__, "no wait code has this number");
     return HD_FALSE;
   }
   if (on_scheduler_thread) {

@@ -129,7 +129,7 @@ int hdPhantomSetForceAndTorque(int id, const double* fx, const double* fy, const
 int hdPhantomGetWorkspaceRadius(int id, double* radius) {
   if (radius == nullptr) return wrong(__func__, "the pointer is null");
   *radius = 0;
-  if (id < 0 || id >= arms::count()) return wrong(__func__, "there is no arm of this number");
+  if (id < 0 || id >= arms::count()) return wrong(__func__, "no arm has this number");
   const ArmFacts& facts = arms::facts(id);
   // Radius of the largest ball in the workspace.
   double half = 1;
@@ -143,7 +143,7 @@ int hdPhantomGetWorkspaceRadius(int id, double* radius) {
 int hdPhantomGetType(int id, char* name) {
   if (name == nullptr) return wrong(__func__, "the pointer is null");
   *name = 0;
-  if (id < 0 || id >= arms::count()) return wrong(__func__, "there is no arm of this number");
+  if (id < 0 || id >= arms::count()) return wrong(__func__, "no arm has this number");
   const ArmFacts& facts = arms::facts(id);  // shorter than the caller's buffer
   std::memcpy(name, facts.name.data(), facts.name.size());
   return kTrue;

@@ -106,11 +106,12 @@ driver::Result<void> ArmRun::prepare(int number) {
 driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   const session::Terminal terminal = session::user_terminal();
   if (!session::agree_to_forces(*session_, options_.yes, terminal, stop)) {
-    return driver::Error{"Nobody agreed to forces of the arm; say so with --yes."};
+    return driver::Error{
+        "The forces of the arm were not confirmed. Confirm them at the prompt, or pass --yes."};
   }
   const auto open = session::open_arm(*session_, terminal, stop);
   if (!open) return open.error();
-  if (!*open) return driver::Error{"It was stopped before the arm was in its place."};
+  if (!*open) return driver::Error{"Stopped before the arm was at its start pose."};
   const scene::ArmFile& arm = session_->scene().arms.front().arm;
   client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device(),
                                           !session_->setup().real_arm());
@@ -135,7 +136,7 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
     wait_while(channel_.ticks, ticks, kSoon_ns);
     channel_.waiting.fetch_sub(1);
   }
-  if (channel_.ticks.load() == ticks) return driver::Error{"The servo loop did not begin."};
+  if (channel_.ticks.load() == ticks) return driver::Error{"The servo loop did not start."};
   return {};
 }
 
@@ -156,8 +157,8 @@ void ArmRun::attend(const std::string& program) {
   if (client_->stalls() != stalls_told_) {
     if (stalls_told_ == 0) {
       scene::logger().warn(
-          "{} has not renewed its force on {} for {:.0f} ms: it is off until it does. It hangs, or "
-          "its loop is slower than that.",
+          "{} has not renewed its force on {} for {:.0f} ms. The force is zero until it does. The "
+          "program hangs, or its loop is too slow.",
           who, channel_.facts.name.data(), 1e-6 * static_cast<double>(channel_.facts.stall_ns));
     }
     stalls_told_ = client_->stalls();
@@ -166,8 +167,8 @@ void ArmRun::attend(const std::string& program) {
   if (!session_->newest().load(newest)) return;
   const bool faulty = newest.fault != driver::Fault::kNone;
   if (faulty && !fault_told_) {
-    scene::logger().error("{}: the force of {} went off: {}", who, channel_.facts.name.data(),
-                          driver::describe(newest.fault));
+    scene::logger().error("{}: the force of {} was switched off: {}", who,
+                          channel_.facts.name.data(), driver::describe(newest.fault));
   }
   fault_told_ = faulty;
 }
@@ -197,13 +198,14 @@ std::string ArmRun::own_report() const {
   const std::uint64_t ticks = run.ticks();
   const auto due = std::llround(run.duration() * session_->scene().rate) + 1;
   const auto missed = std::max<long long>(due - static_cast<long long>(ticks), 0);
-  std::string s = fmt::format(
-      "Program   {} by {}: asked for a force in {} of {} ticks; {} tick{} of ours missed.\n",
-      options_.program, channel_.face.data(), client_->renewals(), ticks, missed,
-      missed == 1 ? "" : "s");
+  std::string s =
+      fmt::format("Program   {} ({}): requested a force in {} of {} ticks; {} tick{} missed.\n",
+                  options_.program, channel_.face.data(), client_->renewals(), ticks, missed,
+                  missed == 1 ? "" : "s");
   if (client_->stalls() > 0) {
-    s += fmt::format("Stalls    {} did not renew its force {} time{}; it was zero meanwhile.\n",
-                     options_.program, client_->stalls(), client_->stalls() == 1 ? "" : "s");
+    s += fmt::format(
+        "Stalls    {} did not renew its force in time, {} time{}; the force was zero meanwhile.\n",
+        options_.program, client_->stalls(), client_->stalls() == 1 ? "" : "s");
   }
   if (topics_) s += topics_->report();
   return s;

@@ -22,11 +22,12 @@
 namespace thimble::compat {
 
 /// One arm while a program uses it: a session with its own thread and the program's force.
-/// Real-time: never from the servo thread, all of it.
+/// Real-time: no function may be called from the servo thread.
 class ArmRun {
  public:
   /// Opens arm `index` of the options and starts to run it. `number`: how many runs it had before,
-  /// for the name of the recording. The error says what to do. `stop` ends a question to the user.
+  /// for the name of the recording. The error message has the remedy. `stop` ends a question to the
+  /// user.
   static driver::Result<std::unique_ptr<ArmRun>> open(const ExecOptions& options, std::size_t index,
                                                       int number, ArmChannel& channel,
                                                       const std::atomic<bool>& stop);
@@ -39,8 +40,8 @@ class ArmRun {
   void attend(const std::string& program);
   /// Returns whether a viewer has ended the run.
   bool ended_by_viewer() const noexcept { return desk_ && desk_->ended(); }
-  /// Ends the run with zero force, and returns its report: what the gate changed, and the usual
-  /// rest.
+  /// Ends the run with zero force, and returns its report: the summary of every run, and a part
+  /// about the program.
   std::string end();
 
   /// Returns the last fault; after `end`.

@@ -44,17 +44,18 @@ void answer(std::atomic<Word>& word, Word value) {
 driver::Result<std::unique_ptr<ArmServer>> ArmServer::make(const ExecOptions& options,
                                                            const std::atomic<bool>& stop) {
   if (options.arms.empty() || options.arms.size() > kArmsMost) {
-    return driver::Error{fmt::format("A program gets 1 to {} arms.", kArmsMost)};
+    return driver::Error{fmt::format("--arm: expected 1 to {} arms.", kArmsMost)};
   }
   if (options.paced) {
     for (const ExecArm& arm : options.arms) {
       if (arm.device == "sim") continue;
       return driver::Error{fmt::format(
-          "--clock virtual goes with simulated arms only; {} lives in real time.", arm.device)};
+          "--clock virtual requires simulated arms. Remove it, because {} runs in real time.",
+          arm.device)};
     }
     if (options.view || options.hand == "mouse") {
       return driver::Error{
-          "--clock virtual goes without --view and --hand mouse: a person lives in real time."};
+          "--clock virtual cannot be used with --view or --hand mouse. Remove one of them."};
     }
   }
   auto memory = session::SharedMemory::create_nameless(sizeof(Channel));
@@ -162,11 +163,12 @@ void ArmServer::end() {
 std::string ArmServer::report() const {
   std::string s = reports_;
   if (const std::uint64_t torques = channel_->torques_asked.load(); torques > 0) {
-    s += fmt::format("Torque    asked for {} times: taken, and not felt by an arm of 3 motors.\n",
+    s += fmt::format("Torque    requested {} times; ignored, because the arm has 3 motors.\n",
                      torques);
   }
   if (const std::uint64_t grips = channel_->grippers_asked.load(); grips > 0) {
-    s += fmt::format("Gripper   a force asked for {} times: taken, and not felt.\n", grips);
+    s += fmt::format(
+        "Gripper   force requested {} times; ignored, because the gripper has no motor.\n", grips);
   }
   const std::uint32_t used = channel_->wrong_calls_used.load();
   for (std::size_t i = 0; i < used && i < Channel::kWrongCallsMost; ++i) {

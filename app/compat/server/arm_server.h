@@ -17,11 +17,11 @@ namespace thimble::compat {
 /// Serves arms to a program for another maker's arm. It owns the arms' sessions, servo threads and
 /// gates, and executes the requests of the compatibility libraries from shared memory. The program
 /// is a separate process: if it hangs, crashes or ends, only its force is lost. Real-time: never
-/// from the servo thread, all of it.
+/// from the servo thread.
 class ArmServer {
  public:
   /// Makes the shared memory; an arm is opened only on request of the program. `stop` ends a
-  /// question to the user; it must outlive the server. The error says what to do.
+  /// question to the user; it must outlive the server. The error message has the remedy.
   static driver::Result<std::unique_ptr<ArmServer>> make(const ExecOptions& options,
                                                          const std::atomic<bool>& stop);
   /// Ends all runs, with zero force.

@@ -21,8 +21,8 @@ driver::Result<std::unique_ptr<FreeScene>> FreeScene::make(const std::string& ar
   std::string pattern = (folder / "thimble-free-XXXXXX.yaml").string();
   const int file = mkostemps(pattern.data(), 5, O_CLOEXEC);
   if (file < 0) {
-    return driver::Error{"No file can be written in " + folder.string() +
-                         "; free some room there, or name another folder in TMPDIR."};
+    return driver::Error{"Cannot create a file in " + folder.string() +
+                         ". Free some space there, or set TMPDIR to another folder."};
   }
   close(file);
   std::unique_ptr<FreeScene> scene(new FreeScene(pattern));
@@ -40,7 +40,9 @@ driver::Result<std::unique_ptr<FreeScene>> FreeScene::make(const std::string& ar
       "    - {{t: 0, at: [0, 0, 0]}}\n",
       std::filesystem::absolute(*found).string());
   text.close();
-  if (!text) return driver::Error{scene->file_.string() + ": cannot be written; is the disk full?"};
+  if (!text)
+    return driver::Error{scene->file_.string() +
+                         ": cannot be written. Check whether the disk is full."};
   return scene;
 }
 

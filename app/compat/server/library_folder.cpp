@@ -12,9 +12,9 @@ driver::Result<std::filesystem::path> face_folder() {
     if (std::filesystem::exists(folder / "libHD.so", status)) return folder;
   }
   return driver::Error{
-      "The libraries for programs of other makers' arms are not installed: install the package "
+      "The compatibility libraries are not installed. Install the package "
       "thimble-compat (`sudo apt install thimble-compat`), or build the target "
-      "thimble_compat_libraries from the sources."};
+      "thimble_compat_libraries."};
 }
 
 }  // namespace thimble::compat

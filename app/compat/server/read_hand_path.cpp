@@ -41,18 +41,18 @@ driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::files
     const bool good = !fields.fail() && !(fields >> rest) && station.time >= 0 &&
                       station.time <= kLatest && station.p_W.cwiseAbs().maxCoeff() <= kFarthest;
     if (!good) {
-      return driver::Error{
-          fmt::format("{}:{}: expected \"t x y z\": a time of 0 to 86400 s and a point within 2 m.",
-                      file.string(), number)};
+      return driver::Error{fmt::format(
+          "{}:{}: expected \"t x y z\", a time from 0 to 86400 s and coordinates from -2 to 2 m.",
+          file.string(), number)};
     }
     if (!stations.empty() && !(station.time > stations.back().time)) {
-      return driver::Error{fmt::format("{}:{}: expected a time after that of the line before.",
+      return driver::Error{fmt::format("{}:{}: expected a time after that of the previous line.",
                                        file.string(), number)};
     }
     stations.push_back(station);
   }
   if (stations.empty()) {
-    return driver::Error{file.string() + ": expected a line \"t x y z\" at least, found none."};
+    return driver::Error{file.string() + ": expected at least one line \"t x y z\", found none."};
   }
   return stations;
 }

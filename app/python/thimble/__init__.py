@@ -1,19 +1,19 @@
 """Touch virtual objects from Python: scenes, simulated arms and recordings as numpy arrays.
 
-Everything here runs the code of the program ``thimble`` itself; a run from Python is the same to the
-bit as ``thimble run``. All numbers are SI. Frames: W world, T tip of the arm (where the hand holds
-it), P proxy (the point of the surface that the tip is held at); ``p_WT`` is the position of T in W.
-Forces act on the hand.
+This package runs the same code as the program ``thimble``: a run from Python is bit-identical to
+``thimble run``. All numbers are SI. Frames: W world, T tip of the arm (where the hand holds it),
+P proxy (the point that stays on the surface while the tip is inside the object). ``p_WT`` is the
+position of T in W. Forces act on the hand.
 
     import thimble
     touch = thimble.run("elephant", seconds=2)
     touch.time, touch.tip, touch.force        # (n,) s, (n, 3) m, (n, 3) N
 
-Python never runs in the servo loop of a real arm: its interpreter may stand still for tens of
-milliseconds (collection of garbage, its lock, a page from the disk), and after so long an arm switches
-its force off, or goes on with an old one. Force laws in Python (``law=``) and steps by hand
-(:class:`Stepper`, :class:`Simulator`) are therefore of virtual time, which waits for them. In real time
-(:func:`open`) the loop is C++ on a thread of its own, and Python looks on.
+Python never runs in the servo loop of a real arm. Its interpreter may pause for tens of milliseconds
+(garbage collection, the interpreter lock, a page fault). During such a pause an arm switches its force
+off or continues to apply an old one. Force laws in Python (``law=``) and single steps (:class:`Stepper`,
+:class:`Simulator`) therefore exist in virtual time only, which waits for them. In real time
+(:func:`open`) the loop runs in C++ on its own thread; Python only observes it.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ __all__ = [
 
 
 class NamedFile(NamedTuple):
-    """A scene or arm file that is known by name."""
+    """A scene or arm file that can be given by name."""
 
     name: str
     path: Path
@@ -77,19 +77,19 @@ class NamedFile(NamedTuple):
 
 
 def scenes() -> list[NamedFile]:
-    """List the scenes that are known by name (``thimble run --list``)."""
+    """Return the scenes that can be given by name (``thimble run --list``)."""
     return [NamedFile(name, Path(path), about) for name, path, about in _core.scenes()]
 
 
 def arms() -> list[NamedFile]:
-    """List the arm files that are known by name."""
+    """Return the arm files that can be given by name."""
     return [NamedFile(name, Path(path), about) for name, path, about in _core.arms()]
 
 
 def devices() -> list[dict[str, Any]]:
-    """List the real arms that are plugged in (``thimble devices``): name, arm, bus, where, node, ready."""
+    """Return the connected real arms (``thimble devices``): name, arm, bus, where, node, ready."""
     return _core.devices()
 
 
-for _public in __all__:  # so that errors, pickles and help say thimble.Run
+for _public in __all__:  # so that errors, pickles and help show thimble.Run
     globals()[_public].__module__ = "thimble"

@@ -1,4 +1,4 @@
-"""The program ``thimble``, as ``python3 -m thimble`` or the command that pip installs."""
+"""Runs the program ``thimble``: ``python3 -m thimble``, or the command that pip installs."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""What people pass: paths, numbers and vectors, checked, with a sentence for what does not do."""
+"""Checks of arguments (paths, numbers, vectors), with a readable error for a wrong one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SEED_MOST = 2**64 - 1  # limit of the program's type
 
 
 def path_of(name: str, value: PathOrName, meant: str = "a file or a name") -> str:
-    """Give a path or name as text; TypeError for what is none."""
+    """Return a path or name as text. Raises TypeError for any other type."""
     try:
         text = os.fsdecode(value)
     except TypeError:
@@ -30,12 +30,12 @@ def path_of(name: str, value: PathOrName, meant: str = "a file or a name") -> st
 
 
 def optional_path(name: str, value: Optional[PathOrName]) -> str:
-    """Give a path or name as text, "" for None."""
+    """Return a path or name as text, or "" for None."""
     return "" if value is None else path_of(name, value)
 
 
 def number_of(name: str, value: Any) -> float:
-    """Give a number as float; TypeError for what is none."""
+    """Return a number as float. Raises TypeError for any other type."""
     try:
         if isinstance(value, (str, bytes, bool)):
             raise TypeError
@@ -45,7 +45,7 @@ def number_of(name: str, value: Any) -> float:
 
 
 def whole_of(name: str, value: Any, least: int = 0, most: int = _SEED_MOST) -> int:
-    """Give a whole number; TypeError for what is none, ArgumentError beyond its bounds."""
+    """Return an integer. Raises TypeError for any other type, ArgumentError outside the bounds."""
     number = number_of(name, value)
     if not number.is_integer() or not least <= int(value) <= most:
         raise ArgumentError(f"{name}: expected a whole number from {least} to {most}, found {value!r}.")
@@ -53,12 +53,12 @@ def whole_of(name: str, value: Any, least: int = 0, most: int = _SEED_MOST) -> i
 
 
 def vector_of(name: str, value: ArrayLike, finite: bool = True) -> Vector:
-    """Give three numbers, (3,); ArgumentError for anything else."""
+    """Return three numbers, (3,). Raises ArgumentError for anything else."""
     return _array(name, value, (3,), "three numbers", finite)
 
 
 def rows_of(name: str, value: ArrayLike, rows: int, finite: bool = True) -> Vector:
-    """Give three numbers for each of `rows`, (rows, 3), of one (3,) that is meant for all or of as many."""
+    """Return an array (rows, 3). One vector (3,) is repeated for all rows."""
     if np.shape(value) == (3,):
         return np.tile(vector_of(name, value, finite), (rows, 1))
     return _array(name, value, (rows, 3), f"the shape ({rows}, 3) or (3,)", finite)
@@ -70,5 +70,5 @@ def _array(name: str, value: ArrayLike, shape: tuple[int, ...], meant: str, fini
     except (TypeError, ValueError):
         array = np.empty(0)
     if array.shape != shape or (finite and not np.isfinite(array).all()):
-        raise ArgumentError(f"{name}: expected {meant}, found {value!r}")
+        raise ArgumentError(f"{name}: expected {meant}, found {value!r}.")
     return array

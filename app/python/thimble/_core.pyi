@@ -1,4 +1,4 @@
-"""What of the program Python reaches; thimble/__init__.py gives it names and words."""
+"""Types of the C++ module ``_core``; the package wraps it in the public classes and documents those."""
 
 from typing import Any, Callable, Optional, Union
 

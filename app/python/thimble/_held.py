@@ -1,4 +1,4 @@
-"""What all that run a scene have in common."""
+"""Base class and start of all runs of a scene, and their end at the end of the program."""
 
 from __future__ import annotations
 
@@ -20,49 +20,49 @@ from ._ticks import Figure, figure_of
 
 
 class Held:
-    """What all that run a scene have in common."""
+    """Base class of everything that runs a scene."""
 
-    _run: Any  # a _core.Run, or the rest of a finished one: Past, OfArm
+    _run: Any  # a _core.Run, or an object with its methods: Past, OfArm
 
     @property
     def objects(self) -> list[str]:
-        """Names of the scene's objects, in its order."""
+        """Names of the objects, in the order of the scene."""
         return self._run.objects
 
     @property
     def info(self) -> dict[str, Any]:
-        """What runs, as recordings say it: scene, arm, device, clock, program, rate [Hz], seed ..."""
+        """Description of the run, as in a recording: scene, arm, device, clock, program, rate [Hz], seed ..."""
         return self._run.info()
 
     @property
     def end(self) -> str:
-        """Why the run ended: "done", "stopped" or "fault"; "" while it has not."""
+        """Why the run ended: "done", "stopped" or "fault"; "" before its end."""
         return self._run.end or ""
 
     @property
     def stride(self) -> int:
-        """Every how many-th tick is kept: 1 for runs of up to a million ticks."""
+        """N if every N-th tick is kept; 1 for runs of up to a million ticks."""
         return self._run.stride
 
     def mesh(self, object: Optional[str] = None) -> tuple[Vector, NDArray[np.int32]]:
-        """Give the mesh of one object, or of all as one, as it is now: moved, dented, sculpted.
+        """Return the present mesh of one object, or one mesh of all: moved, dented, sculpted.
 
         Returns vertices (v, 3) in the world, m, and triangles (t, 3), counter-clockwise from outside.
-        Shapes give the mesh that stands for them in pictures.
+        For a shape, this is the mesh that pictures of it use.
         """
         return self._run.mesh(object)
 
     def summary(self) -> str:
-        """Tell a run that is over in plain words, as ``thimble run`` does."""
+        """Return the summary of a finished run, as ``thimble run`` prints it."""
         return self._run.summary()
 
     def figures(self) -> list[Figure]:
-        """Tell the figures of a run that is over, with their goals."""
+        """Return the figures of a finished run, with their goals."""
         return [figure_of(one) for one in self._run.figures()]
 
 
 class Past:
-    """What a run that is over tells, apart from its ticks: what is left of it in another process."""
+    """Copy of the results of a finished run without its ticks. It can be sent to another process."""
 
     def __init__(self, run: Union[_core.Run, "Past", "OfArm"]) -> None:
         self.objects: list[str] = list(run.objects)
@@ -89,7 +89,7 @@ class Past:
 
 
 class OfArm:
-    """A run as one of its arms had it."""
+    """View of a run for one of its arms."""
 
     def __init__(self, run: _core.Run, arm: int) -> None:
         self._run = run
@@ -110,12 +110,12 @@ _open: "weakref.WeakSet[_Stopped]" = weakref.WeakSet()
 
 
 def stop_at_exit(run: _Stopped) -> None:
-    """Stop a run at the end of the program, if it is still there: with zero force, and its recording closed."""
+    """Stop a run at the end of the program, if it still exists. It sends zero force and closes its recording."""
     _open.add(run)
 
 
 def stop_all() -> None:
-    """Stop all that would be stopped at the end of the program."""
+    """Stop all runs that were registered by :func:`stop_at_exit`."""
     for run in list(_open):
         try:
             run.stop()
@@ -149,7 +149,7 @@ def begin(
     meshes: Optional[Meshes] = None,
 ) -> _core.Run:
     if hold_to_run == "":
-        raise ValueError('hold_to_run: is empty; "button", "button2" to "button16", or None.')
+        raise ValueError('hold_to_run: expected "button", "button2" to "button16" or None, found "".')
     run = _core.Run(
         scene_file(scene, set, keep=record is not None),
         arm=optional_path("arm", arm),

@@ -1,4 +1,4 @@
-"""Settings of a scene that are turned while it is felt."""
+"""Knobs: settings of a scene that can be changed during the run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ._core import ArgumentError
 
 
 class Knob(NamedTuple):
-    """One setting that can be turned: its name, unit (SI), bounds, and what it is now."""
+    """A setting that can be changed: name, unit (SI), bounds and present value."""
 
     name: str
     unit: str
@@ -22,17 +22,17 @@ class Knob(NamedTuple):
 
 
 class Knobs:
-    """The settings of a scene that can be turned while it is felt, by their names.
+    """The settings of a scene that can be changed during the run, by name.
 
         live.knobs["ball: stiffness"] = 300         # N/m; or live.knobs.ball_stiffness = 300
-        live.knobs["ball: stiffness"].value         # what it is now
+        live.knobs["ball: stiffness"].value         # present value
         print(live.knobs)                           # names, values, bounds, units
 
-    A knob is on its way from the next tick on. It goes from end to end of its bounds within 50 ms at
-    the quickest, and while it is felt no faster than changes the force by 40 N/s, so that no hand gets
-    a step of force; in virtual time and on a real arm alike. A knob that is turned at the same tick does
-    the same to the bit. A name that is not there, and a value beyond the bounds, is an ArgumentError
-    that tells them; nothing is turned then. Scenes of several arms have no knobs.
+    A change starts at the next tick and is smooth, in virtual time and on a real arm, so that the hand
+    feels no step of force. From one bound to the other it takes at least 50 ms; in contact it changes
+    the force by at most 40 N/s. The same change at the same tick is bit-identical. An unknown name or a
+    value outside the bounds raises an ArgumentError that lists the names or bounds, and changes nothing.
+    Scenes with several arms have no knobs.
     """
 
     _run: _core.Run
@@ -73,15 +73,15 @@ class Knobs:
         return any(knob.name == name for knob in self.values())
 
     def keys(self) -> list[str]:
-        """Give the names, in the order of the scene's objects."""
+        """Return the names, in the order of the scene's objects."""
         return list(self)
 
     def values(self) -> list[Knob]:
-        """Give the knobs as they are now."""
+        """Return the knobs with their present values."""
         return [Knob(*one) for one in self._run.knobs()]
 
     def items(self) -> list[tuple[str, Knob]]:
-        """Give names and knobs."""
+        """Return pairs of name and knob."""
         return [(knob.name, knob) for knob in self.values()]
 
     def __dir__(self) -> list[str]:

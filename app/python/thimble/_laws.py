@@ -1,4 +1,4 @@
-"""Force laws of one's own: a Python function of a tick, or a compiled function."""
+"""Custom force laws: a Python function of a tick, or a compiled function."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from ._ticks import Tick
 _three = ctypes.POINTER(ctypes.c_double)
 
 LawFunction = ctypes.CFUNCTYPE(None, ctypes.c_double, _three, _three, _three, _three, ctypes.c_void_p)
-"""What a compiled law is in C, as ctypes says it (:func:`compiled_law`)."""
+"""ctypes type of a compiled law's C signature (:func:`compiled_law`)."""
 
 
 class CompiledLaw:
-    """A compiled force law (:func:`compiled_law`): its address, and the data that it is given."""
+    """A compiled force law (:func:`compiled_law`): its address, and the data that is passed to it."""
 
     def __init__(self, address: int, data: Optional[Vector], kept: object) -> None:
         self.address = address
@@ -34,31 +34,31 @@ Law = Union[Callable[[Tick], Optional[ArrayLike]], CompiledLaw]
 
 
 def compiled_law(function: Any, data: Optional[NDArray[np.float64]] = None) -> CompiledLaw:
-    """Give a force law that runs without the interpreter, for ``law=`` of :func:`run` and :class:`Stepper`.
+    """Return a force law that runs without the interpreter, for ``law=`` of :func:`run` and :class:`Stepper`.
 
     function: one of
 
-    - a Python function ``law(time, tip, velocity, wanted, force)``, which numba compiles (Debian:
-      python3-numba); all but the time (s) are arrays (3,) in the world: tip (m), velocity (m/s), the
-      scene's own force (N), and the force on the hand (N) that it fills in, 0 where it does not.
-      With ``data`` it takes that as a sixth, (n,). ``compiled_law`` may stand above it as ``@compiled_law``.
-    - a function of ctypes or a ``numba.cfunc``, or the address of one from anywhere, as an int, with this
-      signature of C (``LawFunction`` is it for ctypes)::
+    - A Python function ``law(time, tip, velocity, wanted, force)``, which numba compiles (Debian:
+      python3-numba). All arguments but the time (s) are arrays (3,) in the world: tip (m), velocity (m/s),
+      the force of the scene (N), and the force on the hand (N), which the law sets and which is 0 at first.
+      With ``data``, that array (n,) is a sixth argument. ``@compiled_law`` may be used as a decorator.
+    - A ctypes function, a ``numba.cfunc``, or the address of a C function as an int, with this C signature
+      (``LawFunction`` is its ctypes type)::
 
           void law(double time, const double tip[3], const double velocity[3], const double wanted[3],
                    double force[3], void *data);
 
-    data: float64 array that the function is given with each call, as a pointer to its first number. What
-    it holds may be changed between two steps of a Stepper.
+    data: float64 array. Each call gets a pointer to its first element. Its values may change between two
+    steps of a Stepper.
 
-    The force goes through the safety gate. It begins as no number, so that a function which fails before
-    it has set all three leaves zero force, and the run ends with the fault "force_not_finite". An address
-    with another signature ends the program: nothing can check that.
+    The force goes through the safety gate. Its components are NaN at first. If a function fails before it
+    has set all three, the force is zero and the run ends with the fault "force_not_finite". The signature
+    of an address cannot be checked; a wrong one crashes the program.
     """
     if data is not None and not (
         isinstance(data, np.ndarray) and data.dtype == np.float64 and data.flags.c_contiguous
     ):
-        raise ArgumentError(f"data: expected a numpy array of float64 in one piece, found {data!r}.")
+        raise ArgumentError(f"data: expected a C-contiguous numpy array of float64, found {data!r}.")
     address: int
     if type(function) is int:
         address = function
@@ -72,12 +72,12 @@ def compiled_law(function: Any, data: Optional[NDArray[np.float64]] = None) -> C
     else:
         raise TypeError(f"compiled_law: expected a function or its address, found {function!r}.")
     if address <= 0:
-        raise ArgumentError(f"compiled_law: {address} is the address of no function.")
+        raise ArgumentError(f"compiled_law: {address} is not the address of a function.")
     return CompiledLaw(address, data, function)
 
 
 def core_law(law: Optional[Law]) -> Any:
-    """Give a law as the module beneath takes it: a function of columns, or (address, data, what lives on)."""
+    """Return a law as ``_core`` takes it: a function of columns, or (address, data, object to keep alive)."""
     if law is None:
         return None
     compiled = compiled_law(law) if _is_ctypes(law) or _is_numba_cfunc(law) else law
@@ -103,7 +103,7 @@ def _by_numba(function: Callable[..., Any], data: Optional[Vector]) -> Any:
     except ImportError as missing:
         raise ImportError(
             "compiled_law() of a Python function needs numba: install python3-numba, or `pip install numba`. "
-            "Functions of ctypes and addresses need nothing."
+            "ctypes functions and addresses work without it."
         ) from missing
     inner = function if hasattr(function, "py_func") else numba.njit(function)
     three = numba.types.CPointer(numba.types.float64)

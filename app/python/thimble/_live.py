@@ -1,4 +1,4 @@
-"""Scenes in real time."""
+"""Runs in real time."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from ._ticks import Tick, Ticks
 class Live(Held):
     """A scene in real time, on a simulated or a real arm (:func:`open`).
 
-    The servo loop runs in C++ on a thread of its own; Python looks on and can end it. Use it in a
-    ``with``: at the end of it, at the end of the program, on Ctrl-C and SIGTERM the arm gets zero
-    force. After a fault, or when the arm was pulled, the force stays off; open it anew.
+    The servo loop runs in C++ on its own thread; Python observes it and can end it. Use it in a ``with``
+    block. At the end of the block, at the end of the program, on Ctrl-C and on SIGTERM the arm gets zero
+    force. After a fault, or if the arm was unplugged, the force stays off; call :func:`open` again.
     """
 
     _run: _core.Run
@@ -42,26 +42,26 @@ class Live(Held):
 
     @property
     def tick(self) -> Optional[Tick]:
-        """The newest tick; None before the first. The loop does not wait for who looks."""
+        """The newest tick; None before the first. The loop never waits for a reader."""
         latest = self._run.latest()
         return None if latest is None else Tick(latest)
 
     @property
     def knobs(self) -> Knobs:
-        """The settings that can be turned while it is felt."""
+        """The settings that can be changed during the run."""
         return Knobs(self._run)
 
     @property
     def topics(self) -> str:
-        """What there is to say of the topics of ROS 2, a line each; "" if there are none."""
+        """Report of the ROS 2 topics, one fact per line; "" if there are none."""
         return self._run.topics_report()
 
     def stop(self) -> None:
-        """End the loop with zero force, if it runs, and wait for that. A recording is closed."""
+        """End the loop with zero force, if it runs, and wait for its end. Closes the recording."""
         self._run.stop()
 
     def ticks(self) -> Ticks:
-        """Give all ticks of a run that is over; Error while it goes on."""
+        """Return all ticks of a finished run. Raises Error before its end."""
         return Ticks(self._run.ticks())
 
 
@@ -84,28 +84,33 @@ def open(
     no_real_time: bool = False,
     ros2: Union[None, bool, Mapping[str, Any]] = None,
 ) -> Live:
-    """Touch a scene in real time, and begin at once. Other options as of :func:`run`.
+    """Run a scene in real time; it starts at once. The other options are those of :func:`run`.
 
-    device: "sim" for the simulated arm, a name that :func:`devices` tells, or "auto" for the only arm
-    that is plugged in (Error if there is none). agree: **a real arm moves by itself.**
-    Keep clear of it, hold its grip, have its switch at hand, and say so with ``agree=True``. unchecked: a
-    real arm that has not passed ``thimble feel-check`` gets at most 0.5 N; ``unchecked=True`` gives it
-    its whole force all the same. A real arm brings its own arm file; what the scene or ``arm`` say of
-    limits may only tighten them, and stderr says what became of it. firmware: image for an arm that
-    needs one. homed: a real arm was in its home pose when it got power, so
-    that only its workspace is checked before it gets a force. hold_to_run: "button" (or "button2" to
-    "button16"): forces come only while that button of the arm is held. no_real_time: use a real arm though
-    the loop gets no real-time priority. ros2: publish the run as topics of ROS 2 (package
-    thimble-ros2): True, or what ``thimble run --ros2`` takes as a dict, ``{"namespace": "/phantom",
-    "names": "omni", "domain": 5, "force": "add", "limit": 1, "stale_ms": 50, "frames":
-    "world,tip", "network": False}``, each of them as you like; with ``"network": True`` other
-    computers can read the topics and give forces. Raises Error with what to do.
+    device: "sim" for the simulated arm, a name from :func:`devices`, or "auto" for the only connected
+    arm. Raises Error, with the remedy, if it cannot be used.
+
+    agree: **a real arm moves by itself.** Keep clear of it, hold its grip, keep its switch within reach,
+    and confirm this with ``agree=True``.
+
+    unchecked: a real arm that has not passed ``thimble feel-check`` gets at most 0.5 N. With
+    ``unchecked=True`` it gets its full force nevertheless. A real arm uses its own arm file. Limits in
+    the scene or in ``arm`` can only tighten those limits; the result is printed to stderr.
+
+    firmware: image for an arm that needs one. homed: the real arm was in its home pose at power-up, so
+    only its workspace is checked before it gets a force. hold_to_run: "button" (or "button2" to
+    "button16"): the arm gives forces only while that button is held. no_real_time: use a real arm even
+    if the loop gets no real-time priority.
+
+    ros2: publish the run as ROS 2 topics (package thimble-ros2): True, or a dict with any of the options
+    of ``thimble run --ros2``: ``{"namespace": "/phantom", "names": "omni", "domain": 5, "force": "add",
+    "limit": 1, "stale_ms": 50, "frames": "world,tip", "network": False}``. With ``"network": True`` other
+    computers can read the topics and send forces.
     """
     path_of("device", device, "\"sim\", \"auto\" or a name")
     if device not in ("sim", "auto") and not agree:  # the C++ part asks about the arm that "auto" finds
         raise Error(
-            f"{device} would get forces. Keep clear of it, hold its grip, keep its switch at hand, and "
-            "say agree=True."
+            f"{device} will move by itself. Keep clear of it, hold its grip, keep its switch within reach, "
+            "and pass agree=True."
         )
     held = begin(
         scene,
@@ -138,7 +143,7 @@ _ENDING = ("TERM", "HUP", "QUIT", "USR1", "USR2", "ALRM", "VTALRM", "PROF", "XCP
 
 
 def _stop_on_signals() -> None:
-    """Let each signal that would end Python at once leave by zero force first."""
+    """Send zero force before each signal that would end Python at once."""
     if threading.current_thread() is not threading.main_thread():
         return
 

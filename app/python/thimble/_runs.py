@@ -1,4 +1,4 @@
-"""Scenes in virtual time: at once, and tick by tick."""
+"""Runs in virtual time: whole, or tick by tick."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _Options = ParamSpec("_Options")
 def _options_of(
     function: Callable[_Options, Any]
 ) -> Callable[[Callable[..., None]], Callable[Concatenate[Any, _Options], None]]:
-    """Give a method the signature of a function, which lists the options for both."""
+    """Return a decorator that gives a method the signature of `function`, so that options are listed once."""
     signature = inspect.signature(function)
     own = inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)
 
@@ -37,9 +37,9 @@ def _options_of(
 
 
 class Run(Held, Ticks):
-    """A run that is over: its ticks as arrays, and what it was. May be pickled, meshes and all.
+    """A finished run: its ticks as arrays, its description and its results. It can be pickled, with its meshes.
 
-    Of a scene with several arms it is what the first of them did; ``arms`` has all of them.
+    If the scene has several arms, the ticks are those of the first arm; ``arms`` has all of them.
     """
 
     def __init__(
@@ -56,19 +56,22 @@ class Run(Held, Ticks):
 
     @property
     def arms(self) -> dict[str, "Run"]:
-        """The run of each arm by its name in the scene; empty if the scene has one alone."""
+        """The run of each arm by its name in the scene; empty if the scene has one arm."""
         if self._arms is None:
-            self._arms = {name: Run(OfArm(self._run, i), None, {}, self._touched) for i, name in enumerate(self._run.arms)}
+            self._arms = {
+                name: Run(OfArm(self._run, i), None, {}, self._touched) for i, name in enumerate(self._run.arms)
+            }
         return self._arms
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Run, (Past(self._run), self.columns, self.arms, self._touched)
 
     def shot(self, at: Optional[float] = None, **options: Any) -> Shot:
-        """Draw a moment of it, for a notebook or a file; options as of :func:`shot`.
+        """Draw a moment of the run, for a notebook or a file. The other options are those of :func:`shot`.
 
-        at: second; when most was felt if absent. `thimble shot` repeats the run for it, so Error for runs
-        that it cannot repeat: with a law of one's own, or another quality than normal.
+        at: time, s; by default the moment of the largest force. `thimble shot` repeats the run to draw it.
+        Raises Error for runs that it cannot repeat: those with a custom force law, or with a quality
+        other than normal.
         """
         assert self._touched is not None
         return self._touched.shot(at=at, **options)
@@ -93,44 +96,45 @@ def run(
     law: Optional[Law] = None,
     meshes: Optional[Meshes] = None,
 ) -> Run:
-    """Let the simulated hand touch a scene in virtual time, and give what was felt.
+    """Run a scene with the simulated hand in virtual time, and return the finished run.
 
-    The same to the bit as ``thimble run``, and again each time. Other Python threads go on meanwhile;
-    Ctrl-C ends it.
+    Bit-identical to ``thimble run``, and repeatable. Other Python threads continue meanwhile; Ctrl-C ends
+    the run.
 
-    scene: file, or a name (:func:`scenes`); or the scene itself, as a dict or as YAML text of several
-    lines, with files beside the working folder. set: values of it to be others, by where they stand:
-    ``{"ball.stiffness": 300, "ball.effects.friction.coefficient": 0.2, "rate": 2000}``. seconds: how long; the scene's own if absent. seed: of
-    everything random; the scene's own if absent. arm: file or name in place of the scene's arm.
-    quality: "draft", "normal", "reference" or "auto". record: HDF5 file to write every tick into.
-    overwrite: let it replace an existing recording; without it that is an Error, and a file of another
-    kind is never replaced.
+    scene: file, or name (:func:`scenes`); or the scene itself, as a dict or as YAML text of several
+    lines, with file names relative to the working folder. set: changes of the scene, by path:
+    ``{"ball.stiffness": 300, "ball.effects.friction.coefficient": 0.2, "rate": 2000}``. seconds: duration,
+    s. seed: seed of all random numbers. arm: file or name. By default all three are those of the scene.
+    quality: "draft", "normal", "reference" or "auto". record: HDF5 file for every tick. overwrite: replace
+    an existing recording; without it an existing file raises Error. A file of another kind is never
+    replaced.
 
-    law: a force law in place of the scene's: ``law(tick)`` is asked in each tick for the force on the
-    hand, three numbers (N, in the world), or None for the scene's own, which is
-    ``tick.force_wanted``. It goes through the safety gate as any force does. An exception in it is
-    zero force, the end of the run, and comes out here. A compiled one (:func:`compiled_law`) runs as fast
-    as the scene's.
+    law: a force law instead of the scene's. ``law(tick)`` is called in each tick and returns the force on
+    the hand, three numbers (N, in the world), or None for the force of the scene, which is
+    ``tick.force_wanted``. The force goes through the safety gate like any other. If the law raises an
+    exception, the force is zero, the run ends, and the exception is raised here. A compiled law
+    (:func:`compiled_law`) is as fast as the scene's.
 
     meshes: :class:`Meshes` that this run shares with others.
 
-    Raises Error, with what to do, if scene, arm or mesh cannot be had. A fault of the arm is no
-    exception: ``end`` is "fault" then, and the last tick names it.
+    Raises Error, with the remedy, if scene, arm or mesh cannot be loaded. A fault of the arm raises
+    nothing: ``end`` is "fault" then, and the last tick names the fault.
     """
-    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record, overwrite=overwrite, law=law, meshes=meshes)
+    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record,
+                 overwrite=overwrite, law=law, meshes=meshes)
     held.run()
-    why_not = "it had a force law of its own" if law is not None else ""
+    why_not = "it had a custom force law" if law is not None else ""
     if quality != "normal":
         why_not = why_not or f"its quality was {quality}"
     return Run(held, touched=Touched(held.info()["scene_file"], arm, seed, why_not))
 
 
 class Stepper(Held):
-    """A scene in virtual time, tick by tick. Options as of :func:`run`.
+    """A run in virtual time, tick by tick. The options are those of :func:`run`.
 
-    ``while stepper.step(): ...`` is the same to the bit as :func:`run`. Use it in a ``with`` if it records:
-    at the end of it the run ends and the recording is closed. A Stepper that is dropped, or left at the end
-    of the program, does the same.
+    ``while stepper.step(): ...`` is bit-identical to :func:`run`. Use it in a ``with`` block if it records:
+    the end of the block ends the run and closes the recording. So does the deletion of the Stepper, or
+    the end of the program.
     """
 
     _run: _core.Run
@@ -149,29 +153,29 @@ class Stepper(Held):
         self.stop()
 
     def step(self, hand: Optional[ArrayLike] = None) -> bool:
-        """Run the next tick. False, and nothing runs, if the run is over.
+        """Run the next tick. Returns False, and runs nothing, if the run is over.
 
-        hand: where the hand is led to from now on, (3,) in the world, m, in place of the scene's way:
-        it goes there as a person's would, smoothly and at most with 0.4 m/s. A point outside of the
-        arm's workspace is drawn to its box. Raises Error where the arm does not reach it.
+        hand: new target of the hand, (3,) in the world, m, instead of the path in the scene. The hand moves
+        there smoothly like a person's, with at most 0.4 m/s. A point outside the arm's workspace is moved
+        to the nearest point of its box. Raises Error if the arm cannot reach it.
         """
         return self._run.step(None if hand is None else vector_of("hand", hand))
 
     @property
     def knobs(self) -> Knobs:
-        """The settings that can be turned between two steps."""
+        """The settings that can be changed between two steps."""
         return Knobs(self._run)
 
     @property
     def tick(self) -> Optional[Tick]:
-        """The tick that ran last; None before the first."""
+        """The newest tick; None before the first."""
         latest = self._run.latest()
         return None if latest is None else Tick(latest)
 
     def stop(self) -> None:
-        """End the run now, with zero force; a recording is closed."""
+        """End the run now, with zero force. Closes the recording."""
         self._run.stop()
 
     def ticks(self) -> Ticks:
-        """Give all ticks so far."""
+        """Return all ticks so far."""
         return Ticks(self._run.ticks())

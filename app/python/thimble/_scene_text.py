@@ -1,4 +1,4 @@
-"""Scenes that are a dict, a text, or changed, as files for the program."""
+"""Writes scenes that are given as a dict or text, or with changes, into files for the program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Scene = Union[PathOrName, Mapping[str, Any]]
 
 
 def as_yaml(value: Any) -> str:
-    """Write a value as JSON, which YAML understands; numpy's are taken as Python's own, paths as text."""
+    """Return a value as JSON, which is also YAML. numpy values become Python's, paths become text."""
     try:
         # Keeps emoji: JSON would escape them as surrogate pairs, which YAML does not have.
         text = json.dumps(value, allow_nan=False, ensure_ascii=False, default=_plain)
@@ -36,17 +36,18 @@ _UNPRINTABLE = re.compile("[\x7f-\x9f\u2028\u2029\ufeff]")
 
 
 def _plain(value: Any) -> Any:
-    """Turn what JSON does not know into what it does: paths, and numpy's arrays and numbers."""
+    """Convert a path, numpy array or numpy number to a type that JSON has."""
     return os.fsdecode(value) if isinstance(value, os.PathLike) else value.tolist()
 
 
 def scene_file(scene: Scene, changes: Optional[Mapping[str, Any]], keep: bool) -> str:
-    """Give the file of a scene; of one without a file, or changed, one that is written for it.
+    """Return the file of a scene. Writes a new one if the scene has no file or has changes.
 
-    keep: in the user's state folder, where a recording's replay finds it, not for this process alone.
+    keep: write it into the user's state folder, where the replay of a recording finds it. Otherwise it
+    exists only as long as this process.
     """
     if changes is not None and not isinstance(changes, Mapping):
-        raise TypeError(f"set: expected a dict of places and values, found {changes!r}.")
+        raise TypeError(f"set: expected a dict of paths and values, found {changes!r}.")
     beside = Path.cwd()
     if isinstance(scene, Mapping):
         text = as_yaml(scene)
@@ -61,7 +62,7 @@ def scene_file(scene: Scene, changes: Optional[Mapping[str, Any]], keep: bool) -
     else:
         return path_of("scene", scene, "a file, a name, a dict or YAML text")
     into = "" if keep else str(_scratch())
-    values = {path_of("set", place, "places as text"): as_yaml(value) for place, value in (changes or {}).items()}
+    values = {path_of("set", place, "paths as text"): as_yaml(value) for place, value in (changes or {}).items()}
     return _core.keep_scene(text, values, str(beside), into)
 
 

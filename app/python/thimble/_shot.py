@@ -14,7 +14,7 @@ from ._study import BAD_INPUT, program
 
 
 class Shot:
-    """A picture of a moment of a scene, as PNG; a notebook shows it by itself."""
+    """A picture of a moment of a scene, as PNG. A notebook displays it."""
 
     def __init__(self, png: bytes) -> None:
         self.png = png
@@ -32,7 +32,7 @@ class Shot:
 
 
 class Touched(NamedTuple):
-    """What a run was made of, as far as it can be drawn; `why_not` says why it cannot."""
+    """Scene, arm and seed of a run, to draw it. `why_not`: why it cannot be drawn, or ""."""
 
     scene: str
     arm: Optional[PathOrName]
@@ -40,9 +40,9 @@ class Touched(NamedTuple):
     why_not: str
 
     def shot(self, **options: Any) -> Shot:
-        """Draw it."""
+        """Draw a moment of the run."""
         if self.why_not:
-            raise Error(f"The run cannot be drawn: {self.why_not}; thimble.shot(SCENE) draws the scene without it.")
+            raise Error(f"The run cannot be drawn: {self.why_not}. Draw the scene without it: thimble.shot(SCENE).")
         changes = None if self.seed is None else {"seed": self.seed}
         return shot(self.scene, set=changes, arm=self.arm, **options)
 
@@ -61,10 +61,11 @@ def shot(
 ) -> Shot:
     """Draw a moment of a scene, touched by the simulated hand (``thimble shot``).
 
-    scene, set, arm: as of :func:`run`. at: second to draw; when most is felt if absent. size: width and
-    height in pixels. camera: yaw and pitch in degrees (about z from the user, above the horizon) and, if
-    given, a factor by which it is closer. plots: force and depth over time below. Raises ArgumentError
-    with what the program said of wrong ones, Error if the program cannot draw here.
+    scene, set, arm: as in :func:`run`. at: time to draw, s; by default the moment of the largest force.
+    size: width and height, pixels. camera: yaw (about z, from the user) and pitch (above the horizon),
+    degrees; a third number is the factor by which the camera is closer. plots: also draw force and depth
+    over time, below the picture. Raises ArgumentError for wrong arguments, Error if the program cannot
+    draw on this computer; both have the message of the program.
     """
     width, height = (whole_of("size", one, 64, 8192) for one in _numbers("size", size, (2,)))
     command = ["--size", f"{width}x{height}"]

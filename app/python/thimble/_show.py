@@ -1,4 +1,4 @@
-"""Ticks as tables and pictures: pandas, matplotlib where they are installed, and HTML for notebooks."""
+"""Ticks as pandas tables, matplotlib pictures (if installed), and HTML for notebooks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _WIDTH, _HEIGHT = 560, 90  # size of one curve in HTML, in pixels
 
 
 def to_pandas(ticks: Ticks) -> Any:
-    """Turn ticks into a pandas DataFrame (see ``Ticks.to_pandas``)."""
+    """Return ticks as a pandas DataFrame (see ``Ticks.to_pandas``)."""
     try:
         import pandas
     except ImportError as missing:
@@ -36,7 +36,7 @@ def to_pandas(ticks: Ticks) -> Any:
 
 
 def plot(ticks: Ticks, title: str) -> Any:
-    """Draw force and depth over time by matplotlib (see ``Ticks.plot``)."""
+    """Draw force and depth over time with matplotlib (see ``Ticks.plot``)."""
     try:
         from matplotlib import pyplot
     except ImportError as missing:
@@ -55,7 +55,7 @@ def plot(ticks: Ticks, title: str) -> Any:
 
 
 def curve(values: Any, unit: str) -> str:
-    """Draw one curve as SVG: of each column of pixels the least and the greatest value."""
+    """Draw one curve as SVG: minimum and maximum of each column of pixels."""
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
     span = high - low or 1.0
     points = []
@@ -70,7 +70,7 @@ def curve(values: Any, unit: str) -> str:
 
 
 def html(title: str, ticks: Ticks, figures: Sequence[Figure]) -> str:
-    """Tell ticks as HTML: two curves and the figures; loads nothing from anywhere."""
+    """Return ticks as HTML: two curves and the figures. It loads no other files."""
     span = f"{ticks.time[0]:.3f} to {ticks.time[-1]:.3f} s" if len(ticks) else "none"
     rows = "".join(
         f"<tr><td>{escape(one.name)}</td><td>{one.value:.6g}</td><td>{escape(one.unit)}</td>"

@@ -16,11 +16,11 @@ _ARMS_MOST = 1_000_000  # 10 GB and more; [chosen] to detect a wrong unit
 
 
 class Simulator:
-    """A simulated arm without a scene, in virtual time: you are its force law.
+    """A simulated arm without a scene, in virtual time: the caller computes the forces.
 
-    arm: arm file, or a name (:func:`arms`). hand: where the hand holds the tip, (3,) in the world, m.
-    rate: ticks per second, Hz. seed: of the hand's tremor. Forces go through the same safety gate and
-    the same bytes as those to a real arm.
+    arm: arm file, or name (:func:`arms`). hand: position at which the hand holds the tip, (3,) in the
+    world, m. rate: ticks per second, Hz. seed: seed of the hand's tremor. Forces pass the same safety gate
+    and the same byte protocol as those to a real arm.
     """
 
     def __init__(
@@ -36,17 +36,17 @@ class Simulator:
         )
 
     def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Tick:
-        """Run one tick with a force on the hand, (3,) in the world, N, and give it.
+        """Run one tick with a force on the hand, (3,) in the world, N, and return the tick.
 
-        The tick tells the tip as it was read when the tick began, so before this force acted.
-        hand: where the hand is led to from now on, as in :meth:`Stepper.step`.
-        After a fault (``tick.fault``) the force stays off until :meth:`activate`.
+        The tip in the tick was read at its start, before this force acted. hand: new target of the hand,
+        as in :meth:`Stepper.step`. After a fault (``tick.fault``) the force stays off until
+        :meth:`activate`.
         """
         goal = None if hand is None else vector_of("hand", hand)
         return Tick(self._arm.step(vector_of("force", force, finite=False), goal))
 
     def activate(self) -> None:
-        """Let forces through again after a fault, with a soft start."""
+        """Allow forces again after a fault, with a soft start."""
         self._arm.activate()
 
     @property
@@ -56,7 +56,7 @@ class Simulator:
 
     @property
     def true_force(self) -> Vector:
-        """Force that the motors exert on the tip now, (3,) in the world, N: what no driver can see."""
+        """Force that the motors exert on the tip now, (3,) in the world, N. No driver can measure it."""
         return self._arm.true_force
 
     @property
@@ -66,23 +66,23 @@ class Simulator:
 
     @property
     def workspace(self) -> tuple[Vector, Vector]:
-        """Lower and upper corner of the box in which the tip may work, (3,) in the world, m."""
+        """Lower and upper corner of the workspace box of the tip, (3,) in the world, m."""
         return self._arm.workspace
 
 
 class Simulators:
-    """Many simulated arms without a scene, each as a :class:`Simulator` to the bit, stepped by one call.
+    """Many simulated arms without a scene, stepped by one call. Each is bit-identical to a :class:`Simulator`.
 
-    You are their force law, and numpy computes it for all at once::
+    The caller computes the forces of all arms with numpy::
 
         arms = thimble.Simulators(1000, hand=(0, 0, 0))
         ticks = arms.step()
         for _ in range(1000):
             ticks = arms.step(-300 * ticks.tip - 1 * ticks.velocity)        # N, (1000, 3)
 
-    count: how many. arm: arm file, or a name (:func:`arms`). hand: where each hand holds its tip, (count, 3)
-    in the world, m, or (3,) for all. rate: ticks per second, Hz. seed: of the first hand's tremor, one more
-    for each that follows; or a sequence of count.
+    count: number of arms. arm: arm file, or name (:func:`arms`). hand: positions at which the hands hold the
+    tips, (count, 3) in the world, m, or (3,) for all. rate: ticks per second, Hz. seed: seed s of the
+    hands' tremor, which gives s, s + 1, s + 2 and so on; or a sequence of count seeds.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Simulators:
             seed = range(first, first + count)
         seeds = [whole_of("seed", one) for one in seed]
         if len(seeds) != count:
-            raise ArgumentError(f"seed: expected {count} of them, found {len(seeds)}.")
+            raise ArgumentError(f"seed: expected {count} seeds, found {len(seeds)}.")
         file, rate = path_of("arm", arm), number_of("rate", rate)
         self._arms = [_core.SimulatorSession(file, *one) for one in zip(hands, [rate] * count, seeds)]
 
@@ -109,18 +109,19 @@ class Simulators:
         return len(self._arms)
 
     def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Ticks:
-        """Run one tick of each, and give them: ``ticks.tip`` is (count, 3), a row for each arm.
+        """Run one tick of each arm, and return them: ``ticks.tip`` is (count, 3), a row for each arm.
 
-        force: on each hand, (count, 3) in the world, N, or (3,) for all; one that is no number switches its
-        arm alone off. hand: where the hands are led to from now on, (count, 3) or (3,), m; ArgumentError
-        where an arm does not reach it, and no arm is stepped then. Else as :meth:`Simulator.step`.
+        force: force on each hand, (count, 3) in the world, N, or (3,) for all. A force that is not finite
+        switches off only its own arm. hand: new targets of the hands, (count, 3) or (3,), m. Raises
+        ArgumentError, and steps no arm, if an arm cannot reach its target. Otherwise as
+        :meth:`Simulator.step`.
         """
         count = len(self)
         hands = None if hand is None else rows_of("hand", hand, count)
         return Ticks(_core.step_all(self._arms, rows_of("force", force, count, finite=False), hands))
 
     def activate(self) -> None:
-        """Let forces through again to arms in fault, with a soft start; the others go on."""
+        """Allow forces again on arms in fault, with a soft start. Other arms continue unchanged."""
         for arm in self._arms:
             if arm.in_fault:
                 arm.activate()
@@ -142,5 +143,5 @@ class Simulators:
 
     @property
     def workspace(self) -> tuple[Vector, Vector]:
-        """Lower and upper corner of the box in which each tip may work, (3,) in the world, m."""
+        """Lower and upper corner of the workspace box of each tip, (3,) in the world, m."""
         return self._arms[0].workspace

@@ -1,4 +1,4 @@
-"""What runs in a separate process: the program, and its studies."""
+"""Runs the program and its studies in a separate process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from ._ticks import Figure, figure_of
 
 
 def program() -> str:
-    """Find the program: $THIMBLE_PROGRAM, the one installed or built beside this package, or in $PATH."""
+    """Return the path of the program: $THIMBLE_PROGRAM, else the one of this package's installation or
+    build folder, else the one in $PATH."""
     named = os.environ.get("THIMBLE_PROGRAM")
     if named:
         return named
@@ -26,7 +27,7 @@ def program() -> str:
                 return str(beside)
     found = shutil.which("thimble")
     if found is None:
-        raise Error("The program thimble was not found; install it, or name it in $THIMBLE_PROGRAM.")
+        raise Error("The program thimble was not found. Install it, or set THIMBLE_PROGRAM to its path.")
     return found
 
 
@@ -45,18 +46,18 @@ def _studies() -> list[str]:
 def study(
     name: str, *arguments: PathOrName, out: Optional[PathOrName] = None, **options: Any
 ) -> list[Figure]:
-    """Run a study (``thimble study --help`` lists them), and give its figures.
+    """Run a study (``thimble study --help`` lists them), and return its figures.
 
-    It runs in a separate process, as several count their own instructions or use all cores. Options
-    are those of the command line: ``study("stability", arm="vintage_phantom", coarse=True)``,
-    ``study("accuracy", axis=["velocity", "encoder"])``. out: folder for pictures, tables and
-    figures.json; "study-NAME" if absent. Raises ArgumentError if there is no such study, or it cannot
-    take an option; Error with what the program said if it fails.
+    The study runs in a separate process, because some studies count their own instructions or use all
+    cores. Options are those of the command line: ``study("stability", arm="vintage_phantom", coarse=True)``,
+    ``study("accuracy", axis=["velocity", "encoder"])``. out: folder for pictures, tables and figures.json;
+    "study-NAME" by default. Raises ArgumentError for an unknown study or option, Error with the message of
+    the program if the study fails.
     """
     path_of("name", name, "the name of a study")
     names = _studies()
     if name not in names:
-        raise ArgumentError(f'There is no study "{name}"; there are {", ".join(names)}.')
+        raise ArgumentError(f'name: there is no study "{name}"; there are {", ".join(names)}.')
     folder = Path(path_of("out", out)) if out is not None else Path(f"study-{name}")
     command = [program(), "study", name, *(path_of("arguments", one) for one in arguments), "--out", str(folder)]
     for key, value in options.items():

@@ -1,4 +1,4 @@
-"""What servo loops did, as arrays."""
+"""Ticks of servo loops, as arrays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ._arguments import PathOrName, path_of
 
 
 class Figure(NamedTuple):
-    """One number that a run or a study stands for; ``goal`` is a comparison (">= 20") or ""."""
+    """One result of a run or a study. ``goal`` is a comparison (">= 20") or ""."""
 
     name: str
     value: float
@@ -26,15 +26,15 @@ def figure_of(one: Mapping[str, Any]) -> Figure:
 
 
 def units() -> dict[str, tuple[str, str]]:
-    """Tell unit and meaning of each column of :attr:`Ticks.columns`, by its name.
+    """Return unit and meaning of each column of :attr:`Ticks.columns`, by its name.
 
-    The columns are as the servo loop wrote them; times among them are whole nanoseconds.
+    The columns hold the values that the servo loop wrote. Times in them are whole nanoseconds.
     """
     return {name: (unit, about) for name, unit, about in _core.columns()}
 
 
 class _Columns:
-    """The columns of ticks by plain names; views, nothing is copied but ``time`` and ``due``."""
+    """The columns of ticks by readable names. All are views, except ``time``, which is a copy in s."""
 
     def __init__(self, columns: Any) -> None:
         self.columns = columns
@@ -44,12 +44,12 @@ class _Columns:
 
     @property
     def time(self) -> Any:
-        """When the tick began, on the loop's clock, s."""
+        """Start of the tick on the loop's clock, s."""
         return self._of("time") * 1e-9
 
     @property
     def tip(self) -> Any:
-        """Tip in the world, p_WT, m, as the encoders tell it."""
+        """Position of the tip in the world, p_WT, m, from the encoders."""
         return self._of("p_WT")
 
     @property
@@ -59,27 +59,27 @@ class _Columns:
 
     @property
     def force(self) -> Any:
-        """Force on the hand in the world that went through the safety gate to the motors, N."""
+        """Force on the hand in the world that the safety gate sent to the motors, N."""
         return self._of("f_sent_W")
 
     @property
     def force_wanted(self) -> Any:
-        """Force on the hand in the world that the force law asked for, N."""
+        """Force on the hand in the world that the force law requested, N."""
         return self._of("f_wanted_W")
 
     @property
     def heat(self) -> Any:
-        """Heat of each motor; 1 is its winding's limit, 0 if the arm file does not name it."""
+        """Heat of each motor. 1 is the limit of its winding; 0 if the arm file does not have it."""
         return self._of("heat")
 
     @property
     def proxy(self) -> Any:
-        """Point of the surface that the tip is held at, p_WP, in the world, m; while in contact."""
+        """Position of the proxy in the world, p_WP, m. Valid only in contact."""
         return self._of("p_WP")
 
     @property
     def normal(self) -> Any:
-        """Outward unit normal that the force acts along, in the world; 0 without contact."""
+        """Outward unit normal of the force in the world; 0 without contact."""
         return self._of("n_W")
 
     @property
@@ -89,12 +89,12 @@ class _Columns:
 
     @property
     def joints(self) -> Any:
-        """Joint angles, rad; the arm's geometry says zero and sign."""
+        """Joint angles, rad. The geometry of the arm defines zero and sign."""
         return self._of("q")
 
     @property
     def orientation(self) -> Any:
-        """Rotation of the stylus in the world as a quaternion w, x, y, z; zeros if the arm tells none."""
+        """Rotation of the stylus in the world, quaternion w, x, y, z; zeros if the arm does not measure it."""
         return self._of("q_WT")
 
     @property
@@ -104,31 +104,31 @@ class _Columns:
 
     @property
     def gripper(self) -> Any:
-        """Opening of the gripper, m; 0 if it is closed, or if the arm has none (``columns["has_gripper"]``)."""
+        """Opening of the gripper, m; 0 if it is closed or absent (``columns["has_gripper"]``)."""
         return self._of("gripper")
 
     @property
     def object(self) -> Any:
-        """Number of the object that is touched, from 0 in the scene's order; -1 for none."""
+        """Number of the touched object, from 0 in the order of the scene; -1 for none."""
         return self._of("object")
 
 
 class Tick(_Columns):
-    """One tick of the servo loop: numbers, and arrays of shape (3,). ``columns`` has all that it did."""
+    """One tick of the servo loop: numbers, and arrays of shape (3,). ``columns`` has all values of the tick."""
 
     @property
     def in_contact(self) -> bool:
-        """Whether the tip is held outside an object."""
+        """Whether the tip touches an object."""
         return bool(self._of("in_contact"))
 
     @property
     def buttons(self) -> int:
-        """Buttons of the arm, one bit each; bit 0 is the first."""
+        """Buttons of the arm, one bit each; bit 0 is the first button."""
         return int(self._of("buttons"))
 
     @property
     def fault(self) -> str:
-        """Short name of what switched the force off ("over_speed"); "" if nothing did."""
+        """Short name of the fault that switched the force off ("over_speed"); "" without a fault."""
         number = int(self._of("fault"))
         return _core.fault(number)[0] if number else ""
 
@@ -140,15 +140,15 @@ class Tick(_Columns):
 
 
 class Ticks(_Columns):
-    """What a servo loop did: n ticks, as arrays of shape (n,) and (n, 3).
+    """n ticks of a servo loop, as arrays of shape (n,) and (n, 3).
 
-    ``columns`` is a structured array with everything, by the names of a recording's columns
-    (:func:`units` tells what they are); the properties are views of it.
+    ``columns`` is a structured array of all values, by the names of a recording's columns (:func:`units`
+    describes them). The properties are views of it.
     """
 
     @property
     def in_contact(self) -> NDArray[np.bool_]:
-        """Whether the tip was held outside an object, (n,)."""
+        """Whether the tip touched an object, (n,)."""
         return self._of("in_contact").view(np.bool_)
 
     def __len__(self) -> int:
@@ -161,7 +161,7 @@ class Ticks(_Columns):
     def __getitem__(self, index: Union[slice, NDArray[Any]]) -> "Ticks": ...
 
     def __getitem__(self, index: Any) -> Any:
-        """Give one tick, or several by a slice, an array of numbers or a mask: ``run[run.in_contact]``."""
+        """Return one tick, or several for a slice, an array of indices or a mask: ``run[run.in_contact]``."""
         columns = self.columns[index]
         return Tick(columns) if isinstance(columns, np.void) else Ticks(columns)
 
@@ -169,16 +169,16 @@ class Ticks(_Columns):
         return map(Tick, self.columns)
 
     def to_pandas(self) -> Any:
-        """Give all columns as a pandas DataFrame over the time in s.
+        """Return all columns as a pandas DataFrame over the time in s.
 
-        Vectors become ``p_WT_x``, ``p_WT_y``, ``p_WT_z``; columns of joints, motors and the gimbal are
-        numbered from 0 (``q_0``, ``counts_0``, ``heat_0``), and so is the quaternion ``q_WT``. Units as
-        :func:`units` tells them. ImportError without pandas.
+        Vectors become ``p_WT_x``, ``p_WT_y``, ``p_WT_z``. Columns of joints, motors and the gimbal are
+        numbered from 0 (``q_0``, ``counts_0``, ``heat_0``), as is the quaternion ``q_WT``. The units are
+        those of :func:`units`. Raises ImportError without pandas.
         """
         return _show.to_pandas(self)
 
     def plot(self) -> Any:
-        """Draw force and depth over time, and give matplotlib's figure. ImportError without matplotlib."""
+        """Draw force and depth over time, and return the figure. Raises ImportError without matplotlib."""
         return _show.plot(self, self._title())
 
     def _title(self) -> str:
@@ -192,10 +192,10 @@ class Ticks(_Columns):
 
 
 class Recording(Ticks):
-    """A recording that was read (:func:`read_recording`).
+    """A recording that was read from a file (:func:`read_recording`).
 
-    ``info`` says what was run (scene, scene_text, arm, device, clock, program, rate [Hz], seed ...);
-    ``complete`` is False if it was cut off by a crash or a full disk.
+    ``info`` describes the run (scene, scene_text, arm, device, clock, program, rate [Hz], seed ...).
+    ``complete`` is False if a crash or a full disk truncated the recording.
     """
 
     def __init__(self, info: Mapping[str, Any], columns: Any, complete: bool) -> None:
@@ -208,5 +208,5 @@ class Recording(Ticks):
 
 
 def read_recording(path: PathOrName) -> Recording:
-    """Read what ``thimble run SCENE --record FILE``, or ``record=`` here, has written (HDF5)."""
+    """Read a recording (HDF5) of ``thimble run SCENE --record FILE`` or of ``record=`` in this package."""
     return Recording(*_core.read_recording(path_of("path", path)))

@@ -1,4 +1,4 @@
-/* Looks for buttons that are pressed and released, as programs do. */
+/* Counts button presses, as programs do. */
 #include <HD/hd.h>
 #include <stdio.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-/* Calibrates as programs for ROS do, and prints what the arm is. */
+/* Calibrates like programs for ROS, and prints properties of the arm. */
 #include <HD/hd.h>
 #include <stdio.h>
 #include <unistd.h>

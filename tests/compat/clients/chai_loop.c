@@ -1,5 +1,5 @@
-/* What a CHAI3D program does: both libraries at run time, by bare names, and a loop that nothing
- * but the set-force call paces: 1000 turns, or as many as it is told. */
+/* Behaves like a CHAI3D program: loads both libraries at run time by their bare names. Only the
+ * set-force call paces its loop, of 1000 turns or of the given number. */
 #include <dlfcn.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* The same sphere as a CHAI3D program has it: by libhdPhantom at run time, in a loop that the
- * set-force call paces. */
+/* The same sphere in the style of CHAI3D: libhdPhantom is loaded at run time, and the set-force
+ * call paces the loop. */
 #include <dlfcn.h>
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-/* The sphere of the hello programs, in whatever unit and axes an interface has. */
+/* The sphere of the hello programs, in the unit and axes of each interface. */
 #ifndef SPHERE_H
 #define SPHERE_H
 
@@ -10,7 +10,7 @@ typedef struct {
   double centre[3], radius, stiffness;
 } Sphere;
 
-/* Pushes a tip at p out; returns how deep it is inside. */
+/* Computes the force that pushes a tip at p out; returns its depth. */
 static double sphere_force(const Sphere* sphere, const double p[3], double f[3]) {
   double d[3], distance = 0;
   int i;
@@ -27,7 +27,7 @@ static double sphere_force(const Sphere* sphere, const double p[3], double f[3])
   return sphere->radius - distance;
 }
 
-/* The forces that were asked for, in memory until the program ends. */
+/* The requested forces, in memory until the program ends. */
 typedef struct {
   double (*all)[3];
   long count, room;
@@ -40,8 +40,8 @@ static void note_asked(AskedLog* log, const double f[3]) {
   ++log->count;
 }
 
-/* What stands on the command line: [SECONDS [LOG [X Y Z]]]. LOG gets the forces, a line each, in
- * the program's own axes; X Y Z is the sphere's centre. */
+/* The command line: [SECONDS [LOG [X Y Z]]]. LOG gets the forces, one per line, in the program's
+ * axes; X Y Z is the centre of the sphere. */
 typedef struct {
   double seconds;
   const char* log_file;
@@ -58,7 +58,7 @@ static SphereChoice sphere_choice(int argc, char** argv, Sphere* sphere, AskedLo
   return choice;
 }
 
-/* Returns 0 if the file holds them all. */
+/* Returns 0 if all forces were written to the file. */
 static int write_asked(const AskedLog* log, const char* file_name) {
   FILE* file;
   long i;

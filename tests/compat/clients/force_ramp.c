@@ -1,11 +1,11 @@
-/* Switches force on with a ramp and holds 0.3 N upwards; the force may grow no faster than asked,
- * which is slower than an arm opens by itself. */
+/* Enables force with a ramp and requests 0.3 N upwards. The force must rise no faster than the
+ * ramp, which is slower than the soft start of the arm. */
 #include <HD/hd.h>
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
 
-static double sent[3], steepest, began, near_all; /* s when 0.25 N were there */
+static double sent[3], steepest, began, near_all; /* s, when 0.25 N were reached */
 
 static double now(void) {
   struct timespec t;

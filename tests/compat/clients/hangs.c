@@ -1,4 +1,4 @@
-/* Holds a force and then hangs in its callback, for a second. */
+/* Requests a force, then hangs in its callback for a second. */
 #include <HD/hd.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-/* A sphere of 20 mm that pushes the tip out, as the first example of HDAPI that anybody writes.
- * Ends with 0 if the force that was sent is the one that was asked for. */
+/* A sphere of 20 mm that pushes the tip out, like the usual first program for HDAPI. Returns 0 if
+ * the sent force equals the requested one. */
 #include <HD/hd.h>
 #include <HDU/hduError.h>
 #include <math.h>
@@ -24,7 +24,7 @@ static HDCallbackCode HDCALLBACK feel(void* data) {
   if (depth > deepest) deepest = depth;
   hdSetDoublev(HD_CURRENT_FORCE, f);
   note_asked(&asked, f);
-  /* What the tick before has sent is what was asked for before. */
+  /* The force sent in the previous tick must be the one requested before it. */
   hdGetDoublev(HD_LAST_FORCE, sent);
   hdEndFrame(hdGetCurrentDevice());
   for (i = 0; i < 3; ++i) {
@@ -63,6 +63,6 @@ int main(int argc, char** argv) {
          largest_difference);
   if (write_asked(&asked, choice.log_file)) return 5;
   if (compared < 700 * choice.seconds || !(deepest > 1)) return 3;
-  /* Who keeps a log compares each force with it, and knows where the gate held one back. */
+  /* With a log, the test itself compares each force, including those limited by the gate. */
   return choice.log_file || largest_difference < 0.2 ? 0 : 4;
 }

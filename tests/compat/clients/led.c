@@ -1,5 +1,5 @@
-/* Waits until the hand has moved the tip, and tells how far and whereto: for a hand that the mouse
- * leads. */
+/* Waits until the hand, which follows the mouse, has moved the tip. Prints distance and direction.
+ */
 #include <HD/hd.h>
 #include <math.h>
 #include <stdio.h>
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
   printf("led %.1f mm: %.1f to the right, %.1f up, %.1f to the user\n", moved, p[0] - start[0],
          p[1] - start[1], p[2] - start[2]);
   fflush(stdout);
-  if (moved >= far) usleep(10000000); /* a moment to look at it */
+  if (moved >= far) usleep(10000000); /* time to take a picture */
   hdDisableDevice(device);
   return moved >= far ? 0 : 3;
 }

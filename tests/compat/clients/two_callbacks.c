@@ -1,5 +1,5 @@
-/* Reads at the highest priority and writes at the lowest, one frame over both, and copies the state
- * to the main thread by a synchronous callback. */
+/* Reads at the highest priority and writes at the lowest, in one frame over both. A synchronous
+ * callback copies the state to the main thread. */
 #include <HD/hd.h>
 #include <math.h>
 #include <stdio.h>
@@ -55,7 +55,7 @@ int main(void) {
   for (i = 0; i < 50; ++i) {
     usleep(20000);
     hdScheduleSynchronous(copy_state, &copy, HD_DEFAULT_SCHEDULER_PRIORITY);
-    /* At this priority it runs between the two: one has read, the other not yet written. */
+    /* At this priority it runs between the two: after the read, before the write. */
     if (copy.to.reads != copy.to.writes + 1) ++torn;
   }
   hdStopScheduler();

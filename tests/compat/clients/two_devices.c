@@ -1,4 +1,4 @@
-/* Two arms in one callback, tied together by a spring. */
+/* Two arms in one callback, coupled by a spring. */
 #include <HD/hd.h>
 #include <stdio.h>
 #include <unistd.h>

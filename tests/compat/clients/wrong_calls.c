@@ -1,5 +1,4 @@
-/* Calls what is wrong and looks at the error that comes back: three numbers in one struct, by
- * value. */
+/* Makes wrong calls and checks the returned errors: three numbers in one struct, by value. */
 #include <HD/hd.h>
 #include <stdio.h>
 
@@ -27,7 +26,7 @@ int main(void) {
   hdGetDoublev(0xfade, p);
   hdEndFrame(second);
   right &= is("no such parameter", HD_INVALID_ENUM, second);
-  right &= is("all told", HD_SUCCESS, HD_INVALID_HANDLE);
+  right &= is("no more errors", HD_SUCCESS, HD_INVALID_HANDLE);
   hdDisableDevice(second);
   hdDisableDevice(0);
   if (right) printf("errors by value: right\n");

@@ -7,8 +7,8 @@
 
 namespace thimble::compat {
 
-/// Two arms of our own making, none of them open; -1 afterwards means the first.
-class DhdFace : public ::testing::Test {
+/// Two fake arms, both closed. After `begin_and_open`, -1 means the first.
+class CompatDhd : public ::testing::Test {
  protected:
   void SetUp() override { begin({}); }
   void TearDown() override { close_all(); }
@@ -22,7 +22,7 @@ class DhdFace : public ::testing::Test {
     begin(setup);
     ASSERT_EQ(dhdOpenID(0), 0);
   }
-  /// Sends a force often enough for the soft start to be over.
+  /// Sends a force until the soft start is over.
   static void send_for_long(double x, double y, double z, char id = -1) {
     for (int i = 0; i < 100; ++i) dhdSetForce(x, y, z, id);
   }

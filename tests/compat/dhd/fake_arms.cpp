@@ -46,7 +46,7 @@ FakeArm* opened(int arm) {
   return &all[static_cast<std::size_t>(arm)];
 }
 
-// One tick: what was asked for goes through the gate and moves the mass.
+// Runs one tick: the requested force goes through the gate and moves the mass.
 void tick(FakeArm& arm) {
   ArmReading& now = arm.reading;
   ++now.tick;
@@ -196,7 +196,7 @@ bool read(int arm, ArmReading& reading) noexcept {
 }
 
 bool wait_for_tick(int arm, std::uint64_t after) noexcept {
-  // Time is made by whoever asks for forces, if somebody does.
+  // If a thread requests forces, only that thread advances the time.
   for (int i = 0; i < 20'000; ++i) {
     {
       const std::lock_guard lock(mutex);
@@ -229,11 +229,11 @@ bool wait_until_taken(int arm) noexcept {
     if (!found || over) return false;
     tick(*found);
   }
-  std::this_thread::yield();  // others look at each tick
+  std::this_thread::yield();  // other threads check each tick
   return true;
 }
 
-// Programs live by the wall's time here.
+// Programs use wall-clock time here.
 std::int64_t now_ns() noexcept {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

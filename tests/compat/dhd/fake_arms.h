@@ -10,33 +10,34 @@
 
 namespace thimble::compat::fake {
 
-// Arms in place of those of `thimble exec`, for tests of a face alone: a mass in a viscous hand
-// behind the driver's own safety gate, in time that passes only while somebody waits for a tick.
+// Fake arms instead of those of `thimble exec`, to test a compatibility library without a server: a
+// mass in a viscous hand behind the driver's safety gate. Time advances only while a thread waits
+// for a tick.
 
-/// How the arms are made anew.
+/// Options of the fake arms.
 struct Setup {
-  int arms = 2;                 ///< How many.
-  bool has_orientation = true;  ///< And a gimbal.
-  bool has_gripper = true;      ///< That can be measured.
-  bool has_joints = true;       ///< With `jacobian`.
-  bool held = true;             ///< The tip stays where it is, whatever the force.
+  int arms = 2;                 ///< Number of arms.
+  bool has_orientation = true;  ///< They measure the stylus and its gimbal.
+  bool has_gripper = true;      ///< They measure a gripper.
+  bool has_joints = true;       ///< They have joints, with `jacobian`.
+  bool held = true;             ///< No force moves the tip.
 };
 
-/// Closes all arms and begins anew.
+/// Closes all arms and makes new ones.
 void reset(const Setup& setup = {});
-/// Changes what an arm tells, and where it is.
+/// Changes the state of an arm.
 void change(int arm, const std::function<void(ArmReading&)>& how);
-/// Lets time pass in which nobody asks for a force, s.
+/// Advances the time by `seconds` without a requested force.
 void pass(int arm, double seconds);
-/// Returns the force that the motors have, N in the world.
+/// Returns the force of the motors, N in the world.
 Eigen::Vector3d f_sent_W(int arm);
-/// Returns what was asked last.
+/// Returns the last request.
 ForceAsked asked(int arm);
-/// Returns the gate of an arm.
+/// Returns the fault of an arm's gate.
 driver::Fault fault(int arm);
 /// Ends the run, as `thimble exec` does.
 void end_run();
-/// Returns the functions that were called wrongly, in their order.
+/// Returns the functions that were called wrongly, in order.
 std::vector<std::string> wrong_calls();
 /// Returns the Jacobian of all arms, m/rad.
 Eigen::Matrix3d jacobian();

@@ -13,11 +13,11 @@ std::array<int, DHD_MAX_STATUS> status(char id = -1) {
   return all;
 }
 
-TEST_F(DhdFace, TheFirstForceSwitchesForceOnAndArrivesWhole) {
+TEST_F(CompatDhd, FirstForceEnablesForce) {
   begin_and_open({});
   EXPECT_EQ(status()[DHD_STATUS_FORCE], 0);
   EXPECT_EQ(dhdSetForce(1, -2, 0.5), 0);
-  EXPECT_LT(fake::f_sent_W(0).norm(), 1) << "the gate opens slowly";
+  EXPECT_LT(fake::f_sent_W(0).norm(), 1) << "the soft start limits the first force";
   send_for_long(1, -2, 0.5);
   EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(1, -2, 0.5));
   EXPECT_EQ(status()[DHD_STATUS_FORCE], 1);
@@ -30,7 +30,7 @@ TEST_F(DhdFace, TheFirstForceSwitchesForceOnAndArrivesWhole) {
   EXPECT_EQ(rest[3], 0);
 }
 
-TEST_F(DhdFace, TorqueAndGripperForceGoAlongAndAreNotFelt) {
+TEST_F(CompatDhd, TorqueAndGripperForceAreCountedOnly) {
   begin_and_open({});
   EXPECT_EQ(dhdSetForceAndTorqueAndGripperForce(1, 0, 0, 0.1, 0.2, 0.3, 0.4), 0);
   EXPECT_EQ(fake::asked(0).torque_W[2], 0.3);
@@ -42,7 +42,7 @@ TEST_F(DhdFace, TorqueAndGripperForceGoAlongAndAreNotFelt) {
   EXPECT_EQ(fake::asked(0).gripper, 0.4);
 }
 
-TEST_F(DhdFace, EachForceWaitsForItsTick) {
+TEST_F(CompatDhd, EachForceWaitsForItsTick) {
   begin_and_open({});
   ArmReading before, after;
   arms::read(0, before);
@@ -51,7 +51,7 @@ TEST_F(DhdFace, EachForceWaitsForItsTick) {
   EXPECT_EQ(after.tick - before.tick, 10u);
 }
 
-TEST_F(DhdFace, ForceThatIsSwitchedOffStaysOffUntilItIsSwitchedOn) {
+TEST_F(CompatDhd, DisabledForceStaysOffUntilEnabled) {
   for (const auto& off : {+[] { dhdStop(-1); }, +[] { dhdEnableForce(DHD_OFF, -1); }}) {
     begin_and_open({});
     send_for_long(2, 0, 0);
@@ -66,7 +66,7 @@ TEST_F(DhdFace, ForceThatIsSwitchedOffStaysOffUntilItIsSwitchedOn) {
   }
 }
 
-TEST_F(DhdFace, ForceFromBeforeIsForgottenWhenItIsSwitchedOn) {
+TEST_F(CompatDhd, EnablingForceDiscardsEarlierForces) {
   begin_and_open({});
   send_for_long(2, 0, 0);
   dhdEnableForce(DHD_OFF);
@@ -75,7 +75,7 @@ TEST_F(DhdFace, ForceFromBeforeIsForgottenWhenItIsSwitchedOn) {
   EXPECT_TRUE(fake::f_sent_W(0).isZero(0));
 }
 
-TEST_F(DhdFace, SaysWhenTheArmCannotGiveTheForce) {
+TEST_F(CompatDhd, ReportsForcesAboveTheLimit) {
   begin_and_open({});
   for (int i = 0; i < 100; ++i) ASSERT_EQ(dhdSetForce(6, 0, 0), DHD_MOTOR_SATURATED);
   EXPECT_NEAR(fake::f_sent_W(0).x(), 5, 1e-9);
@@ -85,13 +85,13 @@ TEST_F(DhdFace, SaysWhenTheArmCannotGiveTheForce) {
   EXPECT_NEAR(fake::f_sent_W(0).x(), 1.5, 1e-9);
   EXPECT_EQ(dhdSetMaxForce(0), 0);
   dhdSetForce(2, 0, 0);
-  EXPECT_LT(fake::f_sent_W(0).norm(), 1e-6) << "no force at all";
+  EXPECT_LT(fake::f_sent_W(0).norm(), 1e-6) << "a limit of 0 allows no force";
   EXPECT_EQ(dhdSetMaxForce(-1), 0);
   EXPECT_EQ(dhdSetForce(2, 0, 0), 0);
   EXPECT_EQ(dhdGetMaxForce(), -1);
 }
 
-TEST_F(DhdFace, ForceThatIsNoNumberLatchesTheGate) {
+TEST_F(CompatDhd, NaNForceLatchesTheGate) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     begin_and_open({});
     send_for_long(2, 0, 0);
@@ -107,7 +107,7 @@ TEST_F(DhdFace, ForceThatIsNoNumberLatchesTheGate) {
   }
 }
 
-TEST_F(DhdFace, WatchdogOfTheProgramHoldsUntilForceIsSwitchedOn) {
+TEST_F(CompatDhd, WatchdogOfTheProgramLatchesUntilForceIsEnabled) {
   begin_and_open({});
   EXPECT_EQ(dhdSetWatchdog(40), -1);
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_EXPERT_MODE_DISABLED);
@@ -119,7 +119,7 @@ TEST_F(DhdFace, WatchdogOfTheProgramHoldsUntilForceIsSwitchedOn) {
   fake::pass(0, 0.03);
   send_for_long(2, 0, 0);
   EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(2, 0, 0))
-      << "before the first force there is none to miss";
+      << "the watchdog starts with the first force";
   fake::pass(0, 0.004);
   send_for_long(2, 0, 0);
   EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(2, 0, 0)) << "in time";
@@ -133,7 +133,7 @@ TEST_F(DhdFace, WatchdogOfTheProgramHoldsUntilForceIsSwitchedOn) {
   EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(2, 0, 0));
 }
 
-TEST_F(DhdFace, WithoutAWatchdogOfItsOwnTheForceComesBackAfterAPause) {
+TEST_F(CompatDhd, WithoutItsWatchdogTheForceReturnsAfterAPause) {
   begin_and_open({});
   send_for_long(2, 0, 0);
   fake::pass(0, 0.05);
@@ -142,7 +142,7 @@ TEST_F(DhdFace, WithoutAWatchdogOfItsOwnTheForceComesBackAfterAPause) {
   EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(2, 0, 0));
 }
 
-TEST_F(DhdFace, VelocityThresholdOfTheProgramSwitchesForceOff) {
+TEST_F(CompatDhd, VelocityThresholdSwitchesTheForceOff) {
   begin_and_open({});
   dhdEnableExpertMode();
   EXPECT_EQ(dhdSetVelocityThreshold(1), 0);
@@ -158,7 +158,7 @@ TEST_F(DhdFace, VelocityThresholdOfTheProgramSwitchesForceOff) {
   EXPECT_EQ(status()[DHD_STATUS_FORCE_OFF_CAUSE], 2);
 }
 
-TEST_F(DhdFace, StatusNamesALossAfterAnotherFault) {
+TEST_F(CompatDhd, StatusNamesALossAfterAnotherFault) {
   begin_and_open({});
   dhdEnableExpertMode();
   EXPECT_EQ(dhdSetVelocityThreshold(1), 0);
@@ -167,10 +167,10 @@ TEST_F(DhdFace, StatusNamesALossAfterAnotherFault) {
   EXPECT_EQ(status()[DHD_STATUS_CONNECTED], 1);
   fake::change(0, [](ArmReading& now) { now.link = driver::LinkState::kLost; });
   EXPECT_EQ(status()[DHD_STATUS_CONNECTED], 0);
-  EXPECT_EQ(status()[DHD_STATUS_FORCE_OFF_CAUSE], 2) << "the first reason stays";
+  EXPECT_EQ(status()[DHD_STATUS_FORCE_OFF_CAUSE], 2) << "the first cause remains";
 }
 
-TEST_F(DhdFace, VibrationIsAddedToTheForce) {
+TEST_F(CompatDhd, VibrationIsAddedToTheForce) {
   begin_and_open({});
   EXPECT_EQ(dhdSetVibration(600, 1, 0), -1);
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_INVALID);
@@ -190,7 +190,7 @@ TEST_F(DhdFace, VibrationIsAddedToTheForce) {
   EXPECT_EQ(fake::f_sent_W(0).z(), 1);
 }
 
-TEST_F(DhdFace, TwoArmsGetTheirOwnForces) {
+TEST_F(CompatDhd, TwoArmsGetTheirOwnForces) {
   ASSERT_EQ(dhdOpenID(0), 0);
   ASSERT_EQ(dhdOpenID(1), 1);
   for (int i = 0; i < 100; ++i) {
@@ -206,7 +206,7 @@ TEST_F(DhdFace, TwoArmsGetTheirOwnForces) {
   EXPECT_EQ(fake::f_sent_W(1), Eigen::Vector3d(0, 2, 0));
 }
 
-TEST_F(DhdFace, WhatAnArmOfOursDoesNotNeedIsTakenAndTold) {
+TEST_F(CompatDhd, SettingsWithoutEffectAreStored) {
   begin_and_open({});
   EXPECT_EQ(dhdReset(), 0);
   EXPECT_EQ(dhdWaitForReset(100), 0);
@@ -217,7 +217,7 @@ TEST_F(DhdFace, WhatAnArmOfOursDoesNotNeedIsTakenAndTold) {
   EXPECT_EQ(status()[DHD_STATUS_GRAVITY], 1);
   EXPECT_EQ(status()[DHD_STATUS_BRAKE], 1);
   send_for_long(0, 0, 0);
-  EXPECT_TRUE(fake::f_sent_W(0).isZero(0)) << "no force comes of them";
+  EXPECT_TRUE(fake::f_sent_W(0).isZero(0)) << "they cause no force";
   EXPECT_EQ(status()[DHD_STATUS_BRAKE], 0);
   double mass = 0;
   EXPECT_EQ(dhdGetEffectorMass(&mass), 0);

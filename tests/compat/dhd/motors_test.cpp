@@ -1,5 +1,4 @@
-// What a program asked for by dhdSetForce and others is what the motors of a simulated arm pull
-// with.
+// The motors of a simulated arm exert the force that a program requests by dhdSetForce and others.
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
@@ -14,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double kQuantum = 0.005;  // N, of a motor value
 
-TEST(FaceDhdMotors, PullWithTheForceThatWasAskedFor) {
+TEST(CompatDhdMotors, ExertTheRequestedForce) {
   for (const char* arm : {"vintage_phantom", "woodenhaptics"}) {
     ExecRig rig(in_step(arm));
     ASSERT_EQ(dhdOpenID(0), 0) << dhdErrorGetLastStr();
@@ -27,7 +26,7 @@ TEST(FaceDhdMotors, PullWithTheForceThatWasAskedFor) {
   }
 }
 
-TEST(FaceDhdMotors, PullInTheFrameThatTheProgramChose) {
+TEST(CompatDhdMotors, ExertTheForceInTheProgramsFrame) {
   ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   ASSERT_EQ(dhdSetBaseAngleZDeg(90), 0);
@@ -39,7 +38,7 @@ TEST(FaceDhdMotors, PullInTheFrameThatTheProgramChose) {
   EXPECT_EQ(dhdClose(-1), 0);
 }
 
-TEST(FaceDhdMotors, PullWithTheForceThatJointTorquesMake) {
+TEST(CompatDhdMotors, ExertTheForceOfJointTorques) {
   ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   dhdEnableExpertMode();
@@ -56,7 +55,7 @@ TEST(FaceDhdMotors, PullWithTheForceThatJointTorquesMake) {
   EXPECT_EQ(dhdClose(-1), 0);
 }
 
-TEST(FaceDhdMotors, RestWhenForceIsOffAndWhenTheArmIsClosed) {
+TEST(CompatDhdMotors, ExertNoForceWhenDisabledOrClosed) {
   ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   for (int i = 0; i < 500; ++i) dhdSetForce(0.5, 0, 0, -1);
@@ -67,7 +66,7 @@ TEST(FaceDhdMotors, RestWhenForceIsOffAndWhenTheArmIsClosed) {
   EXPECT_EQ(dhdClose(-1), 0);
 }
 
-TEST(FaceDhdMotors, NaNForceStopsMotorsUntilForceIsEnabled) {
+TEST(CompatDhdMotors, NaNForceStopsMotorsUntilForceIsEnabled) {
   ExecRig rig(in_step());
   ASSERT_EQ(dhdOpenID(0), 0);
   for (int i = 0; i < 500; ++i) dhdSetForce(0.5, 0, 0, -1);
@@ -83,7 +82,7 @@ TEST(FaceDhdMotors, NaNForceStopsMotorsUntilForceIsEnabled) {
   EXPECT_EQ(dhdClose(-1), 0);
 }
 
-TEST(FaceDhdMotors, HoldTheTipWhereRegulationHasIt) {
+TEST(CompatDhdMotors, HoldTheTipDuringRegulation) {
   ExecRig rig;
   ASSERT_EQ(drdOpenID(0), 0);
   ASSERT_EQ(drdStart(), 0);

@@ -6,7 +6,7 @@
 namespace thimble::compat {
 namespace {
 
-TEST_F(DhdFace, OpensArmsByNumberTypeAndSerialNumber) {
+TEST_F(CompatDhd, OpensArmsByNumberTypeAndSerial) {
   EXPECT_EQ(dhdGetDeviceCount(), 2);
   EXPECT_EQ(dhdGetDeviceID(), -1);
   EXPECT_EQ(dhdOpen(), 0);
@@ -19,12 +19,12 @@ TEST_F(DhdFace, OpensArmsByNumberTypeAndSerialNumber) {
   unsigned short serial = 0;
   EXPECT_EQ(dhdGetSerialNumber(&serial, 1), 0);
   EXPECT_EQ(serial, 2);
-  EXPECT_EQ(dhdOpenID(1), 1) << "an arm that is open is told by its number";
+  EXPECT_EQ(dhdOpenID(1), 1) << "opening an open arm returns its number";
   EXPECT_EQ(drdOpenID(0), 0);
   EXPECT_EQ(drdGetDeviceID(), 0);
 }
 
-TEST_F(DhdFace, SaysWhyNoArmIsOpened) {
+TEST_F(CompatDhd, ReportsWhyNoArmIsOpened) {
   EXPECT_EQ(dhdOpenID(2), -1);
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_INVALID_INDEX);
   EXPECT_EQ(dhdOpenID(-1), -1);
@@ -38,7 +38,7 @@ TEST_F(DhdFace, SaysWhyNoArmIsOpened) {
   EXPECT_NE(std::string(dhdErrorGetLastStr()).find("thimble exec"), std::string::npos);
 }
 
-TEST_F(DhdFace, MinusOneMeansTheArmThatWasChosenLast) {
+TEST_F(CompatDhd, MinusOneIsTheLastChosenArm) {
   ASSERT_EQ(dhdOpenID(0), 0);
   ASSERT_EQ(dhdOpenID(1), 1);
   fake::change(0, [](ArmReading& now) { now.p_WT = {0.01, 0, 0}; });
@@ -53,11 +53,11 @@ TEST_F(DhdFace, MinusOneMeansTheArmThatWasChosenLast) {
   EXPECT_EQ(x, 0.02);
   EXPECT_EQ(dhdClose(0), 0);
   EXPECT_EQ(dhdGetDeviceID(), -1);
-  EXPECT_EQ(dhdGetPosition(&x, &y, &z), -1) << "none is chosen after it was closed";
+  EXPECT_EQ(dhdGetPosition(&x, &y, &z), -1) << "no arm is chosen after the chosen one was closed";
   EXPECT_EQ(dhdGetPosition(&x, &y, &z, 1), 0);
 }
 
-TEST_F(DhdFace, TellsTypesThatClientsChooseTheirLimitsBy) {
+TEST_F(CompatDhd, TypeFollowsNameOrEnvironment) {
   dhdOpenID(0);
   dhdOpenID(1);
   EXPECT_EQ(dhdGetSystemType(0), DHD_DEVICE_CUSTOM);
@@ -70,7 +70,7 @@ TEST_F(DhdFace, TellsTypesThatClientsChooseTheirLimitsBy) {
   unsetenv("THIMBLE_DHD_TYPE");
 }
 
-TEST_F(DhdFace, ForgetsWhatAnArmWasToldWhenItIsClosed) {
+TEST_F(CompatDhd, ClosingResetsTheSettingsOfAnArm) {
   dhdOpenID(0);
   dhdSetBaseAngleZDeg(30);
   dhdSetMaxForce(1);
@@ -85,10 +85,10 @@ TEST_F(DhdFace, ForgetsWhatAnArmWasToldWhenItIsClosed) {
   EXPECT_EQ(mass, 0);
   EXPECT_EQ(dhdGetMaxForce(), -1);
   send_for_long(1, 0, 0);
-  EXPECT_NEAR(fake::f_sent_W(0).x(), 1, 1e-9) << "a force switched off before is untold again";
+  EXPECT_NEAR(fake::f_sent_W(0).x(), 1, 1e-9) << "closing must reset a disabled force";
 }
 
-TEST_F(DhdFace, EachErrorHasItsText) {
+TEST_F(CompatDhd, EachErrorHasItsText) {
   for (int error = 0; error <= DHD_ERROR_NO_REGULATION; ++error) {
     EXPECT_GT(std::string(dhdErrorGetStr(error)).size(), 5u);
     for (int other = 0; other < error; ++other)
@@ -97,12 +97,12 @@ TEST_F(DhdFace, EachErrorHasItsText) {
   EXPECT_STREQ(dhdErrorGetStr(-1), dhdErrorGetStr(23));
 }
 
-TEST_F(DhdFace, SaysSoWhenTheRunHasEnded) {
+TEST_F(CompatDhd, ReportsTheEndOfTheRun) {
   dhdOpenID(0);
   fake::end_run();
   double x = 7, y = 7, z = 7;
   EXPECT_EQ(dhdGetPosition(&x, &y, &z), -1);
-  EXPECT_EQ(x, 7) << "a failed call leaves alone what it was to fill in";
+  EXPECT_EQ(x, 7) << "a failed call must not change its outputs";
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_COM);
   EXPECT_EQ(dhdSetForce(1, 0, 0), -1);
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_COM);

@@ -25,7 +25,7 @@ void turn(int arm, const Eigen::Matrix3d& R) {
   });
 }
 
-TEST_F(DhdFace, TellsPositionAndVelocitiesOfTheTip) {
+TEST_F(CompatDhd, ReturnsPositionAndVelocitiesOfTheTip) {
   begin_and_open({});
   fake::change(0, [](ArmReading& now) {
     now.p_WT = {0.01, 0.02, 0.03}, now.v_WT = {0.1, 0.2, 0.3}, now.w_WT = {1, 2, 3};
@@ -41,7 +41,7 @@ TEST_F(DhdFace, TellsPositionAndVelocitiesOfTheTip) {
   EXPECT_NEAR(y, 2 / kDegree, 1e-9);
 }
 
-TEST_F(DhdFace, AnglesAndFrameOfTheStylusAgree) {
+TEST_F(CompatDhd, AnglesAndFrameOfTheStylusAgree) {
   begin_and_open({});
   std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(5)));
   std::uniform_real_distribution<double> turned(-3.1, 3.1), tilted(-1.5, 1.5);
@@ -64,7 +64,7 @@ TEST_F(DhdFace, AnglesAndFrameOfTheStylusAgree) {
   }
 }
 
-TEST_F(DhdFace, BaseAnglesTurnWhatIsSeenAndTheForceBack) {
+TEST_F(CompatDhd, BaseAnglesRotatePositionsAndForces) {
   begin_and_open({});
   turn(0, about(0.3, 0.2, 0.1));
   fake::change(0, [](ArmReading& now) { now.p_WT = {0.01, 0, 0}, now.v_WT = {0, 0.1, 0}; });
@@ -79,7 +79,7 @@ TEST_F(DhdFace, BaseAnglesTurnWhatIsSeenAndTheForceBack) {
   const Eigen::Matrix3d expected = about(0, 0, 90 * kDegree) * about(0.3, 0.2, 0.1);
   EXPECT_NEAR(rows[0][1], expected(0, 1), 1e-12);
   EXPECT_NEAR(rows[2][0], expected(2, 0), 1e-12);
-  send_for_long(0, 2, 0);  // what the program calls y is x of the world
+  send_for_long(0, 2, 0);  // the program's y is the world's x
   EXPECT_TRUE(fake::f_sent_W(0).isApprox(Eigen::Vector3d(2, 0, 0), 1e-9))
       << fake::f_sent_W(0).transpose();
   dhdGetForce(&x, &y, &z);
@@ -93,7 +93,7 @@ TEST_F(DhdFace, BaseAnglesTurnWhatIsSeenAndTheForceBack) {
   EXPECT_NEAR(angle, 0.5 / kDegree, 1e-9);
 }
 
-TEST_F(DhdFace, TellsWhatTheGripperDoes) {
+TEST_F(CompatDhd, ReturnsOpeningAndSpeedOfTheGripper) {
   begin_and_open({});
   fake::change(0, [](ArmReading& now) { now.gripper = 0.03F, now.p_WT = {0.01, 0, 0}; });
   double gap, angle, thumb[3], finger[3], speed;
@@ -120,7 +120,7 @@ TEST_F(DhdFace, TellsWhatTheGripperDoes) {
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NOT_AVAILABLE);
 }
 
-TEST_F(DhdFace, TellsButtonsAndTheGripperThatStandsInForOne) {
+TEST_F(CompatDhd, ReturnsButtonsAndTheEmulatedButton) {
   begin_and_open({});
   fake::change(0, [](ArmReading& now) { now.buttons = 0b1010, now.gripper = 0.03F; });
   EXPECT_EQ(dhdGetButton(0), 0);
@@ -137,7 +137,7 @@ TEST_F(DhdFace, TellsButtonsAndTheGripperThatStandsInForOne) {
   EXPECT_EQ(dhdGetButton(0), 0);
 }
 
-TEST_F(DhdFace, TellsJointsAndTurnsTorquesIntoTheForceAtTheTip) {
+TEST_F(CompatDhd, ReturnsJointsAndConvertsTorquesToTipForce) {
   begin_and_open({});
   fake::change(0, [](ArmReading& now) {
     now.q = {0.1, 0.2, 0.3}, now.gimbal = {1, 2, 3}, now.counts = {10, -20, 30},
@@ -156,7 +156,7 @@ TEST_F(DhdFace, TellsJointsAndTurnsTorquesIntoTheForceAtTheTip) {
   int counts[DHD_MAX_DOF] = {7, 7, 7, 7, 7, 7, 7, 7};
   ASSERT_EQ(dhdGetEnc(counts, 0b1011), 0);
   EXPECT_EQ(counts[0], 10);
-  EXPECT_EQ(counts[2], 7) << "what the mask leaves out is left alone";
+  EXPECT_EQ(counts[2], 7) << "values outside the mask must not change";
   EXPECT_EQ(counts[3], 0);
 
   const Eigen::Vector3d f_W(0.5, -1, 1.5);
@@ -169,7 +169,7 @@ TEST_F(DhdFace, TellsJointsAndTurnsTorquesIntoTheForceAtTheTip) {
   EXPECT_TRUE(fake::f_sent_W(0).isApprox(f_W, 1e-9));
 
   double gravity[DHD_MAX_DOF], inertia[6][6];
-  EXPECT_EQ(dhdJointAnglesToInertiaMatrix(angles, inertia), -1) << "no mass was told";
+  EXPECT_EQ(dhdJointAnglesToInertiaMatrix(angles, inertia), -1) << "no mass was set";
   dhdSetEffectorMass(0.2);
   ASSERT_EQ(dhdJointAnglesToGravityJointTorques(angles, gravity), 0);
   EXPECT_NEAR(gravity[2], fake::jacobian()(2, 2) * 0.2 * 9.80665, 1e-12);
@@ -180,7 +180,7 @@ TEST_F(DhdFace, TellsJointsAndTurnsTorquesIntoTheForceAtTheTip) {
   EXPECT_EQ(dhdJointAnglesToGravityJointTorques(angles, gravity), -1);
 }
 
-TEST_F(DhdFace, TorquesAtTheEdgeOfReachMakeNoForce) {
+TEST_F(CompatDhd, TorquesAtASingularityMakeNoForce) {
   begin_and_open({});
   dhdEnableExpertMode();
   fake::change(0, [](ArmReading& now) { now.J_WT = {0.1, 0.1, 0, 0, 0, 0.1, 0, 0, 0}; });

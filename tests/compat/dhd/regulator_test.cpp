@@ -25,7 +25,7 @@ void wait_for(double seconds) {
   while (arms::read(0, reading) && reading.time_ns < end) std::this_thread::yield();
 }
 
-TEST(StraightPath, IsAsQuickAsItsBoundsAllow) {
+TEST(StraightPath, TakesTheShortestTimeWithinItsBounds) {
   std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(3)));
   std::uniform_real_distribution<double> decade(-2, 2);
   for (int i = 0; i < 200; ++i) {
@@ -54,7 +54,7 @@ TEST(StraightPath, IsAsQuickAsItsBoundsAllow) {
   }
 }
 
-TEST_F(DhdFace, RegulationHoldsTheTipAgainstAPush) {
+TEST_F(CompatDhd, RegulationHoldsTheTipAgainstAPush) {
   begin_and_open({.held = false});
   ASSERT_EQ(drdAutoInit(), 0);
   ASSERT_EQ(drdStart(), 0);
@@ -68,10 +68,10 @@ TEST_F(DhdFace, RegulationHoldsTheTipAgainstAPush) {
   EXPECT_EQ(drdStop(true), 0);
   EXPECT_FALSE(drdIsRunning());
   fake::pass(0, 0.001);
-  EXPECT_TRUE(fake::f_sent_W(0).isZero(0)) << "whose force goes with it";
+  EXPECT_TRUE(fake::f_sent_W(0).isZero(0)) << "its force must end too";
 }
 
-TEST_F(DhdFace, RegulationMovesTheTipToAPoint) {
+TEST_F(CompatDhd, RegulationMovesTheTipToAPoint) {
   begin_and_open({.held = false});
   EXPECT_EQ(drdMoveToPos(0, 0, 0, true), -1);
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NO_REGULATION);
@@ -91,7 +91,7 @@ TEST_F(DhdFace, RegulationMovesTheTipToAPoint) {
   EXPECT_LT((tip() - Eigen::Vector3d(0.01, 0.01, 0.01)).norm(), 2e-3);
 }
 
-TEST_F(DhdFace, MovesInTheFrameOfTheProgram) {
+TEST_F(CompatDhd, MovesInTheFrameOfTheProgram) {
   begin_and_open({.held = false});
   dhdSetBaseAngleZDeg(90);
   ASSERT_EQ(drdStart(), 0);
@@ -102,7 +102,7 @@ TEST_F(DhdFace, MovesInTheFrameOfTheProgram) {
   EXPECT_NEAR(reading.p_WT[1], -0.03, 2e-3);
 }
 
-TEST_F(DhdFace, AnArmThatSomebodyHoldsDoesNotArriveAndSaysSo) {
+TEST_F(CompatDhd, BlockedMotionTimesOut) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdStart(), 0);
   EXPECT_EQ(drdMoveToPos(0.03, 0, 0, true), -1);
@@ -111,7 +111,7 @@ TEST_F(DhdFace, AnArmThatSomebodyHoldsDoesNotArriveAndSaysSo) {
   EXPECT_LE(fake::f_sent_W(0).norm(), 5 + 1e-9);
 }
 
-TEST_F(DhdFace, RegulationUsesNoMoreThanItsShareOfTheForce) {
+TEST_F(CompatDhd, RegulationKeepsItsForceRatio) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdSetMotRatioMax(0.1), 0);
   EXPECT_EQ(drdGetMotRatioMax(), 0.1);
@@ -123,7 +123,7 @@ TEST_F(DhdFace, RegulationUsesNoMoreThanItsShareOfTheForce) {
   EXPECT_EQ(drdSetMotRatioMax(std::nan("")), -1);
 }
 
-TEST_F(DhdFace, RegulationFollowsAPointWithinItsBounds) {
+TEST_F(CompatDhd, RegulationFollowsAPointWithinItsBounds) {
   begin_and_open({.held = false});
   ASSERT_EQ(drdStart(), 0);
   ASSERT_EQ(drdSetPosTrackParam(2, 0.1, 50), 0);
@@ -150,7 +150,7 @@ TEST_F(DhdFace, RegulationFollowsAPointWithinItsBounds) {
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_INVALID);
 }
 
-TEST_F(DhdFace, AnArmThatIsNotRegulatedGetsTheForceOfTheProgram) {
+TEST_F(CompatDhd, ReleasedArmGetsTheForceOfTheProgram) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdStart(), 0);
   EXPECT_EQ(dhdSetForce(1, 0, 0), -1);
@@ -169,7 +169,7 @@ TEST_F(DhdFace, AnArmThatIsNotRegulatedGetsTheForceOfTheProgram) {
   EXPECT_LT(fake::f_sent_W(0).norm(), 1e-9) << "held where it is";
 }
 
-TEST_F(DhdFace, RegulationEndsWithTheArm) {
+TEST_F(CompatDhd, RegulationEndsWithTheArm) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdStart(), 0);
   ASSERT_EQ(drdClose(), 0);
@@ -189,7 +189,7 @@ TEST_F(DhdFace, RegulationEndsWithTheArm) {
   EXPECT_TRUE(arms::force_enabled(0));
 }
 
-TEST_F(DhdFace, RegulationEndsWithTheRun) {
+TEST_F(CompatDhd, RegulationEndsWithTheRun) {
   begin_and_open({.held = true});
   ASSERT_EQ(drdStart(), 0);
   fake::end_run();

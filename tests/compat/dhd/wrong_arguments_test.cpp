@@ -1,4 +1,4 @@
-// Each function with each argument that is wrong, and each name that is not answered.
+// Each function with each wrong argument, and each function that is not implemented.
 #include <dlfcn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@
 namespace thimble::compat {
 namespace {
 
-TEST_F(DhdFace, ANullPointerIsAnErrorAndIsCounted) {
+TEST_F(CompatDhd, NullPointerIsAnErrorAndIsCounted) {
   begin_and_open({});
   for (const Call& call : calls_with_null()) {
     const std::size_t wrong = fake::wrong_calls().size();
@@ -31,7 +31,7 @@ TEST_F(DhdFace, ANullPointerIsAnErrorAndIsCounted) {
   }
 }
 
-TEST_F(DhdFace, ANumberOutOfBoundsIsAnErrorAndIsCounted) {
+TEST_F(CompatDhd, NumberOutOfBoundsIsAnErrorAndIsCounted) {
   for (const Call& call : calls_with_bad_numbers()) {
     begin_and_open({});
     EXPECT_EQ(call.call(0), -1) << call.name;
@@ -41,7 +41,7 @@ TEST_F(DhdFace, ANumberOutOfBoundsIsAnErrorAndIsCounted) {
   }
 }
 
-TEST_F(DhdFace, AnArmThatIsNotOpenOrNotThereIsAnErrorToEachFunction) {
+TEST_F(CompatDhd, UnknownOrClosedArmIsAnErrorInEachFunction) {
   for (const Call& call : all_calls()) {
     for (const auto& [id, error] : std::map<int, int>{{-1, DHD_ERROR_DEVICE_NOT_READY},
                                                       {0, DHD_ERROR_DEVICE_NOT_READY},
@@ -63,7 +63,7 @@ TEST_F(DhdFace, AnArmThatIsNotOpenOrNotThereIsAnErrorToEachFunction) {
   }
 }
 
-TEST_F(DhdFace, WhatWantsNoArmTakesWrongArgumentsToo) {
+TEST_F(CompatDhd, FunctionsWithoutAnArmCheckTheirArguments) {
   dhdGetSDKVersion(nullptr, nullptr, nullptr, nullptr);
   int major = 0;
   dhdGetSDKVersion(&major, nullptr, nullptr, nullptr);
@@ -78,13 +78,13 @@ TEST_F(DhdFace, WhatWantsNoArmTakesWrongArgumentsToo) {
   dhdEnableSimulator(true);
 }
 
-TEST_F(DhdFace, AnErrorBelongsToTheThreadThatMadeIt) {
+TEST_F(CompatDhd, ErrorsArePerThread) {
   EXPECT_EQ(dhdOpenID(9), -1);
   std::thread([] { EXPECT_EQ(dhdErrorGetLast(), DHD_NO_ERROR); }).join();
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_INVALID_INDEX);
 }
 
-TEST_F(DhdFace, StartsAThreadOfTheProgram) {
+TEST_F(CompatDhd, StartsAThreadOfTheProgram) {
   static std::atomic<int> seen{0};
   static int told = 7;
   ASSERT_EQ(
@@ -96,7 +96,7 @@ TEST_F(DhdFace, StartsAThreadOfTheProgram) {
   EXPECT_EQ(seen, 7);
 }
 
-TEST_F(DhdFace, ReadsKeysFromWhereverTheyCome) {
+TEST_F(CompatDhd, ReadsKeysFromAPipe) {
   // In a child, whose input is a pipe.
   int pipes[2];
   ASSERT_EQ(pipe(pipes), 0);
@@ -118,13 +118,13 @@ TEST_F(DhdFace, ReadsKeysFromWhereverTheyCome) {
   EXPECT_EQ(status, 0);
 }
 
-TEST_F(DhdFace, EachOtherNameIsThereAndSaysThatItIsNotAnswered) {
+TEST_F(CompatDhd, OtherFunctionsReturnNotImplemented) {
   std::ifstream file(THIMBLE_SOURCE_DIR "/app/compat/dhd/symbols.txt");
   std::string line;
   bool answered = true;
   int names = 0, refused = 0;
   while (std::getline(file, line)) {
-    if (line.starts_with("# Answer -1")) answered = false;
+    if (line.starts_with("# Not implemented")) answered = false;
     if (line.empty() || line[0] == '#') continue;
     ++names;
     void* const symbol = dlsym(RTLD_DEFAULT, line.c_str());
@@ -146,9 +146,9 @@ TEST_F(DhdFace, EachOtherNameIsThereAndSaysThatItIsNotAnswered) {
   EXPECT_EQ(refused, 96);
 }
 
-// Functions in any order with any arguments, from three threads at once: nothing crashes or hangs,
-// and no force is beyond what the gate lets through. What the sanitizers see counts as well.
-TEST_F(DhdFace, AnyOrderOfCallsFromAnyThreadEndsWell) {
+// Calls functions in random order with random arguments, from three threads at once. Nothing may
+// crash or hang, and no force may exceed the gate's limit. Findings of the sanitizers count, too.
+TEST_F(CompatDhd, SurvivesAnyOrderOfCallsFromSeveralThreads) {
   begin({.arms = 3, .held = false});
   const std::vector<Call> calls = all_calls();
   const auto caller = [&](unsigned seed) {

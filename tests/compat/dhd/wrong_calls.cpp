@@ -13,7 +13,7 @@ double number[40];
 int whole[8];
 unsigned short small_number;
 
-// Calls of a function of so many pointers to real numbers, each with another of them null.
+// Returns calls of a function with N pointers to real numbers; in each call another one is null.
 template <class Function, std::size_t... I>
 void add_nulls(std::vector<Call>& calls, const char* name, Function function,
                std::index_sequence<I...>) {

@@ -8,20 +8,20 @@
 
 namespace thimble::compat {
 
-// A call with one null pointer or one wrong number; the number of the arm is the caller's.
+// A call with one null pointer or one wrong number. The caller gives the number of the arm.
 struct Call {
   std::string name;
   std::function<int(char)> call;
   int error = DHD_ERROR_NULL_ARGUMENT;
 };
 
-// Every function that takes pointers, once with each of them null.
+// Returns every function that takes pointers, once for each null pointer.
 std::vector<Call> calls_with_null();
-// Every function that checks numbers, once with each of them wrong.
+// Returns every function that checks numbers, once for each wrong number.
 std::vector<Call> calls_with_bad_numbers();
-// What wants nothing but an arm that is open.
+// Returns the functions that only need an open arm.
 std::vector<Call> calls_of_an_arm();
-// All of them.
+// Returns all of these calls.
 std::vector<Call> all_calls();
 
 }  // namespace thimble::compat

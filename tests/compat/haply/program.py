@@ -1,7 +1,7 @@
-"""A program as those for an Inverse3 are written, with python3-websockets: program.py CASE [ARGUMENTS].
+"""A program in the style of programs for an Inverse3, with python3-websockets: program.py CASE [ARGUMENTS].
 
-It knows nothing of Thimble but the port (THIMBLE_HAPLY_PORT). Each case checks itself: it prints "CASE: right",
-or what is wrong, and fails."""
+It knows only the port of Thimble (THIMBLE_HAPLY_PORT). Each case checks itself: it prints "CASE: right", or the
+problem and fails."""
 import asyncio
 import json
 import math
@@ -14,7 +14,7 @@ URI = "ws://localhost:" + os.environ.get("THIMBLE_HAPLY_PORT", "10001")
 
 
 class Arm:
-    """One session with the service."""
+    """A session with the service."""
 
     def __init__(self, socket, first):
         self.socket = socket
@@ -22,17 +22,17 @@ class Arm:
         self.device_id = first["inverse3"][0]["device_id"]
 
     async def exchange(self, message):
-        """Sends a message and returns the one answer that it gets."""
+        """Sends a message and returns its answer."""
         await self.socket.send(message if isinstance(message, (str, bytes)) else json.dumps(message))
         return json.loads(await asyncio.wait_for(self.socket.recv(), 5))
 
     async def push(self, force, spelling="vector"):
-        """Asks for a force (N, in the service's axes) and returns the arm's state."""
+        """Requests a force (N, in the service's axes) and returns the arm's state."""
         command = {"set_cursor_force": {spelling: dict(zip("xyz", force))}}
         return state_of(await self.exchange({"inverse3": [{"device_id": self.device_id, "commands": command}]}))
 
     async def probe(self):
-        """Asks for the state alone."""
+        """Requests only the state."""
         command = {"probe_position": {}}
         return state_of(await self.exchange({"inverse3": [{"device_id": self.device_id, "commands": command}]}))
 
@@ -61,16 +61,16 @@ async def connect(**more):
 
 
 async def opened(arm, force=(0.3, 0.0, 0.4)):
-    """Pushes until the soft start is over."""
+    """Requests a force until the soft start is over."""
     for _ in range(2000):
         state = await arm.push(force)
         if math.dist(three(state["current_cursor_force"]), force) < 1e-9:
             return state
-    check(False, f"the force never came: {state['current_cursor_force']}")
+    check(False, f"the force was not reached: {state['current_cursor_force']}")
 
 
 async def first_message():
-    """The first message tells everything; each later one state and status alone."""
+    """The first message has the full state, later ones only state and status."""
     arm = await connect()
     (told,) = arm.first["inverse3"]
     check(isinstance(arm.first["session_id"], int), "no session_id")
@@ -84,7 +84,7 @@ async def first_message():
     (grip,) = arm.first["wireless_verse_grip"]
     check(set(grip["state"]["buttons"]) == {"a", "b", "c"}, "no buttons")
     later = await arm.exchange({"session": {"configure": {"profile": {"name": "test:program"}}}})
-    check("session_id" not in later and "config" not in later["inverse3"][0], "a later message tells everything")
+    check("session_id" not in later and "config" not in later["inverse3"][0], "a later message has the full state")
     full = await arm.exchange({"session": {"force_render_full_state": {}}})
     check("session_id" in full and "config" in full["inverse3"][0], "force_render_full_state changes nothing")
     # Two messages, two answers, and no third.
@@ -94,14 +94,14 @@ async def first_message():
         await asyncio.wait_for(arm.socket.recv(), 5)
     try:
         await asyncio.wait_for(arm.socket.recv(), 0.2)
-        check(False, "a message that nobody asked for")
+        check(False, "a message without a request")
     except asyncio.TimeoutError:
         pass
     await arm.socket.close()
 
 
 async def stylus():
-    """An arm that knows how its stylus is turned tells a quaternion."""
+    """An arm that measures its stylus reports a quaternion."""
     arm = await connect()
     state = arm.first["wireless_verse_grip"][0]["state"]
     q = state["orientation"]
@@ -109,7 +109,7 @@ async def stylus():
 
 
 async def force(log):
-    """Both spellings push; the arm yields; a line for each turn: where it is and what was asked, in Thimble's world."""
+    """Both spellings set a force, and the arm yields. Logs position and force of each turn, in Thimble's world."""
     arm = await connect()
     # The answer after tick n has the state of tick n and the force sent in it.
     with open(log, "w") as lines:
@@ -124,12 +124,12 @@ async def force(log):
             print(-y - 0.130, x, z - 0.170, -v, u, w, -b, a, c, file=lines)
             if turn > 1000:
                 told = three(state["current_cursor_force"])
-                check(math.dist(told, asked) < 1e-9, f"asked for {asked}, and {told} went out")
+                check(math.dist(told, asked) < 1e-9, f"requested {asked}, sent {told}")
     await arm.socket.close()
 
 
 async def lets_go():
-    """A program that falls silent has its force for 20 ms and not longer; one that only looks renews nobody's."""
+    """The force of a silent program ends after 20 ms, and programs that only read the state do not renew it."""
     arm, other = await connect(), await connect()
     await opened(arm)
     before = length((await other.probe())["current_cursor_force"])
@@ -139,14 +139,14 @@ async def lets_go():
             break
         await asyncio.sleep(0.002)
     else:
-        check(False, "the force stands though nobody asks for it")
+        check(False, "the force remains without requests")
     for _ in range(50):
         check(length((await other.probe())["current_cursor_force"]) == 0, "the force came back by itself")
     await opened(arm)
 
 
 async def garbage():
-    """What is no message of such a program gets no force, and an answer; what follows is taken as before."""
+    """An invalid message causes no force, but is answered, and later messages are accepted."""
     arm = await connect()
     entry = '{"inverse3":[{"device_id":"%s","commands":{"set_cursor_force":{"vector":%s}}}]}'
     bad = ["", "hello", "[]", "null", "{", b"\x00\xff\xfe", "[" * 10000, '{"inverse3": 3}', '{"inverse3": [3, null, {}]}',
@@ -167,19 +167,19 @@ async def garbage():
 
 
 async def huge():
-    """A force beyond the gate's limit is cut to it; one that is no force any more is a fault that stays."""
+    """A force above the gate's limit is limited; one that overflows is a fault that latches."""
     arm = await connect()
     await opened(arm)
     for _ in range(500):
         state = await arm.push((0, 0, 1000.0))
         check(length(state["current_cursor_force"]) < 5 + 1e-9, state["current_cursor_force"])
-    check(length(state["current_cursor_force"]) > 1, "the gate let nothing through")
+    check(length(state["current_cursor_force"]) > 1, "the gate sent no force")
     await arm.push((1e300, 1e300, 1e300))
     for _ in range(100):
         answer = await arm.exchange({"inverse3": [{"device_id": arm.device_id, "commands": {
             "set_cursor_force": {"vector": {"x": 0.3, "y": 0, "z": 0}}}}]})
         check(length(state_of(answer)["current_cursor_force"]) == 0, "a force after the fault")
-    check(not answer["inverse3"][0]["status"]["ready"], "the fault is not told")
+    check(not answer["inverse3"][0]["status"]["ready"], "the fault is not reported")
     await asyncio.sleep(0.3)  # time for the test to read the log
     await arm.socket.close()
     # A program that connects again gets a restarted simulated arm.
@@ -187,12 +187,12 @@ async def huge():
 
 
 async def two(clock="wall"):
-    """What two programs ask for adds up, and goes with the one that goes."""
+    """The forces of two programs add up, and the force of a program ends with it."""
     first, second = await connect(), await connect()
     await opened(first, (0.3, 0.0, 0.0))
     if clock == "virtual":
         state = await second.push((0.0, 0.1, 0.0))
-        check(state["current_cursor_force"]["x"] == 0.3, "who comes second opens the first one's force anew")
+        check(state["current_cursor_force"]["x"] == 0.3, "the second program restarts the soft start of the first")
     for _ in range(1000):
         await second.push((0.0, 0.4, 0.0))
         state = await first.push((0.3, 0.0, 0.0))
@@ -213,7 +213,7 @@ async def two(clock="wall"):
 
 
 async def cut():
-    """A socket that is cut while its program pushes takes the force with it."""
+    """If the connection breaks, the force ends."""
     arm, other = await connect(), await connect()
     await opened(arm)
     arm.socket.transport.abort()
@@ -222,13 +222,13 @@ async def cut():
             break
         await asyncio.sleep(0.002)
     else:
-        check(False, "the force stands though its program is gone")
+        check(False, "the force remains after its program has ended")
     check(not (await other.exchange("{}"))["inverse3"][0]["status"]["in_use"], "it is still in use")
     await opened(other)
 
 
 async def doors():
-    """Web pages of other computers, what is no WebSocket, and a message that is too long stay outside."""
+    """Web pages of other computers, other protocols and too long messages are refused."""
     for origin in ("https://example.com", "http://localhost.example.com", "null", "file://"):
         try:
             await connect(origin=origin)
@@ -259,11 +259,11 @@ async def doors():
             return
         except (OSError, asyncio.TimeoutError, websockets.exceptions.WebSocketException):
             await asyncio.sleep(0.05)
-    check(False, "nobody is let in any more")
+    check(False, "no client is accepted any more")
 
 
 async def hold():
-    """Pushes until it is ended."""
+    """Requests a force until the program is ended."""
     arm = await connect()
     print("holding", flush=True)
     while True:

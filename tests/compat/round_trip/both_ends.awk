@@ -1,10 +1,10 @@
-# Compares the two ends of an arm: what a program at this end knew of each tick (THIS), and the recording of
-# `thimble exec` as a table (THAT). Positions are the same within 1 nm, velocities within 100 nm/s, forces as said.
+# Compares both ends of an arm: the log of a program at this end (THIS), and the recording of `thimble exec` as a
+# table (THAT). Positions must agree within 1 nm, velocities within 100 nm/s, forces within force_step.
 #   awk -f both_ends.awk -v force_step=1e-9 -v opening=5000 THIS THAT
-# THIS has lines "px py pz vx vy vz fx fy fz" (m, m/s, N, in the world; - where a tick had nothing new). Each position and velocity of it must
-# be in THAT, in the same order; each force that THAT was asked for
-# after the first `opening` ticks, in which the soft start changes it, must be one that THIS sent.
-# Whole steps, so that zero has no sign.
+# THIS has lines "px py pz vx vy vz fx fy fz" (m, m/s, N, in the world; - if a tick had no new value). Each of its
+# positions and velocities must be in THAT, in the same order. Each force that was requested from THAT after the first
+# `opening` ticks, in which the soft start changes it, must be one that THIS sent.
+# Values are rounded to whole steps, so that zero has no sign.
 function steps(value, step) { return sprintf("%d", int(value / step + (value < 0 ? -0.5 : 0.5))) }
 function three(x, y, z, step) { return steps(x, step) " " steps(y, step) " " steps(z, step) }
 function place(x, y, z, u, v, w) { return three(x, y, z, 1e-9) " " three(u, v, w, 1e-7) }

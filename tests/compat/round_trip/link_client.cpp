@@ -1,7 +1,6 @@
-// A program that has an arm by one of our back ends over a vendor's library, which is one of ours
-// that stands in for it when `thimble exec` starts this: it pushes another way in each tick, and
-// writes a line for each of what is known at this end, until the arm has told of so many of its own
-// ticks.
+// Opens an arm with one of Thimble's drivers for a vendor's library. `thimble exec` replaces that
+// library by the compatibility library. The program requests another force in each tick, and logs
+// the state known at this end, until the arm has reported ARM_TICKS of its ticks.
 //   link_client dhd|hd ARM_FILE LOG ARM_TICKS
 #include <cmath>
 #include <cstdint>
@@ -33,8 +32,8 @@ driver::Result<std::unique_ptr<driver::ArmLink>> open_link(const std::string& ki
   return driver::hd::open_link(*library, clock);
 }
 
-/// The force of a tick, N: of the time alone, because the arm lives by another than we do, and a
-/// spring over that gap would swing.
+/// Returns the force of a tick, N. It depends only on the time, because the arm has another clock:
+/// a spring with that delay would oscillate.
 Eigen::Vector3d push_of(int tick) {
   const double t = 1e-3 * tick;
   return {0.4 * std::sin(5 * t), 0.5 * std::cos(3 * t), 0.3 * std::sin(7 * t + 1)};
@@ -49,18 +48,18 @@ int run(const std::string& kind, const char* arm_file, std::FILE* log, std::uint
   const auto arm = scene::load_arm(arm_file);
   if (!arm) return complain(arm.error());
   driver::DeviceSettings settings = scene::device_settings(*arm, 1000, driver::EnergyStage::kNone);
-  // The arm's time is not ours: nothing is judged by both.
+  // The arm has another clock, so times of both are not compared.
   settings.silence_limit_ns = 60'000'000'000;
   settings.limits.speed_max = 20;
   settings.motion = {};
-  // A twentieth of the time of the world.
+  // A twentieth of real time.
   support::PatientClock clock(0.05);
   auto link = open_link(kind, clock);
   if (!link) return complain(link.error());
   auto device = driver::Device::open(std::move(link).value(), settings, clock.now_ns());
   if (!device) return complain(device.error());
   if (auto active = (*device)->activate(); !active) return complain(active.error());
-  // The arm gets as much of the computer as it gets: many ticks here may be few there.
+  // Depending on the load, many ticks here may be few ticks of the arm.
   const auto arm_told = [&] {
     return (*device)->wire_counters().reports + (*device)->wire_counters().skipped;
   };

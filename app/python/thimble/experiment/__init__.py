@@ -1,14 +1,14 @@
-"""Experiments with people: trials, conditions, staircases, constant stimuli, and a log that survives a crash.
+"""Experiments with people: trials, conditions, staircases, constant stimuli, and a crash-safe log.
 
     from thimble import experiment
 
     staircase = experiment.Staircase(1.0, [2.0, 1.4, 1.2], multiply=True, down=3, lowest=1e-3)
     with experiment.Session("subject_07.jsonl", staircase, seed=7, about={"subject": 7}) as session:
-        session.run(present)        # present(trial) shows trial.condition, and gives the answer
+        session.run(present)        # present(trial) presents trial.condition, and returns the answer
     print(staircase.threshold, staircase.target)
 
-Nothing here needs an arm or numbers beyond numpy's: `present` may touch by thimble.run, a Stepper or a
-real arm (thimble.open), or ask a person at a desk.
+This module needs neither an arm nor packages other than numpy. `present` may use thimble.run, a Stepper,
+a real arm (thimble.open), or a question to the person.
 """
 
 from .constant_stimuli import ConstantStimuli

@@ -1,4 +1,4 @@
-"""The method of constant stimuli: levels chosen before, each presented equally often."""
+"""The method of constant stimuli: fixed levels, each presented equally often."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .psychometric import Array, Psychometric, count, fit
 
 
 class ConstantStimuli(Trials):
-    """Levels in a shuffled order; trials tell theirs as ``condition["level"]``, answers tell `says`."""
+    """Levels in a shuffled order. A trial has ``condition["level"]``, its answer has the key `says`."""
 
     def __init__(
         self,
@@ -24,9 +24,11 @@ class ConstantStimuli(Trials):
         seed: int = 0,
         subject: Optional[int] = None,
     ) -> None:
-        """Take the levels, in whatever unit; says: the answer's key, True or False, that rises with the level.
+        """Create the trials.
 
-        order, seed and subject: as of :class:`Trials`; "balanced" needs the subject.
+        levels: in any unit. repeats: trials of each level.
+        says: key of the answer whose value is True or False; True is more frequent at higher levels.
+        order, seed, subject: as in :class:`Trials`; "balanced" needs the subject.
         """
         each = {"level": [float(one) for one in levels]}
         super().__init__(each, repeats=repeats, order=order, seed=seed, subject=subject)
@@ -35,23 +37,23 @@ class ConstantStimuli(Trials):
         self._answers: list[bool] = []
 
     def check(self, answer: Mapping[str, Any]) -> None:
-        """Refuse an answer without the key."""
+        """Raise ArgumentError if an answer lacks the key."""
         if not isinstance(answer.get(self.says), (bool, np.bool_)):
-            raise ArgumentError(f"An answer says {self.says}=True or False, found {dict(answer)!r}.")
+            raise ArgumentError(f"answer: expected {self.says}=True or False, found {dict(answer)!r}.")
 
     def take(self, answer: Mapping[str, Any]) -> None:
-        """Take the answer to the trial."""
+        """Store the answer to the present trial."""
         self.check(answer)
         self._levels.append(self.conditions[self._next]["level"])
         self._answers.append(bool(answer[self.says]))
         super().take(answer)
 
     def plan(self) -> dict[str, Any]:
-        """Tell all that decides which trials come, for the log."""
+        """Return everything that determines the trials, for the log."""
         return {"levels": [one["level"] for one in self.conditions], "says": self.says}
 
     def counts(self) -> tuple[Array, Array, Array]:
-        """Give levels that differ, how many answers said so, and how many there are, of the trials so far."""
+        """Return the distinct levels, their numbers of True answers and their numbers of trials so far."""
         return count(self._levels, self._answers)
 
     def fit(

@@ -1,4 +1,4 @@
-"""Conditions in an order: all combinations, shuffled from a seed or balanced over subjects."""
+"""Order of conditions: all combinations, shuffled from a seed or balanced over subjects."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ ORDERS = ("given", "random", "blocks", "balanced")
 
 
 def combinations(factors: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
-    """Give every combination of the factors' values, the last factor changing quickest."""
+    """Return every combination of the factors' values. The last factor changes fastest."""
     names = list(factors)
     return [dict(zip(names, values)) for values in itertools.product(*factors.values())]
 
 
 def balanced_row(count: int, subject: int) -> list[int]:
-    """Give the order of `count` conditions for one subject, a row of a Williams design.
+    """Return the order of `count` conditions for one subject: a row of a Williams design.
 
-    Over `count` subjects (twice that if it is odd) each condition stands in each place equally often,
-    and follows each other one equally often.
+    Over `count` subjects (2 `count` if it is odd), each condition occurs at each position equally often,
+    and follows each other condition equally often.
     """
     row = subject % count
     order = [(row + (at + 1) // 2 if at % 2 else row - at // 2) % count for at in range(count)]
@@ -32,13 +32,13 @@ def balanced_row(count: int, subject: int) -> list[int]:
 
 
 class Trials:
-    """Conditions in an order that is known before the first trial.
+    """Conditions in an order that is fixed before the first trial.
 
-    conditions: values by the name of each factor (all combinations are taken), or a list of dicts.
-    repeats: how often each. order: "given"; "random", all shuffled; "blocks", each block has every
-    condition once, shuffled; "balanced", block k of subject s is row s + k of a Williams design.
-    seed: of the shuffling. subject: number from 0 on; another one is shuffled otherwise, and "balanced" is
-    refused without it, because it balances over subjects.
+    conditions: values by the name of each factor (all combinations are used), or a list of dicts.
+    repeats: trials of each condition. order: "given"; "random", all shuffled; "blocks", each block has
+    every condition once, shuffled; "balanced", block k of subject s is row s + k of a Williams design.
+    seed: seed of the shuffling. subject: number from 0; each subject has another order. "balanced"
+    requires it, because it balances over subjects.
     """
 
     def __init__(
@@ -52,11 +52,11 @@ class Trials:
     ) -> None:
         each = combinations(conditions) if isinstance(conditions, Mapping) else [dict(one) for one in conditions]
         if not each or repeats < 1:
-            raise ArgumentError("conditions: expected at least one, at least once.")
+            raise ArgumentError("conditions, repeats: expected at least one condition and one repeat.")
         if order not in ORDERS:
             raise ArgumentError(f"order: expected {', '.join(ORDERS)}, found {order!r}.")
         if order == "balanced" and subject is None:
-            raise ArgumentError('subject: order="balanced" balances over subjects; give each its number, from 0 on.')
+            raise ArgumentError('subject: order="balanced" requires the number of the subject, from 0.')
         subject = whole_of("subject", subject or 0)
         random = np.random.default_rng([seed, subject])
         places = [list(range(len(each))) for _ in range(repeats)]
@@ -71,13 +71,13 @@ class Trials:
         self._next = 0
 
     def condition(self) -> Optional[dict[str, Any]]:
-        """Give the next trial's condition; None after the last."""
+        """Return the condition of the next trial; None after the last."""
         return dict(self.conditions[self._next]) if self._next < len(self.conditions) else None
 
     def take(self, answer: Mapping[str, Any]) -> None:
-        """Take the answer to that trial, and go on to the next."""
+        """Take the answer to that trial, and continue with the next."""
         self._next += 1
 
     def plan(self) -> dict[str, Any]:
-        """Tell all that decides which trials come, for the log."""
+        """Return everything that determines the trials, for the log."""
         return {"trials": self.conditions}

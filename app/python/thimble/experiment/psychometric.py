@@ -1,4 +1,4 @@
-"""Psychometric functions: a logistic or a normal curve of answers over level, fitted by maximum likelihood."""
+"""Psychometric functions (logistic or probit) of answers over level, fitted by maximum likelihood."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _NARROWEST = 1e-3  # width relative to the levels' span; the data cannot disting
 
 
 def rising(shape: str, z: ArrayLike) -> Array:
-    """Give the curve that goes from 0 to 1, at z widths from its middle; shape: "logistic" or "probit"."""
+    """Return the curve from 0 to 1, at z widths from its middle. shape: "logistic" or "probit"."""
     z = np.asarray(z, dtype=np.float64)
     if shape == "logistic":
         return 0.5 * (1.0 + np.tanh(0.5 * z))
@@ -46,9 +46,10 @@ def _slope(shape: str, z: Array) -> Array:
 class Psychometric:
     """p(x) = guess + (1 - guess - lapse) F((x - middle) / width), F from 0 to 1 with F(0) = 1/2.
 
-    ``middle_error`` and ``width_error`` are standard errors by the Fisher information; NaN where the
-    answers do not hold the value (all levels right or wrong). ``deviance`` is twice the difference of
-    log likelihood to the answers' own rates, about the number of levels less 2 for a model that fits.
+    ``middle_error`` and ``width_error`` are standard errors from the Fisher information. They are NaN if
+    the answers do not determine the value (all levels right or wrong). ``deviance`` is twice the
+    difference in log likelihood to the observed rates. For a model that fits, it is about the number of
+    levels minus 2.
     """
 
     shape: str
@@ -61,15 +62,15 @@ class Psychometric:
     deviance: float
 
     def __call__(self, level: ArrayLike) -> Array:
-        """Give the probability at a level."""
+        """Return the probability at a level."""
         z = (np.asarray(level, dtype=np.float64) - self.middle) / self.width
         return self.guess + (1.0 - self.guess - self.lapse) * rising(self.shape, z)
 
     def level(self, probability: float) -> float:
-        """Give the level of a probability between guess and 1 - lapse: the threshold of a forced choice at 0.75, say."""
+        """Return the level of a probability between guess and 1 - lapse, e.g. 0.75 for a forced-choice threshold."""
         part = (probability - self.guess) / (1.0 - self.guess - self.lapse)
         if not 0.0 < part < 1.0:
-            raise ArgumentError(f"probability: the curve does not pass {probability}.")
+            raise ArgumentError(f"probability: the curve does not reach {probability}.")
         if self.shape == "logistic":
             return self.middle + self.width * math.log(part / (1.0 - part))
         low, high = -40.0, 40.0
@@ -80,7 +81,8 @@ class Psychometric:
 
     @property
     def jnd(self) -> float:
-        """Half of the way from F = 25 % to 75 %: the just noticeable difference, if answers say "more" of a comparison."""
+        """Half the distance in level from F = 25 % to 75 %. It is the just noticeable difference if the answer
+        is whether a comparison stimulus is "more"."""
         return _QUARTILE[self.shape] * self.width
 
 
@@ -95,15 +97,16 @@ def fit(
 ) -> Psychometric:
     """Fit a rising psychometric function by maximum likelihood.
 
-    levels: (n,), equal ones may come again. successes: (n,), how many of `totals` trials were answered
-    "yes", "more" or correctly; without totals single trials, 0 or 1. guess: probability without any
-    stimulus, 0.5 for a forced choice between two. lapse: of answers beside the matter; "fit" looks for
-    the likeliest up to 0.06. Warns, and gives errors of NaN, if the answers do not hold the width.
-    Raises ArgumentError for fewer than two levels, or answers that do not rise with the level.
+    levels: (n,); equal levels may repeat. successes: (n,), number of `totals` trials that were answered
+    "yes", "more" or correctly; without totals each is a single trial, 0 or 1. guess: probability without
+    a stimulus, 0.5 for a choice of two. lapse: probability of a lapse (an answer that does not depend on
+    the stimulus); "fit" selects the most likely value up to 0.06. Warns, and sets the errors to NaN, if
+    the answers do not determine the width. Raises ArgumentError for fewer than two levels, or if the
+    answers do not rise with the level.
     """
     x, k, n = _counted(levels, successes, totals)
     if len(x) < 2:
-        raise ArgumentError("levels: expected two or more that differ.")
+        raise ArgumentError("levels: expected two or more different levels.")
     if lapse == "fit":
         curves = [_fitted(x, k, n, shape, guess, float(one)) for one in _LAPSES]
         curve, held = min(curves, key=lambda one: one[0].deviance)
@@ -113,7 +116,7 @@ def fit(
         curve, held = _fitted(x, k, n, shape, guess, float(lapse))
     if not held:
         warnings.warn(
-            "The answers do not hold the curve's width: take levels closer to the threshold, or more trials.",
+            "The answers do not determine the width of the curve. Use levels closer to the threshold, or more trials.",
             RuntimeWarning,
             stacklevel=2,
         )
@@ -124,7 +127,7 @@ def _counted(levels: ArrayLike, successes: ArrayLike, totals: ArrayLike) -> tupl
     x, k, n = np.broadcast_arrays(*(np.asarray(one, dtype=np.float64) for one in (levels, successes, totals)))
     good = np.isfinite(x) & (k >= 0) & (k <= n)
     if x.ndim != 1 or not good.all():
-        raise ArgumentError("levels, successes, totals: expected rows of one length, successes 0 to totals.")
+        raise ArgumentError("levels, successes, totals: expected arrays of equal length, successes 0 to totals.")
     different, which = np.unique(x, return_inverse=True)
     counts = [np.asarray(np.bincount(which, one), np.float64) for one in (k, n)]
     return different, counts[0], counts[1]
@@ -139,7 +142,7 @@ def _loss(p: Array, k: Array, n: Array) -> float:
 def _fitted(
     x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
 ) -> tuple[Psychometric, bool]:
-    """Fit middle and log of the width by Fisher's scoring with halved steps, from each of a few valleys."""
+    """Fit middle and log width by Fisher scoring with step halving, from each of several start points."""
     first, span = float(x[0]), float(x[-1] - x[0])
     x = (x - first) / span  # level scaled to 0 to 1
     range_ = 1.0 - guess - lapse
@@ -170,7 +173,7 @@ def _fitted(
         loss = _loss(at(values)[0], k, n)
         for _ in range(_STEPS_MOST):
             matrix, ascent = information(values)
-            # If one level decides, the matrix is nearly singular, and damped steps converge better.
+            # If one level dominates, the matrix is nearly singular, and damped steps converge better.
             there, tried = loss, values
             for damping in (1e-9, 1e-3, 1.0):
                 damped = matrix + (damping * np.trace(matrix) + 1e-300) * np.eye(2)
@@ -209,10 +212,10 @@ def _fitted(
 
 
 def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float) -> list[Array]:
-    """Give the values to refine: the best local minima of a grid over middle and log width, apart from each other.
+    """Return the start points of the search: separate local minima of a grid over middle and log width, best first.
 
-    The loss has several valleys, above all with guess > 0, and the best point of a grid is not always in the
-    deepest. x: the levels, from 0 to 1.
+    The loss has several minima, especially with guess > 0, and the best grid point is not always near the
+    global minimum. x: the levels, scaled to 0 to 1.
     """
     z = (x - _MIDDLES[:, None, None]) / np.exp(_LOG_WIDTHS)[None, :, None]
     p = np.clip(guess + (1.0 - guess - lapse) * rising(shape, z), 1e-12, 1.0 - 1e-12)
@@ -234,9 +237,9 @@ def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
 def _refuse_flat(k: Array, n: Array, loss: float) -> None:
     flat = _loss(np.full(len(k), k.sum() / n.sum()), k, n)
     if not loss < flat - 1e-9:
-        raise ArgumentError("The answers do not rise with the level: no curve and no threshold in them.")
+        raise ArgumentError("The answers do not rise with the level, so they have no threshold.")
 
 
 def count(levels: Any, answers: Any) -> tuple[Array, Array, Array]:
-    """Count single answers: levels that differ, successes and totals of each."""
+    """Return the distinct levels of single answers, with successes and totals of each."""
     return _counted(levels, np.asarray(answers, dtype=np.float64), 1)

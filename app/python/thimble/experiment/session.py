@@ -1,4 +1,4 @@
-"""One subject's trials, from the first or from where a crash left them."""
+"""The session of one subject. It can be continued after a crash."""
 
 from __future__ import annotations
 
@@ -12,44 +12,45 @@ from .subject_log import SubjectLog, line_of
 
 
 class Procedure(Protocol):
-    """What decides which trial comes next: Trials, Staircase, ConstantStimuli, Interleaved, or one's own.
+    """Chooses the next trial: Trials, Staircase, ConstantStimuli, Interleaved, or a class of yours.
 
-    It may depend on nothing but its plan and the answers, so that a session can go on after a crash.
+    It must depend only on its plan and the answers, so that a session can continue after a crash.
     """
 
     def condition(self) -> Optional[dict[str, Any]]:
-        """Give the next trial's condition; None after the last. Asked again it is the same."""
+        """Return the condition of the next trial; None after the last. Calls without an answer in between
+        return the same condition."""
 
     def take(self, answer: Mapping[str, Any]) -> None:
         """Take the answer to that trial."""
 
     def plan(self) -> dict[str, Any]:
-        """Tell all that decides which trials come, as JSON can hold it."""
+        """Return everything that determines the trials, as values that JSON can hold."""
 
 
 def _check(procedure: Procedure, answer: Mapping[str, Any]) -> None:
-    """Let a procedure refuse an answer before it is logged, if it has a word to say (``check``)."""
+    """Call the procedure's ``check``, if it has one, which may refuse an answer before it is logged."""
     check = getattr(procedure, "check", None)
     if check is not None:
         check(answer)
 
 
 class Trial(NamedTuple):
-    """A trial that is to be presented."""
+    """A trial to present."""
 
-    number: int  #: number of the trial, from 0 on
+    number: int  #: number of the trial, from 0
     condition: dict[str, Any]
-    random: np.random.Generator  #: seed of this trial, from the session's seed and the trial's number
+    random: np.random.Generator  #: generator of this trial, seeded by the session's seed and the trial's number
 
 
 Answer = Union[bool, Mapping[str, Any]]
 
 
 class Interleaved:
-    """Several procedures in one session, in turn at random; ``condition["track"]`` names whose trial it is."""
+    """Several procedures in one session, in random order. ``condition["track"]`` names the trial's procedure."""
 
     def __init__(self, tracks: Mapping[str, Procedure], *, seed: int = 0) -> None:
-        """Take the procedures by their names; seed: of whose turn it is."""
+        """Combine procedures, given by name. seed: seed of their random order."""
         if not tracks:
             raise ArgumentError("tracks: expected at least one procedure.")
         self.tracks = dict(tracks)
@@ -57,25 +58,25 @@ class Interleaved:
         self._taken = 0
 
     def condition(self) -> Optional[dict[str, Any]]:
-        """Give the condition of one that is not over; None if all are."""
+        """Return the next condition of a procedure that is not over; None if all are over."""
         name = self._turn()
         return None if name is None else {"track": name, **(self.tracks[name].condition() or {})}
 
     def check(self, answer: Mapping[str, Any]) -> None:
-        """Let the one whose turn it is refuse an answer."""
+        """Let the procedure of the present trial check an answer."""
         name = self._turn()
         if name is not None:
             _check(self.tracks[name], answer)
 
     def take(self, answer: Mapping[str, Any]) -> None:
-        """Hand the answer to whose turn it was."""
+        """Pass the answer to the procedure of the present trial."""
         name = self._turn()
         if name is not None:
             self.tracks[name].take(answer)
         self._taken += 1
 
     def plan(self) -> dict[str, Any]:
-        """Tell the plans of all, and the seed."""
+        """Return the plans of all procedures, and the seed."""
         return {"tracks": {name: one.plan() for name, one in self.tracks.items()}, "turns": self._seed}
 
     def _turn(self) -> Optional[str]:
@@ -86,10 +87,10 @@ class Interleaved:
 
 
 class Session:
-    """The trials of one subject, with a log that survives the program.
+    """The trials of one subject, with a log on disk.
 
-    If the log is there, its answers are taken in their order, and the session goes on with the next
-    trial: the same one, with the same random numbers, as without the interruption.
+    If the log exists, its answers are read in their order, and the session continues with the next
+    trial. That trial and its random numbers are the same as without the interruption.
     """
 
     def __init__(
@@ -100,10 +101,11 @@ class Session:
         seed: int = 0,
         about: Optional[Mapping[str, Any]] = None,
     ) -> None:
-        """Open or begin the log.
+        """Open or create the log.
 
-        seed: of the trials' random numbers. about: what else the log's first line shall say (subject,
-        arm, day ...); the same each time. Raises Error if the log is of another plan, seed or subject.
+        seed: seed of the trials' random numbers. about: additional values for the first line of the log
+        (subject, arm, day ...), which must be the same each time. Raises Error if the log has another
+        plan, seed or `about`.
         """
         self.procedure = procedure
         self._seed = int(seed)
@@ -132,10 +134,10 @@ class Session:
         return Trial(self._number, condition, np.random.default_rng([self._seed, self._number]))
 
     def answer(self, answer: Answer) -> None:
-        """Log the answer to the trial, on the disk before this returns, and go on to the next.
+        """Log the answer to the trial, and continue with the next. The answer is on disk when this returns.
 
-        answer: whether it was correct, or a mapping of whatever JSON can hold (``correct`` among it for
-        a staircase).
+        answer: whether it was correct, or a mapping of values that JSON can hold. A staircase needs its
+        key ``correct``.
         """
         condition = self.procedure.condition()
         if condition is None:
@@ -146,10 +148,10 @@ class Session:
         self._take(self._log.write(line))
 
     def run(self, present: Callable[[Trial], Answer]) -> list[dict[str, Any]]:
-        """Present all trials that are left, and give the lines of all.
+        """Present all remaining trials, and return the log lines of all trials.
 
-        present: shows the trial to the subject, and gives the answer. What it raises ends the session;
-        the trial is not logged and comes again next time.
+        present: function that presents the trial to the subject and returns the answer. An exception in
+        it ends the session; the trial is not logged and is presented again next time.
         """
         while (trial := self.trial) is not None:
             self.answer(present(trial))
@@ -157,16 +159,16 @@ class Session:
 
     @property
     def lines(self) -> list[dict[str, Any]]:
-        """What the log has of the trials: trial, condition, answer."""
+        """Lines of the log, one per trial: trial, condition, answer."""
         return [dict(line) for line in self._log.lines]
 
     def close(self) -> None:
-        """Let the log go."""
+        """Close the log."""
         self._log.close()
 
     def _take(self, line: Mapping[str, Any]) -> None:
         condition = self.procedure.condition()
         if line.get("trial") != self._number or line.get("condition") != json.loads(line_of(condition or {})):
-            raise Error(f"{self._log.path}: trial {self._number} is not the one that this plan has there.")
+            raise Error(f"{self._log.path}: trial {self._number} is not the one of this plan.")
         self.procedure.take(line["answer"])
         self._number += 1

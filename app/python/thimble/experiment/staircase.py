@@ -1,4 +1,4 @@
-"""Adaptive staircases: the level of a trial follows from the answers before."""
+"""Adaptive staircases: earlier answers determine the level of a trial."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from .. import ArgumentError
 
 
 class Staircase:
-    """An n-down m-up staircase, of steps that are added or that multiply.
+    """An n-down m-up staircase with added or multiplied steps.
 
-    After `down` correct answers in a row the level goes down by a step, after `up` wrong ones in a row
-    up by one. Trials tell their level as ``condition["level"]``; answers tell ``correct``.
+    After `down` consecutive correct answers the level decreases by a step; after `up` consecutive wrong
+    answers it increases by a step. A trial has its level as ``condition["level"]``, an answer has the key
+    ``correct``.
     """
 
     def __init__(
@@ -31,13 +32,13 @@ class Staircase:
         last: int = 8,
         trials_most: int = 400,
     ) -> None:
-        """Stand at the first level.
+        """Create a staircase at its first level.
 
-        start: first level, in whatever unit. step: size of a step, or sizes: the first until the first
-        reversal, then the next, the last from then on. multiply: a step multiplies or divides by its size
-        (above 1), and averages are of logarithms. up_ratio: a step up is as many of these steps.
-        lowest, highest: the level stays between. reversals: the staircase ends after them, or after
-        trials_most. last: how many of the last reversals the threshold is the mean of.
+        start: first level, in any unit. step: size of a step, or a list of sizes; each reversal selects
+        the next size, and the last size remains. multiply: a step multiplies or divides by its size
+        (above 1), and averages are those of logarithms. up_ratio: size of a step up, in steps down.
+        lowest, highest: bounds of the level. reversals, trials_most: the staircase ends after this number
+        of reversals or of trials. last: number of last reversals whose mean is the threshold.
         """
         self._steps = [float(one) for one in np.atleast_1d(np.asarray(step, dtype=np.float64))]
         least = 1.0 if multiply else 0.0
@@ -62,20 +63,20 @@ class Staircase:
 
     @property
     def over(self) -> bool:
-        """Whether there are reversals, or trials, enough."""
+        """Whether there are enough reversals or trials."""
         return len(self.reversals) >= self._reversals_most or len(self.levels) >= self._trials_most
 
     def condition(self) -> Optional[dict[str, Any]]:
-        """Give the next trial's condition, ``{"level": ...}``; None after the last."""
+        """Return the condition of the next trial, ``{"level": ...}``; None after the last."""
         return None if self.over else {"level": self.level}
 
     def check(self, answer: Mapping[str, Any]) -> None:
-        """Refuse an answer that does not say ``correct``."""
+        """Raise ArgumentError if an answer lacks the key ``correct``."""
         if not isinstance(answer.get("correct"), (bool, np.bool_)):
-            raise ArgumentError(f"A staircase's answer says correct=True or False, found {dict(answer)!r}.")
+            raise ArgumentError(f"answer: expected correct=True or False, found {dict(answer)!r}.")
 
     def take(self, answer: Mapping[str, Any]) -> None:
-        """Take the answer to the trial at the present level: ``correct``, and whatever else."""
+        """Take the answer to the present trial. It needs the key ``correct`` and may have others."""
         self.check(answer)
         correct = bool(answer["correct"])
         self.levels.append(self.level)
@@ -88,9 +89,9 @@ class Staircase:
 
     @property
     def target(self) -> float:
-        """Probability of a correct answer at the level that the staircase settles at.
+        """Probability of a correct answer at the level to which the staircase converges.
 
-        Where steps down and up balance: p^n = 1/2 for n down, 1 up and equal steps (79.4 % for 3).
+        There, steps down and up balance: p^n = 1/2 for n down, 1 up and equal steps (79.4 % for 3).
         """
         low, high = 0.0, 1.0
         for _ in range(60):
@@ -101,7 +102,7 @@ class Staircase:
 
     @property
     def threshold(self) -> float:
-        """Mean of the levels at the last reversals (their geometric mean if steps multiply); NaN without enough."""
+        """Mean level of the last reversals (geometric mean if steps multiply); NaN if there are too few."""
         if len(self.reversals) < self._last:
             return float("nan")
         return float(self._back(np.mean(self._last_reversals())))
@@ -114,7 +115,7 @@ class Staircase:
         return float(self._back(np.std(self._last_reversals(), ddof=1)))
 
     def plan(self) -> dict[str, Any]:
-        """Tell all that decides which trials come, for the log."""
+        """Return everything that determines the trials, for the log."""
         bounds = [None if np.isinf(one) else one for one in (self._lowest, self._highest)]
         return {
             "staircase": {
@@ -149,7 +150,7 @@ class Staircase:
 
 
 def _down_first(p: float, down: int, up: int) -> float:
-    """Probability that `down` successes in a row come before `up` failures in a row, by their known law."""
+    """Return the probability that `down` consecutive successes occur before `up` consecutive failures."""
     q = 1 - p
     right, wrong = p ** (down - 1), q ** (up - 1)
     return right * (1 - q**up) / (right + wrong - right * wrong)

@@ -1,4 +1,4 @@
-"""The log of one subject: a line of JSON per trial, on the disk before the next trial begins."""
+"""The log of one subject: a line of JSON per trial, on disk before the next trial begins."""
 
 from __future__ import annotations
 
@@ -13,16 +13,15 @@ from .. import ArgumentError, Error, PathOrName
 
 
 class SubjectLog:
-    """A file of JSON lines: what the experiment is, then one line per trial.
+    """A file of JSON lines: a description of the experiment, then one line per trial.
 
-    Each line is written at once, flushed, and brought to the disk (fsync) before :meth:`write` returns.
-    Opened again it goes on; a last line that a crash left half is dropped with a warning. One process
-    at a time may hold it. Raises Error, with what to do, if the file is of another experiment, in use
-    or damaged.
+    Each line is on disk (fsync) before :meth:`write` returns. A log that is opened again is continued; a
+    last line that a crash left incomplete is dropped with a warning. Only one process at a time may use
+    it. Raises Error, with the remedy, if the file belongs to another experiment, is in use or is damaged.
     """
 
     def __init__(self, path: PathOrName, about: Mapping[str, Any]) -> None:
-        """Open or begin the file; about: the first line, the same each time."""
+        """Open or create the file. about: content of the first line, the same each time."""
         self.path = Path(path)
         self.lines: list[dict[str, Any]] = []  #: all trials so far
         wanted = json.loads(line_of(about))
@@ -40,16 +39,16 @@ class SubjectLog:
             raise
 
     def write(self, line: Mapping[str, Any]) -> dict[str, Any]:
-        """Write a line, and give it as it will be read."""
+        """Write a line, and return it as it will be read back."""
         if self._file < 0:
-            raise Error(f"{self.path}: was closed.")
+            raise Error(f"{self.path}: the log is closed.")
         text = line_of(line)
         self._append(text)
         self.lines.append(json.loads(text))
         return self.lines[-1]
 
     def close(self) -> None:
-        """Let the file go. Again is nothing."""
+        """Close the file. Repeated calls do nothing."""
         if self._file >= 0:
             os.close(self._file)
             self._file = -1
@@ -66,13 +65,13 @@ class SubjectLog:
         different = [key for key in {**wanted, **lines[0]} if wanted.get(key) != lines[0].get(key)]
         if different:
             raise Error(
-                f"{self.path}: is the log of something else (it differs in {', '.join(sorted(different))}); "
-                "name another file, or run what it was begun with."
+                f"{self.path}: is the log of another experiment (different {', '.join(sorted(different))}). "
+                "Use another file, or continue the experiment of this log."
             )
         self.lines = lines[1:]
 
     def _whole_lines(self) -> list[dict[str, Any]]:
-        """Read the file, and cut off what no line of its end is."""
+        """Read the lines of the file, and cut off an incomplete last line."""
         with open(self.path, "rb") as file:
             *pieces, rest = file.read().split(b"\n")
         lines: list[dict[str, Any]] = []
@@ -82,14 +81,14 @@ class SubjectLog:
             if line is None:
                 # After a power loss the last line may have its length but not its content.
                 if at + 1 < len(pieces) or rest:
-                    raise Error(f"{self.path}:{at + 1}: no line of a log; nothing was changed.")
+                    raise Error(f"{self.path}:{at + 1}: not a line of a log. The file was not changed.")
                 rest = piece
                 break
             lines.append(line)
             keep += len(piece) + 1
         if rest:
             warnings.warn(
-                f"{self.path}: the last line was half written and is dropped; its trial comes again.",
+                f"{self.path}: the last line was incomplete and is dropped; its trial is repeated.",
                 RuntimeWarning,
                 stacklevel=5,
             )
@@ -105,7 +104,7 @@ class SubjectLog:
 
 
 def line_of(value: Mapping[str, Any]) -> str:
-    """Write a line as JSON; numpy's numbers and arrays become Python's own."""
+    """Return a line as JSON. numpy numbers and arrays become Python's."""
     try:
         return json.dumps(value, allow_nan=False, ensure_ascii=False, default=lambda one: one.tolist())
     except (AttributeError, TypeError, ValueError) as wrong:
@@ -113,7 +112,7 @@ def line_of(value: Mapping[str, Any]) -> str:
 
 
 def read_log(path: PathOrName) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """Read a log for its evaluation: what was run, and the trials; a half last line is left out."""
+    """Read a log for evaluation. Returns its first line and its trials, without an incomplete last line."""
     try:
         pieces = Path(path).read_bytes().split(b"\n")
     except OSError as wrong:
@@ -123,7 +122,7 @@ def read_log(path: PathOrName) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         lines.pop()
     whole = [line for line in lines if line is not None]
     if not whole or len(whole) != len(lines):
-        raise Error(f"{path}: is no log of an experiment.")
+        raise Error(f"{path}: is not the log of an experiment.")
     return whole[0], whole[1:]
 
 

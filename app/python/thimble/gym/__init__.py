@@ -1,4 +1,4 @@
-"""Scenes as environments with Gymnasium's interface; Gymnasium itself need not be installed.
+"""Scenes as environments with Gymnasium's interface. Gymnasium itself is not required.
 
     import thimble.gym
     env = thimble.gym.TouchEnv("rubber", reward=lambda tick, action: -abs(float(tick.force[2]) - 1.0))

@@ -1,4 +1,4 @@
-"""One scene with the hand as the agent."""
+"""A scene as an environment whose agent moves the hand."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ Terminated = Callable[[Tick, Vector], bool]
 
 
 def no_reward(tick: Tick, action: Vector) -> float:
-    """Reward nothing."""
+    """Return a reward of 0."""
     return 0.0
 
 
 class TouchEnv(Base):
-    """A scene in virtual time as an environment with Gymnasium's interface; the agent leads the hand.
+    """A scene in virtual time as an environment with Gymnasium's interface. The agent moves the hand.
 
-    action: the point of the world that the hand is led to from now on, (3,), m. It goes there as a
-    person's would, smoothly and at most with 0.4 m/s; out of reach of the arm the hand is led on to
-    where it was (``info["reached"]`` is False). observation, (11,): tip p_WT (m), velocity v_WT (m/s),
-    force on the hand (N), each in the world; depth of the tip below the surface (m); 1 in contact, else 0.
+    action: new target of the hand in the world, (3,), m. The hand moves there smoothly like a person's,
+    with at most 0.4 m/s. If the arm cannot reach the target, the hand keeps its previous target, and
+    ``info["reached"]`` is False. observation, (11,): tip p_WT (m), velocity v_WT (m/s), force on the hand
+    (N), each in the world; depth of the tip below the surface (m); 1 in contact, else 0.
 
-    The same to the bit for the same seed and actions, whether Gymnasium is installed or not.
+    Results are bit-identical for the same seed and actions, with and without Gymnasium.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -47,14 +47,14 @@ class TouchEnv(Base):
         quality: str = "normal",
         meshes: Optional[Meshes] = None,
     ) -> None:
-        """Open the scene once, to learn its arm.
+        """Open the scene once, to get its arm.
 
-        reward: ``reward(tick, action)``, asked once per step with the last tick of it; 0 if absent.
-        terminated: ``terminated(tick, action)``, whether the goal was reached; never if absent.
-        frame_skip: ticks of the servo loop per step. seconds: an episode is truncated after them.
-        workspace: lower and upper corner of the box of actions, (3,) in the world, m; the arm's own if
-        absent. meshes: that it shares with other environments; all its episodes share them in any case.
-        Others as of :func:`thimble.run`. Raises thimble.Error as it does.
+        reward: ``reward(tick, action)``, called once per step with its last tick; 0 by default.
+        terminated: ``terminated(tick, action)``, whether the goal was reached; by default never.
+        frame_skip: ticks of the servo loop per step. seconds: duration after which an episode is truncated.
+        workspace: lower and upper corner of the box of actions, (3,) in the world, m; by default that of
+        the arm. meshes: meshes to share with other environments; the episodes of one environment always
+        share theirs. The other options and errors are those of :func:`thimble.run`.
         """
         if frame_skip < 1 or frame_skip != int(frame_skip):
             raise ArgumentError(f"frame_skip: expected a whole number of 1 or more, found {frame_skip}.")
@@ -77,24 +77,24 @@ class TouchEnv(Base):
 
     @property
     def stepper(self) -> Stepper:
-        """The episode beneath: ticks, meshes, figures. Error before the first reset."""
+        """The run of the episode: ticks, meshes, figures. Raises Error before the first reset."""
         if self._stepper is None:
             raise Error("The environment has no episode: call reset().")
         return self._stepper
 
     @property
     def seconds_per_step(self) -> float:
-        """Virtual time that a step takes, s."""
+        """Virtual time of a step, s."""
         return self._frame_skip / self._rate
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[Vector, dict[str, Any]]:
-        """Begin an episode with the scene as it is in its file, and give what is felt in its first tick.
+        """Begin an episode with the scene of the file, and return the observation of its first tick.
 
-        seed: of all episodes from now on; each takes a seed of its own for the hand's tremor from it.
-        Without any seed ever the system gives one. options: ``{"seed": 3}`` seeds this episode's
-        tremor itself, as :func:`thimble.run` does.
+        seed: seed of all following episodes; each episode draws its own seed for the hand's tremor. If no
+        seed was ever given, the system provides one. options: ``{"seed": 3}`` sets the tremor's seed of
+        this episode directly, as :func:`thimble.run` does.
         """
         super().reset(seed=seed)
         episode_seed = int(self.np_random.integers(2**31))
@@ -106,9 +106,9 @@ class TouchEnv(Base):
         return self._felt(self._tick(), {"reached": True, "seed": episode_seed})
 
     def step(self, action: ArrayLike) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
-        """Lead the hand for ``frame_skip`` ticks, and give observation, reward, terminated, truncated, info.
+        """Run ``frame_skip`` ticks, and return observation, reward, terminated, truncated, info.
 
-        terminated: by the function of that name, or by a fault (``info["fault"]`` names it).
+        terminated: set by the function of that name, or by a fault (``info["fault"]`` names it).
         """
         stepper = self.stepper
         if self._over:
@@ -131,7 +131,7 @@ class TouchEnv(Base):
         return observation, float(self._reward(tick, goal)), terminated, truncated, info
 
     def close(self) -> None:
-        """End the episode, and let the scene go."""
+        """End the episode, and release the scene."""
         self._stepper = None
         self._over = True
 
@@ -149,7 +149,7 @@ class TouchEnv(Base):
 
 
 def _lead(stepper: Stepper, goal: Vector) -> bool:
-    """Run a tick, and tell whether the arm reaches where the hand is led to; else that stays as it was."""
+    """Run a tick with a new target of the hand. Returns False, and keeps the old target, if it is out of reach."""
     try:
         stepper.step(hand=goal)
         return True
@@ -161,7 +161,7 @@ def _lead(stepper: Stepper, goal: Vector) -> bool:
 
 
 def spaces_of(info: Mapping[str, Any], workspace: Optional[tuple[ArrayLike, ArrayLike]]) -> tuple[Box, Box]:
-    """Give the spaces of actions and observations of a scene, by what its run tells of itself."""
+    """Return the spaces of actions and observations for the ``info`` of a run."""
     low, high = workspace if workspace is not None else _workspace_of(info)
     actions = Box(np.asarray(low, np.float64), np.asarray(high, np.float64), dtype=np.float64)
     endless = np.full(9, np.inf)
@@ -176,6 +176,6 @@ def _workspace_of(info: Mapping[str, Any]) -> tuple[Vector, Vector]:
         return Simulator(info["arm_file"]).workspace
     except Error as wrong:
         raise ArgumentError(
-            f"The workspace of {info['arm']} is not known by itself ({wrong}) Name it: "
-            "workspace=((x, y, z), (x, y, z)), m."
+            f"workspace: pass ((x, y, z), (x, y, z)), m, because that of {info['arm']} is unknown: "
+            f"{wrong}"
         ) from wrong

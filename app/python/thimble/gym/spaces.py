@@ -1,6 +1,6 @@
-"""Spaces and base classes of Gymnasium where it is installed, and small stand-ins where it is not.
+"""Spaces and base classes of Gymnasium if it is installed, otherwise small replacements.
 
-The stand-ins have what an agent needs to know of a space: shape, dtype, low, high, contains, sample.
+The replacements have the members of a space that agents use: shape, dtype, low, high, contains, sample.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ except ImportError:
     NEXT_STEP = "NextStep"
 
     class Box:  # type: ignore[no-redef]
-        """All arrays between two others, bounds included."""
+        """The space of arrays between two bounds, bounds included."""
 
         def __init__(self, low: Any, high: Any, dtype: Any = np.float64) -> None:
             self.dtype = np.dtype(dtype)
@@ -34,11 +34,11 @@ except ImportError:
             self._random = np.random.default_rng()
 
         def seed(self, seed: Optional[int] = None) -> None:
-            """Let :meth:`sample` draw anew from this seed."""
+            """Seed the generator of :meth:`sample`."""
             self._random = np.random.default_rng(seed)
 
         def sample(self) -> NDArray[Any]:
-            """Draw an array: evenly where both bounds are finite, by a normal law from the finite one or from 0 else."""
+            """Draw an array: uniform between finite bounds, otherwise normal about the finite bound or 0."""
             low, high = np.isfinite(self.low), np.isfinite(self.high)
             even = self._random.random(self.shape)
             normal = self._random.normal(size=self.shape)
@@ -48,7 +48,7 @@ except ImportError:
             return np.where(low & high, inside, from_one).astype(self.dtype)
 
         def contains(self, x: Any) -> bool:
-            """Tell whether an array is one of the space's."""
+            """Return whether an array is in the space."""
             x = np.asarray(x)
             return x.shape == self.shape and bool((x >= self.low).all() and (x <= self.high).all())
 
@@ -58,7 +58,7 @@ except ImportError:
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
 
     class Base:  # type: ignore[no-redef]
-        """What gymnasium.Env has of its own: the generator of random numbers, ``unwrapped``, ``with``."""
+        """Replacement of gymnasium.Env: random generator, ``unwrapped``, ``with`` blocks."""
 
         metadata: dict[str, Any] = {}
         render_mode: Optional[str] = None
@@ -72,18 +72,18 @@ except ImportError:
 
         @property
         def np_random(self) -> np.random.Generator:
-            """The environment's own generator; seeded by ``reset(seed=)``, or by the system."""
+            """Random generator of the environment, seeded by ``reset(seed=)`` or by the system."""
             if self._np_random is None:
                 self._np_random = np.random.default_rng()
             return self._np_random
 
         def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> Any:
-            """Seed the generator, if a seed is given."""
+            """Seed the generator if a seed is given."""
             if seed is not None:
                 self._np_random = np.random.default_rng(seed)
 
         def close(self) -> None:
-            """Release what the environment holds."""
+            """Release the resources of the environment."""
 
         def __enter__(self) -> Any:
             return self
@@ -95,17 +95,17 @@ except ImportError:
 
 
 def batched(space: Any, count: int) -> Any:
-    """Give the space of `count` elements of a box, one below the other."""
+    """Return the space of `count` stacked elements of a box."""
     low = np.repeat(space.low[np.newaxis], count, axis=0)
     high = np.repeat(space.high[np.newaxis], count, axis=0)
     return Box(low, high, dtype=space.dtype)
 
 
 def seeds_of(seed: Union[None, int, Sequence[Optional[int]]], count: int) -> list[Optional[int]]:
-    """Give a seed for each of `count`: one number s is s, s + 1, s + 2 and so on."""
+    """Return a seed for each of `count` environments. One number s gives s, s + 1, s + 2 and so on."""
     if seed is None or isinstance(seed, (int, np.integer)):
         return [None if seed is None else int(seed) + i for i in range(count)]
     seeds = list(seed)
     if len(seeds) != count:
-        raise ArgumentError(f"seed: expected {count} of them, found {len(seeds)}.")
+        raise ArgumentError(f"seed: expected {count} seeds, found {len(seeds)}.")
     return seeds

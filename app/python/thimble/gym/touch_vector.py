@@ -1,4 +1,4 @@
-"""Many arms of one scene in one process, as one environment."""
+"""Many arms with the same scene in one process, as one vector environment."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ARMS_MOST = 1_000_000  # 100 GB and more; [chosen] to detect a wrong unit
 
 
 class TouchVectorEnv(VectorBase):
-    """Arms of one scene side by side in this process, stepped by one call; Gymnasium's ``VectorEnv``.
+    """Many arms with the same scene in this process, stepped by one call; a Gymnasium ``VectorEnv``.
 
-    Each is, to the bit, what :class:`TouchEnv` of its seed is alone: the scene is read once, its meshes
-    are there once, and the loop over the arms is not Python's. Actions, observations and infos are
-    those of `TouchEnv`, one row for each arm. An arm whose episode ended is begun anew by the next step,
-    which ignores its action and gives reward 0 (Gymnasium's NEXT_STEP).
+    Each arm is bit-identical to the :class:`TouchEnv` with its seed. The scene and its meshes are loaded
+    once, and the loop over the arms runs in C++. Actions, observations and infos are those of `TouchEnv`,
+    one row for each arm. If the episode of an arm has ended, the next step restarts it, ignores its action
+    and gives it reward 0 (Gymnasium's NEXT_STEP).
 
-    For several cores start several of them in processes of their own, each with seeds of its own.
+    To use several cores, start a process for each, with different seeds.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": NEXT_STEP}
@@ -53,11 +53,11 @@ class TouchVectorEnv(VectorBase):
     ) -> None:
         """Open the scene for `count` arms.
 
-        reward: ``reward(ticks, actions)``, asked once per step with the last tick of each arm
-        (``ticks.force`` is (count, 3)) and the actions, (count, 3); gives (count,) numbers; 0 if absent.
-        terminated: ``terminated(ticks, actions)``, whether each goal was reached, (count,); never if
-        absent. What both say of an arm that is begun anew does not count. Others as of
-        :class:`TouchEnv`. Raises thimble.Error as it does.
+        reward: ``reward(ticks, actions)``, called once per step with the last tick of each arm
+        (``ticks.force`` is (count, 3)) and the actions (count, 3). It returns (count,) numbers; 0 by default.
+        terminated: ``terminated(ticks, actions)``, whether each goal was reached, (count,); by default
+        never. Their values for arms that are restarted are ignored. The other options and errors are
+        those of :class:`TouchEnv`.
         """
         self.num_envs = whole_of("count", count, 1, _ARMS_MOST)
         self._frame_skip = whole_of("frame_skip", frame_skip, 1)
@@ -95,12 +95,12 @@ class TouchVectorEnv(VectorBase):
 
     @property
     def seconds_per_step(self) -> float:
-        """Virtual time that a step takes, s."""
+        """Virtual time of a step, s."""
         return self._frame_skip / self._rate
 
     @property
     def ticks(self) -> Ticks:
-        """The newest tick of each arm. Error before the first reset."""
+        """The newest tick of each arm. Raises Error before the first reset."""
         if self._newest is None:
             raise Error("The environments have no episodes: call reset().")
         return self._newest
@@ -111,10 +111,10 @@ class TouchVectorEnv(VectorBase):
         seed: Union[None, int, Sequence[Optional[int]]] = None,
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[Vector, dict[str, Any]]:
-        """Begin an episode in each, and give observations (count, 11) and infos.
+        """Begin an episode of each arm, and return observations (count, 11) and infos.
 
-        seed: one for each, or one number s for s, s + 1, s + 2 and so on; of all episodes from now on.
-        options: ``{"seed": 3}`` seeds these episodes' tremor itself, of all alike.
+        seed: seeds of all following episodes, one for each arm; one number s gives s, s + 1, s + 2 and so
+        on. options: ``{"seed": 3}`` sets the tremor's seed of these episodes directly, the same for all arms.
         """
         seeds = seeds_of(seed, self.num_envs)
         if not self._randoms:
@@ -129,7 +129,7 @@ class TouchVectorEnv(VectorBase):
     def step(
         self, actions: ArrayLike
     ) -> tuple[Vector, Vector, NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Lead each hand for ``frame_skip`` ticks, and give observations, rewards, terminated, truncated, infos."""
+        """Run ``frame_skip`` ticks of each arm. Returns observations, rewards, terminated, truncated, infos."""
         goals = np.ascontiguousarray(actions, dtype=np.float64)
         if goals.shape != self.action_space.shape:
             raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {goals.shape}.")
@@ -158,24 +158,24 @@ class TouchVectorEnv(VectorBase):
         return observations, rewards, terminated, truncated, infos
 
     def close(self, **_: Any) -> None:
-        """Let the arms go. Again is nothing."""
+        """Release the arms. Repeated calls do nothing."""
         self._batch = None
         self._newest = None
         self.closed = True
 
     def _core(self) -> _core.Batch:
         if self._batch is None:
-            raise Error("The environments were closed.")
+            raise Error("The environments are closed. Create a new object.")
         return self._batch
 
     def _asked(self, name: str, told: ArrayLike, kind: Any) -> NDArray[Any]:
         array = np.array(told, dtype=kind)
         if array.shape != (self.num_envs,):
-            raise ArgumentError(f"{name}: expected {self.num_envs} of them, found the shape {array.shape}.")
+            raise ArgumentError(f"{name}: expected the shape ({self.num_envs},), found {array.shape}.")
         return array
 
     def _begin(self, which: NDArray[np.bool_], seed: Optional[int]) -> NDArray[np.uint64]:
-        """Begin some episodes with their first tick, and give the seeds of all, 0 of the others."""
+        """Begin the episodes of some arms, with their first tick. Returns their seeds; 0 for the other arms."""
         seeds = np.zeros(self.num_envs, np.uint64)
         numbers = np.flatnonzero(which).astype(np.uint32)
         if not len(numbers):

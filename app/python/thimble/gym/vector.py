@@ -1,4 +1,4 @@
-"""Several environments at once, in processes of their own."""
+"""Several environments at once, in separate processes."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ Make = Callable[[], Any]
 
 
 class VectorEnv(VectorBase):
-    """Environments side by side, spread over processes; to the bit what each would be alone.
+    """Several environments, distributed over processes. Each is bit-identical to a single environment.
 
-    ``step`` takes the actions of all, (n, ...), and gives arrays of n. An environment whose episode
-    ended is reset by the next step, which ignores its action and gives reward 0 (Gymnasium's
-    NEXT_STEP). Each process holds its share of the environments and ends with this object: when it is
-    closed, and when this process is killed.
+    ``step`` takes the actions of all environments, (n, ...), and returns arrays of n. If the episode of an
+    environment has ended, the next step resets it, ignores its action and gives it reward 0 (Gymnasium's
+    NEXT_STEP). Each process has a share of the environments. It ends when this object is closed, or when
+    this process is killed.
 
-    Functions are handed over by name, as `multiprocessing` does with "spawn": what a script defines
-    itself is found only if its own work stands below ``if __name__ == "__main__":``, and what a
-    notebook or an interactive session defines is not found at all; put it into a file and import it.
+    Functions are passed by name, as `multiprocessing` does with "spawn". Functions of a script are found
+    only if the script's main part is below ``if __name__ == "__main__":``. Functions of a notebook or an
+    interactive session are not found; put them into a file and import it.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": NEXT_STEP}
@@ -50,10 +50,11 @@ class VectorEnv(VectorBase):
     ) -> None:
         """Start the processes, and wait until each has its environments.
 
-        make: a function that gives an environment, for `count` of them, or one for each:
-        ``functools.partial(thimble.gym.TouchEnv, "rubber", reward=mine)``. workers: processes; one for
-        each core, and no more than environments, if absent. With ``meshes=thimble.Meshes()`` in `make`
-        the environments of a process share their meshes. start: "spawn" or "forkserver".
+        make: a function that returns an environment and is called `count` times, or a list of such
+        functions: ``functools.partial(thimble.gym.TouchEnv, "rubber", reward=mine)``. With
+        ``meshes=thimble.Meshes()`` in `make`, the environments of a process share their meshes. workers:
+        number of processes; by default one for each core, at most one for each environment. start: "spawn"
+        or "forkserver".
         """
         makes = list(make) if isinstance(make, Sequence) else [make] * (1 if count is None else count)
         if not makes or (count is not None and count != len(makes)):
@@ -94,10 +95,10 @@ class VectorEnv(VectorBase):
         seed: Union[None, int, Sequence[Optional[int]]] = None,
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[NDArray[Any], dict[str, Any]]:
-        """Begin an episode in each, and give observations (n, ...) and infos.
+        """Begin an episode in each environment, and return observations (n, ...) and infos.
 
-        seed: one for each, or one number s for s, s + 1, s + 2 and so on. infos: an array for each key
-        of the environments' own, and below ``_key`` which of them told it.
+        seed: one for each, or one number s for s, s + 1, s + 2 and so on. infos: an array for each key of
+        the environments' infos, and with the name ``_key`` a mask of the environments that have the key.
         """
         seeds = seeds_of(seed, self.num_envs)
         told = self._ask("reset", [(one, options) for one in seeds])
@@ -107,7 +108,7 @@ class VectorEnv(VectorBase):
     def step(
         self, actions: ArrayLike
     ) -> tuple[NDArray[Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Go on in each, and give observations, rewards, terminated, truncated (arrays of n) and infos."""
+        """Step each environment. Returns observations, rewards, terminated, truncated (arrays of n) and infos."""
         each = np.asarray(actions)
         if each.shape != self.action_space.shape:
             raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {each.shape}.")
@@ -123,18 +124,18 @@ class VectorEnv(VectorBase):
         )
 
     def close(self, **_: Any) -> None:
-        """End all processes, and wait for that. Again is nothing."""
+        """End all processes, and wait for their end. Repeated calls do nothing."""
         self.closed = True
         self._closer()
 
     @property
     def processes(self) -> list[int]:
-        """Process numbers of those that run; empty after :meth:`close`."""
+        """Numbers of the running processes; empty after :meth:`close`."""
         return [worker.process.pid for worker in self._workers if worker.process.pid is not None]
 
     def _ask(self, what: str, each: list[Any]) -> list[Any]:
         if self.closed:
-            raise Error("The environments were closed.")
+            raise Error("The environments are closed. Create a new object.")
         told: list[Any] = []
         try:
             for worker in self._workers:
@@ -148,7 +149,7 @@ class VectorEnv(VectorBase):
 
 
 class _Worker:
-    """A process with its share of the environments, as seen from here."""
+    """Handle of a process that has a share of the environments."""
 
     def __init__(self, share: NDArray[Any], makes: list[Make], start: str) -> None:
         self.share = share
@@ -172,7 +173,7 @@ class _Worker:
             self.process.join()
             at = ", ".join(map(str, self.share))
             raise Error(
-                f"The process of the environments {at} ended (exit code {self.process.exitcode}); all are closed."
+                f"The process of the environments {at} ended (exit code {self.process.exitcode}). All are closed."
             ) from None
         if kind == "wrong":
             raise Error(f"In the process of environment {self.share[told[0]]}: {told[1]}")
@@ -193,7 +194,7 @@ def _close_all(workers: list[_Worker]) -> None:
 
 @contextlib.contextmanager
 def _hidden_script() -> Iterator[None]:
-    """Keep `multiprocessing` from running the caller's script again in the process that starts."""
+    """Prevent `multiprocessing` from running the caller's script again in the new process."""
     script = sys.modules["__main__"]
     sys.modules["__main__"] = types.ModuleType("__main__")
     try:
@@ -203,7 +204,7 @@ def _hidden_script() -> Iterator[None]:
 
 
 def _serve(pipe: Connection, parcel: bytes) -> None:
-    """Hold environments, and answer until the other end of the pipe is closed or gone."""
+    """Create environments, and answer requests until the other end of the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C and closes
     at = 0
     try:
@@ -235,7 +236,7 @@ def _serve(pipe: Connection, parcel: bytes) -> None:
 
 
 def _gathered(infos: list[dict[str, Any]]) -> dict[str, Any]:
-    """Give the infos of all as arrays by key, and below ``_key`` a mask of who told it."""
+    """Return infos as arrays by key, and as ``_key`` a mask of the environments that have the key."""
     gathered: dict[str, Any] = {}
     for key in dict.fromkeys(key for info in infos for key in info):
         told = np.array([key in info for info in infos])

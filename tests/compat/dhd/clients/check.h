@@ -1,4 +1,4 @@
-/* What the clients check is told on standard output; the first thing that is wrong ends them. */
+/* Checks of the client programs. The first failed check is printed and ends the program. */
 #ifndef CHECK_H
 #define CHECK_H
 
@@ -16,10 +16,10 @@
     }                                                                                  \
   } while (0)
 
-/* Two numbers that a step of an encoder or of a motor may part. */
+/* Compares two numbers that may differ by a step of an encoder or motor. */
 #define CHECK_NEAR(a, b, quantum) CHECK(fabs((a) - (b)) < (quantum))
 
-/* Opens an arm and lets forces through. */
+/* Opens an arm and enables its force. */
 #define OPEN_ARM(id)                        \
   do {                                      \
     CHECK(dhdOpenID(id) == (id));           \

@@ -1,4 +1,4 @@
-/* A program that asks what the arm has before it uses it: this one has a stylus that turns, and no
+/* Queries the features of the arm before it uses them. This arm measures its stylus, and has no
  * gripper. */
 #include "check.h"
 

@@ -1,5 +1,4 @@
-/* Opens the first arm and pushes with a steady force; the loop is paced by the call that sets it.
- */
+/* Opens the first arm and requests a constant force. The set-force call paces the loop. */
 #include <dlfcn.h>
 #include <string.h>
 
@@ -28,13 +27,13 @@ int main(void) {
   CHECK_NEAR(x, 0.4, 1e-9);
   CHECK_NEAR(y, -0.3, 1e-9);
   CHECK_NEAR(z, 0.2, 1e-9);
-  /* A hand of 300 N/m gives way. */
+  /* The hand, of 300 N/m, yields. */
   CHECK(dhdGetPosition(&x, &y, &z, -1) == 0);
   CHECK_NEAR(x, 0.4 / 300, 0.0006);
   CHECK_NEAR(y, -0.3 / 300, 0.0006);
   CHECK(dhdGetStatus(status, -1) == 0);
   CHECK(status[DHD_STATUS_FORCE] == 1 && status[DHD_STATUS_ERROR] == 0);
-  /* One library of two names, whatever a program asks for. */
+  /* Both names belong to one library. */
   CHECK(dlsym(dlopen("libdhd.so.3", RTLD_NOW), "dhdOpen") == dlsym(RTLD_DEFAULT, "dhdOpen"));
   CHECK(dlsym(dlopen("libdrd.so.3", RTLD_NOW), "drdOpen") ==
         dlsym(dlopen("libdhd.so", RTLD_NOW), "drdOpen"));

@@ -1,4 +1,4 @@
-/* An arm that is regulated: it holds, goes to a point, follows another, and is let go. */
+/* Regulation: the arm holds a point, moves to another, follows a third, and is released. */
 #include "check.h"
 
 static double distance(double x, double y, double z) {
@@ -17,7 +17,8 @@ int main(void) {
   CHECK(drdIsRunning(-1));
   dhdSleep(0.6);
   CHECK(distance(0, 0, 0) < 0.002);
-  /* The hand holds the tip by 300 N/m, the regulation by more: it arrives nearer to its goal. */
+  /* The regulation is stiffer than the hand, 300 N/m, so the tip ends nearer to the regulated
+   * point. */
   CHECK(drdMoveToPos(0.006, 0, 0, false, -1) == 0);
   CHECK(drdIsMoving(-1));
   dhdSleep(1.0);

@@ -1,5 +1,5 @@
-/* A spring to the middle of the workspace, with a button that would switch it off, as the programs
- * of a first afternoon are. */
+/* A spring to the centre of the workspace, with a button that ends the program: a typical first
+ * program. */
 #include "check.h"
 
 int main(void) {
@@ -13,7 +13,7 @@ int main(void) {
     CHECK(dhdGetPosition(&p[0], &p[1], &p[2], -1) >= 0);
     CHECK(dhdGetLinearVelocity(&v[0], &v[1], &v[2], -1) >= 0);
     CHECK(dhdGetForce(&f[0], &f[1], &f[2], -1) == 0);
-    /* What was asked in the last turn is what the motors got in it, once the gate is open. */
+    /* After the soft start, the motors must get the force requested in the last turn. */
     if (i > 600) {
       const double off = fabs(f[0] - last[0]) + fabs(f[1] - last[1]) + fabs(f[2] - last[2]);
       if (off > worst) worst = off;

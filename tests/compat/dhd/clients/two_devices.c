@@ -1,4 +1,4 @@
-/* Two arms in one loop, each with a force of its own. */
+/* Two arms in one loop, with different forces. */
 #include "check.h"
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* A program that hangs: its own watchdog takes the force away, and only it gives it back. */
+/* A program that hangs: its own watchdog disables the force, and only the program can enable it. */
 #include "check.h"
 
 static int off_cause(void) {
