@@ -59,8 +59,7 @@ TEST(DentSettings, ReadEachOfTheirNumbers) {
   support::VariantSettings both(
       support::VariantSettings::Values{{"region", "whole"}, {"rings", 2.0}});
   settings.read(both, {});
-  EXPECT_NE(both.mistakes.find("rings cannot stand together with region: whole"),
-            std::string::npos);
+  EXPECT_NE(both.mistakes.find("rings cannot be combined with region: whole"), std::string::npos);
 }
 
 TEST(DentMotion, LeavesAVertexThatDoesNotMoveWhereItIs) {

@@ -230,13 +230,13 @@ TEST(SpringMotion, TakesSubstepsOrRefusesAndSaysSo) {
   const auto refused =
       SpringMotion<1>::build(network, with(SpringScheme::kVerlet, 5e-3, Beyond::kRefuse));
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("bears steps up to 0."), std::string::npos)
+  EXPECT_NE(refused.error().message.find("is stable for steps up to 0."), std::string::npos)
       << refused.error().message;
   auto motion =
       SpringMotion<1>::build(network, with(SpringScheme::kVerlet, 5e-3, Beyond::kSubstep)).value();
   EXPECT_GT(motion.substeps(), 1);
   EXPECT_LT(5e-3 / motion.substeps(), largest_step(SpringScheme::kVerlet, network.bounds()));
-  EXPECT_NE(motion.describe().find("verlet bears steps up to 0."), std::string::npos);
+  EXPECT_NE(motion.describe().find("verlet is stable for steps up to 0."), std::string::npos);
   support::throw_nodes(motion, 1e-3, 0, 4);
   const double before = motion.energy();
   for (int i = 0; i < 1000; ++i) motion.step();

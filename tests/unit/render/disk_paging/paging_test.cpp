@@ -107,8 +107,8 @@ TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
 TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
   const std::string good = bytes_of(page_file());
   EXPECT_EQ(refusal(good), "");
-  EXPECT_NE(refusal("").find("this is no page file"), std::string::npos);
-  EXPECT_NE(refusal("OFF\n4 4 0\n" + std::string(200, ' ')).find("no page file"),
+  EXPECT_NE(refusal("").find("not a page file"), std::string::npos);
+  EXPECT_NE(refusal("OFF\n4 4 0\n" + std::string(200, ' ')).find("not a page file"),
             std::string::npos);
   EXPECT_NE(refusal(good.substr(0, good.size() - 1)).find("it ends after"), std::string::npos);
   std::string other = good;
@@ -162,7 +162,7 @@ TEST(PageFile, RefusesAWrongNumberOfTriangles) {
   ASSERT_TRUE(writer->append(bumpy().triangles().first(9)).ok());
   const auto done = writer->finish();
   ASSERT_FALSE(done.ok());
-  EXPECT_NE(done.error().message.find("9 triangles were written, but 10 promised"),
+  EXPECT_NE(done.error().message.find("9 triangles were written, but 10 were announced"),
             std::string::npos);
   EXPECT_FALSE(PageFile::open(path).ok());
   EXPECT_FALSE(PageFileWriter::create(path, {{0, 0, 0}, 1}, 0).ok());

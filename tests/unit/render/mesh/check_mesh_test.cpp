@@ -131,7 +131,7 @@ TEST(CheckMesh, TellsCavitiesFromComponentsThatAreInsideOut) {
 TEST(CheckMesh, DescribesAFaultWithCountPlaceAndRemedy) {
   EXPECT_EQ(describe({Kind::kOpenEdge, 3, "edge 1-2 near (0, 0, 0)"}),
             "3 edges belong to only one triangle, so the mesh has a hole (the first: edge 1-2 near "
-            "(0, 0, 0)); a repair fills holes, and what stays open can be a sheet.");
+            "(0, 0, 0)); a repair fills holes, and open parts can be used as sheets.");
   EXPECT_EQ(describe({Kind::kDegenerateTriangle, 1, "triangle 4"}),
             "1 triangle has no area (triangle 4); a repair drops such triangles.");
 }

@@ -122,7 +122,7 @@ std::string csv_text(std::string text) {
 bool names_a_fault(const std::string& reason) {
   for (const char* words :
        {"has a hole", "more than two triangles", "share nothing else", "no area", "repeat",
-        "one side only", "cannot be read", "truncated", "no face with three corners", "wound"}) {
+        "only one side", "cannot be read", "truncated", "no face with three corners", "wound"}) {
     if (reason.find(words) != std::string::npos) return true;
   }
   return false;

@@ -72,7 +72,7 @@ TEST(ReadObj, RefusesVerticesWithAnotherCountOfNumbers) {
             "eight.obj:1: a vertex has at most 7 numbers.");
   EXPECT_TRUE(load_text("weight.obj", "v 0 0 0 1" + rest).ok());
   EXPECT_EQ(refusal("weight.obj", "v 0 0 0 2" + rest),
-            "weight.obj:1: a vertex with a weight other than 1 is not read.");
+            "weight.obj:1: vertex weights other than 1 are not supported.");
 }
 
 TEST(ReadObj, CountsNegativeCornersFromTheEnd) {
@@ -85,7 +85,7 @@ TEST(ReadObj, CountsNegativeCornersFromTheEnd) {
 TEST(ReadObj, ReadsFacesBeforeTheirVertices) {
   EXPECT_DOUBLE_EQ(closed_volume(load_text("early.obj", kFacesOfBox + kCornersOfBox)), 1);
   EXPECT_EQ(refusal("early.obj", "\n" + kFacesOfBox + "v 0 0 0\n"),
-            "early.obj:2: the face names vertex 3; the file has 1.");
+            "early.obj:2: the face refers to vertex 3; the file has 1.");
 }
 
 TEST(ReadObj, NamesTheLineOfACornerThatIsNone) {
@@ -94,7 +94,7 @@ TEST(ReadObj, NamesTheLineOfACornerThatIsNone) {
     EXPECT_EQ(refusal("corner.obj", text).substr(0, 23), "corner.obj:5: the face ") << corner;
   }
   EXPECT_EQ(refusal("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 2 3\n"),
-            "far.obj:4: the face names vertex -4; so far there are 3.");
+            "far.obj:4: the face refers to vertex -4; so far there are 3.");
 }
 
 TEST(ReadObj, JoinsLinesThatEndInABackslash) {
@@ -149,13 +149,14 @@ TEST(ReadObj, ReportsLinesAndPoints) {
   MeshFileInfo info;
   ASSERT_TRUE(load_text("lines.obj", kCornersOfBox + kFacesOfBox + "l 1 2\np 3\n", &info).ok());
   ASSERT_EQ(info.notes.size(), 1U);
-  EXPECT_EQ(info.notes[0], "Lines and points were left out: they cannot be touched.");
+  EXPECT_EQ(info.notes[0], "Lines and points were ignored: only faces can be touched.");
 }
 
 TEST(ReadObj, RefusesShapesThatWouldBeMissing) {
-  EXPECT_EQ(refusal("nurbs.obj", kCornersOfBox + "cstype bspline\nsurf 0 1 0 1 1 2 3\n"),
-            "nurbs.obj:10: \"surf\": free-form surfaces are not read. Save the mesh as polygons in "
-            "one file.");
+  EXPECT_EQ(
+      refusal("nurbs.obj", kCornersOfBox + "cstype bspline\nsurf 0 1 0 1 1 2 3\n"),
+      "nurbs.obj:10: \"surf\": free-form surfaces are not supported. Save the mesh as polygons in "
+      "one file.");
   EXPECT_EQ(refusal("call.obj", "call other.obj\n").substr(0, 30),
             "call.obj:1: \"call\": included f");
 }

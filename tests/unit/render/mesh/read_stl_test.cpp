@@ -121,14 +121,14 @@ TEST(ReadStl, ReportsCoarseStepsOfABinaryFile) {
   ASSERT_TRUE(load_text("far.stl", binary_triangle(1000), &info).ok());
   ASSERT_EQ(info.notes.size(), 1U);
   EXPECT_EQ(info.notes[0],
-            "Its coordinates are in single precision and reach 1e+03, where their steps are "
-            "6.1e-05: 4.3e-05 of its size. Move it to the origin in the program that made it, or "
-            "export it as OBJ.");
+            "The coordinates are in single precision and reach 1e+03, where one step is "
+            "6.1e-05: 4.3e-05 of the size of the mesh. Move the mesh to the origin in its program "
+            "or export it as OBJ.");
 }
 
 TEST(ReadStl, RefusesABinaryFileWhoseStepsHideItsShape) {
   EXPECT_EQ(refusal("farther.stl", binary_triangle(4e6)).substr(0, 84),
-            "farther.stl: Its coordinates are in single precision and reach 4e+06, where their st");
+            "farther.stl: The coordinates are in single precision and reach 4e+06, where one step");
 }
 
 TEST(LoadMesh, ReadsAFileAsWhatItsContentsAre) {
@@ -151,7 +151,7 @@ TEST(LoadMesh, ReadsAFileAsWhatItsContentsAre) {
     ASSERT_TRUE(mesh.ok()) << mesh.error().message;
     EXPECT_EQ(info.kind, now.kind);
     EXPECT_EQ(info.notes.at(0),
-              std::string("Its contents are ") + now.kind + ", so it was read as that.");
+              std::string("Its contents are ") + now.kind + ", so the extension was ignored.");
   }
 }
 
@@ -163,7 +163,7 @@ TEST(LoadMesh, RefusesPlyFilesWithShapesThatAreNotRead) {
                                 "property float z\nelement tristrips 1\nproperty list int int "
                                 "vertex_indices\n" +
                                 corners + "3 0 1 2\n")
-          .find("triangle strips (tristrips), which are not read"),
+          .find("triangle strips (tristrips), which are not supported"),
       std::string::npos);
   EXPECT_NE(refusal("flat.ply", "ply\nformat ascii 1.0\n" + vertices +
                                     "element face 1\nproperty list int int vertex_indices\n"

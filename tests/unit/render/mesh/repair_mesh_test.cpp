@@ -212,7 +212,7 @@ TEST(RepairMesh, GivesPartsThatShareAVertexOneEach) {
 }
 
 TEST(SaveMesh, SaysWhyItCannotWrite) {
-  EXPECT_NE(save_mesh(good(), "mesh.stl").error().message.find("end in .off"), std::string::npos);
+  EXPECT_NE(save_mesh(good(), "mesh.stl").error().message.find("ends in .off"), std::string::npos);
   EXPECT_NE(save_mesh(good(), "/no_such_folder/a.off").error().message.find("cannot be written"),
             std::string::npos);
 }
@@ -268,7 +268,7 @@ TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
         Case{"crack of 1 um", crack, true, "has a hole"},
         Case{"duplicate vertices", soup(good(), 0), true, "has a hole"},
         Case{"repeated triangle", repeated, true, "repeats another one"},
-        Case{"flipped face", flipped, false, "1 triangle was turned round"}}) {
+        Case{"flipped face", flipped, false, "1 triangle was reversed"}}) {
     const auto loaded = ContactMesh::build(now.mesh);
     EXPECT_EQ(!loaded.ok(), now.refused) << now.name;
     const std::string told = loaded ? describe(loaded->orientation()) : loaded.error().message;
