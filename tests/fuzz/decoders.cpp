@@ -26,7 +26,7 @@ using Bytes = std::span<const std::byte>;
 
 void promise(bool kept, const char* what) {
   if (kept) return;
-  std::fprintf(stderr, "A decoder broke its promise: %s\n", what);
+  std::fprintf(stderr, "Check of a decoder failed: %s\n", what);
   std::abort();
 }
 
@@ -47,7 +47,8 @@ bool line_comes_back(Bytes bytes, std::optional<Line> (*decode)(Bytes) noexcept,
   std::array<std::byte, driver::hfab::kLineCapacity> buffer{};
   const std::size_t size = encode(*meaning, buffer);
   promise(size <= buffer.size(), "a line fits its buffer");
-  promise(decode(Bytes(buffer).first(size)) == meaning, "a line means the same again");
+  promise(decode(Bytes(buffer).first(size)) == meaning,
+          "an encoded line is decoded to the same values");
   return true;
 }
 
@@ -69,9 +70,9 @@ bool find_frames(Bytes bytes) {
     const std::size_t size = finder.take(buffer, skipped);
     if (size == 0) continue;
     any = true;
-    promise(size >= 2 && size <= 16, "a message has the size it may have");
+    promise(size >= 2 && size <= 16, "a message has a valid size");
     promise(buffer[0] == std::byte{'<'} && buffer[size - 1] == std::byte{'>'},
-            "a message has its borders");
+            "a message has its delimiters");
   }
   return any;
 }
@@ -82,7 +83,7 @@ bool reads(Bytes bytes) {
   driver::ArmReading reading{.counts = {11, 22, 33}, .auxiliary = {44, 55, 66}, .buttons = 77};
   if (Wire::decode(bytes, reading)) return true;
   promise(reading.counts == std::array<std::int32_t, 3>{11, 22, 33} && reading.buttons == 77,
-          "a rejected report leaves the reading alone");
+          "a rejected report does not change the reading");
   return false;
 }
 
@@ -95,9 +96,10 @@ bool usbip_decode(Bytes bytes) {
     promise(request.size <= bytes.size(), "a request lies within its bytes");
     const auto again = usb::encode_request(request);
     usb::UsbipRequest same;
-    promise(usb::decode_request(again, same) == usb::Decode::kWhole, "a request comes back");
+    promise(usb::decode_request(again, same) == usb::Decode::kWhole,
+            "an encoded request is decoded to the same request");
     // A bus id that fills its field loses its last letter to the closing zero.
-    promise(request.bus_id.starts_with(same.bus_id), "a bus id comes back");
+    promise(request.bus_id.starts_with(same.bus_id), "an encoded bus id is decoded to the same id");
   }
   usb::UsbipCommand command;
   if (usb::decode_command(bytes, command) != usb::Decode::kWhole) return asked;
@@ -106,10 +108,10 @@ bool usbip_decode(Bytes bytes) {
   const Bytes data = bytes.first(command.size).subspan(usb::kUsbipHeaderSize);
   usb::UsbipCommand same;
   promise(usb::decode_command(usb::encode_command(command, data), same) == usb::Decode::kWhole,
-          "a command comes back");
+          "an encoded command is decoded to the same command");
   promise(same.sequence == command.sequence && same.setup == command.setup &&
               same.length == command.length && same.unlinked == command.unlinked,
-          "a command means the same again");
+          "a re-encoded command has the same values");
   return true;
 }
 
@@ -130,7 +132,8 @@ class Obliging final : public device_sim::usb::UsbDevice {
   void advance_to(std::int64_t) noexcept override {}
   device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket& setup,
                                         std::span<std::byte> data) noexcept override {
-    promise(data.size() <= setup.length, "a device is asked for no more than the set-up says");
+    promise(data.size() <= setup.length,
+            "a device is asked for at most the length in the setup packet");
     return {device_sim::usb::Answer::kDone, data.size()};
   }
   device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
@@ -139,7 +142,7 @@ class Obliging final : public device_sim::usb::UsbDevice {
   }
   device_sim::usb::PacketResult out(std::uint8_t,
                                     std::span<const std::byte> packet) noexcept override {
-    promise(packet.size() <= kPacketMax, "a packet is no longer than packets are");
+    promise(packet.size() <= kPacketMax, "a packet does not exceed the maximum packet size");
     return {device_sim::usb::Answer::kDone, packet.size()};
   }
 
@@ -169,7 +172,7 @@ bool usbip_session(Bytes bytes) {
   const auto& counters = session.counters();
   promise(counters.completed + counters.stalled + counters.babbled + counters.unlinked <=
               counters.submitted,
-          "no more answers than questions");
+          "there are no more answers than requests");
   return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
 }
 
@@ -178,7 +181,7 @@ bool hid_descriptor(Bytes bytes) {
   constexpr std::size_t kLengthMax = 1U << 16;
   const driver::HidReports reports = driver::read_hid_descriptor(bytes);
   promise(reports.in_bytes <= kLengthMax && reports.out_bytes <= kLengthMax,
-          "a report has a length that a report may have");
+          "a report has a valid length");
   return reports.in_bytes > 0;
 }
 
@@ -187,7 +190,7 @@ bool space_mouse(Bytes bytes) {
   const view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
   view::SpaceMouseState state = before;
   if (view::take_space_mouse_report(bytes, state)) return true;
-  promise(state == before, "a rejected report leaves the state alone");
+  promise(state == before, "a rejected report does not change the state");
   return false;
 }
 

@@ -33,7 +33,7 @@ using Bytes = std::span<const std::byte>;
 
 void promise(bool kept, const char* what) {
   if (kept) return;
-  std::fprintf(stderr, "A reader of files broke its promise: %s\n", what);
+  std::fprintf(stderr, "Check of a file reader failed: %s\n", what);
   std::abort();
 }
 
@@ -65,18 +65,18 @@ std::filesystem::path store(Bytes bytes, const char* name) {
 
 template <class T>
 bool told(const driver::Result<T>& result) {
-  if (!result) promise(!result.error().message.empty(), "a refusal is a sentence");
+  if (!result) promise(!result.error().message.empty(), "an error has a message");
   return static_cast<bool>(result);
 }
 
 bool read_scene_file(Bytes bytes) {
   static const bool arm_beside = std::filesystem::copy_file(
       THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml", folder() / "arm.yaml");
-  promise(arm_beside, "an arm stands beside the scene");
+  promise(arm_beside, "the arm file is next to the scene");
   const auto scene = scene::load_scene(store(bytes, "any.yaml"),
                                        {.mesh_folder = THIMBLE_SOURCE_DIR "/tests/data/meshes"});
   if (!told(scene)) return false;
-  promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has an end");
+  promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has a duration");
   promise(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
   // Patches of a body may take long to build; scenes made by chance are kept small.
   if (scene->objects.size() > 4) return true;
@@ -104,7 +104,7 @@ bool read_mesh(Bytes bytes, const char* name) {
   if (!told(mesh)) return false;
   promise(!mesh->triangles.empty(), "a mesh has triangles");
   for (const auto& vertex : mesh->vertices) {
-    promise(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex is somewhere near");
+    promise(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex has valid coordinates");
   }
   for (const auto& triangle : mesh->triangles) {
     for (const std::int32_t corner : triangle) {
@@ -146,9 +146,9 @@ std::vector<std::byte> damaged(std::vector<std::byte> file, Bytes orders) {
 
 std::vector<std::byte> sound_pages() {
   const auto mesh = render::load_mesh(THIMBLE_SOURCE_DIR "/tests/data/meshes/box.off");
-  promise(static_cast<bool>(mesh), "a sound mesh is read");
+  promise(static_cast<bool>(mesh), "a valid mesh is read");
   const auto surface = render::PackedSurface::build(*mesh, {});
-  promise(static_cast<bool>(surface), "a sound mesh is packed");
+  promise(static_cast<bool>(surface), "a valid mesh is packed");
   const std::filesystem::path path = folder() / "sound.pages";
   promise(static_cast<bool>(render::write_page_file(*surface, path)), "pages can be written");
   return bytes_of(path);
@@ -208,7 +208,7 @@ bool read_pages(Bytes bytes) {
     promise(count >= 0 && count <= render::kPageTriangles, "a page fits its buffer");
     in_all += count;
   }
-  promise(in_all <= file->triangle_count(), "pages hold no more than was told");
+  promise(in_all <= file->triangle_count(), "pages hold no more triangles than announced");
   touch_pages(path);
   return true;
 }

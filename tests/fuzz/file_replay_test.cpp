@@ -39,7 +39,7 @@ TEST_P(FileReaders, KeepTheirPromisesOnEveryFileOfTheCorpus) {
     SCOPED_TRACE(name);
     taken += read_any_file(GetParam(), bytes) ? 1 : 0;
   }
-  EXPECT_GE(taken, 1) << "a corpus without one good file says little";
+  EXPECT_GE(taken, 1) << "the corpus needs at least one valid file";
 }
 
 TEST_P(FileReaders, KeepTheirPromisesOnDamagedFiles) {

@@ -283,8 +283,8 @@ TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
     fallen += through;
   }
   support::record_hard_case(24, "T-junctions, crack, doubled vertices and triangle, flipped face",
-                            "== faults told on loading", told_of, 6, "1");
-  support::record_hard_case(24, "the same, mended: tip pressed on it at random",
+                            "== faults reported on loading", told_of, 6, "1");
+  support::record_hard_case(24, "the same, repaired: tip pressed on it at random",
                             "== ticks fallen through or not finite", fallen, 0, "1");
 }
 

@@ -466,7 +466,7 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
   EXPECT_NE(sines(wave(0.0035, 0.1)).find("5 N press only 6.25 mm deep"), std::string::npos);
   EXPECT_NE(sines(wave(0.001, 0.001)).find("a slope of 6.28"), std::string::npos);
   // 0.1 m/s over 0.15 mm: 667 Hz.
-  EXPECT_NE(sines(wave(0.00001, 0.00015)).find("666.7 Hz; a loop of 1000 Hz shows 500 Hz"),
+  EXPECT_NE(sines(wave(0.00001, 0.00015)).find("666.7 Hz; a loop of 1000 Hz displays 500 Hz"),
             std::string::npos);
   EXPECT_NE(sines(wave(-0.001, 0.01)).find("amplitude"), std::string::npos);
   EXPECT_NE(sines(wave(kNan, 0.01)).find("amplitude"), std::string::npos);
