@@ -52,7 +52,7 @@ bool line_comes_back(Bytes bytes, std::optional<Line> (*decode)(Bytes) noexcept,
   return true;
 }
 
-/// Cuts the bytes into pieces whose lengths they tell themselves, and finds messages.
+/// Cuts the bytes into pieces, whose lengths the bytes themselves specify, and finds messages.
 bool find_frames(Bytes bytes) {
   driver::FrameFinder finder({.begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = 16});
   bool any = false;
@@ -77,7 +77,8 @@ bool find_frames(Bytes bytes) {
   return any;
 }
 
-/// What an arm makes of the bytes must be a pose or NaN, and a rejection leaves the reading alone.
+/// Decodes the bytes as a report: the result must be a pose or NaN, and a rejected report must not
+/// change the reading.
 template <class Wire>
 bool reads(Bytes bytes) {
   driver::ArmReading reading{.counts = {11, 22, 33}, .auxiliary = {44, 55, 66}, .buttons = 77};
@@ -87,7 +88,7 @@ bool reads(Bytes bytes) {
   return false;
 }
 
-/// Reads the bytes as one message of a USB/IP client in each of its two phases.
+/// Decodes the bytes as one message of a USB/IP client in each of its two phases.
 bool usbip_decode(Bytes bytes) {
   namespace usb = device_sim::usb;
   usb::UsbipRequest request;
@@ -98,7 +99,7 @@ bool usbip_decode(Bytes bytes) {
     usb::UsbipRequest same;
     promise(usb::decode_request(again, same) == usb::Decode::kWhole,
             "an encoded request is decoded to the same request");
-    // A bus id that fills its field loses its last letter to the closing zero.
+    // A bus id that fills its field loses its last character to the terminating zero.
     promise(request.bus_id.starts_with(same.bus_id), "an encoded bus id is decoded to the same id");
   }
   usb::UsbipCommand command;
@@ -115,7 +116,7 @@ bool usbip_decode(Bytes bytes) {
   return true;
 }
 
-/// A device with one endpoint of each kind, which takes and gives whatever it is asked.
+/// Device with one endpoint of each kind, which accepts and returns everything that is requested.
 class Obliging final : public device_sim::usb::UsbDevice {
  public:
   Obliging() {
@@ -151,7 +152,8 @@ class Obliging final : public device_sim::usb::UsbDevice {
   std::size_t count_ = 0;
 };
 
-/// Lets a client that imported a device and configured it go on with these bytes, in two pieces.
+/// Continues the session of a client that imported and configured a device with these bytes, in two
+/// pieces.
 bool usbip_session(Bytes bytes) {
   namespace usb = device_sim::usb;
   Obliging device;
@@ -176,7 +178,7 @@ bool usbip_session(Bytes bytes) {
   return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
 }
 
-/// A report descriptor comes from a device that nobody knows yet.
+/// A report descriptor comes from a device that is not yet identified.
 bool hid_descriptor(Bytes bytes) {
   constexpr std::size_t kLengthMax = 1U << 16;
   const driver::HidReports reports = driver::read_hid_descriptor(bytes);
@@ -185,7 +187,7 @@ bool hid_descriptor(Bytes bytes) {
   return reports.in_bytes > 0;
 }
 
-/// What a SpaceMouse tells is whole, or leaves what was told before.
+/// A reading of a SpaceMouse is complete, or keeps the previous state.
 bool space_mouse(Bytes bytes) {
   const view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
   view::SpaceMouseState state = before;

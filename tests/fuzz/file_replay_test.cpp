@@ -17,7 +17,7 @@ namespace {
 using File = std::vector<std::byte>;
 
 std::map<std::string, File> corpus(std::string_view kind) {
-  std::map<std::string, File> files;  // by name, so that every machine has the same order
+  std::map<std::string, File> files;  // ordered by name, so that every machine has the same order
   for (const auto& entry :
        std::filesystem::directory_iterator(std::filesystem::path(THIMBLE_FILE_CORPUS) / kind)) {
     std::ifstream stream(entry.path(), std::ios::binary);
@@ -43,7 +43,7 @@ TEST_P(FileReaders, KeepTheirPromisesOnEveryFileOfTheCorpus) {
 }
 
 TEST_P(FileReaders, KeepTheirPromisesOnDamagedFiles) {
-  // A few milliseconds each for the slowest; the fuzzer is what searches.
+  // A few milliseconds each for the slowest; the search itself is left to the fuzzer.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   int rounds = 40;
 #else

@@ -21,7 +21,7 @@ void promise(bool kept, const char* what) {
   std::abort();
 }
 
-/// Makes the memory of a run with a bit of everything.
+/// Returns the memory of a run with an example of each content.
 std::vector<std::byte> sound_memory() {
   session::SharedScene scene;
   scene.name = "fuzz";
@@ -167,7 +167,7 @@ void read_everything(session::SharedReader& reader) {
 
 bool read_shared_memory(std::span<const std::byte> bytes) {
   static const std::vector<std::byte> sound = sound_memory();
-  // Aligned as mapped memory is.
+  // Aligned like mapped memory.
   struct alignas(64) Line {
     std::byte bytes[64];
   };

@@ -86,7 +86,7 @@ TEST(DentMotion, TellsTheForceThatMovedTheVertex) {
   for (const SpringScheme scheme :
        {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet, SpringScheme::kImplicitEuler}) {
     DentSettings settings;
-    settings.stiffness = 1e-6;  // nothing but the cursor's spring
+    settings.stiffness = 1e-6;  // only the cursor's spring
     settings.damping = settings.neighbour_stiffness = settings.neighbour_damping = 0;
     settings.integrator = scheme;
     DentMotion motion = motion_of(*mesh, settings);

@@ -67,7 +67,7 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Opens a file of these bytes and tells what was wrong with it.
+/// Opens a file of these bytes and returns the error.
 std::string refusal(const std::string& bytes) {
   const auto path = support::scratch_folder() / "damaged.pages";
   std::ofstream(path, std::ios::binary) << bytes;
@@ -174,7 +174,7 @@ TEST(PagedSurface, HoldsEverythingWithinReachOfTheTipAndAheadOfIt) {
   const auto surface = open(settings);
   support::Random random(6);
   for (int step = 0; step < 300; ++step) {
-    // A spiral from pole to pole, so that every page comes and goes.
+    // A spiral from pole to pole, so that every page is loaded and discarded.
     const double down = 0.01 * step, around = 0.3 * step;
     const Vector3d p_W = 0.05 * Vector3d(std::sin(down) * std::cos(around),
                                          std::sin(down) * std::sin(around), std::cos(down));
@@ -211,7 +211,7 @@ TEST(PagedSurface, FindsTheEntriesOfATreeInMemory) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(7);
-  EXPECT_FALSE(surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}).complete);  // nothing is there yet
+  EXPECT_FALSE(surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}).complete);  // nothing is loaded yet
   tick(*surface, {0, 0, 0.05});
   serve_all(*surface);
   int entries = 0;
@@ -245,7 +245,7 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
   int within = 0;
   for (int k = 0; k < 5'000; ++k) {
     const auto t = static_cast<std::int32_t>(random.bits() % 20'480);
-    // Corners, middles of edges, places near the surface and anywhere.
+    // Corners, midpoints of edges, places near the surface and anywhere.
     Vector3d p = random.in_box(0.06);
     if (k % 4 == 0) p = bumpy().position(t, 0);
     if (k % 4 == 1) p = 0.5 * (bumpy().position(t, 0) + bumpy().position(t, 1));
@@ -270,7 +270,7 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
 }
 
 TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
-  // A few pages of many: every answer that claims to be complete must be right.
+  // A few of many pages: every answer that claims to be complete must be correct.
   const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(10);
@@ -298,7 +298,7 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
       if (complete) {
         const SurfacePoint expected = tree.closest(p, 0.01);
         ASSERT_EQ(nearest < 0, expected.triangle < 0);
-        // Equally near ones share an edge or a corner: which is named is a matter of rounding.
+        // Equally near triangles share an edge or a corner; rounding decides which one is returned.
         if (nearest >= 0) {
           EXPECT_NEAR(distance_to(nearest, p), expected.distance, 1e-12);
         }
@@ -310,8 +310,8 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
 }
 
 TEST(PagedSurface, LoadingNeverShowsAWrongRecord) {
-  // A fast tip, few frames, and a servo that looks at packed triangles as long as a tick lasts:
-  // what the thread sanitizer and the comparison would catch is a frame that is reused too early.
+  // A fast tip, few frames, and a servo that reads packed triangles for a whole tick. The thread
+  // sanitizer and the comparison would detect a frame that is reused too early.
   const auto surface = open({.frames = 6, .reach = 0.003, .horizon = 0.01});
   surface->start_loader();
   support::Random random(8);
