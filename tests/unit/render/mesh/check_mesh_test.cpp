@@ -96,7 +96,7 @@ TEST(CheckMesh, FindsDegenerateTrianglesAtEveryScale) {
         support::add_vertex(mesh, (mesh.vertices[0] + mesh.vertices[1]) / 2);
     mesh.triangles.push_back({0, middle, 1});
     EXPECT_EQ(count(check_mesh(mesh), Kind::kDegenerateTriangle), 2u) << scale;
-    // A sliver that is a millionth as high as long is thin, not degenerate.
+    // A sliver with a height of a millionth of its length is thin, not degenerate.
     TriangleMesh sliver = support::box({scale, scale, 1e-6 * scale});
     EXPECT_TRUE(check_mesh(sliver).touchable()) << scale;
   }

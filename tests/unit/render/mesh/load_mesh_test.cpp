@@ -17,7 +17,7 @@ namespace {
 
 const std::filesystem::path kMeshes = std::filesystem::path(THIMBLE_TEST_DATA) / "meshes";
 
-// A file that lives as long as the test.
+// File that exists for the duration of the test.
 class MeshFile {
  public:
   MeshFile(const std::string& ending, const std::string& bytes)
@@ -217,7 +217,7 @@ TEST(LoadMesh, AnswersEveryTruncationOfEveryFormat) {
       const MeshFile file(std::string(name).substr(std::string(name).size() - 3),
                           whole.substr(0, size));
       const auto mesh = file.load();
-      // A cut between two faces of a format without counts is a smaller mesh, not an error.
+      // A cut between two faces of a format without counts gives a smaller mesh, not an error.
       if (mesh.ok()) {
         EXPECT_LE(mesh->triangles.size(), 12u) << name << " cut at " << size;
       } else {

@@ -34,7 +34,7 @@ driver::Result<TriangleMesh> load_bytes(const std::string& name, const std::stri
 TEST(MeshFormats, ReadTheSameBoxFromEach) {
   struct Case {
     const char* name;
-    double scale;  // of lengths: a DAE file's unit is applied
+    double scale;  // of lengths: the unit of a DAE file is applied
     std::optional<double> unit;
     char up;
   };
@@ -69,7 +69,7 @@ TEST(MeshFormats, PutPartsWhereTheFileSays) {
   ASSERT_TRUE(two.ok()) << two.error().message;
   EXPECT_EQ(check_mesh(*two).components, 2u);
   EXPECT_LT((check_mesh(*two).box_max - Eigen::Vector3d(21, 2, 3)).norm(), 1e-6);
-  EXPECT_EQ(info.unit, 0.001);  // 3MF counts in mm where it names nothing else
+  EXPECT_EQ(info.unit, 0.001);  // the unit of 3MF is mm if the file names no other
 }
 
 TEST(MeshFormats, KeepTheOuterSideOfAMirroredPartOutside) {
@@ -110,7 +110,7 @@ TEST(MeshFormats, TakeStlWithBytesAfterItsEndAndInCapitals) {
   ASSERT_TRUE(load_bytes("longer.stl", binary + "some program's own", &info).ok());
   ASSERT_EQ(info.notes.size(), 1u);
   EXPECT_EQ(info.notes[0], "18 bytes after the last triangle were ignored.");
-  // A binary file may call itself solid.
+  // A binary file may begin with "solid".
   std::string solid = binary;
   solid.replace(0, 6, "solid ");
   EXPECT_TRUE(load_bytes("solid.stl", solid + "more").ok());
@@ -194,7 +194,7 @@ TEST(MeshFormats, AnswerGarbageWithASentence) {
   }
 }
 
-// Assimp never gets past a letter among the corners, and asks for memory meanwhile.
+// Assimp never passes a letter among the corners, and allocates memory meanwhile.
 TEST(MeshFormats, AreGivenUpSoonWhereTheirReaderNeverEnds) {
   std::string bytes = bytes_of(kMeshes / "box.dae");
   const std::size_t corners = bytes.find("<p>");

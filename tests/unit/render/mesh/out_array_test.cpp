@@ -41,7 +41,7 @@ TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
-// Turns about half of the triangles round; `turns` says which with -1, as the OUT array must.
+// Reverses about half of the triangles and marks them with -1 in `turns`, as the OUT array must.
 TriangleMesh shuffled(TriangleMesh mesh, OutArray& turns) {
   support::Random random(5);
   turns.clear();
@@ -154,7 +154,7 @@ TEST(OrientMesh, WindsShuffledMeshesAsTheyWereAndReportsIt) {
     EXPECT_EQ(turns[static_cast<std::size_t>(report.first_turned)], -1);
     EXPECT_EQ(report.mended_components, check_mesh(mixed).components);
     EXPECT_EQ(report.one_sided_components, 0u);
-    // Done once, nothing is left to do.
+    // After one pass nothing is left to do.
     const auto once = mixed.triangles;
     EXPECT_EQ(orient_mesh(mixed).turned_triangles, 0u);
     EXPECT_EQ(mixed.triangles, once);
@@ -168,7 +168,8 @@ TEST(OrientMesh, KeepsTheMajorityOfAnOpenPartAndLeavesAOneSidedOne) {
   for (const std::size_t t : {3u, 40u, 77u}) std::swap(open.triangles[t][1], open.triangles[t][2]);
   EXPECT_EQ(orient_mesh(open).turned_triangles, 3u);
   for (std::size_t t = 0; t < whole.size(); ++t) {
-    // Turned twice, a triangle may begin with another corner; its way round is what counts.
+    // A triangle that was reversed twice may begin with another corner; only its orientation
+    // counts.
     const auto& [a, b, c] = open.triangles[t];
     const auto& [d, e, f] = whole[t];
     EXPECT_TRUE((a == d && b == e && c == f) || (b == d && c == e && a == f) ||
@@ -225,7 +226,7 @@ TEST(OrientMesh, OrientsTheShuffledFilesAsTheParityOfRaysDoes) {
     EXPECT_GT(orient_mesh(by_winding).turned_triangles, 0u) << name;
     EXPECT_TRUE(check_mesh(by_winding).touchable()) << name;
     EXPECT_GT(check_mesh(by_winding).volume, 0) << name;
-    // Where a mesh passes through itself, rays see the matter that is there, and winding does not.
+    // Where a mesh passes through itself, rays see the matter there, and orientation does not.
     if (std::string(name) == "boeing.off") continue;
     TriangleMesh by_rays = file;
     const OutArray out = compute_out_array(file);
@@ -271,7 +272,8 @@ TEST(FindNeighbour, GivesTheArraysAnswers) {
     const auto array = find_adjacency(mesh);
     if (!array) return;
     ++meshes;
-    // All of a small mesh, a share of a large one: in the cycle each answer costs a pass.
+    // All triangles of a small mesh, a part of a large one: in the cycle each answer takes a pass
+    // over the mesh.
     const std::size_t step = 1 + mesh.triangles.size() / 2000;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -294,7 +296,7 @@ TEST(FindNeighbour, GivesTheArraysAnswers) {
 TEST(FindNeighbour, SaysThereIsNoneOverAnOpenEdge) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.triangles.erase(mesh.triangles.begin() + 1);
-  EXPECT_EQ(find_neighbour(mesh, 0, 2), -1);  // edge 3-0, whose other triangle is gone
+  EXPECT_EQ(find_neighbour(mesh, 0, 2), -1);  // edge 3-0, whose other triangle was removed
   EXPECT_GE(find_neighbour(mesh, 0, 0), 0);
 }
 

@@ -8,7 +8,7 @@
 namespace thimble::render {
 namespace {
 
-// A tetrahedron whose positions and more are in base64: `accessors` and `views` say where.
+// A tetrahedron whose positions and more are in base64, described by `accessors` and `views`.
 std::string gltf_text(const std::string& node, const std::string& mesh,
                       const std::string& accessors, const std::string& views,
                       const std::string& data, std::size_t length, const std::string& more = "") {
@@ -63,7 +63,7 @@ TEST(ReadGltf, ReadsQuantizedPositions) {
 }
 
 TEST(ReadGltf, AppliesMorphWeights) {
-  // The target moves each vertex by (127, 0, 0), half of which is applied.
+  // The target moves each vertex by (127, 0, 0); half of it is applied.
   const std::string accessors =
       R"({"bufferView": 0, "componentType": 5120, "count": 4, "type": "VEC3"}, )" + kIndices +
       R"(, {"bufferView": 2, "componentType": 5120, "count": 4, "type": "VEC3"})";
@@ -81,7 +81,7 @@ TEST(ReadGltf, AppliesMorphWeights) {
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).box_max.x(), 190.5);
   ASSERT_EQ(info.notes.size(), 1U);
   EXPECT_EQ(info.notes[0], "Morph targets were applied with the weights of the file.");
-  // The node's own weights count before the mesh's.
+  // The node's own weights take precedence over the mesh's.
   const auto own =
       load_text("own.gltf", gltf_text(R"(, "weights": [1])",
                                       R"(, "targets": [{"POSITION": 2}]}], "weights": [0.5])",

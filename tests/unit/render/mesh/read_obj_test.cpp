@@ -13,7 +13,7 @@ const std::string kCornersOfBox =
 const std::string kFacesOfBox =
     "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 
-// Returns the volume of a mesh that is closed; -1 with a failure for any other.
+// Returns the volume of a closed mesh; adds a failure and returns -1 for any other.
 double closed_volume(const driver::Result<TriangleMesh>& mesh) {
   EXPECT_TRUE(mesh.ok()) << mesh.error().message;
   if (!mesh) return -1;
@@ -120,8 +120,8 @@ TEST(ReadObj, SplitsConcaveFacesWithoutChangingTheirArea) {
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).area, 1);
 }
 
-// A saw of this many corners at the top, above a straight edge: one face, whose area is 1.5 for
-// each corner but the last.
+// A saw with this many corners at the top, above a straight edge: one face, with an area of 1.5 for
+// each corner except the last.
 std::string saw(int corners) {
   std::string text, face = "f";
   for (int i = 0; i < corners; ++i) {

@@ -15,7 +15,7 @@ std::string facet_text(const std::string& corners, const std::string& normal = "
          "endloop\nendfacet\nendsolid a\n";
 }
 
-// The corners of a binary file of one triangle.
+// A binary file of one triangle; `first` is its first coordinate.
 std::string binary_triangle(float first) {
   std::string bytes(84 + 50, '\0');
   const std::uint32_t count = 1;

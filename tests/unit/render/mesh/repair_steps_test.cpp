@@ -11,7 +11,7 @@
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/repair_mesh.h"
 
-// Single steps of repair_mesh and of thicken_sheets.
+// Single steps of repair_mesh and thicken_sheets.
 
 namespace thimble::render {
 namespace {
@@ -30,7 +30,7 @@ TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
 
 TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
   // Two prisms over triangles that share the edge x = y = 0, which has a vertex in its middle: at
-  // that vertex the faces of each body hang together over the parted edge alone.
+  // that vertex the faces of each body are connected only across the split edge.
   TriangleMesh mesh;
   const auto add = [&mesh](double x, double y, double z) {
     mesh.vertices.emplace_back(x, y, z);
@@ -58,11 +58,11 @@ TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
   const RepairedMesh repaired = repair_mesh(mesh);
   EXPECT_TRUE(check_mesh(repaired.mesh).touchable());
   EXPECT_EQ(repaired.mesh.triangles.size(), mesh.triangles.size());
-  EXPECT_EQ(repaired.mesh.vertices.size(), 18u);  // nine for each body
+  EXPECT_EQ(repaired.mesh.vertices.size(), 18u);  // nine per body
 }
 
 TEST(AmbiguousEdges, AreCutIntoPiecesThatKnowTheirTriangle) {
-  // Triangles that hang together at random: over some edges front and back are one at both ends.
+  // Randomly connected triangles: at some edges, front and back coincide at both ends.
   support::Random random(5);
   std::size_t cuts = 0;
   for (int i = 0; i < 50; ++i) {

@@ -66,7 +66,7 @@ TEST(SmoothNormals, KeepTheFacesOfABoxSharpToTheBit) {
       creases += normals.crease(t, k);
     }
   }
-  EXPECT_EQ(creases, 24);  // 12 edges, each seen from both sides
+  EXPECT_EQ(creases, 24);  // 12 edges, each counted from both sides
 }
 
 TEST(SmoothNormals, AreTheSameFromBothSidesOfAnEdgeThatIsNoCrease) {
@@ -140,7 +140,7 @@ TEST(SmoothNormals, FittedNormalsAreExactOnFlatGround) {
 }
 
 TEST(SmoothNormals, ThatAreFittedLeanAwayFromNoFaceOfANeedle) {
-  // Points of a needle are no paraboloid: there the mean of the faces must stand.
+  // The vertices of a needle are not a paraboloid: there the mean of the faces must be used.
   const ContactMesh mesh = prepared_mesh(support::needle(64, 0.05, 0.002));
   const SmoothNormals fitted(mesh, std::numbers::pi);
   const SmoothNormals angle(mesh, std::numbers::pi, NormalWeights::kAngle);

@@ -17,7 +17,7 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 
-// Large meshes are built on two threads. The answers are those of plain code on one.
+// Large meshes are built on two threads. The results are those of plain code on one.
 
 namespace thimble::render {
 namespace {
@@ -35,7 +35,7 @@ TEST(InHalves, DoesEachItemOnce) {
   }
 }
 
-// By sorting what each cut is made of.
+// Sorts the elements of each cut.
 void order_plainly(std::span<PlacedIndex> items) {
   if (items.size() <= 8) return;
   std::size_t unit = 8;
@@ -59,7 +59,7 @@ void order_plainly(std::span<PlacedIndex> items) {
 
 TEST(BlockOrder, HasTheSameBlocksAsPlainSorting) {
   support::Random random(3);
-  // Above the size from which parts are ordered beside each other, and with places that are equal.
+  // Above the size from which parts are ordered in parallel, and with equal places.
   for (const std::size_t count : {9u, 700u, 60001u}) {
     std::vector<PlacedIndex> items(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ TEST(BlockOrder, HasTheSameBlocksAsPlainSorting) {
   }
 }
 
-// What the corners of a surface without creases hold: sums of normals by angles in single
+// Corner normals of a surface without creases: sums of normals weighted by angles in single
 // precision, in the order of the packed triangles.
 TEST(PackedSurface, HasTheNormalsOfPlainSumsWhereTwoThreadsBuiltIt) {
   const TriangleMesh mesh = support::bumpy_sphere(6, 0.05, 0.1, 5);  // 81,920 triangles
@@ -124,7 +124,7 @@ TEST(PackedSurface, HasTheNormalsOfPlainSumsWhereTwoThreadsBuiltIt) {
 
 TEST(PackedSurface, ReportsTheFirstFlatTriangle) {
   TriangleMesh mesh = support::icosphere(6, 0.05);
-  // Onto the middle of an edge of its own: no area left of one triangle beside it.
+  // Moves a vertex onto the midpoint of its own edge, so that a triangle has no area.
   const auto flatten = [&mesh](std::size_t t) {
     const auto [a, b, c] = mesh.triangles[t];
     mesh.vertices[static_cast<std::size_t>(c)] = mesh.vertices[static_cast<std::size_t>(a)];

@@ -35,7 +35,7 @@ int scaled_count(int full, int brief) {
   return support::long_form() ? full : brief;
 }
 
-// One surface with all its searches; the linear one is what the others are held against.
+// One surface with all its searches; the linear one is the reference.
 template <class Surface>
 struct Searches {
   explicit Searches(const Surface& surface) : linear(surface), grid(surface), tree(surface) {}
@@ -45,7 +45,7 @@ struct Searches {
     for (const ContactSearch* search : others()) {
       const Entry found = search->first_entry(from, to);
       ASSERT_EQ(found.triangle, wanted.triangle) << from.transpose() << " to " << to.transpose();
-      // To the bit: the same numbers in the same order.
+      // Bit-identical: the same numbers in the same order.
       ASSERT_EQ(found.parameter, wanted.parameter);
     }
     entries += wanted.triangle >= 0;
@@ -76,7 +76,7 @@ struct Searches {
   int entries = 0, insides = 0;
 };
 
-// Segments of a tick, of a hand's breadth and through everything, around a mesh of size 2 * half.
+// Segments of a tick, of a hand's breadth and across everything, around a mesh of size 2 * half.
 template <class Surface>
 void expect_same_on_random_segments(const Surface& surface, const Vector3d& middle, double half,
                                     int count, std::uint64_t seed) {
@@ -158,8 +158,8 @@ TEST(EverySearch, IsIndependentOfScaleAndOrigin) {
   }
 }
 
-// Points on a coarse lattice: nearly all lie on planes, edges or corners, many segments within
-// faces or along edges, some of no length.
+// Points on a coarse lattice: nearly all are on planes, edges or corners, many segments are within
+// faces or along edges, some have no length.
 TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
   for (const bool compact : {false, true}) {
     const TriangleMesh shape = support::plate(1, 0.5, 4);
@@ -252,8 +252,8 @@ TEST(EverySearch, TellsAClearanceThatNoTriangleReachesInto) {
   }
 }
 
-// Walks of ticks of every length near and far from the surface: the remembered ball changes no
-// answer, and saves most questions.
+// Walks with ticks of every length near and far from the surface: the remembered ball changes no
+// answer, and saves most queries.
 TEST(FreeSpace, MissesNothingOnAWalk) {
   const ContactMesh mesh = ContactMesh::build(support::bumpy_sphere(3, 0.05, 0.3, 6)).value();
   for (const auto choice : {SearchChoice::kLinear, SearchChoice::kGrid, SearchChoice::kTree}) {
@@ -290,7 +290,7 @@ TEST(FreeSpace, HoldsATipThatIsFarAway) {
   }
 }
 
-// Case 28: 2 m/s at 1 kHz is 2 mm per tick, through a plate of 1 mm, begun at every phase.
+// Case 28: 2 m/s at 1 kHz is 2 mm per tick, through a plate of 1 mm, starting at every phase.
 template <class Build>
 void expect_no_tunnelling(Build build) {
   const TriangleMesh shape = support::plate(0.1, 0.001, 8);
@@ -354,7 +354,7 @@ TEST(MakeSearch, TakesTheTreeWhereMostTrianglesLieInOneCorner) {
   const TriangleMesh even = support::icosphere(3, 0.05);
   const ContactMesh mesh = ContactMesh::build(even).value();
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(mesh).get()), nullptr);
-  // The same ball beside one a thousand times larger.
+  // The same ball next to one a thousand times larger.
   TriangleMesh uneven = even;
   const TriangleMesh large =
       placed(support::icosphere(0, 0.05), 1000, Eigen::Matrix3d::Identity(), Vector3d(100, 0, 0));

@@ -11,7 +11,7 @@ namespace {
 
 namespace other = sse2_elsewhere;
 
-/// Equal bits; of single and double numbers any NaN is any other.
+/// Equal bits; in single and double precision, all NaNs are equal.
 template <class Lane, class One, class Other>
 void expect_same(const One& one, const Other& other, const char* name) {
   static_assert(sizeof(one) == sizeof(other));
@@ -26,7 +26,7 @@ void expect_same(const One& one, const Other& other, const char* name) {
   }
 }
 
-/// Lanes of any bits, or of numbers that meet each other: zeros of both signs, infinities, NaN.
+/// Lanes of any bits, or of special numbers: zeros of both signs, infinities, NaN.
 struct Input {
   alignas(16) float singles[2][4];
   alignas(16) double doubles[2][2];
