@@ -14,7 +14,7 @@ using support::move;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Is a convex hollow in a block, with a point well inside it.
+// A convex hollow in a block, with a point well inside it.
 struct Hollow {
   const char* name;
   TriangleMesh mesh;
@@ -94,7 +94,7 @@ TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
                             worst, 1e-9, "1");
   support::record_hard_case(25, "the same", "== way of the proxy in ten more ticks", moved_later, 0,
                             "m");
-  EXPECT_LT(most_hops, kHopsMax);  // that many end a search that has not settled
+  EXPECT_LT(most_hops, kHopsMax);  // that many end a search that has not converged
   support::record_hard_case(25, "the same", "< most hops in a tick", most_hops, kHopsMax, "1");
 }
 
@@ -121,7 +121,8 @@ TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {
 }
 
 TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
-  // Projection on a convex set brings no two points farther apart: no jump, no tremor made louder.
+  // Projection onto a convex set never increases the distance of two points: no jump, and no
+  // amplified tremor.
   const double size = 0.4;
   auto contact =
       GodObjectContact::build(support::block_around(support::icosphere(3, 0.05), size / 2)).value();
@@ -142,7 +143,7 @@ TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
     const Vector3d p_WP = state.touching ? state.p_WP : p;
     ASSERT_LE((p_WP - p_WP_before).norm(), (p - p_before).norm() + 1e-11 * size) << i;
     if (state.touching && depth_before > 0) {
-      // Tip and proxy each move by a step at most, and so does the arrow between them.
+      // Tip and proxy each move by at most a step, and so does the vector between them.
       const double turn = (state.n_W - n_before).norm() * std::min(state.depth, depth_before);
       ASSERT_LE(turn, 2 * (p - p_before).norm() + 1e-11 * size) << i;
       ++both;

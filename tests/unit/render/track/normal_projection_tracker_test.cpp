@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 using NormalProjectionContact = TrackedContact<NormalProjectionTracker>;
 
 // Puts the tip below a point near the middle of every convex edge and moves it out of the active
-// triangle's cell; gives the largest depth jump and, for the sake of the law, its largest error.
+// triangle's cell. Returns the largest depth jump and the largest error of the predicted jump.
 template <class Tracker>
 struct EdgeJumps {
   double jump = 0;
@@ -38,7 +38,7 @@ struct EdgeJumps {
         const Vector3d out =
             (mesh.position(t, (k + 1) % 3) - mesh.position(t, k)).cross(n).normalized();
         if (!(out.dot(n_next) > 0)) continue;  // concave
-        // Where the cell ends: straight below the edge for 4a, on the edge plane for 4b.
+        // The end of the cell: perpendicular below the edge for 4a, on the edge plane for 4b.
         const Plane& plane = mesh.edge_planes(t)[k];
         const Vector3d below = middle - depth * n;
         const double to_plane = plane.distance(below - mesh.origin()) / -plane.n.dot(out);
