@@ -181,7 +181,7 @@ TEST(BendablePolygon, DoesNotJumpWhereTheCursorCrossesAnEdge) {
   }
 }
 
-TEST(BendablePolygon, GoesBackToItsBaseAndThenCostsNothing) {
+TEST(BendablePolygon, ReturnsToItsBaseAndThenCostsNothing) {
   for (const bool whole : {false, true}) {
     DentSettings settings;
     settings.whole = whole;
@@ -196,7 +196,7 @@ TEST(BendablePolygon, GoesBackToItsBaseAndThenCostsNothing) {
   }
 }
 
-TEST(BendablePolygon, MovesARingAsItMovesTheWholeBodyNearTheCursor) {
+TEST(BendablePolygon, RingMovesLikeTheWholeBodyNearTheCursor) {
   // Vertices beyond the rings are fixed, which is not visible near the cursor.
   DentSettings settings = quiet();
   auto near = dent_in(support::icosphere(2, 0.05), settings);
@@ -210,7 +210,7 @@ TEST(BendablePolygon, MovesARingAsItMovesTheWholeBodyNearTheCursor) {
   }
 }
 
-TEST(BendablePolygon, KeepsSwingingVerticesWhenTheCursorGoesOn) {
+TEST(BendablePolygon, VerticesOscillateAfterTheCursorMovedOn) {
   auto dent = dent_in(support::icosphere(3, 0.05));
   settle(dent, 0, {0.4, 0.3, 0.3}, 2e-3);
   const std::int32_t left = dent.mesh().corners(0)[0];
@@ -311,7 +311,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
   EXPECT_GT(refused, 5);
 }
 
-TEST(BendablePolygon, RefusesOrSurvivesNonsense) {
+TEST(BendablePolygon, RefusesOrSurvivesInvalidInput) {
   const auto mesh =
       std::make_shared<const ContactMesh>(ContactMesh::build(support::icosphere(1, 0.05)).value());
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -343,7 +343,7 @@ TEST(BendablePolygon, RefusesOrSurvivesNonsense) {
   }
 }
 
-TEST(BendablePolygon, AsksTheHeapForNothing) {
+TEST(BendablePolygon, DoesNotAllocate) {
   auto dent = dent_in(support::icosphere(3, 0.05));
   auto patch = std::make_unique<BodyPatch>();
   support::Random random(4);
@@ -370,7 +370,7 @@ Vector3d wander(double time, support::Random& random) {
          tremor;
 }
 
-TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
+TEST(DentedTouch, PullReturnsNoMoreEnergyThanTheHandPutIn) {
   for (const double damping : {0.0, 0.2}) {
     DentSettings settings;
     settings.damping = damping;
@@ -420,7 +420,7 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
   }
 }
 
-TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
+TEST(DentedTouch, WithoutPullKeepsForcesAndIsRepeatable) {
   const TriangleMesh ball = support::icosphere(2, 0.05);
   for (const TrackerChoice tracker : {TrackerChoice::kEdgePlanes, TrackerChoice::kOffset,
                                       TrackerChoice::kGodObject, TrackerChoice::kPacked}) {
@@ -456,7 +456,7 @@ TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
   }
 }
 
-TEST(BodyPull, FadesWithWhatTheHandHasPutByAndDoesNotSwitch) {
+TEST(BodyPull, FadesWithTheHandsReserveWithoutSwitching) {
   BodyPull pull(1, 1e-3);
   const Eigen::Vector3d n(0, 0, 1);
   double depth = 0, last = 0, given = 0, most = 0, step = 0, felt = 0, held = 0;

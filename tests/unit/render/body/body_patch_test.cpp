@@ -98,7 +98,7 @@ TriangleMesh scanned(const std::string& name) {
                 Vector3d(0, 0, 0));
 }
 
-TEST(BodyPatch, IsClosedAndOnItsSideInRandomTouchesOverRealMeshes) {
+TEST(BodyPatch, IsClosedAndUnfoldedInRandomTouches) {
   std::vector<std::pair<std::string, TriangleMesh>> meshes{
       {"ball", support::icosphere(3, 0.05)}, {"box", support::box({0.04, 0.03, 0.02})}};
   if (fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {

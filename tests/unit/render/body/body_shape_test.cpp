@@ -382,7 +382,7 @@ TEST(Snap, ComesBackFromAPressBelowTheThreshold) {
   }
 }
 
-TEST(Shape, MovesAFewVerticesPerTickAndAsksTheHeapForNothing) {
+TEST(Shape, MovesFewVerticesPerTickWithoutAllocation) {
   const TriangleMesh mesh = support::bumpy_sphere(4, 0.04, 0.1, 4);
   auto object = shaped(mesh,
                        {.clay = ClayChoice{.yield_force = 2, .radius = 4e-3},
@@ -401,7 +401,7 @@ TEST(Shape, MovesAFewVerticesPerTickAndAsksTheHeapForNothing) {
   EXPECT_GT(least_seen_area(mesh, mesh_now(*object, mesh)), 0.1);
 }
 
-TEST(Shape, RefusesOrSurvivesNonsense) {
+TEST(Shape, RefusesOrSurvivesInvalidInput) {
   const TriangleMesh mesh = support::icosphere(3, 0.03);
   const auto refused = [&](const ShapeChoice& shape, double stiffness = kStiffness,
                            ContactChoice contact = {}) {

@@ -123,7 +123,7 @@ PrintError print_error(double radius, double edge, const Vector3d& aside) {
 }
 
 // Triangles of 10 mm, prints 1, 2, 3 and 5 times as wide, at two places.
-TEST(ClayRefinement, MakesPrintsAsAskedForHoweverCoarseTheMesh) {
+TEST(ClayRefinement, MakesTheRequestedPrintOnAnyMesh) {
   for (const double widths : {1.0, 2.0, 3.0, 5.0}) {
     const double radius = widths * 0.01 / 2;
     for (const Vector3d& aside : {Vector3d(0.0033, 0.0017, 0), Vector3d(1e-4, 2e-4, 0)}) {
@@ -242,7 +242,7 @@ TEST(ClayRefinement, ChangesNoForceByItself) {
   }
 }
 
-TEST(ClayVolume, StaysWhereItIsAskedToBeKept) {
+TEST(ClayVolume, IsKeptOnRequest) {
   for (const double edge : {0.0, 0.0008}) {
     const TriangleMesh mesh =
         edge > 0 ? support::plate(0.1, 0.04, 10) : support::icosphere(4, 0.03);
@@ -346,7 +346,7 @@ TEST(ClayRefinement, ThousandPrintsKeepTheMeshClosed) {
   }
 }
 
-TEST(ClayRefinement, RefusesWhatDoesNotGoWithIt) {
+TEST(ClayRefinement, RefusesIncompatibleSettings) {
   const TriangleMesh mesh = support::icosphere(3, 0.03);
   const auto refused = [&](ClayChoice clay, bool dent, bool snap) {
     SurfaceChoice surface{.spring = {.stiffness = kStiffness}, .shape = {.clay = clay, .snap = {}}};

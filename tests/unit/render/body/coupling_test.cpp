@@ -335,7 +335,7 @@ TEST(PhysicsOfCoupling, AHeldBodySwingsAtTheFrequencyOfItsSpring) {
                  -(*damped)->pose().p_WB[2]);
 }
 
-TEST(PhysicsOfCoupling, ABlockComesBackFromATipAsItCame) {
+TEST(PhysicsOfCoupling, ABlockReboundsFromATipAtItsSpeed) {
   const double rate = 2e4;
   const MotionChoice motion{.mass = 0.1};
   const double back =

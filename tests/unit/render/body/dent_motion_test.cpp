@@ -62,7 +62,7 @@ TEST(DentSettings, ReadEachOfTheirNumbers) {
   EXPECT_NE(both.mistakes.find("rings cannot be combined with region: whole"), std::string::npos);
 }
 
-TEST(DentMotion, LeavesAVertexThatDoesNotMoveWhereItIs) {
+TEST(DentMotion, RestingVertexIsNotMoved) {
   const auto mesh = ball();
   DentMotion motion = motion_of(*mesh, {});
   const std::array<std::int32_t, 1> first{0};
@@ -81,7 +81,7 @@ TEST(DentMotion, LeavesAVertexThatDoesNotMoveWhereItIs) {
   EXPECT_GT(still, 50);
 }
 
-TEST(DentMotion, TellsTheForceThatMovedTheVertex) {
+TEST(DentMotion, ReturnsTheForceThatMovedTheVertex) {
   const auto mesh = ball();
   for (const SpringScheme scheme :
        {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet, SpringScheme::kImplicitEuler}) {
@@ -106,7 +106,7 @@ TEST(DentMotion, TellsTheForceThatMovedTheVertex) {
   }
 }
 
-TEST(PatchDrawing, GivesNothingWhereItHasNoRoomForAll) {
+TEST(PatchDrawing, ReturnsNothingIfThePatchDoesNotFit) {
   const auto mesh = ball(3);
   const DentMotion motion = motion_of(*mesh, {});
   PatchDrawing drawing(mesh);

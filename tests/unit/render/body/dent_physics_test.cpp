@@ -168,7 +168,7 @@ TEST(PhysicsOfDents, ReleasedDentsSwingAsTheirModesDo) {
   }
 }
 
-TEST(PhysicsOfDents, ImplicitEulerDampsAsItsClosedFormSays) {
+TEST(PhysicsOfDents, ImplicitEulerDampsByItsClosedForm) {
   const Plate plate;
   for (const double rate : {1e3, 2e4}) {
     for (const double omega_h : {0.3, 0.1, 0.01, 0.001}) {

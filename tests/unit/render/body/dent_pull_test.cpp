@@ -124,7 +124,7 @@ std::array<double, 2> spread_of_pull(const TriangleMesh& mesh, double between, d
   return {range[0] / sum, range[1] / sum};
 }
 
-TEST(DentPull, IsAlikeInTheMiddleOverEdgesAndOverCorners) {
+TEST(DentPull, IsEqualOnFacesEdgesAndCorners) {
   for (const Shape& shape : shapes()) {
     for (const double between : {0.0, 0.25, 1.0}) {
       const auto [least, most] = spread_of_pull(shape.mesh, between, 0);
@@ -141,7 +141,7 @@ TEST(DentPull, IsAlikeInTheMiddleOverEdgesAndOverCorners) {
   }
 }
 
-TEST(DentPull, StaysWhileTheTipSlidesFromTheMiddleToACornerAndBack) {
+TEST(DentPull, IsSteadyWhileTheTipSlidesToACornerAndBack) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const Corner corner(ball, 3);
   const Vector3d middle = corner.at(Vector3d::Constant(1.0 / 3));
@@ -277,7 +277,7 @@ DentSettings exact(double between) {
   return settings;
 }
 
-TEST(DentPull, DoesNoWorkAroundAClosedWayInsideATriangle) {
+TEST(DentPull, DoesNoWorkOnAClosedPathInATriangle) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const Corner corner(ball, 3);
   const Vector3d middle = corner.at({0.5, 0.3, 0.2});

@@ -120,7 +120,7 @@ TEST(PhysicsOfFloors, SlidingStopsAtTheDistanceOfTheLaw) {
   EXPECT_EQ(body.kinetic_energy(), 0);
 }
 
-TEST(PhysicsOfFloors, APushBeyondFrictionAcceleratesByTheRest) {
+TEST(PhysicsOfFloors, PushAboveFrictionAcceleratesByTheRest) {
   for (const double push : {3.5, 5.0, 20.0}) {
     RigidBody body = block({0.05, 0.05, 0.02}, {.friction = 0.3, .mass = 1});
     for (int i = 0; i < 500; ++i) {
@@ -265,7 +265,7 @@ TEST(PhysicsOfFloors, AnEdgeHitDoesNotRoll) {
 
 // [Housner]: a block that rocks onto its other edge keeps 1 - 1.5 sin^2(a) of its angular velocity,
 // with tan(a) = w / h.
-TEST(PhysicsOfFloors, ARockingBlockLosesWhatHousnerSays) {
+TEST(PhysicsOfFloors, RockingBlockLosesSpeedByHousner) {
   for (const double w : {0.01, 0.02, 0.03}) {
     const double h = 0.05, tick = 1e-4;
     const double alpha = std::atan(w / h), start = alpha / 2;

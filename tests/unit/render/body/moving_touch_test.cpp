@@ -273,7 +273,7 @@ TEST(MovingTouch, LeavingTheWorkspaceIsHarmless) {
   }
 }
 
-TEST(HeldTouch, IsAsHeavyAsItIsAndSlipsOutWhereTheBodyCannotFollow) {
+TEST(HeldTouch, FeelsItsWeightAndSlipsOutOfReach) {
   for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
     for (const double mass : {1e-3, 0.1, 0.15}) {
       MotionChoice motion{.kind = kind, .mass = mass, .damping = 0.1, .reach = 0.08};
@@ -301,7 +301,7 @@ TEST(HeldTouch, IsAsHeavyAsItIsAndSlipsOutWhereTheBodyCannotFollow) {
   }
 }
 
-TEST(MovingTouch, RefusesOrSurvivesNonsense) {
+TEST(MovingTouch, RefusesOrSurvivesInvalidInput) {
   const MotionChoice good{.kind = MotionKind::kRigid, .mass = 0.1};
   const auto refused = [&](const MotionChoice& choice, const TriangleMesh& mesh) {
     auto touch = build_object_touch(block(), {}, surface_of(500, 1)).value();
@@ -360,7 +360,7 @@ TEST(MovingTouch, RefusesOrSurvivesNonsense) {
   }
 }
 
-TEST(MovingTouch, TellsWhereItIsAndPutsItsMeshThere) {
+TEST(MovingTouch, ReportsItsPoseAndMovesItsMesh) {
   MotionChoice motion{.kind = MotionKind::kRigid, .mass = 0.1};
   motion.v_W = {0.1, 0, 0};
   motion.omega_W = {0, 0, 1};
@@ -381,7 +381,7 @@ TEST(MovingTouch, TellsWhereItIsAndPutsItsMeshThere) {
   EXPECT_FALSE(object->inside({-0.029, 0, 0}));
 }
 
-TEST(MovingTouch, StandsOnItsFloorAndAsksTheHeapForNothing) {
+TEST(MovingTouch, RestsOnItsFloorWithoutAllocation) {
   for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
     MotionChoice motion{.kind = kind, .mass = 0.1};
     motion.gravity_W = {0, 0, -9.81};

@@ -136,7 +136,7 @@ TEST(OscillatorStep, IsTheSameOnBothSidesOfEachOfItsBranches) {
   }
 }
 
-TEST(OscillatorStep, StaysWhereItIsWhenToldNonsense) {
+TEST(OscillatorStep, IgnoresInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -1.0}) {

@@ -45,7 +45,7 @@ RigidBody body_of(const TriangleMesh& mesh, double mass) {
   return RigidBody::build(settings).value();
 }
 
-TEST(MassProperties, AreThoseOfABlockWhereverAndHoweverItStands) {
+TEST(MassProperties, AreThoseOfABlockInAnyPose) {
   support::Random random(1);
   for (int i = 0; i < 50; ++i) {
     const Vector3d at = random.in_box(i < 25 ? 0.1 : 1e4);
@@ -65,7 +65,7 @@ TEST(MassProperties, AreThoseOfABlockWhereverAndHoweverItStands) {
   }
 }
 
-TEST(MassProperties, TendToThoseOfASphereAndRefuseWhatHasNoVolume) {
+TEST(MassProperties, ApproachASphereAndRefuseZeroVolume) {
   const auto ball = mass_properties(support::icosphere(4, 0.05), 2);
   ASSERT_TRUE(ball);
   EXPECT_NEAR(ball->inertia[0], 0.4 * 2 * 0.05 * 0.05, 0.01 * 2e-3);
@@ -222,7 +222,7 @@ TEST(HardCaseRigidBody, NeverSpinsItselfUp) {
   }
 }
 
-TEST(RigidBody, FallsComesToRestOnItsFloorAndStays) {
+TEST(RigidBody, FallsAndRestsOnItsFloor) {
   for (const double friction : {0.0, 0.4}) {
     RigidBodySettings settings;
     const TriangleMesh mesh = block(
@@ -282,7 +282,7 @@ TEST(RigidBody, FallsAndFadesByTheLaws) {
 }
 
 // The torque is -c omega about every axis; compared with Euler's equations in small RK4 steps.
-TEST(RigidBody, TumblesToRestAsTheTorqueOfItsDampingSays) {
+TEST(RigidBody, TumblesToRestByItsDampingTorque) {
   RigidBodySettings settings;
   settings.mass = mass_properties(block(), 0.3).value();
   settings.angular_damping = 5e-5;
@@ -384,7 +384,7 @@ TEST(TranslatingBody, BalancesItsMomentumAndNeverDiverges) {
   EXPECT_EQ(body.p_W().norm(), 0);
 }
 
-TEST(RigidBody, RefusesOrSurvivesNonsense) {
+TEST(RigidBody, RefusesOrSurvivesInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   RigidBodySettings good;
   good.mass = mass_properties(block(), 0.3).value();
@@ -423,7 +423,7 @@ TEST(RigidBody, RefusesOrSurvivesNonsense) {
   EXPECT_EQ(body.kinetic_energy(), 0);
 }
 
-TEST(RigidBody, AsksTheHeapForNothing) {
+TEST(RigidBody, DoesNotAllocate) {
   RigidBodySettings settings;
   settings.mass = mass_properties(block(), 0.3).value();
   settings.floor = Floor{};

@@ -166,7 +166,7 @@ TEST(HardCaseSnapThrough, StiffDriveFollowsTheLaw) {
                             std::abs(at / 2.58577e-3 - 1), 0.005, "1");
 }
 
-TEST(SnapBase, RunsNoFasterThanItMayAndReleasesTheSame) {
+TEST(SnapBase, SpeedLimitKeepsTheReleasedEnergy) {
   SnapSettings slow = kStated;
   slow.speed_max = 0.5;
   SnapBase base(slow, {0, 0, -1});
@@ -185,7 +185,7 @@ TEST(SnapBase, RunsNoFasterThanItMayAndReleasesTheSame) {
   EXPECT_EQ(base.displacement(), base.way() * Eigen::Vector3d(0, 0, -1));
 }
 
-TEST(SnapBase, StaysStillOnNonsense) {
+TEST(SnapBase, IgnoresInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   SnapBase base = stated_base();

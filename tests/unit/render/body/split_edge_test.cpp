@@ -27,7 +27,7 @@ void split_somewhere(MovingMesh& mesh, support::Random& random) {
   mesh.split_edge(t, edge, random.bits() % 2 == 0);
 }
 
-TEST(SplitEdge, LeavesTheMeshAndAllOverItAsIfBuiltAnew) {
+TEST(SplitEdge, EqualsANewlyBuiltMesh) {
   support::Random random(3);
   for (const TriangleMesh& start :
        {support::icosphere(0, 0.05), support::torus(0.035, 0.015, 12, 8),
@@ -89,7 +89,7 @@ TEST(SplitEdge, LeavesTheMeshAndAllOverItAsIfBuiltAnew) {
   }
 }
 
-TEST(SplitEdge, SplitsNothingWhereItMayNotOrTwoTrianglesShareMore) {
+TEST(SplitEdge, RejectsForbiddenAndDoublySharedEdges) {
   const TriangleMesh box = support::box({0.03, 0.02, 0.01});
   ContactMesh stiff = ContactMesh::build(box).value();
   EXPECT_LT(stiff.split_edge(0, 0, true).vertex, 0);

@@ -202,7 +202,7 @@ TEST(HardCaseMembrane, ImplicitEulerFadesByItsLaw) {
                             "<= error of the fading per step", worst, 0.01, "1");
 }
 
-TEST(SpringMotion, KeepsMomentumWhereNothingHoldsTheBody) {
+TEST(SpringMotion, FreeBodyKeepsItsMomentum) {
   const MeshSpringSettings settings{1e-3, 0, 0, 300, 0.01, true};
   const auto network = join_vertices(support::icosphere(1, 0.03), settings).value();
   for (const SpringScheme scheme :
@@ -226,7 +226,7 @@ TEST(SpringMotion, KeepsMomentumWhereNothingHoldsTheBody) {
   }
 }
 
-TEST(SpringMotion, TakesSubstepsOrRefusesAndSaysSo) {
+TEST(SpringMotion, UsesSubstepsOrRefusesWithTheLimit) {
   const SpringNetwork<1> network = sheet(8, 0);
   const auto refused =
       SpringMotion<1>::build(network, with(SpringScheme::kVerlet, 5e-3, Beyond::kRefuse));
@@ -255,7 +255,7 @@ TEST(SpringMotion, TakesSubstepsOrRefusesAndSaysSo) {
   EXPECT_EQ(by_default->substeps(), 1);
 }
 
-TEST(SpringMotion, TakesNonsenseForNoForce) {
+TEST(SpringMotion, InvalidForceIsTakenAsZero) {
   auto motion = SpringMotion<1>::build(sheet(4, 0), {}).value();
   motion.push(3, SpringMotion<1>::Vector(std::numeric_limits<double>::quiet_NaN()));
   motion.push(4, SpringMotion<1>::Vector(std::numeric_limits<double>::infinity()));
@@ -287,7 +287,7 @@ TEST(SpringMotion, IsExactWhereNothingJoinsTheNodes) {
   }
 }
 
-TEST(ModalMotion, IsWhatAVeryFineStepTendsTo) {
+TEST(ModalMotion, IsTheLimitOfFineSteps) {
   const MeshSpringSettings settings{1e-3, 40, 0.002, 300, 0.015, true};  // dampers are 5e-5 of k
   const auto network = join_vertices(support::icosphere(1, 0.03), settings).value();
   auto modal = ModalMotion<3>::build(network, 5e-3).value();
@@ -308,7 +308,7 @@ TEST(ModalMotion, IsWhatAVeryFineStepTendsTo) {
   EXPECT_NEAR(modal.energy(), motion.energy(), 1e-5 * motion.energy());
 }
 
-TEST(ModalMotion, RefusesWhatItCannotDoExactly) {
+TEST(ModalMotion, RefusesInexactCases) {
   std::vector<BodyNode> nodes{{1e-3, 10, 0.1}, {1e-3, 10, 0}, {1e-3, 10, 0}};
   const std::vector<BodySpring<1>> springs{{0, 1, 50, 0}, {1, 2, 80, 0}};
   EXPECT_FALSE(ModalMotion<1>::build(SpringNetwork<1>::build(nodes, springs).value(), 1e-3));
@@ -318,7 +318,7 @@ TEST(ModalMotion, RefusesWhatItCannotDoExactly) {
   EXPECT_FALSE(ModalMotion<1>::build(sheet(41, 0), 1e-3));
 }
 
-TEST(SpringMotion, AsksTheHeapForNothing) {
+TEST(SpringMotion, DoesNotAllocate) {
   const auto network =
       join_vertices(support::icosphere(2, 0.03), {1e-3, 40, 0.002, 300, 0.015, true}).value();
   for (const SpringScheme scheme :

@@ -80,7 +80,7 @@ TEST(SpringNetwork, KnowsTheLimitsOfTriangleGrids) {
   EXPECT_NEAR(largest_step(SpringScheme::kVerlet, heights), 0.67e-3, 0.01e-3);
 }
 
-TEST(SpringNetwork, HoldsAVertexThatNoTriangleNames) {
+TEST(SpringNetwork, HoldsAnUnusedVertex) {
   TriangleMesh mesh = support::icosphere(0, 0.03);
   mesh.vertices.emplace_back(1, 1, 1);
   const auto network = join_vertices(mesh, {1e-3, 100, 0, 1000, 0, true});
@@ -88,7 +88,7 @@ TEST(SpringNetwork, HoldsAVertexThatNoTriangleNames) {
   EXPECT_TRUE(network->neighbours(12).empty());
 }
 
-TEST(SpringNetwork, RefusesWhatIsNoBody) {
+TEST(SpringNetwork, RefusesInvalidBodies) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   const auto build = [](BodyNode node, BodySpring<3> spring) {

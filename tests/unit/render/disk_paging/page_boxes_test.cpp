@@ -56,7 +56,7 @@ void put_sum_right(std::string& bytes, std::size_t pages) {
   std::memcpy(bytes.data() + kSum, &folded, 4);
 }
 
-TEST(PageFile, IsRefusedWithBoxesThatNoTrianglesHave) {
+TEST(PageFile, IsRefusedWithImpossibleBoxes) {
   const std::string good = good_file();
   const std::size_t pages = pages_of(good);
   std::string same = good;

@@ -112,7 +112,7 @@ class Way {
   Vector3d at_{0, 0, 1}, axis_{1, 0, 0};
 };
 
-TEST(PagedContact, FeelsWhatTheContactInMemoryFeels) {
+TEST(PagedContact, MatchesTheContactInMemory) {
   Hand hand(PagedContact(open({.frames = 24, .reach = 0.003, .horizon = 0.02})));
   MemoryContact reference((PackedSurface(ball())));
   Way way(support::seed_of(1));
@@ -135,7 +135,7 @@ TEST(PagedContact, FeelsWhatTheContactInMemoryFeels) {
   EXPECT_GT(touching, 10'000);
 }
 
-TEST(PagedContact, FeelsAPlacedMeshAsIfItHadBeenMoved) {
+TEST(PagedContact, PlacedMeshFeelsLikeAMovedOne) {
   const PagedPlace place{.scale = 0.7,
                          .R_WM = Eigen::AngleAxisd(0.8, Vector3d(1, 2, 3).normalized()).matrix(),
                          .p_WM = {0.02, -0.3, 0.1}};
@@ -156,7 +156,7 @@ TEST(PagedContact, FeelsAPlacedMeshAsIfItHadBeenMoved) {
   }
 }
 
-TEST(PagedContact, BringsWhatAPressedTipTouchesHoweverDeepItIs) {
+TEST(PagedContact, LoadsTheTouchedSurfaceAtAnyDepth) {
   Hand hand(PagedContact(open({.frames = 8, .reach = 0.002, .horizon = 0.02})));
   Way way(support::seed_of(3));
   for (int i = 0; i < 4'000; ++i) {
@@ -203,7 +203,7 @@ TEST(PagedContact, StalledLoaderCausesNoJump) {
   }
 }
 
-TEST(PagedContact, DoesNotThrowOutATipThatCameInUnseen) {
+TEST(PagedContact, TipThatEnteredUnseenIsNotThrownOut) {
   // A free mass at 0.5 m/s, no page in memory: it gets 8 mm deep before the loader runs.
   Hand hand(PagedContact(open({.frames = 80, .reach = 0.003, .horizon = 0.01})));
   const double mass = 0.1;  // kg, arm and fingers
@@ -224,7 +224,7 @@ TEST(PagedContact, DoesNotThrowOutATipThatCameInUnseen) {
   EXPECT_LT(fastest_out, 2.5 * PagedContact::kRiseSpeed);  // but slowly
 }
 
-TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
+TEST(PagedContact, ReturnsSlowlyAfterAnUnseenEntryIntoABulge) {
   // A coarse ball: over the middle of a triangle its smooth surface is 3 mm above it.
   const PackedSurface coarse = PackedSurface::build(support::icosphere(1, kRadius)).value();
   const auto file = support::scratch_folder() / "coarse.pages";
@@ -261,7 +261,7 @@ TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
   }
 }
 
-TEST(PagedContact, DoesNotTouchWhatAnUnseenTipWentAround) {
+TEST(PagedContact, BypassedSurfaceIsNotContact) {
   // From above to the side, outside the ball; the straight path between them crosses it.
   Hand hand(PagedContact(open({.frames = 80, .reach = 1, .horizon = 0})));
   hand.move({0, 0, 0.054});
@@ -278,7 +278,7 @@ TEST(PagedContact, DoesNotTouchWhatAnUnseenTipWentAround) {
   EXPECT_EQ(hand.contact.misses(), misses);
 }
 
-TEST(PagedContact, MeetsNoWallInFreeAirAfterAHoldWasLeft) {
+TEST(PagedContact, ReleasedHoldLeavesNoWallInFreeAir) {
   Hand hand(PagedContact(open({.frames = 80, .reach = 0.003, .horizon = 0})));
   const double top = radius_at({0, 0, 1});
   hand.move({0, 0, top + 0.001});
@@ -320,7 +320,7 @@ TEST(PagedContact, NeverJumpsWhileItsPagesComeAndGoAtRandom) {
   EXPECT_LT(hand.largest_end, 2e-4);
 }
 
-TEST(PagedContact, HoldsOverAPageThatIsDamaged) {
+TEST(PagedContact, HoldsThePlaneOverADamagedPage) {
   const auto path = support::scratch_folder() / "damaged_ball.pages";
   std::filesystem::copy_file(ball_file(), path, std::filesystem::copy_options::overwrite_existing);
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path));
@@ -350,7 +350,7 @@ TEST(PagedContact, HoldsOverAPageThatIsDamaged) {
   EXPECT_LT(hand.largest_jump, 5e-4);
 }
 
-TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
+TEST(PagedContact, EveryTickEndsOnInvalidRecords) {
   // Valid checksums, but invalid contents: neighbours that lead anywhere and around in circles,
   // corners and normals of random bits.
   support::Random random(13);
@@ -401,7 +401,7 @@ TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
   }
 }
 
-TEST(PagedContact, LeavesTheHeapAloneInEveryTick) {
+TEST(PagedContact, DoesNotAllocateInATick) {
   Hand hand(PagedContact(open({.frames = 8, .reach = 0.002, .horizon = 0.004})));
   Way way(support::seed_of(8));
   std::vector<Vector3d> tips;
@@ -418,7 +418,7 @@ TEST(PagedContact, LeavesTheHeapAloneInEveryTick) {
   EXPECT_GT(hand.contact.misses(), 10u);
 }
 
-TEST(PagedContact, FindsTheSurfaceAgainHoweverFarItWentUnseen) {
+TEST(PagedContact, FindsTheSurfaceAfterAnyUnseenMove) {
   // More of the ball lies between the last place known to be free and the present one than fits the
   // frames.
   Hand hand(PagedContact(open({.frames = 5, .reach = 0.002, .horizon = 0.01})));

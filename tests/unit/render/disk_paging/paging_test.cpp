@@ -75,7 +75,7 @@ std::string refusal(const std::string& bytes) {
   return opened ? "" : opened.error().message;
 }
 
-TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
+TEST(PageFile, ReturnsEveryRecordAndABoxPerPage) {
   const auto file = PageFile::open(page_file());
   ASSERT_TRUE(file.ok()) << file.error().message;
   ASSERT_EQ(file->triangle_count(), bumpy().triangle_count());
@@ -104,7 +104,7 @@ TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
   EXPECT_EQ(file->read_page(-1, triangles), 0);
 }
 
-TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
+TEST(PageFile, ForeignOrDamagedFileIsRefusedWithAReason) {
   const std::string good = bytes_of(page_file());
   EXPECT_EQ(refusal(good), "");
   EXPECT_NE(refusal("").find("not a page file"), std::string::npos);
@@ -123,7 +123,7 @@ TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
             std::string::npos);
 }
 
-TEST(PageFile, GivesNoPageThatIsDamagedInAnyBit) {
+TEST(PageFile, DamagedPagesAreNotReturned) {
   support::Random random(5);
   const std::string good = bytes_of(page_file());
   const std::size_t records_at =
@@ -169,7 +169,7 @@ TEST(PageFile, RefusesAWrongNumberOfTriangles) {
   EXPECT_FALSE(PageFileWriter::create("/no/such/folder/x.pages", {{0, 0, 0}, 1}, 1).ok());
 }
 
-TEST(PagedSurface, HoldsEverythingWithinReachOfTheTipAndAheadOfIt) {
+TEST(PagedSurface, LoadsPagesWithinReachAndAhead) {
   const PagingSettings settings{.frames = 12, .reach = 0.004, .horizon = 0.02};
   const auto surface = open(settings);
   support::Random random(6);
@@ -231,7 +231,7 @@ TEST(PagedSurface, FindsTheEntriesOfATreeInMemory) {
   EXPECT_GT(entries, 10'000);
 }
 
-TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
+TEST(PagedSurface, MatchesInsideAndNearestOfATreeInMemory) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(9);
@@ -269,7 +269,7 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
   EXPECT_LT(within, 4000);
 }
 
-TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
+TEST(PagedSurface, ReportsUnknownInsteadOfAWrongAnswer) {
   // A few of many pages: every answer that claims to be complete must be correct.
   const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());

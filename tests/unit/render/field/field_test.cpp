@@ -77,7 +77,7 @@ void expect_no_work(const F& field, int steps, const char* what) {
   }
 }
 
-TEST(Fields, ThatAreConservativeDoNoWorkAroundAClosedWay) {
+TEST(Fields, ConservativeFieldsDoNoWorkOnAClosedPath) {
   expect_no_work(three_charges(), 4000, "charges");
   expect_no_work(point_and_line(), 400000, "magnetic snap");
   expect_no_work(Gravity({.mass = 0.1}, {}), 1000, "gravity");
@@ -133,7 +133,7 @@ TEST(MagneticSnap, PullsWithoutAStepAtTheCaptureRadius) {
   }
 }
 
-TEST(MagneticSnap, LetsTheTipRunAlongALineFreely) {
+TEST(MagneticSnap, TipSlidesFreelyAlongALine) {
   MagneticSnap::Settings settings;
   settings.targets = {{.from_O = {-0.05, 0, 0}, .to_O = {0.05, 0, 0}, .force = 2, .radius = 0.01}};
   const MagneticSnap line(settings, {});
@@ -176,7 +176,7 @@ double speed_left(double damping, double mass, int late) {
   return std::abs(v) / 0.1;
 }
 
-TEST(Viscous, RefusesWhatTheLoopCannotHold) {
+TEST(Viscous, RefusesDampingAboveTheLoopsLimit) {
   for (const int late : {0, 1, 3}) {
     EffectContext known;
     known.tip_mass = 0.075;
@@ -198,7 +198,7 @@ TEST(Viscous, RefusesWhatTheLoopCannotHold) {
   }
 }
 
-TEST(FieldTable, EveryFieldTouchesWithoutTheHeap) {
+TEST(FieldTable, NoFieldAllocates) {
   std::set<std::string_view> names;
   for (const FieldKind& kind : field_table()) {
     EXPECT_TRUE(names.insert(kind.name).second);
@@ -261,7 +261,7 @@ double worst_slope(const F& field) {
   return worst;
 }
 
-TEST(Field, PotentialsHaveTheForceAsTheirSlope) {
+TEST(Field, ForceIsTheGradientOfThePotential) {
   Gravity::Settings weight;
   weight.mass = 0.2;
   EXPECT_LT(worst_slope(Gravity(weight, turned())), 1e-7);
@@ -276,7 +276,7 @@ TEST(Field, PotentialsHaveTheForceAsTheirSlope) {
   EXPECT_LT(worst_slope(MagneticSnap(snap, turned())), 1e-5);
 }
 
-TEST(Field, NamesItsEnergyWithItsForce) {
+TEST(Field, ReturnsItsEnergyWithItsForce) {
   Gravity::Settings weight;
   weight.mass = 0.2;
   const Gravity field(weight, EffectContext{});
@@ -286,7 +286,7 @@ TEST(Field, NamesItsEnergyWithItsForce) {
   EXPECT_TRUE(command.f_program_W.isZero(0));
 }
 
-TEST(Field, OfAFunctionIsAProgramsForce) {
+TEST(Field, OfAFunctionIsTheProgramsForce) {
   const auto touch =
       field_of([](const driver::DeviceState&) noexcept { return Vector3d(0, 0, 1); });
   EXPECT_EQ(touch->update(at({0, 0, 0})).f_program_W, Vector3d(0, 0, 1));

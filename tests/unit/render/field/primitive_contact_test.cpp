@@ -188,7 +188,7 @@ TEST(EntryFaceContact, HoldsTheTipBeforeAPlateAtAnyDepth) {
   }
 }
 
-TEST(EntryFaceContact, PushesOutOfTheFaceByWhichThePathCameIn) {
+TEST(EntryFaceContact, PushesOutOfTheEntryFace) {
   // The same place, reached by six paths (Fig. 2a: "it is not clear which is appropriate").
   const Vector3d place(0.004, -0.003, 0.005);
   for (std::int32_t face = 0; face < 6; ++face) {
@@ -239,7 +239,7 @@ TEST(EntryFaceContact, FastPathEntersTheRightFace) {
   }
 }
 
-TEST(EntryFaceContact, LetsGoAboveItsFaceAndSidewaysWithoutAPull) {
+TEST(EntryFaceContact, ReleasesWithoutAPull) {
   ContactForceLaw touch{EntryFaceContact(kCube), SpringDamper{1000, 0}};
   touch(at({0.018, 0, 0.03}));
   EXPECT_EQ(touch(at({0.018, 0, 0.01})).touch.feature, kTop);
@@ -363,7 +363,7 @@ TEST(PrimitiveContact, GivesTheSameAnswersAtEveryScale) {
   }
 }
 
-TEST(PrimitiveTouch, IsBuiltForEveryShapeAndAsksTheHeapForNothing) {
+TEST(PrimitiveTouch, IsBuiltForEveryShapeWithoutAllocation) {
   const std::vector<Primitive> shapes{HalfSpace{.p_WO = {0, 0, 0.02}}, Sphere{.radius = 0.02},
                                       WedgeBox{kCube}, EntryFaceBox{kCube}};
   for (const Primitive& shape : shapes) {

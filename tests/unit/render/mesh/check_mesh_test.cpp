@@ -33,7 +33,7 @@ TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
-TEST(CheckMesh, FindsNothingWrongWithClosedShapesAndMeasuresThem) {
+TEST(CheckMesh, FindsNoFaultInClosedShapesAndMeasuresThem) {
   const MeshFindings box = check_mesh(support::box({0.5, 1, 1.5}));
   EXPECT_TRUE(box.touchable());
   EXPECT_DOUBLE_EQ(box.volume, 6);
@@ -102,7 +102,7 @@ TEST(CheckMesh, FindsDegenerateTrianglesAtEveryScale) {
   }
 }
 
-TEST(CheckMesh, FindsWhatNoMeshShouldHold) {
+TEST(CheckMesh, FindsInvalidNumbersAndIndices) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
   mesh.triangles.push_back({0, 1, 99});
@@ -115,7 +115,7 @@ TEST(CheckMesh, FindsWhatNoMeshShouldHold) {
   EXPECT_FALSE(check_mesh({}).touchable());
 }
 
-TEST(CheckMesh, TellsCavitiesFromComponentsThatAreInsideOut) {
+TEST(CheckMesh, DistinguishesCavitiesFromInsideOutParts) {
   EXPECT_EQ(count(check_mesh(turned(support::box({1, 1, 1}))), Kind::kInsideOut), 1u);
   TriangleMesh shell = support::icosphere(2, 3);
   append(shell, turned(support::icosphere(2, 2)));

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 // The approximate angle leaves some roundings undecided: 73 of these triangles would differ without
 // the exact arc.
-TEST(CornerAngles, AreThoseOfTheExactArcToTheBit) {
+TEST(CornerAngles, AreBitIdenticalToTheExactArc) {
   constexpr int kTriangles = 3'000'000;
   support::Random random(31);
   const auto any = [&random] {

@@ -72,7 +72,7 @@ TEST(FillHoles, ClosesAHoleInACurvedSurfaceWithoutASpikeOrADent) {
   }
 }
 
-TEST(FillHoles, ClosesWholePartsOrNoneAndKnowsASheet) {
+TEST(FillHoles, ClosesWholePartsOrNoneAndRecognisesASheet) {
   const TriangleMesh ball = support::icosphere(3, 1);
   const auto bowl = without(ball, [](const Vector3d& p) { return p.z() > -0.2; });
   EXPECT_EQ(count(repair_mesh(bowl), Kind::kFilledHole), 0u);  // more than half of its area
@@ -101,7 +101,7 @@ TEST(FillHoles, ClosesWholePartsOrNoneAndKnowsASheet) {
   EXPECT_EQ(same.mesh.triangles, washer.triangles);
 }
 
-TEST(FillHoles, TakesALongRimForNoHole) {
+TEST(FillHoles, LongRimIsNotAHole) {
   for (const int edges : {1500, 2500}) {
     TriangleMesh cup;  // a long cup, whose lid would be a thirtieth of its area
     cup.vertices = {{0, 0, -3}};
@@ -114,7 +114,7 @@ TEST(FillHoles, TakesALongRimForNoHole) {
   }
 }
 
-TEST(FillHoles, JoinsACornerAgainWhereAHoleComesToItTwice) {
+TEST(FillHoles, MergesACornerThatAHoleVisitsTwice) {
   TriangleMesh mesh = support::icosphere(2, 1);
   // Two triangles of a fan that share only its vertex.
   const std::int32_t vertex = mesh.triangles[0][0];

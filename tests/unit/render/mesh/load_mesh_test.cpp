@@ -74,7 +74,7 @@ TEST(LoadMesh, KeepsDoublePrecisionOfOff) {
   EXPECT_EQ(mesh->vertices[0].x(), 0.1234567890123456);
 }
 
-TEST(LoadMesh, UnderstandsEveryDialectOfOffText) {
+TEST(LoadMesh, ReadsEveryDialectOfOffText) {
   EXPECT_EQ(triangles_in("off", std::string("OFF\n4 4 6\n") + kTetrahedron), 4u);
   EXPECT_EQ(triangles_in("off", std::string("OFF 4 4 6\n") + kTetrahedron), 4u);
   EXPECT_EQ(triangles_in("OFF", std::string("# c\n\nOFF # c\n# c\n4 4\n\n") + kTetrahedron), 4u);
@@ -120,7 +120,7 @@ TEST(LoadMesh, NamesFileAndLineOfEveryFaultInOffText) {
   expect_error("off", "OFF\n0 0 0\n", "no face with three corners");
 }
 
-TEST(LoadMesh, RefusesWhatIsNoMeshFile) {
+TEST(LoadMesh, RefusesOtherFiles) {
   EXPECT_NE(load_mesh("no_such_file.off").error().message.find("no such file"), std::string::npos);
   EXPECT_NE(load_mesh("mesh.xyz").error().message.find("unknown file extension \"xyz\""),
             std::string::npos);
@@ -141,7 +141,7 @@ TEST(LoadMesh, AnswersGarbageInEveryFormatWithAnError) {
   }
 }
 
-TEST(LoadMesh, RefusesPromisesThatAFileCannotKeep) {
+TEST(LoadMesh, RefusesImpossibleCounts) {
   expect_error("ply",
                "ply\nformat ascii 1.0\nelement vertex 1000000000000\nproperty float x\n"
                "property float y\nproperty float z\nend_header\n0 0 0\n",
@@ -191,7 +191,7 @@ TEST(LoadMesh, ReadsPlyOfEitherByteOrder) {
   }
 }
 
-TEST(LoadMesh, SaysWhatIsWrongWithAPlyFile) {
+TEST(LoadMesh, ReportsTheFaultOfAPlyFile) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";

@@ -128,7 +128,7 @@ bool names_a_fault(const std::string& reason) {
   return false;
 }
 
-TEST(MeshCollection, EachIsStrokedOrRefusedWithItsFault) {
+TEST(MeshCollection, EveryMeshIsTouchableOrRefused) {
   if (!fs::exists(kFolder / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";
   }

@@ -56,7 +56,7 @@ TEST(MeshFormats, ReadTheSameBoxFromEach) {
   }
 }
 
-TEST(MeshFormats, PutPartsWhereTheFileSays) {
+TEST(MeshFormats, ApplyTheNodesOfTheFile) {
   MeshFileInfo info;
   const auto placed = load_mesh(kMeshes / "placed_box.gltf", &info);
   ASSERT_TRUE(placed.ok()) << placed.error().message;
@@ -72,7 +72,7 @@ TEST(MeshFormats, PutPartsWhereTheFileSays) {
   EXPECT_EQ(info.unit, 0.001);  // the unit of 3MF is mm if the file names no other
 }
 
-TEST(MeshFormats, KeepTheOuterSideOfAMirroredPartOutside) {
+TEST(MeshFormats, MirroredPartKeepsItsOutside) {
   std::string text = bytes_of(kMeshes / "placed_box.gltf");
   const std::size_t scale = text.find("2,\n    1,\n    1");
   ASSERT_NE(scale, std::string::npos);
@@ -87,7 +87,7 @@ TEST(MeshFormats, KeepTheOuterSideOfAMirroredPartOutside) {
   EXPECT_NEAR(check_mesh(*mesh).volume, 12, 1e-6);
 }
 
-TEST(MeshFormats, SeeNoFileOutsideOfTheMeshsFolder) {
+TEST(MeshFormats, ReadNoFileOutsideTheMeshsFolder) {
   const fs::path folder = support::scratch_folder() / "mesh_formats";
   fs::create_directories(folder / "below");
   fs::copy_file(kMeshes / "placed_box.bin", folder / "placed_box.bin",
@@ -104,7 +104,7 @@ TEST(MeshFormats, SeeNoFileOutsideOfTheMeshsFolder) {
   }
 }
 
-TEST(MeshFormats, TakeStlWithBytesAfterItsEndAndInCapitals) {
+TEST(MeshFormats, AcceptStlWithTrailingBytesAndInCapitals) {
   MeshFileInfo info;
   const std::string binary = bytes_of(kMeshes / "box_binary.stl");
   ASSERT_TRUE(load_bytes("longer.stl", binary + "some program's own", &info).ok());
@@ -127,7 +127,7 @@ TEST(MeshFormats, TakeStlWithBytesAfterItsEndAndInCapitals) {
       << cut.error().message;
 }
 
-TEST(MeshFormats, TakeAByteOrderMarkAndNameTheOneTheyCannot) {
+TEST(MeshFormats, AcceptUtf8MarksAndRefuseUtf16) {
   for (const char* name : {"box.off", "box.obj", "box.ply", "box_ascii.stl"}) {
     const std::string bytes = bytes_of(kMeshes / name);
     const auto mesh = load_bytes(std::string("mark_") + name, "\xEF\xBB\xBF" + bytes);
@@ -139,7 +139,7 @@ TEST(MeshFormats, TakeAByteOrderMarkAndNameTheOneTheyCannot) {
   }
 }
 
-TEST(MeshFormats, RefuseAUnitThatTheyDoNotKnow) {
+TEST(MeshFormats, RefuseAnUnknownUnit) {
   std::string text = bytes_of(kMeshes / "box.amf");
   text.replace(text.find("\"meter\""), 7, "\"league\"");
   const auto mesh = load_bytes("league.amf", text);
@@ -195,7 +195,7 @@ TEST(MeshFormats, AnswerGarbageWithASentence) {
 }
 
 // Assimp never passes a letter among the corners, and allocates memory meanwhile.
-TEST(MeshFormats, AreGivenUpSoonWhereTheirReaderNeverEnds) {
+TEST(MeshFormats, EndlessReadersAreAborted) {
   std::string bytes = bytes_of(kMeshes / "box.dae");
   const std::size_t corners = bytes.find("<p>");
   ASSERT_NE(corners, std::string::npos);

@@ -29,7 +29,7 @@ std::vector<bool> inside_out(const TriangleMesh& mesh) {
 }
 
 // 500 nested boxes: a comparison of every pair of boxes with all their corners took 48 s.
-TEST(Nesting, TellsMatterFromCavitiesOfManyBoxesOneInTheOther) {
+TEST(Nesting, DistinguishesCavitiesInManyNestedBoxes) {
   TriangleMesh mesh;
   constexpr int kBoxes = 500;
   for (int i = 0; i < kBoxes; ++i) {
@@ -43,7 +43,7 @@ TEST(Nesting, TellsMatterFromCavitiesOfManyBoxesOneInTheOther) {
   for (const bool wrong : inside_out(mesh)) EXPECT_TRUE(wrong);
 }
 
-TEST(Nesting, TellsMatterFromCavitiesAmongBubblesAndCrumbs) {
+TEST(Nesting, DistinguishesCavitiesAmongBubblesAndFragments) {
   // A ball with bubbles, a fragment in every third one, and fragments next to the ball.
   TriangleMesh mesh;
   append(support::icosphere(4, 1), {0, 0, 0}, false, mesh);
@@ -66,7 +66,7 @@ TEST(Nesting, TellsMatterFromCavitiesAmongBubblesAndCrumbs) {
 
 // A part in another part's box need not be inside it: a ray from a ball in a ring's hole leaves the
 // ring as often as it enters.
-TEST(Nesting, KnowsABallInTheHoleOfARingFromOneInTheRing) {
+TEST(Nesting, BallInARingsHoleIsNotInTheRing) {
   for (const bool in_the_tube : {false, true}) {
     TriangleMesh mesh = support::torus(1, 0.4, 48, 24);
     append(support::icosphere(2, 0.1), in_the_tube ? Vector3d(0, 1, 0) : Vector3d(0, 0, 0), false,

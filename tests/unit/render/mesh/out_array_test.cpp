@@ -68,7 +68,7 @@ TriangleMesh crossed_box() {
   return mesh;
 }
 
-TEST(OutArray, TellsWhichTrianglesWereTurned) {
+TEST(OutArray, ReportsReversedTriangles) {
   TriangleMesh shell = support::icosphere(2, 3);
   append(shell, turned(support::icosphere(2, 2)));
   append(shell, support::icosphere(2, 1));
@@ -105,7 +105,7 @@ TEST(OutArray, HoldsAtEveryScaleAndFarFromTheOrigin) {
   }
 }
 
-TEST(OutArray, SaysNothingOfWhatHasNoSide) {
+TEST(OutArray, IsZeroForTrianglesWithoutASide) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back({0, 1, 99});
@@ -140,7 +140,7 @@ TEST(OutArray, IsTheSameInTheCycleForEightyThousandTriangles) {
   EXPECT_EQ(same, kAsked);
 }
 
-TEST(OrientMesh, WindsShuffledMeshesAsTheyWereAndReportsIt) {
+TEST(OrientMesh, RestoresShuffledMeshesAndReportsIt) {
   TriangleMesh shell = support::icosphere(2, 3);
   append(shell, turned(support::icosphere(2, 2)));
   for (const TriangleMesh& mesh : {support::torus(3, 1, 24, 12), shell, support::box({1, 1, 1})}) {
@@ -161,7 +161,7 @@ TEST(OrientMesh, WindsShuffledMeshesAsTheyWereAndReportsIt) {
   }
 }
 
-TEST(OrientMesh, KeepsTheMajorityOfAnOpenPartAndLeavesAOneSidedOne) {
+TEST(OrientMesh, OrientsOpenPartsByMajorityAndKeepsOneSided) {
   TriangleMesh open = support::icosphere(2, 1);
   open.triangles.resize(open.triangles.size() - 7);
   const auto whole = open.triangles;
@@ -199,7 +199,7 @@ TEST(OrientMesh, KeepsTheMajorityOfAnOpenPartAndLeavesAOneSidedOne) {
   EXPECT_NE(describe(report).find("only one side"), std::string::npos);
 }
 
-TEST(OrientMesh, IsDoneByTheContactMeshAndTold) {
+TEST(OrientMesh, IsDoneAndReportedByTheContactMesh) {
   OutArray turns;
   const TriangleMesh mixed = shuffled(support::bumpy_sphere(3, 0.05, 0.3, 6), turns);
   const auto contact = ContactMesh::build(mixed);
@@ -265,7 +265,7 @@ TEST(OutArray, AgreesWithTheWindingOfScannedMeshes) {
   EXPECT_EQ(undecided, 0u);
 }
 
-TEST(FindNeighbour, GivesTheArraysAnswers) {
+TEST(FindNeighbour, MatchesTheArray) {
   const TriangleMesh torus = support::torus(3, 1, 20, 10);
   std::size_t meshes = 0;
   const auto compare = [&meshes](const TriangleMesh& mesh, const std::string& name) {
@@ -293,7 +293,7 @@ TEST(FindNeighbour, GivesTheArraysAnswers) {
   EXPECT_GT(meshes, 80u);
 }
 
-TEST(FindNeighbour, SaysThereIsNoneOverAnOpenEdge) {
+TEST(FindNeighbour, ReturnsNoneOverAnOpenEdge) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.triangles.erase(mesh.triangles.begin() + 1);
   EXPECT_EQ(find_neighbour(mesh, 0, 2), -1);  // edge 3-0, whose other triangle was removed

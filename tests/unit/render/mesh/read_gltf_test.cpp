@@ -43,7 +43,7 @@ TEST(ReadGltf, RefusesRequiredExtensionsByName) {
       << mesh.error().message;
 }
 
-TEST(ReadGltf, PutsInstancesWhereTheyAre) {
+TEST(ReadGltf, PlacesInstances) {
   const auto mesh = load_mesh(kMeshFolder / "instancing.gltf");
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   const MeshFindings found = check_mesh(*mesh);
@@ -90,7 +90,7 @@ TEST(ReadGltf, AppliesMorphWeights) {
   EXPECT_DOUBLE_EQ(check_mesh(*own).box_min.x(), 127);
 }
 
-TEST(ReadGltf, PutsSparsePositionsOver) {
+TEST(ReadGltf, AppliesSparsePositions) {
   // Vertex 1 becomes (0, 0, 0) + (127, 0, 0) of the sparse values.
   const auto mesh = load_text(
       "sparse.gltf",
@@ -160,7 +160,7 @@ TEST(ReadGltf, RefusesNumbersBeyondTheBuffer) {
             std::string::npos);
 }
 
-TEST(Read3mf, PutsObjectsOfASecondModelInPlace) {
+TEST(Read3mf, PlacesObjectsOfASecondModel) {
   MeshFileInfo info;
   const auto mesh = load_mesh(kMeshFolder / "production.3mf", &info);
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
@@ -214,14 +214,14 @@ TEST(Read3mf, RefusesRequiredExtensionsByName) {
       "supported. Export the mesh without it.");
 }
 
-TEST(Read3mf, RefusesComponentsNestedWithoutAnEnd) {
+TEST(Read3mf, RefusesCyclicComponents) {
   std::string text = model_text("", R"(<item objectid="2"/>)");
   text.insert(text.find("</resources>"),
               R"(<object id="2"><components><component objectid="2"/></components></object>)");
   EXPECT_NE(refusal("nested.3mf", archive_of(text)).find("nested too deeply"), std::string::npos);
 }
 
-TEST(Read3mf, RefusesObjectsThatAreNotThere) {
+TEST(Read3mf, RefusesMissingObjects) {
   EXPECT_NE(refusal("gone.3mf", archive_of(model_text("", R"(<item objectid="7"/>)")))
                 .find("it refers to object 7 of 3D/3dmodel.model, which does not exist"),
             std::string::npos);

@@ -34,7 +34,7 @@ TEST(ReadObj, ReadsExponentsWrittenByFortran) {
   EXPECT_NEAR(closed_volume(mesh), 0.01 * 0.009 * 0.009, 1e-18);
 }
 
-TEST(ReadObj, RefusesNumbersWithSomethingBehindThem) {
+TEST(ReadObj, RefusesNumbersWithTrailingText) {
   for (const char* word : {"1,250.5", "1mm", "1_000", "0x10", "1e", "--1", "+-1", "1.0.0", "nan",
                            "inf", "1e300", "1e999", "1D", "e5"}) {
     const std::string text = std::string("v 0 0 0\nv ") + word + " 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -57,12 +57,12 @@ TEST(ReadObj, TakesCommentsBehindFaces) {
   EXPECT_DOUBLE_EQ(closed_volume(load_mesh(kMeshFolder / "comment_f.obj")), 1);
 }
 
-TEST(ReadObj, LeavesColoursAndOpacityOut) {
+TEST(ReadObj, IgnoresColoursAndOpacity) {
   EXPECT_DOUBLE_EQ(closed_volume(load_mesh(kMeshFolder / "rgba.obj")), 1);
   EXPECT_TRUE(load_text("rgb.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nf 1 2 3\n").ok());
 }
 
-TEST(ReadObj, RefusesVerticesWithAnotherCountOfNumbers) {
+TEST(ReadObj, RefusesVerticesWithAWrongCountOfNumbers) {
   const std::string rest = "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_EQ(refusal("two.obj", "v 0 0" + rest),
             "two.obj:1: a vertex has 2 numbers; it needs 3, 4, 6 or 7.");
@@ -88,7 +88,7 @@ TEST(ReadObj, ReadsFacesBeforeTheirVertices) {
             "early.obj:2: the face refers to vertex 3; the file has 1.");
 }
 
-TEST(ReadObj, NamesTheLineOfACornerThatIsNone) {
+TEST(ReadObj, NamesTheLineOfAnInvalidCorner) {
   for (const char* corner : {"0", "x", "1/2/3/4", "1.5", "1/x", "/1", "1/0", "4294967297", "1,"}) {
     const std::string text = "# c\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + std::string(corner) + "\n";
     EXPECT_EQ(refusal("corner.obj", text).substr(0, 23), "corner.obj:5: the face ") << corner;
@@ -139,7 +139,7 @@ TEST(ReadObj, SplitsConcaveFacesOfThousandsOfCorners) {
   EXPECT_NEAR(check_mesh(*mesh).area, 1.5 * 1997, 1e-9);
 }
 
-TEST(ReadObj, RefusesConcaveFacesThatAreTooLargeToSplit) {
+TEST(ReadObj, RefusesTooLargeConcaveFaces) {
   EXPECT_EQ(refusal("saw.obj", saw(3002)),
             "saw.obj:3005: the face is concave and has 3004 corners; at most 2000 are supported. "
             "Save the mesh as triangles.");
@@ -152,7 +152,7 @@ TEST(ReadObj, ReportsLinesAndPoints) {
   EXPECT_EQ(info.notes[0], "Lines and points were ignored: only faces can be touched.");
 }
 
-TEST(ReadObj, RefusesShapesThatWouldBeMissing) {
+TEST(ReadObj, RefusesUnsupportedShapes) {
   EXPECT_EQ(
       refusal("nurbs.obj", kCornersOfBox + "cstype bspline\nsurf 0 1 0 1 1 2 3\n"),
       "nurbs.obj:10: \"surf\": free-form surfaces are not supported. Save the mesh as polygons in "

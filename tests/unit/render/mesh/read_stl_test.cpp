@@ -34,7 +34,7 @@ TEST(ReadStl, KeepsDoublePrecisionOfText) {
   EXPECT_EQ(mesh->vertices[0].x(), 500000.1234567891);
 }
 
-TEST(ReadStl, LeavesNormalsOutWhateverTheyAre) {
+TEST(ReadStl, IgnoresNormals) {
   const auto mesh = load_mesh(kMeshFolder / "nanind_normal.stl");
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   EXPECT_TRUE(check_mesh(*mesh).touchable());
@@ -51,7 +51,7 @@ TEST(ReadStl, ReadsFacetsOfFourCornersWhole) {
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).area, 1);
 }
 
-TEST(ReadStl, RefusesNumbersWithSomethingBehindThem) {
+TEST(ReadStl, RefusesNumbersWithTrailingText) {
   for (const char* word : {"1,250.5", "1mm", "nan", "1e999"}) {
     EXPECT_EQ(refusal("number.stl", facet_text("vertex 0 0 0\nvertex " + std::string(word) +
                                                " 0 0\nvertex 0 1 0\n")),
@@ -110,7 +110,7 @@ TEST(ReadStl, TakesEveryWordInANameOfASolid) {
   EXPECT_TRUE(load_text("name.stl", text).ok());
 }
 
-TEST(ReadStl, RefusesBinaryCornersThatAreNoNumbers) {
+TEST(ReadStl, RefusesBinaryCornersThatAreNotFinite) {
   EXPECT_TRUE(load_text("binary.stl", binary_triangle(0)).ok());
   EXPECT_EQ(refusal("binary.stl", binary_triangle(std::numeric_limits<float>::quiet_NaN())),
             "binary.stl: triangle 0 has a coordinate that is not a number between -1e15 and 1e15.");
@@ -126,12 +126,12 @@ TEST(ReadStl, ReportsCoarseStepsOfABinaryFile) {
             "or export it as OBJ.");
 }
 
-TEST(ReadStl, RefusesABinaryFileWhoseStepsHideItsShape) {
+TEST(ReadStl, RefusesABinaryFileWithTooCoarseSteps) {
   EXPECT_EQ(refusal("farther.stl", binary_triangle(4e6)).substr(0, 84),
             "farther.stl: The coordinates are in single precision and reach 4e+06, where one step");
 }
 
-TEST(LoadMesh, ReadsAFileAsWhatItsContentsAre) {
+TEST(LoadMesh, ReadsAFileByItsContents) {
   const struct {
     const char* name;
     const char* source;

@@ -151,7 +151,7 @@ TEST(RepairMesh, GivesTheSameAnswerAtEveryScale) {
   }
 }
 
-TEST(RepairMesh, DropsWhatIsBrokenFlatOrDoubledAndTellsWhere) {
+TEST(RepairMesh, DropsAndReportsBrokenFlatAndDoubleTriangles) {
   TriangleMesh mesh = good();
   const auto whole = mesh.triangles;
   const auto nowhere =
@@ -211,7 +211,7 @@ TEST(RepairMesh, GivesPartsThatShareAVertexOneEach) {
   EXPECT_EQ(loaded->triangles, repaired.mesh.triangles);
 }
 
-TEST(SaveMesh, SaysWhyItCannotWrite) {
+TEST(SaveMesh, ReportsWhyItCannotWrite) {
   EXPECT_NE(save_mesh(good(), "mesh.stl").error().message.find("ends in .off"), std::string::npos);
   EXPECT_NE(save_mesh(good(), "/no_such_folder/a.off").error().message.find("cannot be written"),
             std::string::npos);
@@ -304,7 +304,7 @@ TEST(HardCaseBrokenMesh, FinIsRefusedAfterRepair) {
                             "== refused with the reason", refused, 2, "1");
 }
 
-TEST(RepairMesh, MendsOrLeavesNamedEveryScannedMesh) {
+TEST(RepairMesh, RepairsOrReportsEveryScannedMesh) {
   const fs::path folder = THIMBLE_MESHES;
   if (!fs::exists(folder / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
+TEST(WeldOpenEdges, KeepsInvalidVertexNumbers) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e-9, 0, 0}, {0, 0, 1}, {0, 1, 1}};
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {-1, 99, 0}, {-7, 1'000'000'000, 3}};
@@ -28,7 +28,7 @@ TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
   EXPECT_EQ(mesh.triangles[3], (std::array<std::int32_t, 3>{-7, 1'000'000'000, 0}));
 }
 
-TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
+TEST(RepairMesh, SeparatesBodiesThatTouchAlongASplitEdge) {
   // Two prisms over triangles that share the edge x = y = 0, which has a vertex in its middle: at
   // that vertex the faces of each body are connected only across the split edge.
   TriangleMesh mesh;
@@ -61,7 +61,7 @@ TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
   EXPECT_EQ(repaired.mesh.vertices.size(), 18u);  // nine per body
 }
 
-TEST(AmbiguousEdges, AreCutIntoPiecesThatKnowTheirTriangle) {
+TEST(AmbiguousEdges, AreSplitIntoPiecesWithKnownTriangles) {
   // Randomly connected triangles: at some edges, front and back coincide at both ends.
   support::Random random(5);
   std::size_t cuts = 0;

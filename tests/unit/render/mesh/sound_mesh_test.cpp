@@ -39,7 +39,7 @@ std::string refusal(const TriangleMesh& mesh, TrackerChoice tracker) {
   return touch ? "" : touch.error().message;
 }
 
-TEST(SoundMesh, TellsTheSameOfABrokenMeshWhicheverWayItIsTouched) {
+TEST(SoundMesh, ReportsTheSameFaultForEveryTracker) {
   TriangleMesh hole = ball(), beyond = ball(), nowhere = ball(), doubled = ball(), empty;
   hole.triangles.erase(hole.triangles.begin() + 2000);
   beyond.triangles[3000][1] = 1 << 30;
@@ -55,7 +55,7 @@ TEST(SoundMesh, TellsTheSameOfABrokenMeshWhicheverWayItIsTouched) {
   }
 }
 
-TEST(SoundMesh, TurnsALargeMeshThatIsInsideOutForEveryWayOfContact) {
+TEST(SoundMesh, OrientsALargeInsideOutMeshForEveryTracker) {
   const TriangleMesh wrong = inside_out(ball());
   ASSERT_TRUE(look_at_mesh(wrong, true));
   EXPECT_TRUE(look_at_mesh(wrong, true)->turned);
@@ -95,7 +95,7 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   return both;
 }
 
-TEST(SurelySound, KnowsSingleBodiesAtOnce) {
+TEST(SurelySound, AcceptsSingleBodies) {
   for (const TriangleMesh& mesh :
        {ball(), support::bumpy_sphere(3, 0.05, 0.3, 6), support::wedge(0.08, 0.1, 0.1),
         support::needle(64, 0.1, 0.01), support::plate(0.1, 0.0002, 3),
@@ -105,7 +105,7 @@ TEST(SurelySound, KnowsSingleBodiesAtOnce) {
   }
 }
 
-TEST(SurelySound, SaysNothingOfWhatIsWrongOrLessPlain) {
+TEST(SurelySound, AcceptsNoFaultyOrComplexMesh) {
   const TriangleMesh sound = support::icosphere(2, 0.05);
   TriangleMesh hole = sound, flipped = sound, flat = sound, nowhere = sound, pinched = sound;
   hole.triangles.pop_back();
@@ -130,7 +130,7 @@ TEST(SurelySound, SaysNothingOfWhatIsWrongOrLessPlain) {
 
 // Undetected damage would be felt: the quick check may miss only faults that check_mesh misses as
 // well.
-TEST(SurelySound, NeverCallsWhatCheckMeshRefusesSound) {
+TEST(SurelySound, AcceptsNoMeshThatCheckMeshRefuses) {
   support::Random random(5);
   const auto below = [&random](std::size_t count) {
     return static_cast<std::size_t>(random.bits() % count);

@@ -103,7 +103,7 @@ TEST(ThickenSheets, MakesAThinBodyOfASheet) {
   EXPECT_DOUBLE_EQ(thick.report.thinnest, kThickness);
 }
 
-TEST(ThickenSheets, ClosesWhatHasOneSideOrManyPages) {
+TEST(ThickenSheets, ClosesOneSidedAndMultiplePageSheets) {
   expect_closed(moebius_strip(40), "Moebius strip");
   for (int pages = 2; pages < 8; ++pages) expect_closed(book(pages), std::to_string(pages));
   TriangleMesh triangle;
@@ -116,7 +116,7 @@ TEST(ThickenSheets, ClosesWhatHasOneSideOrManyPages) {
   expect_closed(fin, "box with a fin");
 }
 
-TEST(ThickenSheets, LeavesClosedPartsAsTheyAre) {
+TEST(ThickenSheets, DoesNotChangeClosedParts) {
   TriangleMesh mesh = support::icosphere(2, 0.05);
   const std::size_t closed = mesh.triangles.size();
   const TriangleMesh beside = sheet(0.1, 2);
@@ -132,7 +132,7 @@ TEST(ThickenSheets, LeavesClosedPartsAsTheyAre) {
 }
 
 // Random triangles over few vertices: edges of many triangles, and fans that meet at corners.
-TEST(ThickenSheets, ClosesTrianglesThatHangTogetherAtRandom) {
+TEST(ThickenSheets, ClosesRandomlyConnectedTriangles) {
   support::Random random(31);
   for (int round = 0; round < 300; ++round) {
     TriangleMesh mesh;
@@ -156,7 +156,7 @@ TEST(ThickenSheets, ClosesTrianglesThatHangTogetherAtRandom) {
 }
 
 // The same on a lattice, where triangles are coplanar and on top of each other.
-TEST(ThickenSheets, ClosesTrianglesThatLieOnTopOfEachOther) {
+TEST(ThickenSheets, ClosesCoplanarOverlappingTriangles) {
   support::Random random(32);
   for (int round = 0; round < 300; ++round) {
     TriangleMesh mesh;
@@ -175,7 +175,7 @@ TEST(ThickenSheets, ClosesTrianglesThatLieOnTopOfEachOther) {
   }
 }
 
-TEST(ThickenSheets, MakesASheetThinnerWhereItBendsTooSharply) {
+TEST(ThickenSheets, SharpBendsMakeASheetThinner) {
   TriangleMesh pipe = sheet(0.06, 24);  // half a pipe of 3 mm, in a sheet of 10 mm
   for (Vector3d& p : pipe.vertices) {
     const double a = std::numbers::pi * (p.x() / 0.06 + 0.5);
@@ -230,7 +230,7 @@ TEST(ThickenSheets, HoldsADeepTipFromBothSides) {
   }
 }
 
-TEST(ThickenSheets, GivesNoEnergyToAHandThatComesAndGoes) {
+TEST(ThickenSheets, RepeatedEntryGivesNoEnergyToTheHand) {
   const ThickenedMesh thick = thicken_sheets(sheet(0.1, 6), kThickness);
   auto contact = GodObjectContact::build(thick.mesh);
   ASSERT_TRUE(contact.ok());

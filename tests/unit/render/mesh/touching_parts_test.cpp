@@ -107,7 +107,7 @@ TEST(TouchingParts, AgreesWithEveryPairOfTriangles) {
   EXPECT_EQ(find_touching_parts(mesh).pairs, wanted);
 }
 
-TEST(TouchingParts, TakesAnyMesh) {
+TEST(TouchingParts, AcceptsAnyMesh) {
   TriangleMesh mesh;
   add_box(mesh, {0, 0, 0}, {1, 1, 1});
   add_box(mesh, {0.5, 0, 0}, {1, 1, 1});

@@ -71,7 +71,7 @@ Vector3d at_depth(double depth) {
   return {0, 0, -depth};
 }
 
-TEST(ModelTouch, FeelsAPlaneAsTheSpringThatItIs) {
+TEST(ModelTouch, PlaneFeelsLikeItsSpring) {
   Tip tip;
   ASSERT_TRUE(tip.slot.publish(plane()));
   EXPECT_EQ(tip.to(at_depth(-0.001)).f_T_W, Vector3d::Zero());
@@ -87,7 +87,7 @@ TEST(ModelTouch, FeelsAPlaneAsTheSpringThatItIs) {
   EXPECT_FALSE(tip.felt.touch.in_contact);
 }
 
-TEST(ModelTouch, DampsWhatGoesInAndNeverHoldsWhatLeaves) {
+TEST(ModelTouch, DampsEntryOnly) {
   Tip tip;
   LocalModel model = plane();
   model.damping = 2;
@@ -123,7 +123,7 @@ LocalModel any_model(support::Random& random, const Vector3d& near_W, std::int64
   return model;
 }
 
-TEST(ModelTouch, ForceChangesLittleWhateverModelsCome) {
+TEST(ModelTouch, ForceChangeIsBoundedForAnyModels) {
   // The tip rests, so that all changes are due to new models, which may be unrelated. The begin and
   // end of a touch are not jumps either.
   support::Random random(1);
@@ -139,7 +139,7 @@ TEST(ModelTouch, ForceChangesLittleWhateverModelsCome) {
   EXPECT_GT(tip.touch->counters().taken, 1000u);
 }
 
-TEST(ModelTouch, GivesNoEnergyWhateverModelsCome) {
+TEST(ModelTouch, GivesNoEnergyForAnyModels) {
   // Around closed paths through unrelated models: each is a valid spring, but together they would
   // generate energy without limit if there were no account.
   double most = 0;
@@ -159,7 +159,7 @@ TEST(ModelTouch, GivesNoEnergyWhateverModelsCome) {
   EXPECT_LE(most, 1e-6);
 }
 
-TEST(ModelTouch, GivesBackNoMoreThanAnySurfaceTook) {
+TEST(ModelTouch, ReturnsNoMoreEnergyThanItTook) {
   // In and out of surfaces at many speeds and phases: the work returned is at most the work put in.
   double least_share = 1;
   for (const auto feel :
@@ -195,7 +195,7 @@ TEST(ModelTouch, GivesBackNoMoreThanAnySurfaceTook) {
   EXPECT_GT(least_share, 0.8);  // and lateness causes no additional loss
 }
 
-TEST(ModelTouch, BeginsWhereTheTipIsIfASurfaceComesUpBehindIt) {
+TEST(ModelTouch, SurfaceBehindTheTipBeginsAtTheTip) {
   Tip tip({.stiffness_max = 2000, .power = 0});
   tip.to(at_depth(0.002));
   ASSERT_TRUE(tip.slot.publish(plane()));
@@ -218,7 +218,7 @@ TEST(ModelTouch, BeginsWhereTheTipIsIfASurfaceComesUpBehindIt) {
   EXPECT_NEAR(helped.felt.f_T_W.z(), 1.6, 0.01);
 }
 
-TEST(ModelTouch, HoldsAModelThenLetsItFadeAndSaysSo) {
+TEST(ModelTouch, HoldsThenFadesAModelAndReportsIt) {
   Tip tip;
   EXPECT_EQ(tip.touch->age(), ModelAge::kNothing);
   ASSERT_TRUE(tip.slot.publish(plane()));
@@ -259,7 +259,7 @@ TEST(ModelTouch, LimitsAModelThatIsTooStiff) {
   EXPECT_EQ(tip.touch->counters().softened, 1u);
 }
 
-TEST(ModelTouch, RefusesWhatIsNoModelAndSaysWhy) {
+TEST(ModelTouch, RefusesInvalidModelsWithAReason) {
   struct Case {
     ModelFlaw flaw;
     const char* word;
@@ -296,7 +296,7 @@ TEST(ModelTouch, RefusesWhatIsNoModelAndSaysWhy) {
   EXPECT_TRUE(slot.publish(nothing));
 }
 
-TEST(ModelTouch, RefusesTimesThatHaveNotComeOrAreOver) {
+TEST(ModelTouch, RefusesFutureAndPastTimes) {
   Tip tip;
   tip.to(at_depth(-0.001));
   tip.stay(100);
@@ -313,7 +313,7 @@ TEST(ModelTouch, RefusesTimesThatHaveNotComeOrAreOver) {
   EXPECT_EQ(tip.touch->counters().refused, 2u);
 }
 
-TEST(ModelTouch, ForgetsNothingOverATipThatIsNowhere) {
+TEST(ModelTouch, KeepsItsStateOverAnInvalidTip) {
   Tip tip;
   ASSERT_TRUE(tip.slot.publish(plane()));
   tip.to(at_depth(-0.001));
@@ -327,7 +327,7 @@ TEST(ModelTouch, ForgetsNothingOverATipThatIsNowhere) {
   EXPECT_NEAR(tip.to(at_depth(0.0015)).f_T_W.z(), 1.2, 1e-9);
 }
 
-TEST(ModelTouch, RefusesSettingsThatMeanNothing) {
+TEST(ModelTouch, RefusesInvalidSettings) {
   ModelSlot slot;
   const auto refused = [&slot](ModelTouchSettings settings, const std::string& word) {
     const auto made = ModelTouch::make(slot, settings);
@@ -346,7 +346,7 @@ TEST(ModelTouch, RefusesSettingsThatMeanNothing) {
   refused({.stiffness_max = 1000, .reserve = -1}, "reserve");
 }
 
-TEST(ModelTouch, AsksTheHeapForNothing) {
+TEST(ModelTouch, DoesNotAllocate) {
   Tip tip;
   support::Random random(3);
   int calls = 0;
@@ -360,7 +360,7 @@ TEST(ModelTouch, AsksTheHeapForNothing) {
   EXPECT_EQ(calls, 0);
 }
 
-TEST(ModelTouch, FollowsAnotherThreadWithoutATornModel) {
+TEST(ModelTouch, ModelsOfAnotherThreadAreNeverTorn) {
   // The writer's models are planes whose force and stiffness match: a mixture of two would have
   // another surface.
   ModelSlot slot;

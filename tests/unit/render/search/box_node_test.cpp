@@ -25,7 +25,7 @@ double side_of(const BoxNode& node, std::size_t side, std::size_t child) {
          static_cast<double>(node.scale()) * node.sides[side][child];
 }
 
-TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
+TEST(BoxNode, TightlyContainsItsChildren) {
   support::Random random(1);
   for (int round = 0; round < 2000; ++round) {
     // From a point to the whole lattice, at any place.
@@ -75,7 +75,7 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
 
 // Every item is reachable from the root exactly once, at any size; and a changed box leaves the
 // tree that would have been built.
-TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
+TEST(TreeNodes, ContainEveryItemOnceWithinTheirBoxes) {
   support::Random random(3);
   for (const std::size_t things : {1U, 2U, 7U, 8U, 9U, 63U, 64U, 65U, 512U, 1000U, 4097U}) {
     std::vector<LatticeAabb> boxes(things);
@@ -164,7 +164,7 @@ TEST(PackedSurface, KeepsEightsTogether) {
 }
 
 // Trivially so if the processor has no wide lanes.
-TEST(WideLanes, GiveTheAnswersOfPlainOnesToTheBit) {
+TEST(WideLanes, AreBitIdenticalToPlainOnes) {
   for (const TriangleMesh& shape :
        {support::bumpy_sphere(3, 0.05, 0.3, 6), support::needle(64, 0.08, 0.01)}) {
     const PackedSurface surface = PackedSurface::build(shape).value();

@@ -24,7 +24,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(InHalves, DoesEachItemOnce) {
+TEST(InHalves, ProcessesEachItemOnce) {
   for (const std::size_t count : {0u, 1u, 19999u, 20000u, 20001u, 50001u}) {
     std::vector<std::atomic<int>> done(count);
     in_halves(count, [&done](std::size_t begin, std::size_t end) {
@@ -84,7 +84,7 @@ TEST(BlockOrder, HasTheSameBlocksAsPlainSorting) {
 
 // Corner normals of a surface without creases: sums of normals weighted by angles in single
 // precision, in the order of the packed triangles.
-TEST(PackedSurface, HasTheNormalsOfPlainSumsWhereTwoThreadsBuiltIt) {
+TEST(PackedSurface, TwoThreadsBuildTheNormalsOfPlainSums) {
   const TriangleMesh mesh = support::bumpy_sphere(6, 0.05, 0.1, 5);  // 81,920 triangles
   const auto surface = PackedSurface::build(mesh);
   ASSERT_TRUE(surface) << surface.error().message;

@@ -59,7 +59,7 @@ struct Asked {
   }
 };
 
-TEST(EightTriangles, LeaveOutNoneThatASegmentCrosses) {
+TEST(EightTriangles, KeepAllThatASegmentCrosses) {
   support::Random random(1);
   Asked asked;
   for (int i = 0; i < 20000; ++i) {
@@ -70,7 +70,7 @@ TEST(EightTriangles, LeaveOutNoneThatASegmentCrosses) {
   EXPECT_GT(asked.crossings, 2000);
 }
 
-TEST(EightTriangles, LeaveOutNoneThatASegmentBarelyTouches) {
+TEST(EightTriangles, KeepAllThatASegmentBarelyTouches) {
   support::Random random(2);
   Asked asked;
   for (int i = 0; i < 20000; ++i) {
@@ -88,7 +88,7 @@ TEST(EightTriangles, LeaveOutNoneThatASegmentBarelyTouches) {
   EXPECT_GT(asked.crossings, 5000);
 }
 
-TEST(EightTriangles, LeaveOutNoneOfANumberThatIsWrongAsFarAsItSays) {
+TEST(EightTriangles, KeepAllWithinTheStatedErrorOfANumber) {
   support::Random random(3);
   constexpr double kWrong = 300;
   int moved_in = 0;
@@ -107,7 +107,7 @@ TEST(EightTriangles, LeaveOutNoneOfANumberThatIsWrongAsFarAsItSays) {
   EXPECT_GT(moved_in, 100);
 }
 
-TEST(EightTriangles, KeepFewThatATicksPathDoesNotCross) {
+TEST(EightTriangles, KeepFewThatAPathDoesNotCross) {
   support::Random random(4);
   Asked asked;
   for (int i = 0; i < 20000; ++i) {
@@ -120,7 +120,7 @@ TEST(EightTriangles, KeepFewThatATicksPathDoesNotCross) {
   EXPECT_LT(asked.kept, 0.004 * asked.all);
 }
 
-TEST(EightTriangles, LeaveOutNothingByNumbersThatOverflow) {
+TEST(EightTriangles, OverflowOmitsNoCrossedTriangle) {
   support::Random random(5);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (const double size : {1e15, 1e30, 1e300, kNaN}) {
@@ -178,7 +178,7 @@ TEST(EightTriangles, KeepEveryTriangleWithinTheBound) {
   EXPECT_GT(nearer, 50000);
 }
 
-TEST(EightTriangles, KeepFewBesideTheNearest) {
+TEST(EightTriangles, KeepFewOthersThanTheNearest) {
   support::Random random(9);
   int kept = 0, farther = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -216,7 +216,7 @@ TEST(EightTriangles, InexactPointKeepsNearTriangles) {
   EXPECT_GT(nearer, 20000);
 }
 
-TEST(EightTriangles, LeaveOutNothingNearByNumbersThatOverflow) {
+TEST(EightTriangles, OverflowOmitsNoNearTriangle) {
   support::Random random(8);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (const double size : {1e20, 1e30, 1e300, kNaN}) {

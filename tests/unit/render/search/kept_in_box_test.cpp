@@ -25,7 +25,7 @@ double kept_by_division(double parameter, const Vector3d& way, const Vector3d& a
   return std::max(begin, std::min(parameter, end));
 }
 
-TEST(KeptInBox, IsThatOfDivisionsToTheBit) {
+TEST(KeptInBox, IsBitIdenticalToDivision) {
   support::Random random(14);
   int kept = 0, moved = 0;
   for (int i = 0; i < 300000; ++i) {

@@ -113,7 +113,7 @@ TEST(LinearSearch, SegmentsThatMeetOnTheSurfaceMissNothing) {
   EXPECT_GT(changes, 1000);
 }
 
-TEST(LinearSearch, TellsInsideLikeTheWindingNumber) {
+TEST(LinearSearch, InsideMatchesTheWindingNumber) {
   Scene scene(support::torus(0.05, 0.02, 30, 20));
   int inside = 0;
   for (int i = 0; i < 5000; ++i) {

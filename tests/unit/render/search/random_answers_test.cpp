@@ -92,7 +92,7 @@ Answers ask(const TriangleMesh& mesh, TrackerChoice tracker, int questions) {
 
 // Detects any changed bit of an answer. An intended change stores new hashes and is explained in
 // the changelog. gcc and clang have these hashes.
-TEST(RandomQuestions, HaveTheAnswersThatAreStored) {
+TEST(RandomQuestions, HaveTheStoredAnswers) {
   const bool all = support::long_form();
   struct Stored {
     const char* name;

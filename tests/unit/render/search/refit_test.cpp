@@ -86,7 +86,7 @@ void expect_same_answers(const ContactSearch& moved, const ContactSearch& anew,
   }
 }
 
-TEST(MovingMesh, IsSearchedAsOneBuiltAnew) {
+TEST(MovingMesh, IsSearchedLikeANewMesh) {
   for (const auto choice : {SearchChoice::kLinear, SearchChoice::kTree}) {
     std::uint64_t seed = 10;
     for (const TriangleMesh& shape : shapes()) {
@@ -106,7 +106,7 @@ TEST(MovingMesh, IsSearchedAsOneBuiltAnew) {
   }
 }
 
-TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
+TEST(MovingMesh, HasThePlanesAndNormalsOfANewMesh) {
   for (const auto weights :
        {NormalWeights::kAngle, NormalWeights::kRound, NormalWeights::kFitted}) {
     std::uint64_t seed = 20;
@@ -141,7 +141,7 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
   }
 }
 
-TEST(MovingMesh, MovesWithoutTheHeap) {
+TEST(MovingMesh, MovesWithoutAllocation) {
   const TriangleMesh shape = support::needle(64, 0.08, 0.01);
   for (const auto weights : {NormalWeights::kAngle, NormalWeights::kFitted}) {
     for (const auto choice : {SearchChoice::kLinear, SearchChoice::kTree}) {
@@ -159,7 +159,7 @@ TEST(MovingMesh, MovesWithoutTheHeap) {
   }
 }
 
-TEST(MovingMesh, LeavesAVertexThatIsSentOutOfTheBoxOrNowhere) {
+TEST(MovingMesh, IgnoresMovesOutOfTheBoxOrToNaN) {
   MovingMesh surface(ContactMesh::build(support::icosphere(2, kSize), {.room = 0.1}).value(), {});
   const Vector3d before = surface.mesh().position(7);
   const double nan = std::numeric_limits<double>::quiet_NaN();

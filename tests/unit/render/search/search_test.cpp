@@ -189,7 +189,7 @@ TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
   }
 }
 
-TEST(EverySearch, FindsNothingForNaNAndComesBackFromHugeWays) {
+TEST(EverySearch, FindsNothingForNaNAndEndsForHugeSegments) {
   const ContactMesh mesh = ContactMesh::build(support::icosphere(2, 1)).value();
   Searches<ContactMesh> searches(mesh);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -220,7 +220,7 @@ TEST(EverySearch, FindsNothingForNaNAndComesBackFromHugeWays) {
   EXPECT_GE(searches.entries, 200);
 }
 
-TEST(EverySearch, FindsWhatAPointLiesOnWithinARadiusOfZero) {
+TEST(EverySearch, FindsTheTriangleOfAPointWithRadiusZero) {
   const ContactMesh box = ContactMesh::build(support::box({1, 1, 1})).value();
   const Searches<ContactMesh> searches(box);
   for (const Vector3d& on : {Vector3d(1, 1, 1), Vector3d(0.25, 0.5, 1), Vector3d(-1, 0, 0.5)}) {
@@ -234,7 +234,7 @@ TEST(EverySearch, FindsWhatAPointLiesOnWithinARadiusOfZero) {
   }
 }
 
-TEST(EverySearch, TellsAClearanceThatNoTriangleReachesInto) {
+TEST(EverySearch, ReturnsAClearanceWithoutTriangles) {
   for (const TriangleMesh& shape : shapes()) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     Searches<ContactMesh> searches(mesh);
@@ -278,7 +278,7 @@ TEST(FreeSpace, MissesNothingOnAWalk) {
   }
 }
 
-TEST(FreeSpace, HoldsATipThatIsFarAway) {
+TEST(FreeSpace, ContainsADistantTip) {
   const ContactMesh mesh = ContactMesh::build(support::icosphere(3, 0.05)).value();
   for (const auto choice : {SearchChoice::kGrid, SearchChoice::kTree}) {
     const auto search = make_search(mesh, choice);
@@ -323,7 +323,7 @@ TEST(EverySearch, LetsNoTrackerTunnelThroughAPlate) {
   });
 }
 
-TEST(EverySearch, AnswersWithoutTheHeap) {
+TEST(EverySearch, AnswersWithoutAllocation) {
   const ContactMesh mesh = ContactMesh::build(support::torus(0.035, 0.015, 40, 20)).value();
   Searches<ContactMesh> searches(mesh);
   support::Random random(81);
@@ -343,14 +343,14 @@ TEST(EverySearch, AnswersWithoutTheHeap) {
   EXPECT_GT(sum, 0);
 }
 
-TEST(MakeSearch, TakesTheTreeFromEightThousandTriangles) {
+TEST(MakeSearch, UsesTheTreeFromEightThousandTriangles) {
   const ContactMesh fewer = ContactMesh::build(support::icosphere(4, 0.05)).value();  // 5,120
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(fewer).get()), nullptr);
   const ContactMesh more = ContactMesh::build(support::icosphere(5, 0.05)).value();  // 20,480
   EXPECT_NE(dynamic_cast<const TreeSearch<ContactMesh>*>(make_search(more).get()), nullptr);
 }
 
-TEST(MakeSearch, TakesTheTreeWhereMostTrianglesLieInOneCorner) {
+TEST(MakeSearch, UsesTheTreeForUnevenTriangles) {
   const TriangleMesh even = support::icosphere(3, 0.05);
   const ContactMesh mesh = ContactMesh::build(even).value();
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(mesh).get()), nullptr);

@@ -66,7 +66,7 @@ To as(const From& from) {
   return to;
 }
 
-TEST(Sse2Elsewhere, EveryFunctionGivesTheBitsOfTheProcessorsOwn) {
+TEST(Sse2Elsewhere, EveryFunctionIsBitIdenticalToSse2) {
   support::Random random(2);
   for (int round = 0; round < 20'000; ++round) {
     const Input in = draw(random);

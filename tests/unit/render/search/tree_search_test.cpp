@@ -61,7 +61,7 @@ struct Scene {
   int entries = 0;
 };
 
-TEST(TreeSearch, GivesTheAnswersOfTheLinearSearchOnRandomSegments) {
+TEST(TreeSearch, MatchesLinearSearchOnRandomSegments) {
   for (const TriangleMesh& shape :
        {support::bumpy_sphere(3, 0.05, 0.3, 6), support::torus(0.035, 0.015, 40, 20),
         support::plate(0.1, 0.01, 6), support::needle(64, 0.08, 0.01),
@@ -100,7 +100,7 @@ TEST(TreeSearch, MatchesLinearSearchAtVerticesAndEdges) {
   EXPECT_GT(scene.entries, 3000);
 }
 
-TEST(TreeSearch, MissesNothingBetweenSegmentsThatMeetOnTheSurface) {
+TEST(TreeSearch, SegmentsThatMeetOnTheSurfaceMissNothing) {
   // Coordinates on a coarse grid: nearly every point lies exactly on planes, edges or corners.
   Scene scene(support::plate(1, 0.5, 4));
   support::Random random(13);

@@ -129,7 +129,7 @@ double most_energy_on_any_way(AnyStage& friction, double size) {
   return most;
 }
 
-TEST(FrictionWithASpring, MakesNoEnergyOnAnyWayUnderAnyLoad) {
+TEST(FrictionWithASpring, GeneratesNoEnergyOnAnyPathUnderAnyLoad) {
   const auto with_spring = support::frictions_with("z_max");
   EXPECT_GE(with_spring.size(), 6U);
   for (const std::string& name : with_spring) {
@@ -169,7 +169,7 @@ TEST(FrictionWithASpring, PressingHarderMakesNoEnergy) {
   EXPECT_GT(most_energy_by_pressing(pumping), 1e-4);
 }
 
-TEST(TheBristle, MakesNoEnergyRollingAroundABall) {
+TEST(TheBristle, RollingAroundABallGeneratesNoEnergy) {
   support::Random random(3);
   for (const double size : {1e-5, 3e-4}) {
     const auto friction = make_friction("bristle", MapSettings({{"coefficient", 0.5}}));

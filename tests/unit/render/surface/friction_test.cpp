@@ -56,7 +56,7 @@ TEST(EveryFriction, IsInTheTable) {
   EXPECT_GE(known.size(), 8U);
 }
 
-TEST(EveryFriction, RestsUnlessItIsKnownNotTo) {
+TEST(EveryFriction, HoldsAtRestUnlessDocumentedOtherwise) {
   std::vector<std::string_view> restless;
   for (const EffectKind& kind : effect_table()) {
     if (!kind.rests) restless.push_back(kind.name);
@@ -145,7 +145,7 @@ TEST(EveryFriction, FadesWithTheNormalForceAndForgetsOnLeaving) {
   }
 }
 
-TEST(EveryFriction, HoldsBackInAnyDirectionAlike) {
+TEST(EveryFriction, IsEqualInAllDirections) {
   for (const std::string& name : support::friction_names()) {
     double first = 0;
     for (int i = 0; i < 12; ++i) {
@@ -162,7 +162,7 @@ TEST(EveryFriction, HoldsBackInAnyDirectionAlike) {
   }
 }
 
-TEST(EveryFriction, AsksTheHeapForNothing) {
+TEST(EveryFriction, DoesNotAllocate) {
   for (const std::string& name : support::friction_names()) {
     const auto friction = make_friction(name, half());
     Rubbing rubbing{*friction};
@@ -175,7 +175,7 @@ TEST(EveryFriction, AsksTheHeapForNothing) {
   }
 }
 
-TEST(EveryFriction, RefusesSettingsThatMakeNoSense) {
+TEST(EveryFriction, RefusesInvalidSettings) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::string& name : support::friction_names()) {
     EXPECT_TRUE(complaints_of(name, half()).empty()) << name;

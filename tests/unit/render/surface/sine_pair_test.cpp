@@ -38,7 +38,7 @@ TEST(SinePair, IsSineAndCosineOfBothAngles) {
   }
 }
 
-TEST(SinePair, HasTheStoredBitsOnEveryProcessorByEveryCompiler) {
+TEST(SinePair, IsBitIdenticalOnAllProcessorsAndCompilers) {
   support::Random random(std::uint64_t{18});
   support::RunHash hash;
   for (int i = 0; i < 20'000; ++i) {
@@ -69,7 +69,7 @@ TEST(SinePair, RepeatsAfterWholeTurnsUpToItsLargestAngles) {
   }
 }
 
-TEST(WaveSum, IsTheSumOfItsWavesWhetherOddOrEvenInNumber) {
+TEST(WaveSum, IsTheSumOfAnOddOrEvenNumberOfWaves) {
   support::Random random(19);
   for (std::size_t count = 0; count < 6; ++count) {
     std::vector<Wave> waves;

@@ -83,7 +83,7 @@ double slide(const std::string& name, const std::string& key, double value) {
   return felt;
 }
 
-TEST(PhysicsOfFriction, SlidingHoldsBackByTheCoefficient) {
+TEST(PhysicsOfFriction, SlidingForceFollowsTheCoefficient) {
   for (const char* name : {"bristle", "dahl", "karnopp", "implicit_coulomb"}) {
     expect_physics({"friction", std::string(name) + ", sliding at 40 mm/s under 1 N, mu = 0.4",
                     "mu N", "N", 0.4, 1e-3},
@@ -91,7 +91,7 @@ TEST(PhysicsOfFriction, SlidingHoldsBackByTheCoefficient) {
   }
 }
 
-TEST(PhysicsOfFriction, ABristleLetsGoAtStaticFriction) {
+TEST(PhysicsOfFriction, BristleSlipsAtStaticFriction) {
   for (const char* name : {"bristle", "stiction_point"}) {
     const auto friction = support::make_friction(
         name,

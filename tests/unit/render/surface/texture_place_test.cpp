@@ -112,7 +112,7 @@ Work work_around(ObjectTouch& object, const Vector3d& outside, const Way& way, i
   return work;
 }
 
-TEST(TexturePlace, FeelsAsRoughAtEveryDepth) {
+TEST(TexturePlace, RoughnessIsIndependentOfDepth) {
   Sandpaper::Settings rough;
   rough.roughness = 20e-6;
   const auto ripple = [&](double depth) {
@@ -162,7 +162,7 @@ TEST(TexturePlace, ClosedPathInATriangleDoesNoWork) {
   }
 }
 
-TEST(TexturePlace, DoesNoWorkAroundAClosedWayInABallAtAnyDepth) {
+TEST(TexturePlace, ClosedPathInABallDoesNoWorkAtAnyDepth) {
   const auto way = [](double s) -> Vector3d {
     return (0.026 + 0.002 * std::sin(s)) *
            Vector3d(0.3 * std::cos(s), 0.4 * std::sin(s), 1).normalized();
@@ -192,7 +192,7 @@ Vector3d around_top(double s) {
          Vector3d(0.25 * std::cos(s), 0.2 * std::sin(s), 1).normalized();
 }
 
-TEST(TexturePlace, AddsNoWorkAcrossEdgesWhereTheFootIsOneMap) {
+TEST(TexturePlace, ContinuousClosestPointAddsNoWorkOnEdges) {
   // Smooth shading by itself has a small net work, because a shaded normal is not a gradient: that
   // is the contact's own value. The part that a texture adds is the gradient of an energy.
   const TriangleMesh ball = support::icosphere(3, 0.05);
@@ -236,7 +236,7 @@ TEST(TexturePlace, JumpsOverEdgesAddLittleWork) {
   }
 }
 
-TEST(TexturePlace, AddsNoWorkInsideAFaceHoweverItIsShaded) {
+TEST(TexturePlace, AddsNoWorkInsideAFaceWithAnyShading) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const auto& corners = ball.triangles[3];
   const auto p = [&](std::size_t k) { return ball.vertices[static_cast<std::size_t>(corners[k])]; };
@@ -333,7 +333,7 @@ TEST(TexturePlace, IsFixedToABodyThatTurns) {
   EXPECT_LT(most, 1e-4);
 }
 
-TEST(TexturePlace, IsFixedToClayAsItGivesWay) {
+TEST(TexturePlace, IsFixedToYieldingClay) {
   // Layers are one below the other. Clay that is pressed in through two layers shows its initial
   // height, because its surface is still the same material: it yields at its yield force, and the
   // proxy is above the tip by the height that was pressed away.
@@ -403,7 +403,7 @@ void expect_places_in_a_hollow(const char* name, const Contact& made) {
   }
 }
 
-TEST(TexturePlace, LiesOnTheEdgeOrCornerThatHoldsTheTipInAHollow) {
+TEST(TexturePlace, InAGrooveIsOnTheEdgeOrCorner) {
   const TriangleMesh hollow = support::block_around(support::box({0.02, 0.02, 0.02}), 0.05);
   const auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(hollow).value());
   const auto search = make_search(*mesh);
@@ -417,7 +417,7 @@ TEST(TexturePlace, LiesOnTheEdgeOrCornerThatHoldsTheTipInAHollow) {
   expect_places_in_a_hollow("god_object", GodObjectContact(mesh, search));
 }
 
-TEST(TexturePlace, NeverJumpsAndStandsStillUnderAHandThatRests) {
+TEST(TexturePlace, IsContinuousAndSteadyUnderARestingHand) {
   FootFollower place;
   SurfaceFoot found;
   found.p_M = {0, 0, 0};
@@ -442,7 +442,7 @@ TEST(TexturePlace, NeverJumpsAndStandsStillUnderAHandThatRests) {
   EXPECT_EQ(place.follow({p, 0, -0.001}, 0.001, found).p_M, found.p_M);
 }
 
-TEST(TexturePlace, FindsItsFeetWithoutTheHeapOnEveryKindOfContact) {
+TEST(TexturePlace, FindsClosestPointsWithoutAllocation) {
   const TriangleMesh ball = support::icosphere(2, 0.05);
   for (std::size_t i = 0; i < kTrackerNames.size(); ++i) {
     auto object =

@@ -192,7 +192,7 @@ TEST_P(TextureOnScansBy, AddsLittleWorkAroundClosedWays) {
 }
 
 // Shows that these bounds are tight: without the force along the slope, loops have more net work.
-TEST(TextureOnScans, AddsFarMoreWorkWhereItChangesTheDepthOnly) {
+TEST(TextureOnScans, DepthOnlyTextureAddsFarMoreWork) {
   if (!scans_are_here()) GTEST_SKIP() << kNoScans;
   for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kPacked}) {
     const auto all = all_shares(tracker, 0, TextureForm::kDepthOnly);

@@ -145,7 +145,7 @@ TEST(Textures, LateralTexturesDoNoWorkOnAClosedPath) {
       "height map, depth only");
 }
 
-TEST(Textures, DoNoWorkAroundAClosedWayInASphereEither) {
+TEST(Textures, DoNoWorkOnAClosedPathInASphere) {
   const Sphere ball{.p_WO = {0, 0, 0}, .radius = 0.02};
   const Sines waves(two_waves(TextureForm::kConservative), context());
   const auto way = [](double s) -> Vector3d {
@@ -181,7 +181,7 @@ TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
   }
 }
 
-TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
+TEST(Textures, CutIntoSurfaceBeginsContactWithoutAStep) {
   const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const Sandpaper rough({}, known);
@@ -202,7 +202,7 @@ TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
 }
 
 // An image without any symmetry of rotation or reflection.
-TEST(HeightMaps, ReadTheSameWayRoundOnEveryFaceFromOutside) {
+TEST(HeightMaps, HaveTheSameOrientationOnEveryFace) {
   HeightMap::Settings settings;
   std::vector<float> values(64, 0.5f);
   for (std::size_t i = 0; i < 5; ++i) values[i * 8] = 1;  // an L
@@ -277,7 +277,7 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
   }
 }
 
-TEST(Textures, AskTheHeapForNothing) {
+TEST(Textures, DoNotAllocate) {
   const EffectContext known = context();
   ContactForceLaw touch{
       PrimitiveContact(HalfSpace()), Sines(two_waves(TextureForm::kConservative), known),
@@ -322,7 +322,7 @@ TEST(Sines, GiveTheForceTheLinesOfTheirWaves) {
   EXPECT_NEAR(line(aside, 0), 0, 1e-12);
 }
 
-TEST(Sandpaper, IsTheSameForTheSameSeedAndHasTheRoughnessAskedFor) {
+TEST(Sandpaper, IsRepeatableAndHasTheRequestedRoughness) {
   Sandpaper::Settings settings;
   settings.roughness = 0.00004;
   const Sandpaper one(settings, EffectContext{}), again(settings, EffectContext{});
@@ -444,7 +444,7 @@ VariantSettings::Values wave(double amplitude, double wavelength) {
   return {{"amplitude", amplitude}, {"wavelength", wavelength}};
 }
 
-TEST(TextureSettings, AreTakenWhenTheyCanBeFelt) {
+TEST(TextureSettings, PerceptibleOnesAreAccepted) {
   EXPECT_EQ(mistakes_of<Sines>(VariantSettings({}, {{"waves", {wave(0.0001, 0.002)}}})), "");
   EXPECT_EQ(
       mistakes_of<Sines>(VariantSettings(

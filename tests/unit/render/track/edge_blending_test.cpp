@@ -95,7 +95,7 @@ TEST(EdgeBlending, EveryTriangleReachesTheVertexNormal) {
   });
 }
 
-TEST(EdgeBlending, ChangesWithinATriangleByNoMoreThanItsBandAllows) {
+TEST(EdgeBlending, ChangeInATriangleIsBoundedByItsBand) {
   support::Random random(3);
   const Shaded on(support::icosphere(2, 0.05));
   // Faces meet here at 0.3 rad at most: over a band the normal turns by half of that, near a vertex
@@ -288,7 +288,7 @@ TEST(CurvedDepth, KnowsHowFarASphereStandsAboveAnEdge) {
   }
 }
 
-TEST(CurvedDepth, IsPositiveOverHillsAndNegativeOverHollows) {
+TEST(CurvedDepth, IsPositiveOnConvexAndNegativeOnConcave) {
   const support::TorusSurface surface{0.05, 0.02};
   const Shaded on(support::torus(0.05, 0.02, 96, 48));
   int hills = 0;
@@ -327,7 +327,7 @@ TEST(Blended, CurvedSurfaceBeginsWithoutAForceStep) {
   EXPECT_NEAR(contact.state().depth, 0.001999 + 0.03 - middle.norm(), 1e-4);
 }
 
-TEST(Blended, PushesAlongTheBlendedNormalAndAsksTheHeapForNothing) {
+TEST(Blended, PushesAlongItsNormalWithoutAllocation) {
   ContactForceLaw touch(
       Blended<MeshContact, FixedBand>(MeshContact::build(support::icosphere(3, 0.05)).value(),
                                       FixedBand{0.001}),

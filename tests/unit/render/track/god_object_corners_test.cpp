@@ -98,7 +98,7 @@ TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
   support::record_hard_case(25, "the same", "< most hops in a tick", most_hops, kHopsMax, "1");
 }
 
-TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {
+TEST(GodObjectCorners, EqualTheQuadraticProgramAlongAPath) {
   for (const Hollow& hollow : hollows()) {
     const double size = 0.4;
     auto contact = GodObjectContact::build(support::block_around(hollow.mesh, size / 2)).value();
@@ -120,7 +120,7 @@ TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {
   }
 }
 
-TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
+TEST(GodObjectCorners, ProxyMotionOutsideAConvexIsBounded) {
   // Projection onto a convex set never increases the distance of two points: no jump, and no
   // amplified tremor.
   const double size = 0.4;
@@ -156,7 +156,7 @@ TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
   EXPECT_GT(both, ticks / 10);
 }
 
-TEST(GodObjectCorners, SlideOverAConvexEdgeToTheNextFace) {
+TEST(GodObjectCorners, ProxySlidesOverAConvexEdge) {
   // A ridge along y, 120 degrees: the tip passes below it from one flank to the other.
   const TriangleMesh ridge = support::wedge(120 * kDegree, 0.1, 0.1);
   auto contact = GodObjectContact::build(ridge).value();
@@ -176,7 +176,7 @@ TEST(GodObjectCorners, SlideOverAConvexEdgeToTheNextFace) {
   EXPECT_EQ(flanks, 1);
 }
 
-TEST(GodObjectCorners, AreReachedInOneTickFromTheOppositeWall) {
+TEST(GodObjectCorners, AreReachedInOneTickFromAnotherWall) {
   auto contact =
       GodObjectContact::build(support::block_around(support::box({0.05, 0.05, 0.05}), 0.2)).value();
   move(contact, {0, 0, 0});
@@ -186,7 +186,7 @@ TEST(GodObjectCorners, AreReachedInOneTickFromTheOppositeWall) {
   EXPECT_LT((state.p_WP - Vector3d(0.05, 0.05, -0.05)).norm(), 1e-12);
 }
 
-TEST(GodObjectCorners, StopAProxyThatLeavesOneWallAtTheOther) {
+TEST(GodObjectCorners, ProxyLeavingOneWallStopsAtTheOther) {
   auto contact =
       GodObjectContact::build(support::block_around(support::box({0.05, 0.05, 0.05}), 0.2)).value();
   move(contact, {0, 0, 0});
@@ -198,7 +198,7 @@ TEST(GodObjectCorners, StopAProxyThatLeavesOneWallAtTheOther) {
   EXPECT_EQ(contact.counters().stopped, 1U);
 }
 
-TEST(GodObjectCorners, CountAsManyConstraintsAsTheCornerHasFaces) {
+TEST(GodObjectCorners, HaveOneConstraintPerFaceOfTheCorner) {
   auto contact =
       GodObjectContact::build(support::block_around(support::box({0.05, 0.05, 0.05}), 0.2)).value();
   move(contact, {0, 0, 0});

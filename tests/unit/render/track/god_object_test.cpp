@@ -95,7 +95,7 @@ TEST(GodObject, StaysOutsideAndKeepsContactOnTheElephant) {
   expect_sound_walk(elephant, 7);
 }
 
-TEST(GodObject, RestsWhereNoPointOfTheSurfaceAroundIsNearer) {
+TEST(GodObject, RestsAtALocallyClosestPoint) {
   // Reference for the triangles that hold the proxy: a slow search; the path to the tip must begin
   // in the material.
   const TriangleMesh mesh = support::bumpy_sphere(2, 0.05, 0.35, 7);
@@ -209,7 +209,7 @@ TEST(GodObject, DirectionTurnsWithTheFacesOfASphere) {
   EXPECT_GT(hops, 1000);
 }
 
-TEST(GodObject, FinishesInLaterTicksASlideThatIsLongerThanOneMayBe) {
+TEST(GodObject, LongSlideContinuesInLaterTicks) {
   // A proxy that is pushed past the middle of a fine sphere in one tick slips around to the far
   // side.
   auto contact = GodObjectContact::build(support::icosphere(7, 0.05)).value();
@@ -283,7 +283,7 @@ TEST(GodObject, EndsContactForAPositionThatIsNaN) {
   EXPECT_TRUE(move(contact, {0.1, 0.2, 0.9}).touching);
 }
 
-TEST(GodObject, AsksTheHeapForNothing) {
+TEST(GodObject, DoesNotAllocate) {
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.35, 7);
   auto contact = GodObjectContact::build(mesh).value();
   support::RandomTip tip(support::seed_of(40), mesh);

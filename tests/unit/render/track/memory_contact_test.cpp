@@ -115,7 +115,7 @@ TEST(MemoryContact, BallOf20TrianglesIsFeltOutside) {
   EXPECT_NEAR(height, kBall - middle.norm(), 0.05 * kBall);
 }
 
-TEST(MemoryContact, TouchesNoBulgeThatTheTipReachesFromInside) {
+TEST(MemoryContact, BulgeReachedFromInsideIsNotContact) {
   MemoryContact contact = MemoryContact::build(support::icosphere(2, 0.03)).value();
   const Vector3d u = (contact.surface().position(0, 0) + contact.surface().position(0, 1) +
                       contact.surface().position(0, 2))
@@ -347,7 +347,7 @@ TEST(MemoryContact, EveryPositionBeyondRangeEndsContact) {
   }
 }
 
-TEST(MemoryContact, LeavesTheHeapAlone) {
+TEST(MemoryContact, DoesNotAllocate) {
   MemoryContact contact = MemoryContact::build(support::bumpy_sphere(3, 0.05, 0.3, 6)).value();
   support::Random random(71);
   int touched = 0;
@@ -359,7 +359,7 @@ TEST(MemoryContact, LeavesTheHeapAlone) {
   EXPECT_GT(contact.counters().found_near, 0u);
 }
 
-TEST(MemoryContact, StaysWithinItsHopsAroundANeedleAndInAThinPlate) {
+TEST(MemoryContact, HopsAreBoundedAroundANeedleAndInAPlate) {
   for (const TriangleMesh& mesh : {support::needle(64, 0.08, 0.01), support::plate(0.1, 0.0002, 20),
                                    support::wedge(5 * std::numbers::pi / 180, 0.1, 0.05)}) {
     MemoryContact contact = MemoryContact::build(mesh).value();

@@ -109,7 +109,7 @@ TEST(MovingContact, FollowsADeformingSurface) {
 
 // For any motion, however far in one step: a tip that rests outside and is inside afterwards
 // touches. One that is outside without a wall having passed does not.
-TEST(MovingContact, LetsNoMovingSurfaceThroughARestingTip) {
+TEST(MovingContact, MovingSurfaceCannotPassARestingTip) {
   for (const TriangleMesh& shape :
        {support::icosphere(3, kBallRadius), support::torus(0.035, 0.015, 30, 16)}) {
     for_each_way(shape, [&](const auto& surface, auto contact) {
@@ -177,7 +177,7 @@ TEST(MovingContact, PlateThatSweepsOverTheTipIsFelt) {
 
 // A free tip remembers a ball without triangles: a surface that grows into the ball must still be
 // felt.
-TEST(MovingContact, ForgetsTheFreeSpaceThatTheSurfaceHasGrownInto) {
+TEST(MovingContact, GrowingSurfaceInvalidatesFreeSpace) {
   const TriangleMesh shape = support::icosphere(3, kBallRadius);
   for_each_way(shape, [&](const auto& surface, auto contact) {
     for (int i = 0; i < 200; ++i) contact.update(at({0, 0, 0.07 + 1e-5 * i}));
@@ -191,7 +191,7 @@ TEST(MovingContact, ForgetsTheFreeSpaceThatTheSurfaceHasGrownInto) {
   });
 }
 
-TEST(MovingContact, MovesWithoutTheHeap) {
+TEST(MovingContact, MovesWithoutAllocation) {
   for_each_way(support::icosphere(3, kBallRadius), [&](const auto& surface, auto contact) {
     support::Random random(4);
     contact.update(at({0, 0, 0.06}));

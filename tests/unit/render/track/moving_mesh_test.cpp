@@ -24,7 +24,7 @@ void expect_equal(const Plane& a, const Plane& b) {
   EXPECT_EQ(a.d, b.d);
 }
 
-TEST(MovingMesh, HasThePlanesOfAMeshBuiltAnew) {
+TEST(MovingMesh, HasThePlanesOfANewMesh) {
   TriangleMesh shape = support::bumpy_sphere(3, kRadius, 0.3, 6);
   ContactMesh moved = ContactMesh::build(shape).value();
   support::Random random(3);
@@ -68,7 +68,7 @@ void move_ball(ContactMesh& mesh, const TriangleMesh& unit_ball, const Vector3d&
   }
 }
 
-TEST(MovingMesh, IsFollowedWhereItSwellsAndRunsUnderAStillTip) {
+TEST(MovingMesh, GrowingMovingMeshIsFollowedByARestingTip) {
   // A ball that grows and shrinks by a tenth and moves past the tip at up to 0.3 m/s; the tip does
   // not move, except to stay 1 mm deep. Relative to the ball it slides over many triangles.
   const TriangleMesh unit_ball = support::icosphere(3, 1);

@@ -73,7 +73,7 @@ TEST(NormalProjectionTracker, JumpsInDepthByItsLaw) {
             << " um; 4b: below the step of " << 2e-3 << " um\n";
 }
 
-TEST(NormalProjectionTracker, TouchesWhereTheTipIsJustOnTheSurface) {
+TEST(NormalProjectionTracker, TipOnTheSurfaceIsInContact) {
   const ContactMesh mesh = ContactMesh::build(support::box({1, 1, 1})).value();
   const LinearSearch search(mesh);
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -88,7 +88,7 @@ TEST(NormalProjectionTracker, TouchesWhereTheTipIsJustOnTheSurface) {
   }
 }
 
-TEST(NormalProjectionTracker, LeavesGapsBelowHollowEdges) {
+TEST(NormalProjectionTracker, LeavesGapsBelowConcaveEdges) {
   const TriangleMesh shape = support::bumpy_sphere(3, 0.05, 0.3, 6);
   const auto gaps_and_losses = [&shape](auto contact) {
     support::Stroll stroll(contact, shape, 0.002, 0.0005, support::seed_of(7));

@@ -44,7 +44,7 @@ Vector3d any_weights(support::Random& random) {
   return w / w.sum();
 }
 
-TEST(OffsetFoot, FindsThePlaceAndDepthThatATipWasMadeFrom) {
+TEST(OffsetFoot, RecoversThePlaceAndDepthOfATip) {
   support::Random random(1);
   for (const TriangleMesh& shape :
        {support::icosphere(2, 0.05), support::torus(0.05, 0.02, 40, 20),
@@ -66,7 +66,7 @@ TEST(OffsetFoot, FindsThePlaceAndDepthThatATipWasMadeFrom) {
   }
 }
 
-TEST(OffsetFoot, IsTheSameSeenFromBothSidesOfASmoothEdge) {
+TEST(OffsetFoot, AgreesOnBothSidesOfASmoothEdge) {
   support::Random random(2);
   const ContactMesh mesh = prepared_mesh(support::bumpy_sphere(4, 0.05, 0.3, 6));
   const SmoothNormals normals(mesh);
@@ -87,7 +87,7 @@ TEST(OffsetFoot, IsTheSameSeenFromBothSidesOfASmoothEdge) {
   }
 }
 
-TEST(OffsetFoot, SaysSoWhereTheSunkenTriangleHasTurnedOver) {
+TEST(OffsetFoot, ReportsAnInvertedOffsetTriangle) {
   const ContactMesh mesh = prepared_mesh(support::icosphere(2, 0.05));
   const SmoothNormals normals(mesh);
   EXPECT_TRUE(
@@ -366,7 +366,7 @@ TEST(HardCaseEdgeCrossing, OffsetTrackerKeepsCreasesExact) {
   EXPECT_LT((contact.state().n_W - Vector3d(1, 0, 0)).norm(), 1e-15);
 }
 
-TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
+TEST(OffsetTracker, KeepsContactAtAnyDepth) {
   support::Random random(11);
   for (const TriangleMesh& shape :
        {support::icosphere(3, 0.05), support::torus(0.05, 0.02, 40, 20),
@@ -407,7 +407,7 @@ TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
   }
 }
 
-TEST(OffsetTracker, ReturnsToTheNearSideAfterALeap) {
+TEST(OffsetTracker, ReturnsToTheNearSideAfterAJump) {
   // A tip that jumps from one side of a ball to the other within a tick is followed over the
   // surface, 64 triangles per tick, and does not stay on the far side's cells that extend through
   // the middle.
@@ -426,7 +426,7 @@ TEST(OffsetTracker, ReturnsToTheNearSideAfterALeap) {
   }
 }
 
-TEST(OffsetTracker, IsHeldByBothFacesAtOnceBelowAHollowCrease) {
+TEST(OffsetTracker, BothFacesHoldTheTipBelowAConcaveCrease) {
   // A bar along y with an L-shaped section: the notch's faces meet in a line through the origin.
   TriangleMesh shape;
   const double outline[6][2] = {{-0.02, -0.02}, {0.03, -0.02}, {0.03, 0},

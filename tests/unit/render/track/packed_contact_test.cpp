@@ -159,7 +159,7 @@ TEST(PackedContact, UnknownSearchKeepsContact) {
   EXPECT_FALSE(scene.move({0, 0, 0.052}).touching);
 }
 
-TEST(PackedContact, ExaminesLaterThePathThatItCouldNotExamine) {
+TEST(PackedContact, UnknownPathIsExaminedLater) {
   PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   scene.absence.searches = true;
@@ -248,7 +248,7 @@ TEST(PackedContact, LoadedRecordsShowABulge) {
   }
 }
 
-TEST(PackedContact, LeavesTheHeapAloneWhileItHolds) {
+TEST(PackedContact, DoesNotAllocateWhileItHolds) {
   PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   scene.move(on_stroke(0));

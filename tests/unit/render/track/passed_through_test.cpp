@@ -46,7 +46,7 @@ int side_of(const Vector3d& p) {
 }
 
 // A plate turns at 60 to 150 rad/s past a tip of up to 0.5 m/s, seen from the plate.
-TEST_P(PassedThroughBy, PlateThatTurnsFastCatchesEveryTip) {
+TEST_P(PassedThroughBy, FastTurningPlateCatchesEveryTip) {
   support::Random random(7);
   int met = 0;
   for (int round = 0; round < 600; ++round) {

@@ -246,7 +246,7 @@ TEST(PathBounded, ChangesTheForceBoundedlyOnRandomMeshes) {
   for (std::size_t i = 0; i < kContacts.size(); ++i) EXPECT_GT(over[i], shapes / 2) << kContacts[i];
 }
 
-TEST(PathBounded, IsWhatWasFoundToTheBitOnSmoothShapes) {
+TEST(PathBounded, IsBitIdenticalOnSmoothShapes) {
   const auto behind = [](auto stage, const TriangleMesh& shape) {
     PathBounded contact(std::move(stage));
     const ContactMesh mesh = ContactMesh::build(shape).value();
@@ -278,7 +278,7 @@ TEST(PathBounded, IsWhatWasFoundToTheBitOnSmoothShapes) {
   EXPECT_EQ(behind(god_object(ball), ball), 0u);
 }
 
-TEST(PathBounded, StandsStillWhileTheHandRests) {
+TEST(PathBounded, IsSteadyWhileTheHandRests) {
   // Over the edge of a box, deep inside: the nearest face changes and the filtered proxy follows.
   PathBounded contact(edge_planes(support::box({0.05, 0.05, 0.05})));
   support::move_tip(contact, {0.039, 0, 0.051});
@@ -314,7 +314,7 @@ ContactState found(double depth, const Vector3d& n_W) {
   return {.touching = true, .triangle = 7, .depth = depth, .n_W = n_W};
 }
 
-TEST(PathBounded, BeginsWithoutAStepHoweverDeepAContactIsFound) {
+TEST(PathBounded, ContactFoundDeepBeginsWithoutAForceStep) {
   ProxyFilter anchor;
   anchor.follow({0, 0, 0.001}, {});
   const ContactState deep = found(0.01, {0, 0, 1});
@@ -353,7 +353,7 @@ TEST(PathBounded, FollowsASurfaceUnderARestingHand) {
   }
 }
 
-TEST(PathBounded, FeelsNothingOfAPathThatItDoesNotKnow) {
+TEST(PathBounded, UnknownPathGivesNoContact) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   ProxyFilter anchor;
   EXPECT_FALSE(anchor.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
@@ -367,7 +367,7 @@ TEST(PathBounded, FeelsNothingOfAPathThatItDoesNotKnow) {
   EXPECT_EQ(anchor.felt().depth, 0);
 }
 
-TEST(PathBounded, GivesNoEnergyThatTheHandHasNotPutInButTheGift) {
+TEST(PathBounded, EnergyIsBoundedByTheHandsWorkAndTheGift) {
   // Places that jump at random under a wandering tip: work that tightens the spring, measured only
   // by the filtered proxy's steps, independent of the account inside.
   support::Random random(3);
@@ -448,7 +448,7 @@ double oscillation_in_groove(Contact contact, double deep) {
   return high - low;
 }
 
-TEST(PathBounded, DoesNotPushATipToAndFroAcrossAGroove) {
+TEST(PathBounded, TipDoesNotOscillateAcrossAGroove) {
   for (const double deep : {0.008, 0.017, 0.03}) {
     const TriangleMesh mesh = grooved(deep);
     const double bare = oscillation_in_groove(edge_planes(mesh), deep);
@@ -478,7 +478,7 @@ struct CountedContact {
   const ContactState& state() const noexcept { return state_; }
 };
 
-TEST(PathBounded, AsksACopyOfItsStageWhereTheTipIsExpected) {
+TEST(PathBounded, PreparesACopyAtTheExpectedTip) {
   std::vector<Vector3d> asked;
   const PathBounded contact(CountedContact{&asked, {}});
   driver::DeviceState expected;
@@ -489,14 +489,14 @@ TEST(PathBounded, AsksACopyOfItsStageWhereTheTipIsExpected) {
   EXPECT_EQ(contact.state().hops, 0);
 }
 
-TEST(PathBounded, PreparesEachContactOnAMeshThatStandsStill) {
+TEST(PathBounded, PreparesEveryContactOnAStaticMesh) {
   with_each_contact(support::icosphere(1, 0.05), [](int, auto contact) {
     const PathBounded bounded(std::move(contact));
     static_assert(requires(const driver::DeviceState& state) { bounded.prepare(state); });
   });
 }
 
-TEST(PathBounded, AsksNothingOfTheHeap) {
+TEST(PathBounded, DoesNotAllocate) {
   const TriangleMesh shape = support::box({0.05, 0.05, 0.05});
   const ContactMesh mesh = ContactMesh::build(shape).value();
   PathBounded contact(edge_planes(shape));

@@ -203,7 +203,7 @@ TriangleMesh pair_of(const TriangleMesh& shape, double apart) {
 
 // A tip that jumps far away inside, where neither a walk nor the patch around can follow: the
 // nearest surface is touched, and the tip is below the reported triangle.
-TEST(SurfaceTracker, FindsTheNearestSurfaceAfterALeap) {
+TEST(SurfaceTracker, FindsTheNearestSurfaceAfterAJump) {
   for (const TriangleMesh& shape : {pair_of(support::torus(0.035, 0.015, 60, 30), 0.12),
                                     pair_of(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.15)}) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
@@ -254,7 +254,7 @@ TEST(SurfaceTracker, NeverPopsThroughAThinPlate) {
   }
 }
 
-TEST(SurfaceTracker, FollowsToTheBitWhereTheMeshKeepsNoPlanes) {
+TEST(SurfaceTracker, IsBitIdenticalWithoutStoredPlanes) {
   for (const TriangleMesh& mesh :
        {support::bumpy_sphere(4, 0.05, 0.3, 9), support::torus(0.04, 0.015, 30, 12)}) {
     const ContactMesh kept = ContactMesh::build(mesh).value();

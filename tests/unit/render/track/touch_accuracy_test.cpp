@@ -173,7 +173,7 @@ TEST(HardCaseCurvedSurface, SphereMeetsTheLimitsOfFeel) {
   }
 }
 
-TEST(TouchAccuracy, OfRoundWeightsOnASphereIsFourthOrder) {
+TEST(TouchAccuracy, RoundWeightsOnASphereAreFourthOrder) {
   Errors before;
   for (const int level : {3, 4, 5}) {
     const ContactMesh mesh = ContactMesh::build(support::icosphere(level, 0.03)).value();
@@ -270,7 +270,7 @@ TEST(TouchAccuracy, AngleWeightedNormalsAreFirstOrder) {
               0.2);
 }
 
-TEST(TouchAccuracy, RisesFromFlatOverBandsToPhongToCurvedDepth) {
+TEST(TouchAccuracy, ImprovesFromFlatToBandsToPhongToCurved) {
   const support::TorusSurface surface{0.05, 0.02};
   const Vector3d start(0.06, 0.01, 0.005);
   const ContactMesh mesh = ContactMesh::build(support::torus(0.05, 0.02, 64, 32)).value();
