@@ -34,7 +34,8 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  /// Reads size and kind and requests 16-bit grey; false, with `said` filled, if libpng fails.
+  /// Reads size and kind and requests 16-bit grey. Returns false and sets the message if libpng
+  /// fails.
   // No object with a destructor may be in a frame that libpng jumps over, so each step is a
   // separate function.
   bool begin(std::FILE* file) {

@@ -54,7 +54,7 @@ RigidBody block(const Vector3d& half, const Stand& stand) {
   return RigidBody::build(settings).value();
 }
 
-// Returns a disc that stands on `points` points of its rim; its centre is 5 mm above the floor.
+// A disc that stands on `points` points of its rim; its centre is 5 mm above the floor.
 constexpr double kRadius = 0.03;
 RigidBody disc(int points, double friction, double mass = 0.2) {
   RigidBodySettings settings;
