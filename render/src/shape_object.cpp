@@ -48,15 +48,16 @@ std::size_t triangles_max_of(const ShapeChoice& shape) {
 driver::Result<void> check_refinement(const TriangleMesh& mesh_W, const SurfaceChoice& surface,
                                       std::size_t triangles_max) {
   if (surface.dent || surface.shape.snap) {
-    return driver::Error{fmt::format(
-        "Clay that splits its triangles (edge) cannot have a {} as well, which counts on the ones "
-        "that it was built with: leave out edge, or take a finer mesh.",
-        surface.dent ? "dent" : "wall that snaps")};
+    return driver::Error{
+        fmt::format("Clay that splits its triangles (edge) cannot have a {}, which needs the "
+                    "triangles that it was "
+                    "built with. Remove edge, or use a finer mesh.",
+                    surface.dent ? "dent" : "wall that snaps")};
   }
   if (mesh_W.triangles.size() <= triangles_max) return {};
   return driver::Error{fmt::format(
-      "The mesh has {} triangles already, and clay that splits them may have {}: raise triangles, "
-      "or take a coarser mesh.",
+      "The mesh already has {} triangles; clay that splits them may have {}. Raise triangles, "
+      "or use a coarser mesh.",
       mesh_W.triangles.size(), triangles_max)};
 }
 
@@ -73,9 +74,8 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                     (blending == BlendingChoice::kFlat && !smooth);
   if (!known || !goes || choice.curved_depth.value_or(false)) {
     return driver::Error{
-        "A surface that changes shape is touched by the tracker \"edge_planes\" (blending flat or "
-        "phong), \"offset\" or \"god_object\", without curved_depth; name one of these in "
-        "contact."};
+        "A surface that changes shape needs the tracker \"edge_planes\" (blending flat or phong), "
+        "\"offset\" or \"god_object\", without curved_depth. Set one of these in contact."};
   }
   const std::size_t triangles_max = triangles_max_of(surface.shape);
   if (triangles_max > 0) {
@@ -83,8 +83,7 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
     // the tip is deep.
     if (!god_object) {
       return driver::Error{
-          "Clay that splits its triangles (edge) is touched by the tracker \"god_object\": name it "
-          "in "
+          "Clay that splits its triangles (edge) needs the tracker \"god_object\". Set it in "
           "contact."};
     }
     if (auto fits = check_refinement(mesh_W, surface, triangles_max); !fits) return fits.error();

@@ -22,21 +22,22 @@ driver::Result<void> check_choice(const ContactChoice& choice) {
   if (choice.tracker == TrackerChoice::kGodObject) {
     if (choice.blending.value_or(BlendingChoice::kFlat) != BlendingChoice::kFlat ||
         choice.curved_depth.value_or(false)) {
-      return apart(choice, "pushes towards its proxy: it goes with the blending \"flat\" only.");
+      return apart(choice, "pushes towards its proxy and supports only the blending \"flat\".");
     }
-    if (choice.normals) return apart(choice, "feels no normals of corners: leave normals away.");
+    if (choice.normals) return apart(choice, "does not use vertex normals. Remove normals.");
   }
   if (choice.tracker != TrackerChoice::kPacked) return {};
   if (choice.blending.value_or(BlendingChoice::kPhong) != BlendingChoice::kPhong ||
       !choice.curved_depth.value_or(true)) {
-    return apart(choice,
-                 "always feels smooth (phong, curved depth): leave blending and curved_depth away, "
-                 "or take the tracker \"offset\" or \"edge_planes\".");
+    return apart(
+        choice,
+        "is always smooth (phong, curved depth). Remove blending and curved_depth, or use the "
+        "tracker \"offset\" or \"edge_planes\".");
   }
   if (choice.normals.value_or(NormalWeights::kAngle) != NormalWeights::kAngle) {
     return apart(choice,
-                 "has the mean of the faces by their angles at its corners: leave normals away, or "
-                 "take the tracker \"offset\".");
+                 "always weights vertex normals by angle. Remove normals, or use the tracker "
+                 "\"offset\".");
   }
   return {};
 }
@@ -83,8 +84,8 @@ driver::Result<void> check_profile(const ContactChoice& choice) {
     return {};
   }
   return driver::Error{
-      "A profile says how the normal turns within a band: it goes with the blending "
-      "\"fixed_band\" or \"sized_band\" only."};
+      "profile sets how the normal turns within a band. It needs the blending \"fixed_band\" or "
+      "\"sized_band\"."};
 }
 
 driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,

@@ -21,16 +21,17 @@
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/session/session_batch.h"
 
-// Many arms of one scene, stepped in turns on one core, against one arm alone; and several
-// processes of them. A hand strokes a bumpy ball of 10^5 triangles. Time is the processor's, in
-// which other work on the machine shows little; only making them is told by the wall clock.
-//   bench_batch [--arms=1000] [--processes=8] [--figures=FILE]
+// Benchmark of many arms of one scene, stepped in turns on one core, compared with a single arm;
+// and of several such processes. A hand strokes a bumpy ball of 10^5 triangles. Times are processor
+// times, which depend little on other load; only the set-up is measured by the wall clock.
+//
+// bench_batch [--arms=1000] [--processes=8] [--figures=FILE]
 
 namespace thimble::bench {
 namespace {
 
-constexpr int kRounds = 5;                        // in turns; medians are told
-constexpr std::uint32_t kTicksOfRound = 300'000;  // of all arms together
+constexpr int kRounds = 5;                        // in turns; medians are reported
+constexpr std::uint32_t kTicksOfRound = 300'000;  // for all arms together
 
 constexpr const char* kScene = R"(name: ball
 arm: vintage_phantom
@@ -48,7 +49,7 @@ hand:
     - {t: 0.5, on: ball, near: [0, -0.02, 0.016], press: 0.005}
 )";
 
-/// Writes the scene: a hand that strokes forth and back for a minute and never lifts off.
+/// Writes the scene: a hand that strokes back and forth for a minute and never lifts off.
 std::filesystem::path write_scene(const std::filesystem::path& folder) {
   const auto mesh = support::bench_ball(support::BumpyBall(), 100'000);
   if (const auto saved = render::save_mesh(mesh, folder / "ball.off"); !saved) {
@@ -80,7 +81,7 @@ Batch open(const std::filesystem::path& scene, std::size_t arms) {
   return nullptr;
 }
 
-/// Returns the ticks per second of the processor, of one round.
+/// Returns the ticks per processor second of one round.
 double rate(session::SessionBatch& batch, std::uint32_t ticks_at_once, std::uint32_t ticks) {
   const auto turns =
       std::max<std::uint32_t>(1, ticks / static_cast<std::uint32_t>(batch.size()) / ticks_at_once);
@@ -101,8 +102,8 @@ bool all_touch(const session::SessionBatch& batch) {
                      [](const driver::TickRecord& tick) { return tick.in_contact; });
 }
 
-/// Lets processes step arms of their own at the same time, and returns the ticks per second of the
-/// processor of each; empty if one failed.
+/// Steps arms in several processes at the same time. Returns the ticks per processor second of each
+/// process; empty if one failed.
 std::vector<double> rates_of_processes(const std::filesystem::path& scene, int processes,
                                        std::size_t arms) {
   int pipes[2];
@@ -156,7 +157,7 @@ class Bench {
     for (const std::uint32_t at_once : {1U, 10U, 100U}) {
       std::vector<double> of_one, of_many, share;
       for (int round = 0; round < kRounds; ++round) {
-        // A run of one is over too soon for a round as long.
+        // A single run ends too soon for a round of the same length.
         of_one.push_back(rate(*alone, at_once, 3000));
         of_many.push_back(rate(*many, at_once, kTicksOfRound));
         share.push_back(of_many.back() / of_one.back());
@@ -206,7 +207,7 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  std::filesystem::current_path(THIMBLE_SOURCE_DIR);  // where arms are found by name
+  std::filesystem::current_path(THIMBLE_SOURCE_DIR);  // arms are found by name there
   const auto folder =
       std::filesystem::temp_directory_path() / ("thimble_batch_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);

@@ -21,7 +21,7 @@
 #include "support/meshes/shapes.h"
 #include "thimble/render/build_object_touch.h"
 
-// What the dynamics of bodies cost: per node and step, or per step of one body.
+// Cost of the dynamics of bodies: per node and step, or per step of one body.
 
 namespace thimble::bench {
 namespace {
@@ -67,7 +67,7 @@ void touch_torus(benchmark::State& state, bool dented) {
   render::ContactChoice choice;
   choice.tracker = render::TrackerChoice::kPacked;
   auto touch = render::build_object_touch(mesh, choice, surface).value();
-  // Forth and back over 60 mm, so that the way is closed.
+  // Back and forth over 60 mm, so that the path is closed.
   const double step = static_cast<double>(state.range(1)) * 1e-6;
   const int half = static_cast<int>(0.06 / step);
   std::vector<driver::DeviceState> ways(static_cast<std::size_t>(2 * half));
@@ -94,7 +94,7 @@ void touch_torus(benchmark::State& state, bool dented) {
 BENCHMARK_CAPTURE(touch_torus, stiff, false)->ArgsProduct({{10000, 1000000}, {30, 300}});
 BENCHMARK_CAPTURE(touch_torus, dented, true)->ArgsProduct({{10000, 1000000}, {30, 300}});
 
-// What drawing a dent of 3 rings takes.
+// Cost of drawing a dent of 3 rings.
 void draw_dent(benchmark::State& state) {
   auto contact = std::make_shared<const render::ContactMesh>(
       render::ContactMesh::build(support::torus(0.05, 0.02, 100, 50)).value());
@@ -179,7 +179,7 @@ BENCHMARK(step_rigid)->Arg(0)->Arg(8)->Arg(42);
 }  // namespace thimble::bench
 
 int main(int argc, char** argv) {
-  // --figures=FILE is ours; everything else is Google Benchmark's.
+  // Parses --figures=FILE; all other options are Google Benchmark's.
   std::string figures_file;
   std::vector<char*> rest;
   for (int i = 0; i < argc; ++i) {

@@ -10,9 +10,9 @@
 #include "thimble/render/scene_touch.h"
 #include "thimble/session/session.h"
 
-// What one tick of a whole scene with bodies takes, 99 of 100 of them: the force law alone, driven
-// over the way that a simulated hand went. Of five rounds the least per tick, so that what else the
-// machine does is left out as far as that goes.
+// Cost of one tick of a whole scene with bodies, 99th percentile. Only the force law runs, driven
+// along the path of a simulated hand. The minimum of five rounds per tick excludes most other load
+// of the machine.
 
 namespace thimble::bench {
 namespace {
@@ -63,7 +63,7 @@ void tick_p99_of_scene(benchmark::State& state, const std::string& name) {
     state.counters["mean_us"] = 1e6 * sum / static_cast<double>(sorted.size());
     state.counters["most_us"] = 1e6 * sorted.back();
   }
-  state.counters["goal_below_ns"] = 20'000;  // of the 1 ms that a tick has, with all else in it
+  state.counters["goal_below_ns"] = 20'000;  // of the 1 ms of a tick, including everything else
 }
 #define THIMBLE_SCENE(name) \
   BENCHMARK_CAPTURE(tick_p99_of_scene, name, #name)->UseManualTime()->Iterations(1)

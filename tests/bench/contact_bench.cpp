@@ -24,10 +24,9 @@
 #include "thimble/render/build_object_touch.h"
 #include "track/packed_contact_in_memory.h"
 
-// Contact on closed shapes of 0.1 m from 10^3 to 10^7 triangles, against other libraries in the
-// same run. Every time is the least of several rounds in which the contenders take turns, stretch
-// by stretch of a path: what the machine does besides only adds, and it seldom does nothing for as
-// long as a whole path takes.
+// Contact on closed shapes of 0.1 m with 10^3 to 10^7 triangles, compared with other libraries in
+// the same run. Every time is the minimum of several rounds. The contenders take turns on each
+// stretch of a path, because the machine is seldom undisturbed for a whole path.
 
 namespace thimble::bench {
 namespace {
@@ -40,7 +39,7 @@ constexpr std::size_t kTicks = 100000;
 constexpr std::size_t kStretch = 1000;  // ticks
 constexpr int kRounds = 5;
 
-// Counts the bytes that the program has on the heap.
+// Returns the bytes that the program has allocated on the heap.
 std::size_t allocated() {
   const struct mallinfo2 heap = mallinfo2();
   return heap.uordblks + heap.hblkhd;
@@ -55,7 +54,7 @@ struct Path {
   Vector3d start;              // outside, above the first
 };
 
-// Winds over a ball in steps of equal length.
+// Winds around a ball in steps of equal length.
 Path path_over(const support::BumpyBall& ball, double step, std::size_t ticks) {
   Path path;
   support::Random random(7);
@@ -84,11 +83,11 @@ Path path_over(const support::Ring& ring, double step, std::size_t ticks) {
   return path;
 }
 
-// Is a contender: gives the depth at a tip, NaN where it has none.
+// Contender: returns the depth at a tip, NaN without contact.
 using Follow = std::function<double(const Vector3d&)>;
 
 struct Followed {
-  std::vector<double> stretches;  // least of each, s
+  std::vector<double> stretches;  // minimum of each, s
   double ns = 0;                  // per tick
   double error_mm = 0;            // mean of |depth - truth|
   std::size_t lost = 0;           // ticks
@@ -122,9 +121,10 @@ void follow_hot(const Path& path, F&& follow, Followed& result) {
   result.lost = lost;
 }
 
-// Ticks of a 1 kHz loop that sleeps, on a thread of real-time priority as the servo's is (the
-// kernel may refuse it, and is quoted): {mean, 99th of 100} in ns, of the contact alone. `prepare`
-// is called in the time that is left before a tick, with the place where the tip is expected.
+// Measures ticks of a 1 kHz loop that sleeps, on a thread with real-time priority like the servo's
+// (if the kernel refuses it, its reason is printed). Returns {mean, 99th percentile} of the
+// contact's time in ns. `prepare` is called in the time left before a tick, with the expected
+// position of the tip.
 template <class F, class G>
 std::pair<double, double> follow_in_loop(const Path& path, F&& follow, G&& prepare) {
   std::vector<double> ns;
@@ -163,7 +163,7 @@ class Bench {
     run_shape("torus " + size, support::bench_ring(ring, triangles), ring, triangles);
   }
 
-  // How long contact takes to build as a scene builds it, and what it holds.
+  // Measures the time and the memory to build a contact as a scene does.
   void run_build(const std::string& size, std::size_t triangles) {
     build_shape("ball " + size, support::bench_ball(support::BumpyBall(), triangles), triangles);
     build_shape("torus " + size, support::bench_ring(support::Ring(), triangles), triangles);
@@ -198,7 +198,7 @@ class Bench {
       }
       const char* goal = triangles == 1000000 ? "<= 0.6" : triangles == 10000000 ? "<= 7" : "";
       add(name + ": build contact, " + way.name, least, "s", goal);
-      // Of all threads: a busy machine does not show in it.
+      // Processor time of all threads, which does not depend on other load.
       add(name + ": build contact, " + way.name + ", processor", processor, "s");
       add(name + ": memory of contact, " + way.name,
           bytes / static_cast<double>(mesh.triangles.size()), "B per triangle",
@@ -265,7 +265,7 @@ class Bench {
       }
       if (!fast) continue;
       const Path slow = path_over(shape, 0.3e-3, 1000);
-      // As the servo loop does in real time (ServoSettings::prepare_ns): a copy is asked.
+      // As the servo loop does in real time (ServoSettings::prepare_ns): the query uses a copy.
       const auto prepare = [&](const Vector3d& expected) {
         render::MemoryContact guess = contact;
         driver::DeviceState there;
@@ -339,16 +339,16 @@ class Bench {
     add_search("tree", render::SearchChoice::kTree);
     add_search("grid", render::SearchChoice::kGrid);
     if (triangles <= 10000) add_search("linear", render::SearchChoice::kLinear);
-    // Slower by far than Embree and large in memory: asked where that settles the order.
+    // Much slower than Embree and large in memory, so it is measured only up to this size.
     if (triangles <= 100000) {
       if constexpr (THIMBLE_HAVE_CGAL) peers.push_back(make_cgal(mesh));
       if constexpr (THIMBLE_HAVE_FCL) peers.push_back(make_fcl(mesh));
     }
     for (const auto& peer : peers) add_peer(*peer);
 
-    double sum = 0;  // read below, so that no query is left out
-    // Takes turns in batches short enough to lie between two interruptions, and adds up the least
-    // time of each batch; between two rounds of a batch all others have been asked.
+    double sum = 0;  // read below, so that no query is optimised away
+    // Takes turns in batches that are short enough to fit between two interruptions, and adds up
+    // the minimum time of each batch. Between two rounds of a batch, all others are run.
     const auto take_turns = [&](Question Contender::*question) {
       constexpr std::size_t kBatch = 500;
       std::vector<double> ns(contenders.size(), 0);
@@ -398,7 +398,7 @@ class Bench {
 
 int main(int argc, char** argv) {
   // --figures=FILE writes the figures, --min=N begins at N triangles, --max=N stops there (default
-  // 1e6), --long goes on to 10^7, --contact leaves out the cold questions, --cold asks only them,
+  // 1e6), --long continues to 10^7, --contact skips the cold queries, --cold runs only them,
   // --build only builds.
   std::string figures_file;
   double least = 0, most = 1e6;

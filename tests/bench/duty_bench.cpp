@@ -1,5 +1,5 @@
-// What the driver's own code takes of a tick, for each arm: decode, kinematics, velocity, gate,
-// currents, encode. The wire is memory, so that no kernel is in it.
+// Cost of the driver's own code per tick for each arm: decode, kinematics, velocity, gate,
+// currents, encode. The wire is in memory, so that no kernel call is measured.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 using Report = std::vector<std::byte>;
 
-/// A wire that has the next of some reports for each read, and forgets what is written.
+/// Wire that returns the next of a list of reports on each read and discards writes.
 class LoopedWire final : public driver::Transport {
  public:
   explicit LoopedWire(std::vector<Report> reports) : reports_(std::move(reports)) {}
@@ -52,8 +52,8 @@ Report report_of(const Bytes& bytes) {
   return {std::begin(bytes), std::end(bytes)};
 }
 
-/// Encodes a thousand reports of a tip that goes round near `p_BT`, by what `encode` makes of the
-/// counts and the report's number.
+/// Encodes a thousand reports of a tip that circles near `p_BT`; `encode` makes a report from the
+/// counts and its number.
 template <class Geometry, class Encode>
 std::vector<Report> round_trip(const driver::JointModel<Geometry>& model,
                                const Eigen::Vector3d& p_BT, Encode&& encode) {
@@ -93,7 +93,7 @@ void ticks(benchmark::State& state, std::vector<Report> reports,
   }
   if ((*device)->fault() != driver::Fault::kNone) state.SkipWithError("the device has a fault");
   const auto& wire = (*device)->wire_counters();
-  const bool started = now_ns > 1'000'000'000;  // softly, like every arm
+  const bool started = now_ns > 1'000'000'000;  // force rises slowly, as on every arm
   if (wire.rejected + wire.missing > 0 || (started && !((*device)->f_sent_W().norm() > 0.8))) {
     state.SkipWithError("not every tick had a report and its force");
   }

@@ -69,8 +69,8 @@ class Embree final : public Peer {
     return search.distance;
   }
 
-  // The god-object: a ray from the last proxy, a little above the surface, to the tip; the proxy
-  // becomes the tip put onto the plane of the triangle that is hit.
+  // God-object: casts a ray from the last proxy, raised slightly above the surface, to the tip. The
+  // new proxy is the tip projected onto the plane of the hit triangle.
   double follow(const Vector3d& p) override {
     const Vector3d from = proxy_ + kLift * normal_;
     const RTCRayHit ray = cast(from, p);
@@ -86,7 +86,7 @@ class Embree final : public Peer {
   }
 
  private:
-  static constexpr double kLift = 1e-5;  // m; floats of 0.1 m are wrong by 4e-9
+  static constexpr double kLift = 1e-5;  // m; single precision has an error of 4e-9 at 0.1 m
 
   struct Search {
     const Embree* embree;

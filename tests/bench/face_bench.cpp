@@ -1,5 +1,5 @@
-// What a turn of a program's loop costs it beside the tick: read, ask for a force, hand it over.
-// Nothing is waited for; the arm's own loop runs meanwhile, as it does under `thimble exec`.
+// Cost of one cycle of a program's loop, in addition to the tick: read, request a force, send it.
+// Nothing waits; the arm's own loop runs at the same time, as under `thimble exec`.
 #include <HD/hd.h>
 #include <benchmark/benchmark.h>
 #include <hdPhantom.h>
@@ -19,7 +19,7 @@
 namespace thimble::compat {
 namespace {
 
-/// A server in this process, for as long as the benchmarks run.
+/// Server in this process for the duration of the benchmarks.
 class Server {
  public:
   Server() {

@@ -40,7 +40,7 @@ class Fcl final : public Peer {
   }
 
  private:
-  static constexpr double kBall = 1e-9;  // m: as good as a point
+  static constexpr double kBall = 1e-9;  // m; effectively a point
 
   std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_;
   std::shared_ptr<fcl::Sphered> ball_;

@@ -9,8 +9,8 @@
 
 namespace thimble::bench {
 
-/// Prints like Google Benchmark's console and keeps the median of each benchmark as a figure, in
-/// nanoseconds of CPU or manual time per iteration.
+/// Console reporter of Google Benchmark that also stores the median of each benchmark as a figure,
+/// in nanoseconds of CPU or manual time per iteration.
 class FiguresReporter : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
@@ -34,8 +34,8 @@ class FiguresReporter : public benchmark::ConsoleReporter {
   std::vector<session::Figure>& figures() { return figures_; }
 
  private:
-  /// Takes the processor's time, in which a busy machine does not show, unless the benchmark timed
-  /// itself.
+  /// Returns processor time, which does not depend on other load, unless the benchmark measured the
+  /// time itself.
   static double time_of(const Run& run) {
     const bool manual = run.run_name.time_type == "manual_time";
     return manual ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime();

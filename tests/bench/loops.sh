@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures the times of a contributor's loops on this machine (CONTRIBUTING.md names them); no pass criterion.
-#   tests/bench/loops.sh edit      one changed source of render, driver and app: rebuilt in preset dev, its tests run
-#   tests/bench/loops.sh build     the build of app/demo.sh, then everything, from an empty folder
+#   tests/bench/loops.sh edit      one changed source of render, driver and app: rebuild in preset dev, run of its tests
+#   tests/bench/loops.sh build     the build of app/demo.sh, then of everything, from an empty folder
 # Prints elapsed seconds, processor seconds and, for builds, the sum of their steps. No compiler cache is used.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -9,7 +9,7 @@ export CCACHE_DISABLE=1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# measure WHAT COMMAND...: runs it and prints its times.
+# measure NAME COMMAND...: runs the command and prints its times.
 measure() {
   local what=$1
   shift
@@ -44,7 +44,7 @@ END
     app/fetch_meshes.sh >/dev/null
     meshes=$PWD/build/meshes
     measure configure cmake --preset release -B "$folder/build" -DTHIMBLE_MESHES="$meshes"
-    measure "what app/demo.sh builds" cmake --build "$folder/build" --target thimble_demo
+    measure "build of app/demo.sh" cmake --build "$folder/build" --target thimble_demo
     echo "  steps: $(step_seconds "$folder/build") s"
     measure "the rest" cmake --build "$folder/build"
     echo "  steps of all: $(step_seconds "$folder/build") s"

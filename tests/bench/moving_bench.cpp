@@ -10,9 +10,9 @@
 #include "support/random.h"
 #include "track/moving_mesh.h"
 
-// What it costs to move vertices of a mesh together with all that is built over it: a patch of 37
-// vertices (three rings) at random places, pressed in by a fifth of an edge and let out again. Must
-// hardly depend on the mesh.
+// Cost of moving vertices of a mesh and updating all structures built over it: a patch of 37
+// vertices (three rings) at random places, pressed in by a fifth of an edge and released. Must
+// hardly depend on the size of the mesh.
 
 namespace thimble::bench {
 namespace {
@@ -23,7 +23,8 @@ using render::VertexMove;
 
 constexpr std::size_t kPatch = 37;
 
-// The vertices nearest to one over the surface, and by how much the first of them is to move.
+// Returns the vertices nearest to one along the surface, with a displacement that is largest at the
+// first.
 std::vector<VertexMove> patch(const render::ContactMesh& mesh, std::int32_t centre) {
   std::vector<std::int32_t> found{centre};
   for (std::size_t i = 0; i < found.size() && found.size() < kPatch; ++i) {
@@ -44,8 +45,7 @@ std::vector<VertexMove> patch(const render::ContactMesh& mesh, std::int32_t cent
   return moves;
 }
 
-// Stands apart so that callgrind can be told to count it alone
-// (--toggle-collect=*move_patch_once*).
+// Separate function, so that callgrind can count it only (--toggle-collect=*move_patch_once*).
 [[gnu::noinline]] void move_patch_once(render::MovingMesh& surface,
                                        const std::vector<VertexMove>& moves) {
   surface.move_vertices(moves, Vector3d::Constant(0.2));

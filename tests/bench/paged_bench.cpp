@@ -21,9 +21,8 @@
 #include "studies/tube_mesh.h"
 #include "track/packed_contact_in_memory.h"
 
-// A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on the disk, in a loop
-// of 1 kHz that sleeps, a thread loading for it; beside it the same over 10^6 triangles in memory,
-// turn by turn.
+// A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on disk, in a 1 kHz
+// loop that sleeps, with a loader thread; compared with 10^6 triangles in memory, in turns.
 
 namespace thimble::bench {
 namespace {
@@ -42,8 +41,8 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Winds over the ring in steps of equal length; the heading turns slowly round, so that the tip
-// comes by everywhere.
+// Winds around the ring in steps of equal length. The heading turns slowly, so that the tip visits
+// every place.
 class Way {
  public:
   Vector3d next() {
@@ -80,13 +79,13 @@ struct Ticks {
   }
 };
 
-// One contender on its way.
+// One contender on its path.
 template <class Contact>
 class Slide {
  public:
   explicit Slide(Contact& contact) : contact_(contact) { state_.dt = kTick; }
 
-  // From outside down to the pressed depth within a tenth of a second.
+  // Moves from outside to the pressed depth within a tenth of a second.
   void approach() {
     for (int i = 0; i <= 100; ++i) {
       move(way_.at(2e-3 - (2e-3 + kPressed) * i / 100));
@@ -126,7 +125,7 @@ render::TriangleMesh ring_mesh(std::int64_t triangles) {
                             [](double u, double v) { return kRing.at(u, v); });
 }
 
-// Asks the kernel to forget what it has read of a file; it may refuse.
+// Asks the kernel to drop its cache of a file; it may refuse.
 void forget(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -137,7 +136,7 @@ void forget(const std::filesystem::path& file) {
 
 class Bench {
  public:
-  // False, with a sentence on stderr, if the file cannot be written.
+  // Returns false and prints an error to stderr if the file cannot be written.
   bool run(const std::string& size, std::int64_t triangles, const std::filesystem::path& folder) {
     const auto file = folder / ("ring_" + std::to_string(triangles) + ".pages");
     auto begin = Clock::now();
@@ -221,9 +220,9 @@ class Bench {
 }  // namespace thimble::bench
 
 int main(int argc, char** argv) {
-  // --figures=FILE writes the figures, --folder=FOLDER says where the page files go (default: the
-  // folder for temporary files), --max=N stops at N triangles (default 1e7), --long goes on to 10^8
-  // (6.4 GB of disk).
+  // --figures=FILE writes the figures, --folder=FOLDER is the folder of the page files (default:
+  // the folder for temporary files), --max=N stops at N triangles (default 1e7), --long continues
+  // to 10^8 (6.4 GB of disk).
   std::string figures_file;
   std::filesystem::path folder = std::filesystem::temp_directory_path();
   double most = 1e7;

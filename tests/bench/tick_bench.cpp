@@ -24,7 +24,7 @@
 #include "track/mesh_contact.h"
 #include "velocity_estimator.h"
 
-// One whole tick on the virtual clock in contact with elephant.off, and each part of it alone.
+// One whole tick on the virtual clock in contact with elephant.off, and each part of it separately.
 
 namespace thimble {
 namespace {
@@ -37,7 +37,7 @@ std::vector<render::EffectPlan> effects_of(const std::string& scene) {
   return read ? read->objects.front().effects : std::vector<render::EffectPlan>();
 }
 
-// `rough`: with rubber's friction and sandpaper's texture on it.
+// `rough`: with rubber's friction and sandpaper's texture.
 std::unique_ptr<session::Session> open_stroke(bool rough = false) {
   session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
@@ -88,7 +88,7 @@ void whole_rough_tick(benchmark::State& state) {
 }
 BENCHMARK(whole_rough_tick)->UseManualTime()->Iterations(20)->Unit(benchmark::kNanosecond);
 
-/// The records of the same run, to feed the parts with.
+/// Returns the records of the same run, as input for the parts.
 const std::vector<driver::TickRecord>& stroke_records() {
   static const std::vector<driver::TickRecord> records = [] {
     const auto session = open_stroke();
@@ -110,7 +110,7 @@ driver::DeviceState state_of(const driver::TickRecord& record) {
   return state;
 }
 
-/// The force law of the session's only object, as a copy that may be called.
+/// Returns the force law of the session's only object, as a copy that may be called.
 MeshTouch mesh_touch(const session::Session& session) {
   const auto& object = session.scene().objects.front();
   return {render::MeshContact::build(session.setup().objects().mesh_W()).value(),
@@ -134,7 +134,7 @@ BENCHMARK(touch);
 void simulated_arm(benchmark::State& state) {
   const auto session = open_stroke();
   if (!session) return state.SkipWithError("no scene");
-  // The arm alone: hand, plant, encoders, firmware and both ends of the wire, 1 ms per iteration.
+  // Only the arm: hand, plant, encoders, firmware and both ends of the wire, 1 ms per iteration.
   device_sim::SimulatedArm arm = *session->simulation()->board_arm();
   std::array<std::byte, 64> buffer;
   std::uint32_t skipped = 0;
@@ -169,8 +169,8 @@ void decode_and_pose(benchmark::State& state) {
 }
 BENCHMARK(decode_and_pose);
 
-/// What a run's log costs the servo: the counters of a device compared in each tick, and what
-/// happened, if anything, put into the ring; who writes is another thread.
+/// Cost of a run's log for the servo loop: it compares the device's counters in each tick and puts
+/// events into the ring. Another thread writes them.
 void event_watch(benchmark::State& state) {
   const auto session = open_stroke();
   if (!session || stroke_records().empty()) return state.SkipWithError("no scene");
@@ -246,7 +246,7 @@ void statistics_and_trace(benchmark::State& state) {
 BENCHMARK(statistics_and_trace);
 
 void free_tick(benchmark::State& state) {
-  // Nothing near: the ball without triangles around the tip is remembered, and no search is asked.
+  // Nothing near: the contact keeps a ball without triangles around the tip, so there is no search.
   const auto session = open_stroke();
   if (!session) return state.SkipWithError("no scene");
   MeshTouch law = mesh_touch(*session);
@@ -265,7 +265,7 @@ BENCHMARK(free_tick);
 }  // namespace thimble
 
 int main(int argc, char** argv) {
-  // --figures=FILE is ours; everything else is Google Benchmark's.
+  // Parses --figures=FILE; all other options are Google Benchmark's.
   std::string figures_file;
   std::vector<char*> rest;
   for (int i = 0; i < argc; ++i) {
@@ -284,7 +284,7 @@ int main(int argc, char** argv) {
   for (auto& figure : reporter.figures()) {
     if (figure.name == "whole_tick") figure.goal = "<= 400";
     if (figure.name == "whole_rough_tick") figure.goal = "<= 550";
-    if (figure.name.starts_with("duty_")) {  // of the driver alone, out of a tick of 1000 us
+    if (figure.name.starts_with("duty_")) {  // only the driver, of a tick of 1000 us
       figure.value /= 1000;
       figure.unit = "us";
     }

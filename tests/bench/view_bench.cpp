@@ -11,10 +11,10 @@
 #include "view/gl/offscreen_context.h"
 #include "view/scene_painter.h"
 
-// How long one picture of 960 x 640 takes, by triangles: wall time, and time of all processors
-// together, for software draws with all of them. `least` is the least such time of a picture, ms:
-// what is left where others keep the machine busy. Name of what draws: see `renderer`.
-// `all`: soft rims of shadows and smooth edges; `turns`: the camera, by a degree a picture.
+// Time of one picture of 960 x 640 by number of triangles: wall time, and time of all processors,
+// because a software renderer uses all of them. `least`: minimum processor time of a picture, ms,
+// which excludes other load. The renderer's name: see `renderer`. `all`: soft shadow edges and
+// antialiasing; `turns`: the camera turns by a degree per picture.
 
 namespace thimble::bench {
 namespace {
@@ -23,7 +23,7 @@ using view::Canvas;
 using view::DrawnMoment;
 using view::PaintChoice;
 
-/// Returns the time that all processors have spent on this process, ms.
+/// Returns the time that this process has used on all processors, ms.
 double processor_ms() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
@@ -49,7 +49,7 @@ void paint(benchmark::State& state) {
   auto camera = view::frame(scene, moment, canvas.aspect());
   PaintChoice choice;
   choice.fine = state.range(1) == 1;
-  // The first pictures translate the shaders.
+  // The first pictures compile the shaders.
   for (int i = 0; i < 2; ++i) painter.paint(moment, camera, choice, canvas);
   glFinish();
   double least = 1e9;

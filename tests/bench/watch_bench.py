@@ -1,13 +1,13 @@
-"""Measures what it costs to watch a touch, and writes figures as `thimble study` does: reported, never pass criteria.
+"""Measures the cost of viewers for a run, and writes figures as `thimble study` does: reported, never pass criteria.
 
-  watch_bench.py BUILD_DIR SCENE FIGURES.json      SCENE: what the page shows (the scan of an elephant)
+  watch_bench.py BUILD_DIR SCENE FIGURES.json      SCENE: shown on the page (the scan of an elephant)
 
-- The page of a run: runs with and without it take turns; the figure is the median of the differences of a pair.
-- The live page: runs in real time with a browser that looks and without one take turns. Chromium draws in software here,
-  so that its own time is another computer's or a graphics card's: a figure without a goal.
-- The viewer's picture of 82,000 triangles (bench_view), by processor time over all cores: a busy machine does not show
-  in it, but the clock needs it at least once over.
-Each has processor seconds beside seconds by the clock, which is the one that a busy machine makes longer.
+- The page of a run: runs with and without it alternate; the figure is the median of the differences of the pairs.
+- The live page: runs in real time with and without a watching browser alternate. Chromium draws in software here, so its
+  own time, which another computer or a graphics card would take, has no goal.
+- The viewer's picture of 82,000 triangles (bench_view), by processor time over all cores, which does not depend on other
+  load. The wall time is at least this time divided by the number of cores.
+Each figure has processor seconds and wall-clock seconds; only the latter depend on other load.
 """
 import asyncio
 import json
@@ -42,7 +42,7 @@ def figure(name, value, unit, most=None, note=""):
 
 
 def spend(command, **options):
-    """Runs a command to its end: seconds by the clock, and of the processor."""
+    """Runs a command to its end. Returns wall-clock seconds and processor seconds."""
     begin = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, **options)
     _, status, used = os.wait4(process.pid, 0)
@@ -52,18 +52,18 @@ def spend(command, **options):
 
 
 def processor_seconds(pid):
-    """Seconds of the processor that a process has used (/proc/PID/stat, proc(5))."""
+    """Returns the processor seconds of a process (/proc/PID/stat, proc(5))."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def measure_page(thimble, scene, folder):
-    """The page of a run, on top of the run and its report."""
-    without = dict(os.environ, XDG_DATA_DIRS=str(folder / "nowhere"))  # the libraries of the page are missing there
+    """Measures the page of a run, in addition to the run and its report."""
+    without = dict(os.environ, XDG_DATA_DIRS=str(folder / "nowhere"))  # has no libraries of the page
     clock, processor = [], []
     for _ in range(PAIRS):
         plain = spend([thimble, "run", scene, "--no-view", "--report", folder / "plain"], env=without,
-                      stderr=subprocess.DEVNULL)  # hides the message that there is no page
+                      stderr=subprocess.DEVNULL)  # hides the message about the missing page
         paged = spend([thimble, "run", scene, "--no-view", "--report", folder / "paged"])
         clock.append(paged[0] - plain[0])
         processor.append(paged[1] - plain[1])
@@ -75,7 +75,7 @@ def measure_page(thimble, scene, folder):
 
 
 async def watch(address, page, viewer):
-    """Looks at a live page: the server's processor seconds a second, and pictures a second that are drawn."""
+    """Watches a live page. Returns the server's processor seconds per second, and the pictures drawn per second."""
     async with websockets.connect(address, max_size=None) as socket:
         tab = Tab(socket)
         await tab.call("Page.enable")
@@ -90,7 +90,7 @@ async def watch(address, page, viewer):
 
 
 def live_run(thimble, scene, folder, chromium):
-    """One run in real time: its report, and what `watch` saw where there is a browser to look."""
+    """Runs in real time. Returns the report, and the result of `watch` if a browser is given."""
     name, report = f"bench_{os.getpid()}", folder / "live"
     run = subprocess.Popen([thimble, "run", scene, "--clock", "wall", "--duration", "300", "--no-view", "--name", name,
                             "--report", report], stdout=subprocess.DEVNULL)
@@ -116,7 +116,7 @@ def live_run(thimble, scene, folder, chromium):
 
 
 def measure_live(thimble, scene, folder, chromium):
-    """The live page beside a servo at 1 kHz."""
+    """Measures the live page during a servo loop at 1 kHz."""
     served, pictures, missed, missed_alone = [], [], [], []
     for _ in range(LIVE_PAIRS):
         alone, _ = live_run(thimble, scene, folder, None)
@@ -130,17 +130,17 @@ def measure_live(thimble, scene, folder, chromium):
             figure("live_page.pictures", statistics.median(pictures), "1/s", note="Chromium draws in software"),
             figure("live_page.missed_beside_alone", statistics.median(missed) - statistics.median(missed_alone),
                    "% of ticks", note="0 wanted; Chromium takes the same cores"),
-            figure("live_page.missed_alone", statistics.median(missed_alone), "% of ticks", note="what the machine misses anyway")]
+            figure("live_page.missed_alone", statistics.median(missed_alone), "% of ticks", note="without a viewer")]
 
 
 def missed_percent(report):
-    """The share of the ticks asked for that did not come, %."""
+    """Returns the percentage of requested ticks that were missed."""
     rate = report["rate_Hz"]
     return 100 * max(0.0, 1 - rate["reached"] / rate["asked"])
 
 
 def measure_viewer(bench):
-    """Pictures of 82,000 triangles (20 * 4^6) while the camera turns."""
+    """Measures pictures of 82,000 triangles (20 * 4^6) while the camera turns."""
     text = subprocess.run([bench, "--benchmark_filter=subdivisions:6/all:./turns:1", "--benchmark_format=json",
                            "--benchmark_min_time=2"], capture_output=True, text=True, check=True).stdout
     figures = []

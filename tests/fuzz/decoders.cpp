@@ -26,7 +26,7 @@ using Bytes = std::span<const std::byte>;
 
 void promise(bool kept, const char* what) {
   if (kept) return;
-  std::fprintf(stderr, "A decoder broke its promise: %s\n", what);
+  std::fprintf(stderr, "Check of a decoder failed: %s\n", what);
   std::abort();
 }
 
@@ -47,11 +47,12 @@ bool line_comes_back(Bytes bytes, std::optional<Line> (*decode)(Bytes) noexcept,
   std::array<std::byte, driver::hfab::kLineCapacity> buffer{};
   const std::size_t size = encode(*meaning, buffer);
   promise(size <= buffer.size(), "a line fits its buffer");
-  promise(decode(Bytes(buffer).first(size)) == meaning, "a line means the same again");
+  promise(decode(Bytes(buffer).first(size)) == meaning,
+          "an encoded line is decoded to the same values");
   return true;
 }
 
-/// Cuts the bytes into pieces whose lengths they tell themselves, and finds messages.
+/// Cuts the bytes into pieces, whose lengths the bytes themselves specify, and finds messages.
 bool find_frames(Bytes bytes) {
   driver::FrameFinder finder({.begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = 16});
   bool any = false;
@@ -69,24 +70,25 @@ bool find_frames(Bytes bytes) {
     const std::size_t size = finder.take(buffer, skipped);
     if (size == 0) continue;
     any = true;
-    promise(size >= 2 && size <= 16, "a message has the size it may have");
+    promise(size >= 2 && size <= 16, "a message has a valid size");
     promise(buffer[0] == std::byte{'<'} && buffer[size - 1] == std::byte{'>'},
-            "a message has its borders");
+            "a message has its delimiters");
   }
   return any;
 }
 
-/// What an arm makes of the bytes must be a pose or NaN, and a rejection leaves the reading alone.
+/// Decodes the bytes as a report: the result must be a pose or NaN, and a rejected report must not
+/// change the reading.
 template <class Wire>
 bool reads(Bytes bytes) {
   driver::ArmReading reading{.counts = {11, 22, 33}, .auxiliary = {44, 55, 66}, .buttons = 77};
   if (Wire::decode(bytes, reading)) return true;
   promise(reading.counts == std::array<std::int32_t, 3>{11, 22, 33} && reading.buttons == 77,
-          "a rejected report leaves the reading alone");
+          "a rejected report does not change the reading");
   return false;
 }
 
-/// Reads the bytes as one message of a USB/IP client in each of its two phases.
+/// Decodes the bytes as one message of a USB/IP client in each of its two phases.
 bool usbip_decode(Bytes bytes) {
   namespace usb = device_sim::usb;
   usb::UsbipRequest request;
@@ -95,9 +97,10 @@ bool usbip_decode(Bytes bytes) {
     promise(request.size <= bytes.size(), "a request lies within its bytes");
     const auto again = usb::encode_request(request);
     usb::UsbipRequest same;
-    promise(usb::decode_request(again, same) == usb::Decode::kWhole, "a request comes back");
-    // A bus id that fills its field loses its last letter to the closing zero.
-    promise(request.bus_id.starts_with(same.bus_id), "a bus id comes back");
+    promise(usb::decode_request(again, same) == usb::Decode::kWhole,
+            "an encoded request is decoded to the same request");
+    // A bus id that fills its field loses its last character to the terminating zero.
+    promise(request.bus_id.starts_with(same.bus_id), "an encoded bus id is decoded to the same id");
   }
   usb::UsbipCommand command;
   if (usb::decode_command(bytes, command) != usb::Decode::kWhole) return asked;
@@ -106,14 +109,14 @@ bool usbip_decode(Bytes bytes) {
   const Bytes data = bytes.first(command.size).subspan(usb::kUsbipHeaderSize);
   usb::UsbipCommand same;
   promise(usb::decode_command(usb::encode_command(command, data), same) == usb::Decode::kWhole,
-          "a command comes back");
+          "an encoded command is decoded to the same command");
   promise(same.sequence == command.sequence && same.setup == command.setup &&
               same.length == command.length && same.unlinked == command.unlinked,
-          "a command means the same again");
+          "a re-encoded command has the same values");
   return true;
 }
 
-/// A device with one endpoint of each kind, which takes and gives whatever it is asked.
+/// Device with one endpoint of each kind, which accepts and returns everything that is requested.
 class Obliging final : public device_sim::usb::UsbDevice {
  public:
   Obliging() {
@@ -130,7 +133,8 @@ class Obliging final : public device_sim::usb::UsbDevice {
   void advance_to(std::int64_t) noexcept override {}
   device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket& setup,
                                         std::span<std::byte> data) noexcept override {
-    promise(data.size() <= setup.length, "a device is asked for no more than the set-up says");
+    promise(data.size() <= setup.length,
+            "a device is asked for at most the length in the setup packet");
     return {device_sim::usb::Answer::kDone, data.size()};
   }
   device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
@@ -139,7 +143,7 @@ class Obliging final : public device_sim::usb::UsbDevice {
   }
   device_sim::usb::PacketResult out(std::uint8_t,
                                     std::span<const std::byte> packet) noexcept override {
-    promise(packet.size() <= kPacketMax, "a packet is no longer than packets are");
+    promise(packet.size() <= kPacketMax, "a packet does not exceed the maximum packet size");
     return {device_sim::usb::Answer::kDone, packet.size()};
   }
 
@@ -148,7 +152,8 @@ class Obliging final : public device_sim::usb::UsbDevice {
   std::size_t count_ = 0;
 };
 
-/// Lets a client that imported a device and configured it go on with these bytes, in two pieces.
+/// Continues the session of a client that imported and configured a device with these bytes, in two
+/// pieces.
 bool usbip_session(Bytes bytes) {
   namespace usb = device_sim::usb;
   Obliging device;
@@ -169,25 +174,25 @@ bool usbip_session(Bytes bytes) {
   const auto& counters = session.counters();
   promise(counters.completed + counters.stalled + counters.babbled + counters.unlinked <=
               counters.submitted,
-          "no more answers than questions");
+          "there are no more answers than requests");
   return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
 }
 
-/// A report descriptor comes from a device that nobody knows yet.
+/// A report descriptor comes from a device that is not yet identified.
 bool hid_descriptor(Bytes bytes) {
   constexpr std::size_t kLengthMax = 1U << 16;
   const driver::HidReports reports = driver::read_hid_descriptor(bytes);
   promise(reports.in_bytes <= kLengthMax && reports.out_bytes <= kLengthMax,
-          "a report has a length that a report may have");
+          "a report has a valid length");
   return reports.in_bytes > 0;
 }
 
-/// What a SpaceMouse tells is whole, or leaves what was told before.
+/// A reading of a SpaceMouse is complete, or keeps the previous state.
 bool space_mouse(Bytes bytes) {
   const view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
   view::SpaceMouseState state = before;
   if (view::take_space_mouse_report(bytes, state)) return true;
-  promise(state == before, "a rejected report leaves the state alone");
+  promise(state == before, "a rejected report does not change the state");
   return false;
 }
 

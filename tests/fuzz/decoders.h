@@ -6,12 +6,12 @@
 
 namespace thimble::fuzz {
 
-/// How many things `decode_anything` can try.
+/// Number of targets of `decode_anything`.
 inline constexpr unsigned kTargets = 14;
 
-/// Feeds bytes to one of the decoders; the first byte says which. Every decoder must survive any
-/// bytes, and what it understood must mean the same after it was encoded again. Answers whether
-/// the bytes were understood. Breaks off the process if a promise is broken.
+/// Feeds bytes to one of the decoders; the first byte selects it. Every decoder must survive any
+/// bytes, and an accepted message must have the same meaning after it was encoded again. Returns
+/// whether the bytes were accepted. Aborts the process if a check fails.
 bool decode_anything(std::span<const std::byte> bytes);
 
 }  // namespace thimble::fuzz

@@ -33,12 +33,12 @@ using Bytes = std::span<const std::byte>;
 
 void promise(bool kept, const char* what) {
   if (kept) return;
-  std::fprintf(stderr, "A reader of files broke its promise: %s\n", what);
+  std::fprintf(stderr, "Check of a file reader failed: %s\n", what);
   std::abort();
 }
 
-/// Gives a folder of this process alone, gone at its end: where TMPDIR says, or in memory where
-/// that can be had, for some disks write a file that is replaced at once.
+/// Returns a folder of this process, removed at its end: in TMPDIR, or in memory if available,
+/// because some disks write a replaced file immediately.
 const std::filesystem::path& folder() {
   struct Folder {
     std::filesystem::path path = (std::getenv("TMPDIR") == nullptr && access("/dev/shm", W_OK) == 0
@@ -65,20 +65,20 @@ std::filesystem::path store(Bytes bytes, const char* name) {
 
 template <class T>
 bool told(const driver::Result<T>& result) {
-  if (!result) promise(!result.error().message.empty(), "a refusal is a sentence");
+  if (!result) promise(!result.error().message.empty(), "an error has a message");
   return static_cast<bool>(result);
 }
 
 bool read_scene_file(Bytes bytes) {
   static const bool arm_beside = std::filesystem::copy_file(
       THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml", folder() / "arm.yaml");
-  promise(arm_beside, "an arm stands beside the scene");
+  promise(arm_beside, "the arm file is next to the scene");
   const auto scene = scene::load_scene(store(bytes, "any.yaml"),
                                        {.mesh_folder = THIMBLE_SOURCE_DIR "/tests/data/meshes"});
   if (!told(scene)) return false;
-  promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has an end");
+  promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has a duration");
   promise(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
-  // Patches of a body may take long to build; scenes made by chance are kept small.
+  // Patches of a body may take long to build; random scenes are kept small.
   if (scene->objects.size() > 4) return true;
   const auto objects = scene::SceneObjects::build(*scene);
   if (!told(objects)) return true;
@@ -92,8 +92,8 @@ bool read_scene_file(Bytes bytes) {
     state.v_WT = (Eigen::Vector3d(0.001, 0.002, z) - state.p_WT) / state.dt;
     state.p_WT = {0.001, 0.002, z};
     const driver::ForceCommand command = touch(state);
-    // An infinite requested force is the gate's business; what a tick costs and touches is this
-    // fuzzer's.
+    // An infinite requested force is the gate's task; this fuzzer checks what a tick executes and
+    // reads.
     static_cast<void>(command);
   }
   return true;
@@ -104,7 +104,7 @@ bool read_mesh(Bytes bytes, const char* name) {
   if (!told(mesh)) return false;
   promise(!mesh->triangles.empty(), "a mesh has triangles");
   for (const auto& vertex : mesh->vertices) {
-    promise(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex is somewhere near");
+    promise(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex has valid coordinates");
   }
   for (const auto& triangle : mesh->triangles) {
     for (const std::int32_t corner : triangle) {
@@ -113,7 +113,7 @@ bool read_mesh(Bytes bytes, const char* name) {
     }
   }
   if (mesh->triangles.size() > 2000) return true;
-  // What anybody does with it: looks at it, mends it, and makes sheets of what stays open.
+  // What users do with a mesh: check it, repair it, and make sheets of open parts.
   static_cast<void>(render::check_mesh(*mesh));
   static_cast<void>(render::describe(render::find_touching_parts(*mesh)));
   const render::RepairedMesh repaired = render::repair_mesh(*mesh);
@@ -129,8 +129,8 @@ std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
   return bytes;
 }
 
-/// Damages a sound file: place (4 bytes, modulo the size of the file), count (1, at most 16), the
-/// bytes to put there, as often as there are orders.
+/// Damages a valid file: place (4 bytes, modulo the size of the file), count (1 byte, at most 16),
+/// the bytes to write there; repeated.
 std::vector<std::byte> damaged(std::vector<std::byte> file, Bytes orders) {
   while (orders.size() > 5) {
     std::uint32_t place = 0;
@@ -146,16 +146,16 @@ std::vector<std::byte> damaged(std::vector<std::byte> file, Bytes orders) {
 
 std::vector<std::byte> sound_pages() {
   const auto mesh = render::load_mesh(THIMBLE_SOURCE_DIR "/tests/data/meshes/box.off");
-  promise(static_cast<bool>(mesh), "a sound mesh is read");
+  promise(static_cast<bool>(mesh), "a valid mesh is read");
   const auto surface = render::PackedSurface::build(*mesh, {});
-  promise(static_cast<bool>(surface), "a sound mesh is packed");
+  promise(static_cast<bool>(surface), "a valid mesh is packed");
   const std::filesystem::path path = folder() / "sound.pages";
   promise(static_cast<bool>(render::write_page_file(*surface, path)), "pages can be written");
   return bytes_of(path);
 }
 
-/// Puts the checksums of a file of one page right, so that what lies behind them is reached.
-/// The places are those of page_file.cpp.
+/// Corrects the checksums of a file of one page, so that the code behind them is reached. The
+/// places are those of page_file.cpp.
 void put_checksums_right(std::vector<std::byte>& file) {
   constexpr std::size_t kHead = 72, kSum = 20, kBox = 24, kRecords = 4096;
   const std::uint64_t page = render::checksum(Bytes(file).subspan(kRecords));
@@ -208,12 +208,12 @@ bool read_pages(Bytes bytes) {
     promise(count >= 0 && count <= render::kPageTriangles, "a page fits its buffer");
     in_all += count;
   }
-  promise(in_all <= file->triangle_count(), "pages hold no more than was told");
+  promise(in_all <= file->triangle_count(), "pages hold no more triangles than announced");
   touch_pages(path);
   return true;
 }
 
-/// Makes a recording of eight ticks.
+/// Returns a recording of eight ticks.
 std::vector<std::byte> sound_recording() {
   const std::vector<driver::TickRecord> ticks(8);
   session::RecordingInfo info;

@@ -17,7 +17,7 @@ namespace {
 using File = std::vector<std::byte>;
 
 std::map<std::string, File> corpus(std::string_view kind) {
-  std::map<std::string, File> files;  // by name, so that every machine has the same order
+  std::map<std::string, File> files;  // ordered by name, so that every machine has the same order
   for (const auto& entry :
        std::filesystem::directory_iterator(std::filesystem::path(THIMBLE_FILE_CORPUS) / kind)) {
     std::ifstream stream(entry.path(), std::ios::binary);
@@ -32,18 +32,18 @@ std::map<std::string, File> corpus(std::string_view kind) {
 
 class FileReaders : public testing::TestWithParam<std::string_view> {};
 
-TEST_P(FileReaders, KeepTheirPromisesOnEveryFileOfTheCorpus) {
+TEST_P(FileReaders, PassTheirChecksOnTheCorpus) {
   const auto files = corpus(GetParam());
   int taken = 0;
   for (const auto& [name, bytes] : files) {
     SCOPED_TRACE(name);
     taken += read_any_file(GetParam(), bytes) ? 1 : 0;
   }
-  EXPECT_GE(taken, 1) << "a corpus without one good file says little";
+  EXPECT_GE(taken, 1) << "the corpus needs at least one valid file";
 }
 
-TEST_P(FileReaders, KeepTheirPromisesOnDamagedFiles) {
-  // A few milliseconds each for the slowest; the fuzzer is what searches.
+TEST_P(FileReaders, PassTheirChecksOnDamagedFiles) {
+  // A few milliseconds each for the slowest; the search itself is left to the fuzzer.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   int rounds = 40;
 #else

@@ -7,13 +7,13 @@
 
 namespace {
 
-/// Which decoders are to be fuzzed.
+/// Decoders to fuzz.
 struct Decoders {
   unsigned first = 0;
   unsigned last = thimble::fuzz::kTargets - 1;
 };
 
-/// Reads THIMBLE_DECODERS, "FIRST-LAST"; all where it is not set.
+/// Reads THIMBLE_DECODERS, "FIRST-LAST"; all if it is not set.
 Decoders wanted_decoders() {
   Decoders wanted;
   const char* const text = std::getenv("THIMBLE_DECODERS");
@@ -29,7 +29,7 @@ Decoders wanted_decoders() {
 
 }  // namespace
 
-// Built by clang only, with -fsanitize=fuzzer, which brings main.
+// Built only by clang with -fsanitize=fuzzer, which provides main.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Decoders wanted = wanted_decoders();
   std::vector<std::byte> bytes(size);

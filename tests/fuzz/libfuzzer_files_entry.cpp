@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Tells as what kind of file the bytes are read (THIMBLE_FILE_KIND).
+/// Returns the kind of file as which the bytes are read (THIMBLE_FILE_KIND).
 std::string_view wanted_kind() {
   const char* const wanted = std::getenv("THIMBLE_FILE_KIND");
   for (const std::string_view kind : thimble::fuzz::kFileKinds) {
@@ -23,7 +23,7 @@ std::string_view wanted_kind() {
 
 }  // namespace
 
-// Built by clang only, with -fsanitize=fuzzer, which brings main.
+// Built only by clang with -fsanitize=fuzzer, which provides main.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string_view kind = wanted_kind();
   thimble::fuzz::read_any_file(kind, std::as_bytes(std::span(data, size)));

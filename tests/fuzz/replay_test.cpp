@@ -25,16 +25,16 @@ std::vector<std::vector<std::byte>> corpus() {
   return files;
 }
 
-TEST(Decoders, KeepTheirPromisesOnEveryFileOfTheCorpus) {
+TEST(Decoders, PassTheirChecksOnTheCorpus) {
   const auto files = corpus();
   EXPECT_GE(files.size(), 12u);
   int understood = 0;
   for (const auto& bytes : files) understood += decode_anything(bytes) ? 1 : 0;
-  EXPECT_GE(understood, 9);  // one good one per decoder at least
+  EXPECT_GE(understood, 9);  // at least one valid message per decoder
 }
 
-TEST(Decoders, KeepTheirPromisesOnAnyBytesAndOnDamagedOnes) {
-  // A million takes a second here; the sanitizers take a tenth of it.
+TEST(Decoders, PassTheirChecksOnRandomAndDamagedBytes) {
+  // A million takes a second here; a tenth of it under sanitizers.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   const int rounds = support::long_form() ? 1'000'000 : 100'000;
 #else
@@ -51,7 +51,7 @@ TEST(Decoders, KeepTheirPromisesOnAnyBytesAndOnDamagedOnes) {
           decode_anything(support::damaged(random, files[random.bits() % files.size()])) ? 1 : 0;
     }
   }
-  // Damage must reach what lies behind the first check, or the test says nothing.
+  // Damage must reach the code behind the first check, or the test proves nothing.
   EXPECT_GT(understood, rounds / 50);
   EXPECT_LT(understood, rounds);
 }

@@ -17,11 +17,11 @@ namespace {
 
 void promise(bool kept, const char* what) {
   if (kept) return;
-  std::fprintf(stderr, "A viewer broke its promise: %s\n", what);
+  std::fprintf(stderr, "Check of a viewer failed: %s\n", what);
   std::abort();
 }
 
-/// Makes the memory of a run with a bit of everything.
+/// Returns the memory of a run with an example of each content.
 std::vector<std::byte> sound_memory() {
   session::SharedScene scene;
   scene.name = "fuzz";
@@ -83,12 +83,13 @@ void read_everything(session::SharedReader& reader) {
       promise(vertex < scene.vertices.size(), "a triangle has vertices");
     }
   }
-  for (const auto& vertex : scene.vertices) promise(vertex.allFinite(), "a vertex is somewhere");
+  for (const auto& vertex : scene.vertices)
+    promise(vertex.allFinite(), "a vertex has valid coordinates");
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const auto& object = scene.objects[i];
     promise(object.first_vertex + object.vertex_count <= scene.vertices.size() &&
                 object.first_triangle + object.triangle_count <= scene.triangles.size(),
-            "an object lies in its tables");
+            "an object is within its tables");
     render::TriangleMesh mesh;
     mesh.vertices.assign(object.vertex_count, Eigen::Vector3d::Zero());
     for (std::size_t t = 0; t < object.triangle_count; ++t) {
@@ -100,7 +101,7 @@ void read_everything(session::SharedReader& reader) {
     }
     reader.shape(i, mesh);
     for (const auto& vertex : mesh.vertices)
-      promise(vertex.allFinite(), "a vertex stays somewhere");
+      promise(vertex.allFinite(), "a moved vertex has valid coordinates");
     for (const auto& corners : mesh.triangles) {
       for (const std::int32_t vertex : corners) {
         promise(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),
@@ -122,12 +123,12 @@ void read_everything(session::SharedReader& reader) {
   reader.ticks_since(serial, ticks);
   for (const auto& one : ticks) {
     promise(one.object < static_cast<int>(scene.objects.size()), "a tick names an object");
-    promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick is somewhere");
+    promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick has valid coordinates");
     static_cast<void>(session::arm_lines(scene.arms.front(), one));
   }
   session::ScenePoses poses;
   if (reader.poses(poses)) {
-    promise(poses.count <= session::ScenePoses::kMost, "poses are as many as fit");
+    promise(poses.count <= session::ScenePoses::kMost, "the number of poses is valid");
     for (std::size_t i = 0; i < poses.count; ++i) {
       promise(
           poses.object[i] >= 0 && static_cast<std::size_t>(poses.object[i]) < scene.objects.size(),
@@ -139,7 +140,7 @@ void read_everything(session::SharedReader& reader) {
     const auto& object = scene.objects[static_cast<std::size_t>(patch.object)];
     for (std::size_t t = 0; t < patch.triangle_count; ++t) {
       promise(static_cast<std::size_t>(patch.source[t]) < object.triangle_count,
-              "a patch stands for triangles that there are");
+              "a patch refers to existing triangles");
       for (const auto corner : patch.triangles[t]) {
         promise(corner < patch.point_count, "a patch has its corners");
       }
@@ -166,7 +167,7 @@ void read_everything(session::SharedReader& reader) {
 
 bool read_shared_memory(std::span<const std::byte> bytes) {
   static const std::vector<std::byte> sound = sound_memory();
-  // Aligned as mapped memory is.
+  // Aligned like mapped memory.
   struct alignas(64) Line {
     std::byte bytes[64];
   };
@@ -189,7 +190,7 @@ bool read_shared_memory(std::span<const std::byte> bytes) {
   if (rehash) put_checksum_right(memory);
   auto reader = session::SharedReader::over(memory);
   if (!reader) {
-    promise(!reader.error().message.empty(), "a refusal is a sentence");
+    promise(!reader.error().message.empty(), "an error has a message");
     return false;
   }
   read_everything(**reader);

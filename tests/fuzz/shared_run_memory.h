@@ -5,10 +5,10 @@
 
 namespace thimble::fuzz {
 
-/// Damages the memory of a small run as the bytes say, lets a viewer read all of it, and breaks off
-/// the process if what it hands out is out of bounds. The first byte: odd, to put the checksum
-/// right again, so that what lies behind it is reached. Then any number of: place (4 bytes, through
-/// the whole memory), count (1, at most 16), the bytes to put there. Answers whether it was read.
+/// Damages the memory of a small run as the bytes specify, lets a viewer read all of it, and aborts
+/// the process if a result is out of bounds. The first byte: odd, to correct the checksum, so that
+/// the code behind it is reached. Then, repeated: place (4 bytes, over the whole memory), count (1
+/// byte, at most 16), the bytes to write there. Returns whether the memory was accepted.
 bool read_shared_memory(std::span<const std::byte> bytes);
 
 }  // namespace thimble::fuzz

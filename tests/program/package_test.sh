@@ -171,7 +171,7 @@ run_alone view no_such_recording.h5 >said 2>&1 && fail "with thimble-viewer: a r
 grep -q 'no_such_recording.h5' said && ! grep -q 'apt install' said || fail "with thimble-viewer: thimble view printed: $(cat said)"
 run_alone exec /bin/true >said 2>&1 || fail "with thimble-compat: thimble exec: $(cat said)"
 run_alone mesh mesh.dae >said 2>&1 || true
-grep -q 'this is no DAE file' said || fail "with thimble-mesh-formats: thimble mesh printed: $(cat said)"
+grep -q 'the DAE file could not be read' said || fail "with thimble-mesh-formats: thimble mesh printed: $(cat said)"
 
 echo "Installing over the package of an earlier version ..."
 mkdir -p old/DEBIAN old/usr/lib/thimble/compat root/var/lib/dpkg/{info,updates}

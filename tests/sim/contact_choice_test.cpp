@@ -71,11 +71,12 @@ TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
   EXPECT_FALSE(open_with("tracker: god_object, blending: phong", error));
   EXPECT_NE(error.find("\"god_object\" pushes towards its proxy"), std::string::npos) << error;
   EXPECT_FALSE(open_with("tracker: compact, blending: flat", error));
-  EXPECT_NE(error.find("\"compact\" always feels smooth"), std::string::npos) << error;
+  EXPECT_NE(error.find("\"compact\" is always smooth"), std::string::npos) << error;
   EXPECT_FALSE(open_with("tracker: compact, normals: fitted", error));
-  EXPECT_NE(error.find("\"compact\" has the mean of the faces"), std::string::npos) << error;
+  EXPECT_NE(error.find("\"compact\" always weights vertex normals by angle"), std::string::npos)
+      << error;
   EXPECT_FALSE(open_with("tracker: god_object, normals: angle", error));
-  EXPECT_NE(error.find("\"god_object\" feels no normals of corners"), std::string::npos) << error;
+  EXPECT_NE(error.find("\"god_object\" does not use vertex normals"), std::string::npos) << error;
 }
 
 }  // namespace

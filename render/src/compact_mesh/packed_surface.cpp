@@ -45,7 +45,7 @@ driver::Error first_unpaired(std::span<const PackedTriangle> packed,
     if (k < 3) break;
   }
   return refusal(index(packed[t].source()),
-                 "lacks a neighbour of its own, wound like itself, over its edge from vertex " +
+                 "lacks a unique neighbour of the same orientation across its edge from vertex " +
                      std::to_string(triangles[t][k]) + " to vertex " +
                      std::to_string(triangles[t][(k + 1) % 3]) + ".");
 }
@@ -126,17 +126,19 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
   if (count == 0) return driver::Error{"The mesh has no triangles."};
   // The search's leaves store 28 bits of a packed triangle's number.
   if (count >= (std::size_t{1} << 28) || mesh.vertices.size() >= (std::size_t{1} << 30)) {
-    return driver::Error{"The mesh has more than 2^28 triangles or 2^30 vertices: page it."};
+    return driver::Error{
+        "The mesh has 2^28 triangles or 2^30 vertices or more. Convert it to a page "
+        "file: thimble mesh page IN OUT"};
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vector3d low = Vector3d::Constant(kInfinity), high = -low;
   for (std::size_t t = 0; t < count; ++t) {
     for (const std::int32_t v : mesh.triangles[t]) {
       if (v < 0 || index(v) >= mesh.vertices.size()) {
-        return refusal(t, "names vertex " + std::to_string(v) + ", which does not exist.");
+        return refusal(t, "refers to vertex " + std::to_string(v) + ", which does not exist.");
       }
       const Vector3d& p = mesh.vertices[index(v)];
-      if (!p.allFinite()) return refusal(t, "has a corner that is not a number.");
+      if (!p.allFinite()) return refusal(t, "has a coordinate that is not finite.");
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
@@ -147,7 +149,7 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
   surface.step_ = half / kLatticeHalf;
   surface.per_step_ = kLatticeHalf / half;
   if (!(surface.step_ > 0) || !std::isfinite(surface.per_step_)) {
-    return driver::Error{"The mesh has no extent that can be told from zero."};
+    return driver::Error{"The mesh has no measurable extent."};
   }
 
   std::vector<std::array<std::int32_t, 3>> triangles(count);

@@ -198,7 +198,8 @@ driver::Result<void> PageFileWriter::finish() {
   State& state = *state_;
   if (state.written != state.header.triangle_count) {
     return trouble(state.file, std::to_string(state.written) + " triangles were written, but " +
-                                   std::to_string(state.header.triangle_count) + " promised.");
+                                   std::to_string(state.header.triangle_count) +
+                                   " were announced.");
   }
   // The header is written last: an unfinished file is not a page file.
   const bool flushed = state.flush();
@@ -236,12 +237,12 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   Header header;
   if (file_bytes < static_cast<std::int64_t>(sizeof(Header)) ||
       !read_all(opened.descriptor_, &header, sizeof(Header), 0) || header.magic != kMagic) {
-    return trouble(file, "this is no page file; write one with `thimble mesh page IN OUT`.");
+    return trouble(file, "not a page file; create one with `thimble mesh page IN OUT`.");
   }
   const Header expected;
   if (header.version != kVersion || header.triangle_bytes != expected.triangle_bytes ||
       header.page_triangles != expected.page_triangles) {
-    return trouble(file, "it was written by another version; write it again.");
+    return trouble(file, "it was written by another version of Thimble; write it again.");
   }
   const bool numbers_can_be = header.triangle_count > 0 &&
                               header.triangle_count <= std::numeric_limits<std::int32_t>::max() &&
@@ -267,7 +268,7 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
       !read_all(opened.descriptor_, opened.sums_.data(),
                 opened.sums_.size() * sizeof(std::uint64_t),
                 static_cast<std::int64_t>(sizeof(Header) + boxes_size))) {
-    return trouble(file, "reading it failed.");
+    return trouble(file, "it could not be read.");
   }
   if (sum_of(header, opened.boxes_, opened.sums_) != header.sum) {
     return trouble(file, "its header is damaged; write it again.");

@@ -14,8 +14,8 @@ void Viscous::Settings::read(SettingsReader& reader, const EffectContext& contex
   if (!(damping <= most)) {
     reader.reject(
         "damping",
-        fmt::format("is {:.4g} N s/m, but a force that comes {:.3g} ms late makes an arm of "
-                    "{:.3g} kg oscillate beyond {:.3g} N s/m: make it thinner or the loop faster",
+        fmt::format("is {:.4g} N s/m; with a force delay of {:.3g} ms, an arm of "
+                    "{:.3g} kg oscillates above {:.3g} N s/m; lower it or run the loop faster",
                     damping, 1e3 * late, context.tip_mass, most));
   }
 }

@@ -17,7 +17,7 @@ driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!has_three_vertices(mesh, t)) {
       return driver::Error{"Triangle " + std::to_string(t) +
-                           " does not name three different vertices that exist: remove it."};
+                           " does not have three different existing vertices. Remove it."};
     }
   }
   Adjacency neighbours(mesh.triangles.size());
@@ -26,20 +26,18 @@ driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh) {
     const std::size_t end = end_of_edge(uses, begin);
     const EdgeUse& first = uses[begin];
     if (end - begin == 1) {
-      return driver::Error{edge_name(first) + " belongs to triangle " +
-                           std::to_string(first.triangle) +
-                           " alone, so the mesh has a hole: close it."};
+      return driver::Error{edge_name(first) + " belongs only to triangle " +
+                           std::to_string(first.triangle) + ", so the mesh has a hole. Close it."};
     }
     if (end - begin > 2) {
       return driver::Error{edge_name(first) + " belongs to " + std::to_string(end - begin) +
-                           " triangles: split the mesh there so that each edge has two."};
+                           " triangles. Split the mesh there so that each edge has two."};
     }
     const EdgeUse& second = uses[begin + 1];
     if (first.upward == second.upward) {
-      return driver::Error{edge_name(first) + " lies between triangles " +
-                           std::to_string(first.triangle) + " and " +
-                           std::to_string(second.triangle) +
-                           ", which are wound against each other: turn one of them round."};
+      return driver::Error{edge_name(first) + " joins triangles " + std::to_string(first.triangle) +
+                           " and " + std::to_string(second.triangle) +
+                           ", which have opposite orientation. Reverse one of them."};
     }
     const auto place = [&neighbours](const EdgeUse& use) -> std::int32_t& {
       return neighbours[static_cast<std::size_t>(use.triangle)]

@@ -38,24 +38,23 @@ ModelFlaw flaw_of(const LocalModel& model) noexcept {
 std::string_view describe(ModelFlaw flaw) noexcept {
   switch (flaw) {
     case ModelFlaw::kNone:
-      return "The model is in order.";
+      return "The model is valid.";
     case ModelFlaw::kNotFinite:
-      return "A number of the local model is NaN or infinite: look for a division by zero in the "
+      return "A number of the local model is NaN or infinite. Look for a division by zero in the "
              "simulation.";
     case ModelFlaw::kNormal:
-      return "The local model's n_W is no unit vector: divide it by its length.";
+      return "The local model's n_W is not a unit vector. Divide it by its length.";
     case ModelFlaw::kNotSymmetric:
-      return "The local model's stiffness is not symmetric, so it would give energy around a "
-             "closed "
-             "way: pass it through without_negative.";
+      return "The local model's stiffness is not symmetric, so it would add energy on a closed "
+             "path. Pass it through without_negative.";
     case ModelFlaw::kNegativeStiffness:
       return "The local model's stiffness has a negative eigenvalue, so it would push the tip away "
-             "ever more: pass it through without_negative.";
+             "with growing force. Pass it through without_negative.";
     case ModelFlaw::kNegativeDamping:
       return "The local model's damping is below 0.";
     case ModelFlaw::kNoSurface:
       return "The local model has a force or a stiffness but no stiffness along n_W, so it would "
-             "never end: give it one.";
+             "never end. Set one.";
   }
   return "";
 }

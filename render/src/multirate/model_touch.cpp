@@ -66,7 +66,7 @@ driver::Result<std::unique_ptr<ModelTouch>> ModelTouch::make(const ModelSlot& sl
   const auto above = [](double x) { return std::isfinite(x) && x > 0; };
   if (!above(settings.stiffness_max)) {
     return refuse("stiffness_max",
-                  "given, above 0 N/m: what arm, loop and hand carry (thimble tune tells it)");
+                  "set, and above 0 N/m; thimble tune prints the maximum for arm, loop and hand");
   }
   if (!(above(settings.jump) && settings.jump <= 1)) return refuse("jump", "above 0, at most 1");
   if (!above(settings.jump_least)) return refuse("jump_least", "above 0 N");

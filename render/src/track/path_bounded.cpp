@@ -51,9 +51,8 @@ bool ProxyFilter::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d
   // Energy that a surface supplies by moving towards the tip.
   const double surface_work = surface_path * (std::sqrt(before) + 0.5 * surface_path);
   if (rise > credit_ + surface_work) {
-    // Turns as far as possible and tightens as far as allowed. The anchor is already within this
-    // ball around the tip, so moving a point onto the ball does not move it farther from the
-    // anchor.
+    // Turns as far as possible and tightens as far as allowed. The filtered proxy is already within
+    // this ball around the tip, so moving a point onto the ball does not move it farther away.
     next = p_WT + std::sqrt((before + 2 * (credit_ + surface_work)) / after) * (next - p_WT);
     credit_ = 0;
     there = false;
@@ -70,7 +69,7 @@ bool ProxyFilter::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d
   felt_ = found;
   const Vector3d to_anchor = next - p_WT;
   felt_.depth = to_anchor.norm();
-  // An anchor at the tip has no direction: no force, along the tracked normal.
+  // A filtered proxy at the tip has no direction: no force, with the tracked normal.
   if (felt_.depth > 0) felt_.n_W = to_anchor / felt_.depth;
   felt_.p_WP = next;
   return false;

@@ -11,37 +11,37 @@
 
 namespace thimble::render {
 
-/// The far end of the spring that the hand feels, in the frame of the surface. It follows the proxy
-/// of a contact stage, but never faster than the tip's path allows.
+/// Filter of the proxy of a contact stage: the filtered proxy never moves faster than the tip's
+/// path allows. Frame of the surface.
 ///
-/// A contact stage pushes the tip p towards the place g = p + depth n. Where cells of a surface
+/// A contact stage pushes the tip p towards the proxy g = p + depth n. Where cells of a surface
 /// meet deep inside, and where contact is found again, g jumps while p hardly moves. A force K (g -
-/// p) would jump with it. This anchor a follows g by at most `kPathRatio` times the tip's path, and
-/// the felt force is K (a - p). So from one tick to the next, at any depth, |df| <= K (1 +
-/// kPathRatio) |dp|. A jump of g is recovered over the path that follows, and not at all while the
-/// hand rests. While g does not jump, the anchor is g, and the felt contact is bit-identical to the
+/// p) would jump with it. The filtered proxy a follows g by at most `kPathRatio` times the tip's
+/// path, and the felt force is K (a - p). So from one tick to the next, at any depth, |df| <= K (1
+/// + kPathRatio) |dp|. A jump of g is recovered over the path that follows, and not at all while
+/// the hand rests. While g does not jump, a equals g, and the felt contact is bit-identical to the
 /// tracked one.
 ///
-/// While the anchor lags behind g, it gives the hand no energy that the hand has not put in:
-/// - It may move nearer to the tip freely. Farther away, which tightens the spring, it moves only
-/// as
-///   far as is paid for: by the energy it lost before by moving nearer, and by `kGift` of the
-///   tracked force over its path. The unpaid part is missing from the depth, never added to it. A
-///   surface that moves towards the tip by itself supplies the energy for that.
-/// - Only the tip's path out of a ball that it drags along counts. The ball is as wide as the lag
-/// and
-///   not wider than the tip has moved. So a tip that moves to and fro about an edge moves the
-///   anchor once; then the anchor rests, as a god-object rests in a crease. Otherwise the lagging
-///   anchor would push the tip on from side to side.
+/// While a lags behind g, it gives the hand no energy that the hand has not put in:
+///
+/// Energy: the filtered proxy may move nearer to the tip freely. A move away from the tip
+/// tightens the spring. It is limited by the energy that was lost by earlier moves towards the tip,
+/// plus `kGift` of the tracked force over the path. The rest is missing from the depth, never added
+/// to it. A surface that moves towards the tip by itself supplies this energy.
+///
+/// Path: only the tip's path out of a ball that it drags along counts. The radius of the ball is
+/// at most the lag and at most the distance that the tip has moved. So a tip that moves back and
+/// forth about an edge moves the filtered proxy once; then the proxy rests, as a god-object rests
+/// in a crease. Without this, the lagging proxy would push the tip from side to side.
 class ProxyFilter {
  public:
-  /// Path of the anchor per path of the tip. Over convex surfaces the exact closest point needs 1,
-  /// over the smooth cells of a torus 1.2, of a bumpy ball 2.3 (1 + the greatest |dn| L / |dp| of
-  /// render/src/track/README.md). A ratio of 4 leaves these unchanged. [chosen]
+  /// Path of the filtered proxy per path of the tip. Over convex surfaces the exact closest point
+  /// needs 1, over the smooth cells of a torus 1.2, of a bumpy ball 2.3 (1 + the greatest |dn| L /
+  /// |dp| of render/src/track/README.md). A ratio of 4 leaves these unchanged. [chosen]
   static constexpr double kPathRatio = 4;
-  /// Share of the tracked force, along the anchor's path, that is given to a spring that has become
-  /// too short, so that missing depth returns. At 2 N it is 0.04 N, which the dry friction of a
-  /// PHANTOM dissipates. [chosen; friction M, app/arms/vintage_phantom.yaml]
+  /// Share of the tracked force, along the filtered proxy's path, that is given to a spring that
+  /// has become too short, so that missing depth returns. At 2 N it is 0.04 N, which the dry
+  /// friction of a PHANTOM dissipates. [chosen; friction M, app/arms/vintage_phantom.yaml]
   static constexpr double kGift = 0.02;
 
   /// Receives the tip's position (m, in the frame of the surface) and the tracked contact there.
@@ -76,7 +76,7 @@ class ProxyFilter {
   /// Returns the felt contact of a tick in which `follow` returned false. Real-time: safe.
   const ContactState& felt() const noexcept { return felt_; }
 
-  /// Returns the number of ticks in which the anchor lagged. Real-time: safe.
+  /// Returns the number of ticks in which the filtered proxy lagged. Real-time: safe.
   std::uint64_t ticks_behind() const noexcept { return ticks_behind_; }
 
  private:
@@ -89,9 +89,10 @@ class ProxyFilter {
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector3d p_WT_ = Eigen::Vector3d::Constant(kUnknown);  // tip at the last tick
-  Eigen::Vector3d p_WA_ = Eigen::Vector3d::Constant(kUnknown);  // anchor; the tip while free
+  Eigen::Vector3d p_WA_ =
+      Eigen::Vector3d::Constant(kUnknown);  // filtered proxy; the tip while free
   double surface_path_ = 0;
-  // Valid while the anchor lags.
+  // Valid while the filtered proxy lags.
   bool lagging_ = false;
   Eigen::Vector3d p_WC_{0, 0, 0};  // centre of the ball that the tip drags along
   double radius_ = 0;              // of that ball, m

@@ -30,8 +30,8 @@ driver::Result<BendablePolygon> BendablePolygon::build(std::shared_ptr<const Con
     const auto& n = mesh->cell(t).neighbours;
     if (n[0] == n[1] || n[1] == n[2] || n[2] == n[0]) {
       return driver::Error{"Triangle " + std::to_string(t) +
-                           " shares two edges with a neighbour, so that it cannot bend: repair the "
-                           "mesh first (thimble mesh FILE --repair OUT.off)."};
+                           " shares two edges with the same neighbour and cannot bend. Repair the "
+                           "mesh first: thimble mesh FILE --repair OUT.off"};
     }
   }
   auto motion = DentMotion::build(std::make_shared<const VertexLinks>(*mesh), settings);

@@ -23,15 +23,13 @@ namespace thimble::render {
 /// the three corners and the points that split the edges (edge_point.h). A corner with the cursor's
 /// weight w is pulled with K w / (1 - w), where K is its own stiffness with resting neighbours. So
 ///
-///   - Towards a corner, the corner follows the cursor wholly, for any mass: the dent is as deep
-///   there
-///     as in the middle of a triangle.
-///   - Over the opposite side w = 0: the corner is released before the cursor crosses into the next
-///     triangle, and nothing jumps there.
+///   - Near a corner, the corner follows the cursor completely, for any mass. The dent is as
+///     deep there as in the middle of a triangle.
+///   - Over the opposite side w = 0. The corner is released before the cursor crosses into the
+///     next triangle, and nothing jumps there.
 ///   - A corner follows by w / ((1 - w) + w) = w, so the dent's sides are straight and one edge
-///   long.
-///     The three weights sum to 1, so all corners pull back with K together, wherever the cursor
-///     is: the springs feel the same in the middle, over edges and over corners. (Springs between
+///     long. The three weights sum to 1, so all corners together pull back with K at any place.
+///     The springs feel the same in the middle, over edges and over corners. (Springs between
 ///     neighbours add a few hundredths: bendable_polygon_test.cpp.)
 ///
 /// Frame: that of the given mesh, called W here. If base points move, the vertices move with them.

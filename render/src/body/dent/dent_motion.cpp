@@ -64,9 +64,10 @@ driver::Result<DentMotion> DentMotion::build(std::shared_ptr<const VertexLinks> 
                                              const DentSettings& settings) {
   if (auto good = settings.check(); !good) return good.error();
   if (settings.whole && at(links->vertex_count()) > kNodesMax) {
-    return driver::Error{
-        "A dent moves up to " + std::to_string(kNodesMax) + " vertices at once, and the mesh has " +
-        std::to_string(links->vertex_count()) + ": take \"region: near\" with a number of rings."};
+    return driver::Error{"A dent can move at most " + std::to_string(kNodesMax) +
+                         " vertices at once; the mesh has " +
+                         std::to_string(links->vertex_count()) +
+                         ". Use \"region: near\" with a number of rings."};
   }
   DentMotion motion(std::move(links), settings);
   const double limit = kShareOfLimit * largest_step(settings.integrator, motion.bounds());
@@ -74,10 +75,11 @@ driver::Result<DentMotion> DentMotion::build(std::shared_ptr<const VertexLinks> 
   motion.substeps_ = settings.substeps;
   if (!(needed <= motion.substeps_)) {
     if (!(needed <= kSubstepsMax)) {
-      return driver::Error{fmt::format(
-          "The integrator {} bears steps up to {:.3g} ms on this dent, and the tick takes {:.3g} "
-          "ms: soften the springs, add mass or dampers, or use implicit_euler.",
-          name_of(settings.integrator), limit * 1e3, settings.step * 1e3)};
+      return driver::Error{
+          fmt::format("Integrator {} is stable for steps up to {:.3g} ms on this dent, but the "
+                      "tick takes {:.3g} "
+                      "ms. Lower the stiffness, add mass or damping, or use implicit_euler.",
+                      name_of(settings.integrator), limit * 1e3, settings.step * 1e3)};
     }
     motion.substeps_ = static_cast<int>(needed);
   }

@@ -47,7 +47,7 @@ void DentSettings::read(SettingsReader& reader, const EffectContext& context) {
   reader.choice("region", region, {"near", "whole"});
   whole = region == 1;
   if (whole && reader.has("rings")) {
-    reader.reject("rings", "cannot stand together with region: whole; keep one of them");
+    reader.reject("rings", "cannot be combined with region: whole; remove one of them");
   } else {
     read_whole(reader, "rings", rings, 0, kRingsMax);
   }
@@ -68,25 +68,26 @@ driver::Result<void> DentSettings::check() const {
   const auto usable = [](double x) { return x >= 0 && std::isfinite(x); };
   const auto refuse = [](const std::string& why) { return driver::Error{"A dent needs " + why}; };
   if (!positive(mass)) return refuse("a mass above 0 kg per vertex.");
-  if (!positive(stiffness)) return refuse("a stiffness above 0 N/m, or it never goes back.");
+  if (!positive(stiffness))
+    return refuse("a stiffness above 0 N/m; without it, the surface never returns.");
   if (!usable(damping) || !usable(neighbour_stiffness) || !usable(neighbour_damping)) {
-    return refuse("dampings and a neighbour_stiffness of 0 or more, and finite.");
+    return refuse("finite dampings and a finite neighbour_stiffness of 0 or more.");
   }
   if (!positive(reach)) return refuse("a reach above 0.");
   if (!(pull >= 0 && pull <= 1)) return refuse("a pull from 0 to 1.");
   if (rings < 0 || rings > kRingsMax) return refuse("0 to 8 rings.");
   if (!positive(step)) return refuse("a time step above 0 s.");
   if (substeps < 1 || rounds < 1 || !(remainder >= 0)) {
-    return refuse("one substep and one round or more, and a remainder of 0 or more.");
+    return refuse("at least one substep and one round, and a remainder of 0 or more.");
   }
   if (integrator == SpringScheme::kExplicitEuler) {
     return refuse(
-        "another integrator than explicit_euler, which gains energy from the cursor's "
-        "springs; thimble study integrators shows how.");
+        "an integrator other than explicit_euler, which gains energy from the cursor's "
+        "springs (see thimble study integrators).");
   }
   if (integrator == SpringScheme::kExponential || integrator == SpringScheme::kModal) {
-    return refuse(std::string("an integrator for a patch that moves along; ") +
-                  std::string(name_of(integrator)) + " is for nodes or meshes that stay the same.");
+    return refuse(std::string("an integrator for a patch that moves with the tip; ") +
+                  std::string(name_of(integrator)) + " needs a fixed set of nodes.");
   }
   return {};
 }

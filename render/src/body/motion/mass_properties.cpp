@@ -17,11 +17,12 @@ bool MassProperties::valid() const noexcept {
 
 driver::Result<MassProperties> mass_properties(const TriangleMesh& mesh, double mass) {
   if (!(mass > 0) || !std::isfinite(mass)) {
-    return driver::Error{"A body that moves needs a mass above 0 kg."};
+    return driver::Error{"A moving body needs a mass above 0 kg."};
   }
   const driver::Error nothing_inside{
-      "The mesh encloses no volume, so it has no inertia: it must be closed and wound outwards "
-      "(thimble mesh FILE --repair OUT.off)."};
+      "The mesh encloses no volume, so it has no inertia. Make it watertight and orient it "
+      "outwards: "
+      "thimble mesh FILE --repair OUT.off"};
   if (mesh.vertices.empty()) return nothing_inside;
   // About the middle of the vertices, so that a mesh far away loses no digits.
   Eigen::Vector3d middle(0, 0, 0);

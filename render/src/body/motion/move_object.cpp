@@ -39,7 +39,8 @@ driver::Result<void> check_grip(const MotionChoice& choice) {
   // Written so that NaN is refused.
   if (!(grip.stiffness > 0 && grip.damping >= 0 && grip.force_max > 0) ||
       !std::isfinite(grip.stiffness + grip.damping + grip.force_max)) {
-    return driver::Error{"A hand that holds needs a stiffness and a force above 0, and a damping."};
+    return driver::Error{
+        "A hand that holds a body needs a stiffness and a force above 0, and a damping."};
   }
   return {};
 }
@@ -83,9 +84,9 @@ using AnyMotion = std::variant<TranslatingMotion, RigidMotion>;
 /// Returns the motion of an object. Errors: as `move_object`.
 driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
                                     const BodyCoupling& coupling) {
-  if (!(choice.reach >= 0)) return driver::Error{"A body's reach must be 0 m or more."};
+  if (!(choice.reach >= 0)) return driver::Error{"The reach of a body must be 0 m or more."};
   if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
-    return driver::Error{"A body's speed at first must be finite."};
+    return driver::Error{"The initial velocities of a body must be finite."};
   }
   const auto mass = mass_properties(mesh_W, choice.mass);
   if (!mass) return mass.error();
@@ -137,7 +138,7 @@ void MotionChoice::read(SettingsReader& reader) {
     reader.number("floor_friction", floor->friction,
                   {.unit = "", .least = 0, .most = kFrictionMax});
   } else if (reader.has("floor_friction")) {
-    reader.reject("floor_friction", "needs a floor: its height in m");
+    reader.reject("floor_friction", "needs floor, the height of the floor in m");
   }
   if (reader.has("hold")) {
     grip.emplace();
@@ -149,7 +150,7 @@ void MotionChoice::read(SettingsReader& reader) {
   }
   for (const char* key : {"angular_damping", "angular_velocity"}) {
     if (kind == MotionKind::kTranslate && reader.has(key)) {
-      reader.reject(key, "is for what turns; say kind: rigid");
+      reader.reject(key, "is only for bodies that rotate; set kind: rigid");
     }
   }
   reader.number("angular_damping", angular_damping,

@@ -28,28 +28,28 @@ bool usable(double x) {
 driver::Result<RigidBody> RigidBody::build(const RigidBodySettings& settings) {
   if (!settings.mass.valid()) {
     return driver::Error{
-        "A body needs a mass and three inertias above 0, none of them larger than the other two "
-        "together: take them from the mesh (mass_properties)."};
+        "A body needs a mass and three moments of inertia above 0, none larger than the sum of the "
+        "other two. Compute them from the mesh with mass_properties."};
   }
   if (!settings.gravity_W.allFinite() || !usable(settings.damping) ||
       !usable(settings.angular_damping)) {
-    return driver::Error{"A body needs gravity and dampings that are finite, dampings 0 or more."};
+    return driver::Error{"A body needs finite gravity and finite dampings of 0 or more."};
   }
   if (!(settings.time_scale > 0) || !std::isfinite(settings.time_scale)) {
-    return driver::Error{"A body needs a time_scale above 0; 1 is as in nature."};
+    return driver::Error{"A body needs a time_scale above 0; 1 is the natural speed."};
   }
   if (settings.floor &&
       (!usable(settings.floor->friction) || !std::isfinite(settings.floor->height) ||
        !(std::abs(settings.floor->n_W.norm() - 1) < 1e-9))) {
     return driver::Error{
-        "A floor needs a normal of length 1, a height, and friction of 0 or more."};
+        "A floor needs a unit normal, a finite height, and friction of 0 or more."};
   }
   if (settings.support_B.size() > kSupportMax) {
-    return driver::Error{"A body may stand on " + std::to_string(kSupportMax) +
-                         " points at most: name the corners of its hull."};
+    return driver::Error{"A body can have at most " + std::to_string(kSupportMax) +
+                         " support points. Use the corners of its hull."};
   }
   for (const Vector3d& p : settings.support_B) {
-    if (!p.allFinite()) return driver::Error{"A point that a body stands on is not finite."};
+    if (!p.allFinite()) return driver::Error{"A support point of the body is not finite."};
   }
   return RigidBody(settings);
 }

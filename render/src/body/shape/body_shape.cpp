@@ -35,8 +35,8 @@ driver::Result<void> check_size(const ContactMesh& mesh, const char* what, doubl
   const double within = vertices_within(mesh, radius);
   if (within >= least && within <= static_cast<double>(most)) return {};
   return driver::Error{
-      fmt::format("{} of radius {:.3g} m would move about {:.0f} vertices of this mesh, of {:.0f} "
-                  "to {} that make sense: take a {} mesh, or a {} radius.",
+      fmt::format("{} of radius {:.3g} m would move about {:.0f} vertices of this mesh; {:.0f} "
+                  "to {} are allowed. Use a {} mesh or a {} radius.",
                   what, radius, within, least, most, within < least ? "finer" : "coarser",
                   within < least ? "larger" : "smaller")};
 }
@@ -46,7 +46,7 @@ driver::Result<void> check_size(const ContactMesh& mesh, const char* what, doubl
 driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeChoice& choice,
                                            double stiffness) {
   if (!(stiffness > 0) || !std::isfinite(stiffness)) {
-    return driver::Error{"A body that changes shape needs a surface of stiffness above 0 N/m."};
+    return driver::Error{"A body that changes shape needs a surface stiffness above 0 N/m."};
   }
   if (!(choice.step > 0) || !std::isfinite(choice.step)) {
     return driver::Error{"A body that changes shape needs a time step above 0 s."};

@@ -47,7 +47,8 @@ void ClayChoice::read(SettingsReader& reader) {
   if (!reader.has("triangles")) return;
   double count = triangles;
   reader.number("triangles", count, {.unit = "", .least = 4, .most = kTrianglesMax, .whole = true});
-  if (!(edge > 0)) reader.reject("triangles", "needs edge: the length that triangles are split to");
+  if (!(edge > 0))
+    reader.reject("triangles", "needs edge, the length to which triangles are split");
   triangles = static_cast<int>(count);
 }
 
@@ -64,10 +65,10 @@ driver::Result<void> ClayChoice::check() const {
   if (!(edge == 0 ||
         (edge >= (1 - kRounding) * radius / PrintRefinement::kFinest && std::isfinite(edge)))) {
     return driver::Error{
-        "Clay needs an edge of a sixteenth of its radius or more, or 0 to split no triangles."};
+        "Clay needs an edge of at least a sixteenth of its radius, or 0 to split no triangles."};
   }
   if (!(triangles >= 4 && triangles <= kTrianglesMax)) {
-    return driver::Error{"Clay that splits its triangles may have 4 to 1000000 of them."};
+    return driver::Error{"Clay that splits its triangles needs a limit of 4 to 1000000 triangles."};
   }
   return {};
 }
@@ -94,7 +95,7 @@ driver::Result<void> SnapChoice::check() const {
   }
   if (!positive(speed)) return driver::Error{"A wall that snaps needs a speed above 0 m/s."};
   if (panels < 1 || panels > kPanelsMax) {
-    return driver::Error{"A wall may have 1 to " + std::to_string(kPanelsMax) + " panels in."};
+    return driver::Error{"A wall can have 1 to " + std::to_string(kPanelsMax) + " snapped panels."};
   }
   return {};
 }

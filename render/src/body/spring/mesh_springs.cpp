@@ -24,8 +24,8 @@ driver::Result<SpringNetwork<3>> join_vertices(const TriangleMesh& mesh,
       if (!(spring.along.squaredNorm() > 0.5)) {
         return driver::Error{"The edge " + std::to_string(spring.a) + "-" +
                              std::to_string(spring.b) +
-                             " of the mesh has no length, so its spring has no direction: repair "
-                             "the mesh first (thimble mesh FILE --repair OUT.off)."};
+                             " of the mesh has no length, so its spring has no direction. Repair "
+                             "the mesh first: thimble mesh FILE --repair OUT.off"};
       }
     }
     springs.push_back(spring);

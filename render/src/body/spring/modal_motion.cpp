@@ -50,9 +50,9 @@ driver::Result<ModalMotion<kDof>> ModalMotion<kDof>::build(const SpringNetwork<k
                                                            double step) {
   const std::int32_t nodes = network.node_count();
   if (nodes > kModesMax / kDof) {
-    return driver::Error{"Modal motion is for bodies of up to " + std::to_string(kModesMax / kDof) +
-                         " vertices, and this one has " + std::to_string(nodes) +
-                         ": use implicit_euler, or a coarser mesh."};
+    return driver::Error{"Modal motion supports bodies of up to " +
+                         std::to_string(kModesMax / kDof) + " vertices; this one has " +
+                         std::to_string(nodes) + ". Use implicit_euler or a coarser mesh."};
   }
   if (!(step > 0) || !std::isfinite(step)) {
     return driver::Error{"A body needs a time step above 0 s."};
@@ -73,8 +73,9 @@ driver::Result<ModalMotion<kDof>> ModalMotion<kDof>::build(const SpringNetwork<k
     const MatrixXd joined = by_mode - MatrixXd(rates.asDiagonal());
     if (!(joined.cwiseAbs().maxCoeff() <= kJoined * rates.cwiseAbs().maxCoeff())) {
       return driver::Error{
-          "The dampers of this body join its modes, so modal motion would not be exact: make each "
-          "damper the same share of its spring, or use implicit_euler."};
+          "The dampers of this body couple its modes, so modal motion would not be exact. Give "
+          "each "
+          "damper the same ratio to its spring, or use implicit_euler."};
     }
   }
   Eigen::VectorXd squares = (shapes.transpose() * k * shapes).diagonal();

@@ -34,15 +34,16 @@ driver::Result<SpringMotion<kDof>> SpringMotion<kDof>::build(SpringNetwork<kDof>
     return driver::Error{"A body needs a time step above 0 s."};
   }
   if (options.substeps < 1 || options.rounds_max < 1 || options.substeps_max < options.substeps) {
-    return driver::Error{"A body needs one substep and one round or more."};
+    return driver::Error{"A body needs at least one substep and one round."};
   }
   if (options.scheme == SpringScheme::kModal) {
-    return driver::Error{"Modal motion has its own class: build a ModalMotion."};
+    return driver::Error{"Use the class ModalMotion for modal motion."};
   }
   if (options.scheme == SpringScheme::kExponential && network.coupled()) {
     return driver::Error{
-        "The exponential integrator is for nodes that no springs join: use modal for a small mesh, "
-        "implicit_euler for any."};
+        "The exponential integrator works only for nodes that no springs join. Use modal for a "
+        "small "
+        "mesh, implicit_euler for any mesh."};
   }
   SpringMotion motion(std::move(network));
   motion.options_ = options;
@@ -52,12 +53,13 @@ driver::Result<SpringMotion<kDof>> SpringMotion<kDof>::build(SpringNetwork<kDof>
   if (needed > options.substeps && options.beyond != Beyond::kAllow) {
     if (options.beyond == Beyond::kRefuse || !(needed <= options.substeps_max)) {
       return driver::Error{
-          limit > 0 ? fmt::format("The integrator {} bears steps up to {:.3g} ms on this mesh, and "
-                                  "the tick takes {:.3g} ms: soften the springs, add mass, take "
-                                  "{:.0f} substeps, or use implicit_euler.",
-                                  name, limit * 1e3, options.step * 1e3, needed)
-                    : "The integrator " + name +
-                          " bears no step on springs without dampers: use implicit_euler."};
+          limit > 0
+              ? fmt::format("Integrator {} is stable for steps up to {:.3g} ms on this mesh, but "
+                            "the tick takes {:.3g} ms. Lower the stiffness, add mass, use "
+                            "{:.0f} substeps, or use implicit_euler.",
+                            name, limit * 1e3, options.step * 1e3, needed)
+              : "Integrator " + name +
+                    " is unstable at any step on springs without dampers. Use implicit_euler."};
     }
     motion.substeps_ = static_cast<int>(needed);
   }
@@ -101,9 +103,9 @@ std::string SpringMotion<kDof>::describe() const {
   const double limit = largest_step(options_.scheme, network_.bounds());
   std::string said =
       std::isfinite(limit)
-          ? fmt::format("{} bears steps up to {:.3g} ms on this mesh", name, limit * 1e3)
-          : name + " bears any step";
-  said += fmt::format(" (highest frequency {:.4g} rad/s): {} of {:.3g} ms per tick.",
+          ? fmt::format("{} is stable for steps up to {:.3g} ms on this mesh", name, limit * 1e3)
+          : name + " is stable for any step";
+  said += fmt::format(" (highest frequency {:.4g} rad/s). Steps per tick: {} of {:.3g} ms.",
                       network_.bounds().omega_max, substeps_, h_ * 1e3);
   return said;
 }

@@ -21,16 +21,16 @@ Error refuse(const std::string& what, std::size_t number, const std::string& why
 }
 
 driver::Result<void> check(std::span<const BodyNode> nodes) {
-  if (nodes.empty()) return Error{"A body needs at least one node: give it a mesh with vertices."};
+  if (nodes.empty()) return Error{"A body needs at least one node. Use a mesh with vertices."};
   if (nodes.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    return Error{"A body has more nodes than 2^31: thin its mesh out."};
+    return Error{"A body has 2^31 nodes or more. Use a coarser mesh."};
   }
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!(nodes[i].mass > 0) || !std::isfinite(nodes[i].mass)) {
       return refuse("Node", i, "needs a mass above 0 kg.");
     }
     if (!usable(nodes[i].base_stiffness) || !usable(nodes[i].base_damping)) {
-      return refuse("Node", i, "needs a stiffness and a damping of 0 or more, and finite.");
+      return refuse("Node", i, "needs a finite stiffness and damping of 0 or more.");
     }
   }
   return {};
@@ -44,18 +44,18 @@ driver::Result<void> check(std::span<const BodySpring<kDof>> springs, std::size_
       return i >= 0 && static_cast<std::size_t>(i) < nodes;
     };
     if (!exists(spring.a) || !exists(spring.b) || spring.a == spring.b) {
-      return refuse("Spring", s, "must join two different nodes that exist.");
+      return refuse("Spring", s, "must join two different existing nodes.");
     }
     if (!usable(spring.stiffness) || !usable(spring.damping)) {
-      return refuse("Spring", s, "needs a stiffness and a damping of 0 or more, and finite.");
+      return refuse("Spring", s, "needs a finite stiffness and damping of 0 or more.");
     }
     const double length = spring.along.squaredNorm();
     constexpr double kUnit = 1e-9;  // looser than rounding, far tighter than a wrong scale
     if (!(length == 0 || std::abs(length - 1) < kUnit)) {
-      return refuse("Spring", s, "needs a direction of length 1, or none.");
+      return refuse("Spring", s, "needs a unit direction, or no direction.");
     }
     if ((length == 0) != (springs[0].along.squaredNorm() == 0)) {
-      return refuse("Spring", s, "must be of the same sort as the others: directed or not.");
+      return refuse("Spring", s, "must be of the same kind as the others, directed or undirected.");
     }
   }
   return {};

@@ -42,7 +42,7 @@ driver::Result<TriangleMesh> part_of(const aiMesh& part) {
     corners.clear();
     for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
       if (face.mIndices[corner] >= part.mNumVertices) {
-        return Error{"face " + std::to_string(f) + " names a vertex that does not exist."};
+        return Error{"face " + std::to_string(f) + " refers to a vertex that does not exist."};
       }
       corners.push_back(static_cast<std::int32_t>(face.mIndices[corner]));
     }
@@ -61,9 +61,9 @@ void tell_what_is_left_out(const aiScene& scene, std::vector<std::string>& notes
                       (aiPrimitiveType_POINT | aiPrimitiveType_LINE)) != 0;
   }
   if (bones || scene.mNumAnimations > 0) {
-    notes.push_back("Bones and animations were left out: the mesh stands as at rest.");
+    notes.push_back("Bones and animations were ignored: the mesh is in its rest pose.");
   }
-  if (lines) notes.push_back("Lines and points were left out: they cannot be touched.");
+  if (lines) notes.push_back("Lines and points were ignored: only faces can be touched.");
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ driver::Result<TriangleMesh> mesh_of_scene(const aiScene& scene, std::vector<std
     stops.pop_back();
     for (unsigned i = 0; i < stop.node->mNumMeshes; ++i) {
       const unsigned number = stop.node->mMeshes[i];
-      if (number >= scene.mNumMeshes) return Error{"a node names a part that does not exist."};
+      if (number >= scene.mNumMeshes) return Error{"a node refers to a part that does not exist."};
       const auto part = part_of(*scene.mMeshes[number]);
       if (!part) return part.error();
       if (auto added = parts.add(*part, Eigen::Affine3d(stop.place), true); !added) {

@@ -47,7 +47,7 @@ std::string capitals(std::string text) {
 driver::Result<void> drop_mark(std::string& bytes) {
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
-    return driver::Error{"this is a text of two bytes per letter (UTF-16): save it as UTF-8."};
+    return driver::Error{"the text is encoded as UTF-16; save it as UTF-8."};
   }
   return {};
 }
@@ -77,14 +77,16 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
   };
   const std::string ending = ending_of(file);
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
-    return error("the ending \"" + ending + "\" is not known; give an " + kMeshEndings + " file.");
+    return error("unknown file extension \"" + ending + "\"; expected an " + kMeshEndings +
+                 " file.");
   }
   auto bytes = driver::read_file(file, kMaxFileBytes);
   if (!bytes) return error(bytes.error().message);
   MeshFileInfo found;
   found.kind = mesh_kind_of(*bytes, ending);
   if (found.kind != ending) {
-    found.notes.push_back("Its contents are " + capitals(found.kind) + ", so it was read as that.");
+    found.notes.push_back("Its contents are " + capitals(found.kind) +
+                          ", so the extension was ignored.");
   }
   auto mesh = read(std::move(bytes).value(), found.kind, file, found);
   if (!mesh) return error(mesh.error().message);

@@ -46,8 +46,7 @@ driver::Result<TriangleMesh> MeshParts::take(std::vector<std::string>& notes) {
   if (auto kept = precision_.judge(mesh_, notes); !kept) return kept.error();
   if (moved_ > 0) {
     notes.push_back(std::to_string(moved_) + " of " + std::to_string(parts_) +
-                    (parts_ == 1 ? " part was" : " parts were") +
-                    " put where the file's nodes say.");
+                    (parts_ == 1 ? " part was" : " parts were") + " placed by the file's nodes.");
   }
   return std::move(mesh_);
 }

@@ -5,8 +5,8 @@ namespace thimble::render {
 namespace {
 
 driver::Error absent(const std::string& ending) {
-  return driver::Error{"this build does not read ." + ending +
-                       " meshes: save it as OFF, OBJ, PLY, STL or glTF 2, or configure with "
+  return driver::Error{"this build cannot read ." + ending +
+                       " meshes. Save the mesh as OFF, OBJ, PLY, STL or glTF 2, or configure with "
                        "-D THIMBLE_MESH_FORMATS=ON."};
 }
 

@@ -95,9 +95,9 @@ std::optional<Error> ObjReader::read() {
     const std::span<const std::int32_t> corners(early_corners_.data() + face.begin, face.size);
     for (const std::int32_t corner : corners) {
       if (static_cast<std::size_t>(corner) < mesh_.vertices.size()) continue;
-      return words_.error_at(face.line,
-                             "the face names vertex " + std::to_string(std::int64_t{corner} + 1) +
-                                 "; the file has " + std::to_string(mesh_.vertices.size()) + ".");
+      return words_.error_at(
+          face.line, "the face refers to vertex " + std::to_string(std::int64_t{corner} + 1) +
+                         "; the file has " + std::to_string(mesh_.vertices.size()) + ".");
     }
     if (auto error = add_face(face.line, corners)) return error;
   }
@@ -122,7 +122,7 @@ std::optional<Error> ObjReader::read_statement(std::string_view keyword) {
   for (const auto& [refused, what] : kRefused) {
     if (keyword == refused) {
       return words_.error(shown_word(keyword) + ": " + std::string(what) +
-                          " are not read. Save the mesh as polygons in one file.");
+                          " are not supported. Save the mesh as polygons in one file.");
     }
   }
   return words_.error(shown_word(keyword) + " is not a statement of an OBJ file.");
@@ -148,7 +148,7 @@ std::optional<Error> ObjReader::read_vertex() {
                         " numbers; it needs 3, 4, 6 or 7.");
   }
   if (count == 4 && numbers[3] != 1) {
-    return words_.error("a vertex with a weight other than 1 is not read.");
+    return words_.error("vertex weights other than 1 are not supported.");
   }
   if (mesh_.vertices.size() >= std::numeric_limits<std::int32_t>::max()) {
     return words_.error("more than 2^31 - 1 vertices are not supported.");
@@ -169,7 +169,7 @@ std::optional<Error> ObjReader::read_face() {
                           "; a corner is V, V/T, V//N or V/T/N.");
     }
     if (vertex < -known || vertex > std::numeric_limits<std::int32_t>::max()) {
-      return words_.error("the face names vertex " + std::to_string(vertex) +
+      return words_.error("the face refers to vertex " + std::to_string(vertex) +
                           "; so far there are " + std::to_string(known) + ".");
     }
     early = early || vertex > known;
@@ -201,7 +201,7 @@ driver::Result<TriangleMesh> read_obj(std::string_view text, const std::string& 
   TriangleMesh mesh = reader.take();
   if (mesh.triangles.empty()) return Error{"it has no face with three corners."};
   if (reader.has_lines()) {
-    notes.push_back("Lines and points were left out: they cannot be touched.");
+    notes.push_back("Lines and points were ignored: only faces can be touched.");
   }
   return mesh;
 }

@@ -29,13 +29,13 @@ driver::Result<Header> read_header(TextWords& words) {
   const std::string_view prefix = keyword.substr(0, keyword.size() - 3);
   if (prefix.find_first_of("4n") != std::string_view::npos) {
     return words.error(std::string(keyword) +
-                       " has vertices that are not three numbers: save the mesh as plain OFF.");
+                       " has vertices that are not three numbers. Save the mesh as plain OFF.");
   }
   if (prefix.find_first_not_of("STCN") != std::string_view::npos) {
     return words.error("unknown kind of OFF file " + shown_word(keyword) + ".");
   }
   std::string_view word = words.next();
-  if (word == "BINARY") return words.error("binary OFF is not read: save the mesh as text.");
+  if (word == "BINARY") return words.error("binary OFF is not supported. Save the mesh as text.");
   Header header;
   header.vertex_per_line = !prefix.empty();
   for (std::int64_t* count : {&header.vertices, &header.faces}) {
@@ -48,7 +48,7 @@ driver::Result<Header> read_header(TextWords& words) {
     // memory must not be reserved for it.
     const std::size_t shortest = count == &header.vertices ? 6 : 4;
     if (static_cast<std::uint64_t>(*number) > (words.left() + 2) / shortest) {
-      return words.error("the file promises " + std::to_string(*number) +
+      return words.error("the file declares " + std::to_string(*number) +
                          (count == &header.vertices ? " vertices" : " faces") + " but has only " +
                          std::to_string(words.left()) + " bytes left: it is truncated.");
     }
@@ -101,8 +101,8 @@ std::optional<Error> read_faces(TextWords& words, const Header& header, Triangle
       if (word.empty()) return words.error("the file ends in " + name + ": it is truncated.");
       const auto vertex = whole_number(word);
       if (!vertex || *vertex < 0 || *vertex >= header.vertices) {
-        return words.error(name + " names vertex " + shown_word(word) + "; the vertices are 0 to " +
-                           std::to_string(header.vertices - 1) + ".");
+        return words.error(name + " refers to vertex " + shown_word(word) +
+                           "; the vertices are 0 to " + std::to_string(header.vertices - 1) + ".");
       }
       corners.push_back(static_cast<std::int32_t>(*vertex));
     }

@@ -102,7 +102,7 @@ std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header&
     }
     // The smallest element is a byte.
     if (static_cast<std::uint64_t>(*count) > bytes) {
-      return Error{"its header promises " + std::to_string(*count) + " of " + shown(name) +
+      return Error{"its header declares " + std::to_string(*count) + " of " + shown(name) +
                    " but the file has only " + std::to_string(bytes) + " bytes: it is truncated."};
     }
     header.elements.push_back({name, *count, {}});
@@ -126,7 +126,7 @@ std::optional<Error> take_line(std::string_view line, std::size_t bytes, Header&
     header.elements.back().properties.push_back(property);
     return std::nullopt;
   }
-  return Error{"its header has a line that PLY does not know: " + shown(whole) + "."};
+  return Error{"its header has an unknown line: " + shown(whole) + "."};
 }
 
 // Reads the header and returns the remaining bytes in `rest`.
@@ -146,7 +146,7 @@ driver::Result<Header> read_header(std::string_view& rest) {
     }
     first = false;
   }
-  return Error{"this is no PLY file that can be read (its header does not reach end_header)."};
+  return Error{"not a readable PLY file: its header has no end_header."};
 }
 
 // Returns numbers one by one; empty at the end of the file or for other contents.
@@ -187,7 +187,7 @@ class Numbers {
 };
 
 Error ends_in(const Element& element, std::int64_t number) {
-  return Error{"the file ends, or has something else than a number, in " +
+  return Error{"the file ends or has a value that is not a number in " +
                std::string(element.name.substr(0, 20)) + " " + std::to_string(number) + " of " +
                std::to_string(element.count) + ": it is truncated or damaged."};
 }
@@ -247,7 +247,7 @@ std::optional<Error> read_face(const Element& element, std::int64_t number, Numb
     if (!read_property(property, numbers, take)) return ends_in(element, number);
   }
   if (!there) {
-    return Error{"face " + std::to_string(number) + " names a vertex that does not exist."};
+    return Error{"face " + std::to_string(number) + " refers to a vertex that does not exist."};
   }
   if (corners.size() >= 3 && !triangulate_polygon(mesh.vertices, corners, mesh.triangles)) {
     return Error{too_many_corners("face " + std::to_string(number), corners.size())};
@@ -259,7 +259,8 @@ std::optional<Error> read_face(const Element& element, std::int64_t number, Numb
 std::optional<Error> check_elements(const Header& header) {
   for (const Element& element : header.elements) {
     if (element.name == "tristrips" && element.count > 0) {
-      return Error{"it has triangle strips (tristrips), which are not read. Save it with faces."};
+      return Error{
+          "it has triangle strips (tristrips), which are not supported. Save it with faces."};
     }
     if (element.name != "vertex" || element.count == 0) continue;
     for (const std::string_view axis : {"x", "y", "z"}) {

@@ -163,18 +163,16 @@ driver::Result<TriangleMesh> read_text(std::string_view text, const std::string&
 
 driver::Result<TriangleMesh> read_binary(std::string_view bytes, std::vector<std::string>& notes) {
   if (bytes.size() < kHead) {
-    return Error{
-        "this is no STL file that can be read: it has neither a facet nor a head of 84 "
-        "bytes."};
+    return Error{"not a readable STL file: it has neither a facet nor a header of 84 bytes."};
   }
   std::uint32_t count = 0;
   const std::uint64_t wanted = promised_bytes(bytes, count);
-  if (count == 0) return Error{"its head promises no triangles."};
+  if (count == 0) return Error{"its header declares no triangles."};
   if (wanted > bytes.size()) {
-    return Error{"this is no STL file that can be read: its head promises " +
-                 std::to_string(count) + " triangles, but it has bytes for " +
+    return Error{"not a readable STL file: its header declares " + std::to_string(count) +
+                 " triangles, but it has bytes for only " +
                  std::to_string((bytes.size() - kHead) / kTriangle) +
-                 " only: it is truncated, or no STL file."};
+                 ". It is truncated or not an STL file."};
   }
   if (3 * std::uint64_t{count} > kVerticesMax) return Error{"it has more than 2^31 - 1 corners."};
   TriangleMesh mesh;
@@ -200,7 +198,7 @@ driver::Result<TriangleMesh> read_binary(std::string_view bytes, std::vector<std
   if (auto kept = precision.judge(mesh, notes); !kept) return kept.error();
   if (wanted < bytes.size()) {
     notes.push_back(std::to_string(bytes.size() - wanted) +
-                    " bytes after the last triangle were left out.");
+                    " bytes after the last triangle were ignored.");
   }
   return mesh;
 }

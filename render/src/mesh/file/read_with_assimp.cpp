@@ -80,13 +80,13 @@ driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::stri
     // Assimp 5.2.5 omits them, with the mesh that they move.
     if (has_morph_controller(bytes)) {
       return Error{
-          "it has a morph controller, which is not read of DAE. Export the shape without."};
+          "it has a morph controller, which is not supported in DAE. Export the mesh without it."};
     }
     info.unit = 1;
     info.up = up_axis_of_dae(bytes);
   } else if (ending == "amf") {
     info.unit = unit_of_model(bytes, "amf");
-    if (!info.unit) return Error{"it counts in a unit that its format does not know."};
+    if (!info.unit) return Error{"it uses an unknown length unit."};
   }
   return import_by_assimp(bytes, ending, "", info.notes);
 }

@@ -31,7 +31,8 @@ std::string off_text(const TriangleMesh& mesh) {
 
 driver::Result<void> save_mesh(const TriangleMesh& mesh, const std::filesystem::path& file) {
   if (file.extension() != ".off") {
-    return driver::Error{file.string() + ": a mesh is written as OFF; let the name end in .off."};
+    return driver::Error{file.string() +
+                         ": meshes are written as OFF; use a name that ends in .off."};
   }
   std::error_code status;
   // A symbolic link stays; its target is replaced.
@@ -43,7 +44,7 @@ driver::Result<void> save_mesh(const TriangleMesh& mesh, const std::filesystem::
   if (!write_off(mesh, unfinished)) {
     std::filesystem::remove(unfinished, status);
     return driver::Error{file.string() +
-                         ": the file cannot be written; check the folder and the space left."};
+                         ": the file cannot be written; check the folder and the free disk space."};
   }
   std::filesystem::rename(unfinished, target, status);
   if (status) {

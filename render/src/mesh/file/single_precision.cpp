@@ -19,8 +19,9 @@ driver::Result<void> SinglePrecision::judge(const TriangleMesh& mesh,
       static_cast<double>(std::nextafter(single, std::numeric_limits<float>::infinity()) - single);
   if (!(size > 0) || step <= kStepReported * size) return {};
   const std::string sentence = fmt::format(
-      "Its coordinates are in single precision and reach {:.3g}, where their steps are {:.2g}: "
-      "{:.2g} of its size. Move it to the origin in the program that made it, or export it as OBJ.",
+      "The coordinates are in single precision and reach {:.3g}, where one step is {:.2g}: "
+      "{:.2g} of the size of the mesh. Move the mesh to the origin in its program or export it as "
+      "OBJ.",
       scale_ * farthest_, step, step / size);
   if (step > kStepMax * size) return driver::Error{sentence};
   notes.push_back(sentence);

@@ -13,12 +13,12 @@ struct Wording {
 Wording wording_of(MeshFault::Kind kind) {
   switch (kind) {
     case MeshFault::Kind::kNotFinite:
-      return {"vertex has a coordinate that is no finite number",
-              "vertices have coordinates that are no finite numbers",
-              "export the mesh again, or let a repair drop what names them"};
+      return {"vertex has a coordinate that is not finite",
+              "vertices have coordinates that are not finite",
+              "export the mesh again, or let a repair drop the triangles with them"};
     case MeshFault::Kind::kIndexOutOfRange:
-      return {"triangle names a vertex that does not exist",
-              "triangles name vertices that do not exist",
+      return {"triangle refers to a vertex that does not exist",
+              "triangles refer to vertices that do not exist",
               "export the mesh again, or let a repair drop them"};
     case MeshFault::Kind::kDegenerateTriangle:
       return {"triangle has no area", "triangles have no area", "a repair drops such triangles"};
@@ -28,24 +28,24 @@ Wording wording_of(MeshFault::Kind kind) {
     case MeshFault::Kind::kOpenEdge:
       return {"edge belongs to only one triangle, so the mesh has a hole",
               "edges belong to only one triangle, so the mesh has a hole",
-              "a repair fills holes, and what stays open can be a sheet"};
+              "a repair fills holes, and open parts can be used as sheets"};
     case MeshFault::Kind::kNonManifoldEdge:
       return {"edge belongs to more than two triangles", "edges belong to more than two triangles",
-              "a repair parts bodies that only touch there"};
+              "a repair separates bodies that only touch there"};
     case MeshFault::Kind::kFlippedEdge:
-      return {"edge lies between triangles wound against each other",
-              "edges lie between triangles wound against each other",
-              "turn the triangles on one side round"};
+      return {"edge joins triangles with opposite orientation",
+              "edges join triangles with opposite orientation",
+              "reverse the triangles on one side"};
     case MeshFault::Kind::kNonManifoldVertex:
       return {"vertex joins parts that share nothing else",
               "vertices join parts that share nothing else",
-              "a repair gives each part a vertex of its own"};
+              "a repair gives each part its own vertex"};
     case MeshFault::Kind::kInsideOut:
       return {"closed component has its normals pointing into its material",
               "closed components have their normals pointing into their material",
-              "turn all its triangles round, or let the contact mesh do it (option `orient`)"};
+              "reverse all its triangles, or set the contact mesh's option `orient`"};
   }
-  return {"fault is of an unknown kind", "faults are of an unknown kind", "report this"};
+  return {"fault is of an unknown kind", "faults are of an unknown kind", "report it as a bug"};
 }
 
 }  // namespace

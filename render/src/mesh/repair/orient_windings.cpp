@@ -121,14 +121,14 @@ std::string describe(const OrientReport& report) {
   std::string text;
   if (report.turned_triangles > 0) {
     text = plural(report.turned_triangles, "triangle was", "triangles were") +
-           " turned round (the first: triangle " + std::to_string(report.first_turned) +
+           " reversed (the first: triangle " + std::to_string(report.first_turned) +
            "): " + plural(report.mended_components, "component was", "components were") +
-           " wound in two ways, " + std::to_string(report.turned_components) + " inside out.";
+           " inconsistently oriented, " + std::to_string(report.turned_components) + " inside out.";
   }
   if (report.one_sided_components > 0) {
     if (!text.empty()) text += ' ';
     text += plural(report.one_sided_components, "component has", "components have") +
-            " one side only, like a Moebius strip, so that no winding is right; it can be a "
+            " only one side, like a Moebius strip, so no orientation is consistent; use it as a "
             "sheet.";
   }
   return text;

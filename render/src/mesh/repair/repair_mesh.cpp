@@ -247,24 +247,25 @@ std::string describe(const RepairChange& change) {
         return {"triangle without three finite vertices was dropped",
                 "triangles without three finite vertices were dropped"};
       case Kind::kWeldedVertex:
-        return {"vertex was joined with one within the tolerance",
-                "vertices were joined with ones within the tolerance"};
+        return {"vertex was merged with another within the tolerance",
+                "vertices were merged with others within the tolerance"};
       case Kind::kDroppedDegenerate:
         return {"triangle with no area was dropped", "triangles with no area were dropped"};
       case Kind::kDroppedDuplicate:
         return {"triangle that repeats another one was dropped",
                 "triangles that repeat others were dropped"};
       case Kind::kClosedSeam:
-        return {"open edge was split to meet the vertices beside it",
-                "open edges were split to meet the vertices beside them"};
+        return {"open edge was split to meet the vertices next to it",
+                "open edges were split to meet the vertices next to them"};
       case Kind::kSplitVertex:
-        return {"vertex that joined parts was doubled", "vertices that joined parts were doubled"};
+        return {"vertex that joined parts was duplicated",
+                "vertices that joined parts were duplicated"};
       case Kind::kPartedEdge:
-        return {"edge where bodies touch was parted", "edges where bodies touch were parted"};
+        return {"edge where bodies touch was separated", "edges where bodies touch were separated"};
       case Kind::kFilledHole:
         return {"hole was filled", "holes were filled"};
       case Kind::kTurnedTriangle:
-        return {"triangle was turned round", "triangles were turned round"};
+        return {"triangle was reversed", "triangles were reversed"};
       case Kind::kDroppedVertex:
         return {"vertex that no triangle uses was dropped",
                 "vertices that no triangle uses were dropped"};

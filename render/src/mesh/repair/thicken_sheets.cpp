@@ -274,7 +274,7 @@ std::string describe(const SheetReport& report, const std::string& unit) {
   if (report.sheets == 0) return {};
   std::ostringstream text;
   text << report.sheets << (report.sheets == 1 ? " part is" : " parts are")
-       << " no closed body and touched as " << (report.sheets == 1 ? "a sheet" : "sheets") << " of "
+       << " not closed and treated as " << (report.sheets == 1 ? "a sheet" : "sheets") << " of "
        << report.triangles << (report.triangles == 1 ? " triangle" : " triangles") << ", "
        << report.thinnest << " " << unit << " thick at the thinnest place.";
   return text.str();

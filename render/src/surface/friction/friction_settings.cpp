@@ -18,7 +18,8 @@ constexpr double kBendMax = 0.05;      // m
 
 std::string refusal(double stiffness, double most, const std::string& remedy) {
   return fmt::format(
-      "friction would hold with {:.4g} N/m, but this arm stays quiet only up to {:.4g} N/m "
+      "friction would hold with {:.4g} N/m, but this arm is free of limit cycles only up to {:.4g} "
+      "N/m "
       "(sampling, delay and encoder steps); {}",
       stiffness, most, remedy);
 }
@@ -59,11 +60,11 @@ double read_stick_stiffness(SettingsReader& reader, const EffectContext& context
   constexpr double kRounding = 1 + 1e-9;
   double stiffness = most;
   if (reader.has("stiffness") && reader.has("z_max")) {
-    reader.reject("z_max", "cannot stand together with stiffness; keep one of them");
+    reader.reject("z_max", "cannot be combined with stiffness; remove one of them");
   } else if (reader.has("stiffness")) {
     reader.number("stiffness", stiffness, {.unit = "N/m", .least = 1, .most = kStiffnessMax});
     if (stiffness > kRounding * most) {
-      reader.reject("stiffness", refusal(stiffness, most, "lower it or leave it away"));
+      reader.reject("stiffness", refusal(stiffness, most, "lower it or remove it"));
     }
   } else if (reader.has("z_max")) {
     double bend = kBendMax;
@@ -71,7 +72,8 @@ double read_stick_stiffness(SettingsReader& reader, const EffectContext& context
     const double force = holding * context.force_max;
     stiffness = force / bend;
     if (!(force > 0)) {
-      reader.reject("z_max", "needs friction and an arm with a largest force; give stiffness");
+      reader.reject("z_max",
+                    "needs friction and an arm with a maximum force; set stiffness instead");
     } else if (stiffness > kRounding * most) {
       const std::string least =
           fmt::format("expected z_max >= {:.3g} m, found {:.3g} m", force / most, bend);

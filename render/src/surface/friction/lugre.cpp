@@ -17,8 +17,8 @@ void LugreLaw::Settings::read(SettingsReader& reader, const EffectContext& conte
   const double least =
       coulomb.sliding > 0 ? damping * (coulomb.holding - coulomb.sliding) / coulomb.sliding : 0;
   if (viscous.viscous < least) {
-    reader.reject("damping", fmt::format("damping {:.3g} N s/m would feed the hand energy: give "
-                                         "viscous of at least {:.3g} N s/m, or less damping",
+    reader.reject("damping", fmt::format("damping {:.3g} N s/m would add energy to the hand; set "
+                                         "viscous to at least {:.3g} N s/m or lower damping",
                                          damping, least));
   }
 }

@@ -34,7 +34,8 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  /// Reads size and kind and requests 16-bit grey; false, with `said` filled, if libpng fails.
+  /// Reads size and kind and requests 16-bit grey. Returns false and sets the message if libpng
+  /// fails.
   // No object with a destructor may be in a frame that libpng jumps over, so each step is a
   // separate function.
   bool begin(std::FILE* file) {
@@ -76,11 +77,11 @@ class PngReader {
 
   png_structp png_;
   png_infop info_ = nullptr;
-  char said_[200] = "libpng could not begin";
+  char said_[200] = "libpng could not be initialised";
 };
 
 driver::Error broken(const std::filesystem::path& file, const std::string& why) {
-  return driver::Error{file.string() + ": not a picture that can be read as heights (" + why +
+  return driver::Error{file.string() + ": not a readable height image (" + why +
                        "); expected a PNG of at most 2048 by 2048 pixels."};
 }
 
@@ -90,8 +91,8 @@ driver::Result<HeightImage> HeightImage::load(const std::filesystem::path& file)
   // Sixteen bits of every colour and of transparency, uncompressed, plus other contents of a file.
   constexpr std::uint64_t kMaxBytes = 8 * kSideMax * kSideMax + 30'000'000;
   auto regular = driver::RegularFile::open(file);
-  if (!regular) return broken(file, "it is absent, or no regular file");
-  if (regular->size() > kMaxBytes) return broken(file, "it has more than 64 MB");
+  if (!regular) return broken(file, "it is missing or not a regular file");
+  if (regular->size() > kMaxBytes) return broken(file, "it is larger than 64 MB");
   const int descriptor = regular->release();
   const std::unique_ptr<std::FILE, CloseFile> stream(fdopen(descriptor, "rb"));
   if (!stream) {

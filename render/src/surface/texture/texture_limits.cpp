@@ -39,8 +39,8 @@ void check_texture(SettingsReader& reader, std::string_view key, const TextureEx
   // If arm or spring is not known, there is nothing to compare with.
   if (deepest > 0 && !(extent.relief <= deepest)) {
     reader.reject(
-        key, fmt::format("is {:.3g} mm from peak to valley, but the arm's {:.3g} N press no deeper "
-                         "than {:.3g} mm into {:.4g} N/m: make it flatter, or the surface softer",
+        key, fmt::format("is {:.3g} mm from peak to valley, but the arm's {:.3g} N press only "
+                         "{:.3g} mm deep into {:.4g} N/m; make it flatter or the surface softer",
                          1e3 * extent.relief, context.force_max, 1e3 * deepest,
                          context.surface_stiffness));
   }
@@ -48,7 +48,7 @@ void check_texture(SettingsReader& reader, std::string_view key, const TextureEx
     reader.reject(
         key,
         fmt::format(
-            "is as steep as {:.3g}; slopes may reach {:.3g}: make it flatter or its waves longer",
+            "has a slope of {:.3g}, above the maximum {:.3g}; make it flatter or its waves longer",
             extent.slope, kTextureSlopeMax));
   }
   const double frequency = settings.hand_speed / extent.wavelength;
@@ -56,7 +56,7 @@ void check_texture(SettingsReader& reader, std::string_view key, const TextureEx
   if (!(frequency <= highest)) {
     reader.reject(key, fmt::format("has waves of {:.3g} mm, which a hand at {:.3g} m/s feels as "
                                    "{:.4g} Hz; a loop of {:.4g} "
-                                   "Hz shows {:.4g} Hz at most: make the waves longer, the loop "
+                                   "Hz displays {:.4g} Hz at most; make the waves longer, the loop "
                                    "faster or hand_speed smaller",
                                    1e3 * extent.wavelength, settings.hand_speed, frequency,
                                    1 / context.tick, highest));

@@ -60,7 +60,7 @@ TEST(ObjectMesh, MakesSheetsAsThickInTheWorldAsAskedFor) {
   const render::MeshFindings found = render::check_mesh(sheet->mesh_W);
   EXPECT_TRUE(found.touchable());
   EXPECT_NEAR(found.volume, 2 * 0.06 * 0.06 * 0.001, 0.1 * 2 * 0.06 * 0.06 * 0.001);
-  EXPECT_NE(sheet->notes.back().find("no closed body and touched as a sheet"), std::string::npos);
+  EXPECT_NE(sheet->notes.back().find("not closed and treated as a sheet"), std::string::npos);
 }
 
 TEST(ObjectMesh, HasTheUnitOfItsFileUnlessTheSceneSaysAnother) {

@@ -99,8 +99,7 @@ TEST(ObjectMesh, ReportsPartsThatWereInsideOut) {
   const auto mesh = load_object_mesh(object);
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   ASSERT_EQ(mesh->notes.size(), 1U);
-  EXPECT_NE(mesh->notes[0].find("12 triangles were turned round"), std::string::npos)
-      << mesh->notes[0];
+  EXPECT_NE(mesh->notes[0].find("12 triangles were reversed"), std::string::npos) << mesh->notes[0];
 }
 
 }  // namespace

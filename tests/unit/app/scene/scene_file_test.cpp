@@ -98,7 +98,7 @@ TEST(SceneFile, NamesTheProfileOfABandAndOfNothingElse) {
                 .find("profile: expected linear or smooth, found \"round\""),
             std::string::npos);
   for (const char* other : {"profile: smooth", "blending: phong, profile: linear"}) {
-    EXPECT_NE(mistake(with(other), kWait).find("profile: says how the normal turns within a band"),
+    EXPECT_NE(mistake(with(other), kWait).find("profile: sets how the normal turns within a band"),
               std::string::npos)
         << other;
   }
@@ -131,7 +131,7 @@ TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
            {"stiffness: 0", "stiffness: expected a number"},
            {"pull: 2", "pull: expected a number"},
            {"rings: 1.5", "rings: expected a whole number"},
-           {"region: whole, rings: 2", "rings: cannot stand together with region: whole"},
+           {"region: whole, rings: 2", "rings: cannot be combined with region: whole"},
            {"integrator: explicit_euler", "integrator: expected symplectic_euler"},
            {"stifness: 3", "perhaps \"stiffness\" was meant"}}) {
     EXPECT_NE(mistake(with(wrong), kWait).find(said), std::string::npos)
@@ -347,14 +347,14 @@ TEST(SceneFile, SaysWhatIsWrongWithAShapeOrAField) {
   EXPECT_NE(wrong("field: magic").find("field"), std::string::npos);
   EXPECT_NE(wrong("field: gravity").find("mass"), std::string::npos);
   EXPECT_NE(wrong("field: gravity, mass: 0.1, stiffness: 3").find("stiffness"), std::string::npos);
-  EXPECT_NE(wrong("field: viscous, damping: 500").find("makes an arm"), std::string::npos);
+  EXPECT_NE(wrong("field: viscous, damping: 500").find("oscillates above"), std::string::npos);
   EXPECT_NE(mistake("  - {name: a, field: gravity, mass: 0.1}\n",
                     kWait + "    - {t: 1, on: a, near: [0, 0, 0]}\n")
                 .find("a field has no surface"),
             std::string::npos);
   EXPECT_NE(wrong("sphere: {radius: 0.1}, stiffness: 800, effects: [{texture: sines, waves: "
                   "[{amplitude: 0.004, wavelength: 0.1}]}]")
-                .find("5 N press no deeper than 6.25 mm"),
+                .find("5 N press only 6.25 mm deep"),
             std::string::npos);
 }
 

@@ -45,11 +45,11 @@ std::vector<Shape> shapes() {
 
 DentSettings quiet() {
   DentSettings settings;
-  settings.damping = 2;  // settles within the presses of a test
+  settings.damping = 2;  // settles within a press of the test
   return settings;
 }
 
-// How far below `from` along `down` a triangle lies there, m; NaN beside it.
+// Distance from `from` along `down` to a triangle, m; NaN if the line misses it.
 double way_down(const std::array<Vector3d, 3>& p, const Vector3d& from, const Vector3d& down) {
   const Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]);
   const double facing = -normal.dot(down);
@@ -65,9 +65,9 @@ double way_down(const std::array<Vector3d, 3>& p, const Vector3d& from, const Ve
   return way;
 }
 
-// How deep the dent is just beside the cursor, as a share of the cursor's depth: the way from the
-// base surface to the drawn one, on a circle around the cursor of a twentieth of the shortest
-// side, in the mean.
+// Depth of the dent next to the cursor, as a fraction of the cursor's depth: the mean distance from
+// the base surface to the drawn one, on a circle around the cursor with a radius of a twentieth of
+// the shortest side.
 double beside(BendablePolygon& dent, std::int32_t triangle, const Vector3d& w, BodyPatch& patch) {
   const ContactMesh& mesh = dent.mesh();
   const Vector3d foot = point_at(mesh, triangle, w);
@@ -108,14 +108,15 @@ TEST(BendablePolygon, DentDepthIsKeptAcrossEdges) {
   auto patch = std::make_unique<BodyPatch>();
   for (const Shape& shape : shapes()) {
     auto dent = dent_in(shape.mesh, quiet());
-    // No fresh cases: the bounds are those of these crossings; others find 5.1 % on the plate.
+    // Fixed seed: the bounds are those of these crossings; other seeds give up to 5.1 % on the
+    // plate.
     support::Random random(std::uint64_t{6});
     double least = 1e9, most = 0;
     for (int crossing = 0; crossing < 12; ++crossing) {
       auto t = static_cast<std::int32_t>(random.bits() %
                                          static_cast<std::uint64_t>(dent.mesh().triangle_count()));
       const Vector3d middle = Vector3d::Constant(1.0 / 3);
-      // Through a point of an edge, or through a corner in every other case.
+      // Through a point of an edge, or through a corner in every second case.
       const auto k = static_cast<Eigen::Index>(random.bits() % 3);
       Vector3d gate(0, 0, 0);
       gate[k] = crossing % 2 == 0 ? random.uniform(0.1, 0.9) : 1;
@@ -126,7 +127,7 @@ TEST(BendablePolygon, DentDepthIsKeptAcrossEdges) {
       for (int i = 0; i <= 2 * kTicks; ++i) {
         const double share = std::abs(i - kTicks) / double{kTicks};
         if (i == kTicks) {
-          // On the other side: the neighbour over the edge, or the opposite triangle of the fan.
+          // On the other side: the neighbour across the edge, or the opposite triangle of the fan.
           const std::int32_t before = t;
           const std::int32_t corner = dent.mesh().corners(t)[static_cast<std::size_t>(k)];
           const Vector3d place = point_at(dent.mesh(), t, gate);
@@ -153,7 +154,7 @@ TEST(BendablePolygon, DoesNotJumpWhereTheCursorCrossesAnEdge) {
   const TriangleMesh mesh = support::icosphere(2, 0.05);
   support::Random random(12);
   for (int i = 0; i < 50; ++i) {
-    // The same dent, led to the two sides of one point of an edge.
+    // The same dent, approached from the two sides of one point of an edge.
     const auto t = static_cast<std::int32_t>(random.bits() % mesh.triangles.size());
     const auto k = static_cast<Eigen::Index>(random.bits() % 3);
     Vector3d w = Vector3d::Constant(1e-9);
@@ -180,7 +181,7 @@ TEST(BendablePolygon, DoesNotJumpWhereTheCursorCrossesAnEdge) {
   }
 }
 
-TEST(BendablePolygon, GoesBackToItsBaseAndThenCostsNothing) {
+TEST(BendablePolygon, ReturnsToItsBaseAndThenCostsNothing) {
   for (const bool whole : {false, true}) {
     DentSettings settings;
     settings.whole = whole;
@@ -195,8 +196,8 @@ TEST(BendablePolygon, GoesBackToItsBaseAndThenCostsNothing) {
   }
 }
 
-TEST(BendablePolygon, MovesARingAsItMovesTheWholeBodyNearTheCursor) {
-  // What lies beyond the rings is held, which nobody sees near the cursor.
+TEST(BendablePolygon, RingMovesLikeTheWholeBodyNearTheCursor) {
+  // Vertices beyond the rings are fixed, which is not visible near the cursor.
   DentSettings settings = quiet();
   auto near = dent_in(support::icosphere(2, 0.05), settings);
   settings.whole = true;
@@ -209,11 +210,11 @@ TEST(BendablePolygon, MovesARingAsItMovesTheWholeBodyNearTheCursor) {
   }
 }
 
-TEST(BendablePolygon, KeepsSwingingVerticesWhenTheCursorGoesOn) {
+TEST(BendablePolygon, VerticesOscillateAfterTheCursorMovedOn) {
   auto dent = dent_in(support::icosphere(3, 0.05));
   settle(dent, 0, {0.4, 0.3, 0.3}, 2e-3);
   const std::int32_t left = dent.mesh().corners(0)[0];
-  // Far away in one tick: what was pressed swings back, and is still a part of the dent.
+  // A jump far away in one tick: the pressed part swings back and still belongs to the dent.
   const Vector3d before = dent.motion().u(left);
   press(dent, 1200, {0.4, 0.3, 0.3}, 2e-3);
   const Vector3d after = dent.motion().u(left);
@@ -225,11 +226,11 @@ TEST(BendablePolygon, KeepsSwingingVerticesWhenTheCursorGoesOn) {
   EXPECT_EQ(dent.motion().cut(), 0u);
 }
 
-// Very elastic objects of few polygons [BP 4.3]: at 1, 10 and 0.1 times the stiffness, any step and
-// integrator, and far beyond.
+// Very elastic objects of few polygons [BP 4.3]: at 1, 10 and 0.1 times the stiffness, with any
+// step and integrator, and far beyond these.
 TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int kPresses = 1;  // of what takes a minute and a half under them
+  constexpr int kPresses = 1;  // of presses that take a minute and a half with sanitizers
 #else
   constexpr int kPresses = 8;
 #endif
@@ -260,7 +261,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
         }
         ++run;
         BendablePolygon dent = std::move(built).value();
-        // Presses of a hand at 0.3 m/s, up to 10 mm, from which it slides on to a neighbour.
+        // Presses of a hand at 0.3 m/s, up to 10 mm deep, each followed by a slide to a neighbour.
         constexpr double kDepth = 0.01;
         double largest = 0;
         for (int i = 0; i < kPresses; ++i) {
@@ -269,7 +270,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
           const double depth = kDepth * random.uniform(0, 1);
           const int ticks = std::clamp(static_cast<int>(depth / (0.3 * step)), 1, 3000);
           for (int k = 1; k <= ticks; ++k) press(dent, t, w, depth * k / ticks);
-          // Slides on within the triangle, over up to 30 mm at 1 m/s.
+          // Slides within the triangle, up to 30 mm at 1 m/s.
           const Vector3d on = any_weights(random);
           const int slide = std::clamp(static_cast<int>(0.03 / step), 1, 3000);
           for (int k = 1; k <= slide; ++k) {
@@ -280,13 +281,13 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
           }
           for (int k = 0; k < 5; ++k) dent.rest();
         }
-        // Written so that NaN fails. A vertex swings as far as it was pressed, and farther by what
-        // the speed of the hand gives it.
+        // Written so that NaN fails. A vertex swings as far as it was pressed, and further by the
+        // effect of the hand's speed.
         EXPECT_TRUE(largest < 3 * kDepth)
             << largest << " at " << times << ", " << step << " s, " << name_of(scheme);
-        // Symplectic Euler and Verlet keep another sum than the energy, which swings by much near
-        // the largest step, and damping takes from that sum: so theirs falls in the long run. The
-        // others never gain any. Written so that NaN stays and fails.
+        // Symplectic Euler and Verlet conserve a quantity other than the energy, and this quantity
+        // varies strongly near the maximum step. Damping takes from it, so it falls in the long
+        // run. The others never gain energy. Written so that NaN persists and fails.
         const auto most_energy = [&dent](int ticks) {
           double most = 0;
           for (int i = 0; i < ticks; ++i) {
@@ -310,7 +311,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
   EXPECT_GT(refused, 5);
 }
 
-TEST(BendablePolygon, RefusesOrSurvivesNonsense) {
+TEST(BendablePolygon, RefusesOrSurvivesInvalidInput) {
   const auto mesh =
       std::make_shared<const ContactMesh>(ContactMesh::build(support::icosphere(1, 0.05)).value());
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -342,7 +343,7 @@ TEST(BendablePolygon, RefusesOrSurvivesNonsense) {
   }
 }
 
-TEST(BendablePolygon, AsksTheHeapForNothing) {
+TEST(BendablePolygon, DoesNotAllocate) {
   auto dent = dent_in(support::icosphere(3, 0.05));
   auto patch = std::make_unique<BodyPatch>();
   support::Random random(4);
@@ -357,7 +358,8 @@ TEST(BendablePolygon, AsksTheHeapForNothing) {
             0);
 }
 
-/// Moves a tip at random in and out of a ball, mostly over its surface; tells where at tick i.
+/// Moves a tip at random in and out of a ball, mostly over its surface; returns its position at a
+/// time.
 Vector3d wander(double time, support::Random& random) {
   const double around = 2 * std::sin(0.7 * time) + 0.5 * std::sin(3.1 * time);
   const double up = std::sin(1.3 * time) + 0.4 * std::sin(5.3 * time);
@@ -368,7 +370,7 @@ Vector3d wander(double time, support::Random& random) {
          tremor;
 }
 
-TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
+TEST(DentedTouch, PullReturnsNoMoreEnergyThanTheHandPutIn) {
   for (const double damping : {0.0, 0.2}) {
     DentSettings settings;
     settings.damping = damping;
@@ -387,7 +389,7 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
       const Vector3d p = wander(1e-3 * i, random);
       const Vector3d way = p - state.p_WT;
       const double work = command.f_T_W.dot(way);
-      // A force that is held for a tick lets a spring k do k x^2 / 2 more than it has energy.
+      // A force held for a tick lets a spring k release k x^2 / 2 more than its energy.
       const double along = way.dot(command.touch.n_W);
       const double held = command.touch.depth > 0 ? command.f_T_W.dot(command.touch.n_W) /
                                                         command.touch.depth / 2 * along * along
@@ -407,9 +409,9 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
     }
     EXPECT_GT(contacts, 50);
     EXPECT_GT(taken, 1e-3);
-    // Over no contact more comes out than went in, but for the move of one tick.
+    // No contact returns more energy than it received, except for the move of one tick.
     EXPECT_LE(most_given, longest);
-    // The account is for jumps, and this tremor throws the tip by 0.03 mm in each tick.
+    // The account limits jumps, and this tremor moves the tip by 0.03 mm in each tick.
     EXPECT_LT(pull.limited(), 1200u);
     EXPECT_GT(pull.stored(), -1e-5);
     std::printf(
@@ -418,7 +420,7 @@ TEST(DentedTouch, GivesTheHandNoMoreThanItHasPutInToThePull) {
   }
 }
 
-TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
+TEST(DentedTouch, WithoutPullKeepsForcesAndIsRepeatable) {
   const TriangleMesh ball = support::icosphere(2, 0.05);
   for (const TrackerChoice tracker : {TrackerChoice::kEdgePlanes, TrackerChoice::kOffset,
                                       TrackerChoice::kGodObject, TrackerChoice::kPacked}) {
@@ -454,13 +456,13 @@ TEST(DentedTouch, ChangesNoForceWithoutPullAndIsTheSameInEveryRun) {
   }
 }
 
-TEST(BodyPull, FadesWithWhatTheHandHasPutByAndDoesNotSwitch) {
+TEST(BodyPull, FadesWithTheHandsReserveWithoutSwitching) {
   BodyPull pull(1, 1e-3);
   const Eigen::Vector3d n(0, 0, 1);
   double depth = 0, last = 0, given = 0, most = 0, step = 0, felt = 0, held = 0;
   const auto move = [&](double way, double stiffness) {
     depth += way;
-    given -= last * way;  // of the hand's, against the force before
+    given -= last * way;  // of the hand's work, by the previous force
     held += stiffness / 2 * way * way;
     felt =
         pull.force(stiffness * depth * n, -depth * n, Eigen::Vector3d(0, 0, -way / 1e-3), n, depth)
@@ -471,14 +473,14 @@ TEST(BodyPull, FadesWithWhatTheHandHasPutByAndDoesNotSwitch) {
   };
   for (int k = 0; k < 100; ++k) move(5e-5, 50);
   EXPECT_NEAR(felt, 50 * 5e-3, 1e-9);
-  // The springs have stiffened to more than the hand paid for. It oscillates, and goes out slowly.
+  // The springs became stiffer than the hand's work allows. The dent oscillates and decays slowly.
   move(0, 400);
   step = 0;
   for (int k = 0; k < 800; ++k) move(k % 2 == 0 ? -1.5e-5 : 5e-6, 400);
-  // A switch would have moved all of the force, 2 N, to and fro. The spring's own 400 N/m and
-  // eight times that over 15 um, and a tick's delay of the account:
+  // A switch would move the whole force, 2 N, back and forth. Bound: the spring's own 400 N/m and
+  // eight times that over 15 um, and the account's delay of one tick.
   EXPECT_LE(step, 1.2 * 9 * 400 * 1.5e-5);
-  EXPECT_LE(most, 1e-5);  // and what a touch may begin with
+  EXPECT_LE(most, 1e-5);  // initial reserve of a touch
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ Faults faults_of(const BodyPatch& patch, const ContactMesh& mesh) {
         ++faults.cracks;
         continue;
       }
-      // To the bit where the mesh's own vertex is drawn.
+      // Bit-identical where the mesh's own vertex is drawn.
       const Vector3d& drawn = mesh.position(vertex);
       const auto& p = patch.points[static_cast<std::size_t>(point)].p;
       faults.cracks += !(p[0] == drawn.x() && p[1] == drawn.y() && p[2] == drawn.z());
@@ -71,7 +71,7 @@ Faults faults_of(const BodyPatch& patch, const ContactMesh& mesh) {
     border.emplace(patch.points[static_cast<std::size_t>(a)].vertex,
                    patch.points[static_cast<std::size_t>(b)].vertex);
   }
-  // The border is that of the triangles that are left out.
+  // The border is that of the omitted triangles.
   const std::set<std::int32_t> left_out(patch.source.begin(),
                                         patch.source.begin() + patch.triangle_count);
   std::size_t expected = 0;
@@ -98,7 +98,7 @@ TriangleMesh scanned(const std::string& name) {
                 Vector3d(0, 0, 0));
 }
 
-TEST(BodyPatch, IsClosedAndOnItsSideInRandomTouchesOverRealMeshes) {
+TEST(BodyPatch, IsClosedAndUnfoldedInRandomTouches) {
   std::vector<std::pair<std::string, TriangleMesh>> meshes{
       {"ball", support::icosphere(3, 0.05)}, {"box", support::box({0.04, 0.03, 0.02})}};
   if (fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
@@ -120,7 +120,7 @@ TEST(BodyPatch, IsClosedAndOnItsSideInRandomTouchesOverRealMeshes) {
     const int count = touches / static_cast<int>(meshes.size());
     std::int32_t t = 0;
     for (int i = 0; i < count; ++i) {
-      // A jump elsewhere while the last dent still oscillates, or on to a neighbour.
+      // A jump to another place while the last dent still oscillates, or a move to a neighbour.
       if (random.bits() % 4 == 0) {
         t = static_cast<std::int32_t>(random.bits() %
                                       static_cast<std::uint64_t>(dent.mesh().triangle_count()));
@@ -155,7 +155,7 @@ TEST(BodyPatch, ChangesNoNormalWhenATriangleIsFirstTouched) {
     const auto t = static_cast<std::int32_t>(random.bits() % mesh.triangles.size());
     press(dent, t, any_weights(random), 1e-9);
     dent.draw(*patch);
-    // The cursor and the points on the edges: what the untouched triangle shows at their places.
+    // The cursor and the points on the edges: compared with the untouched triangle at their places.
     for (std::size_t k = 0; k < patch->point_count; ++k) {
       const auto& point = patch->points[k];
       if (point.vertex >= 0) continue;
@@ -176,7 +176,7 @@ TEST(BodyPatch, ChangesNoNormalWhenATriangleIsFirstTouched) {
         }
         untouched += w[static_cast<Eigen::Index>(c)] * sum.normalized();
       }
-      // What an average of the drawn faces around gives, as in the paper.
+      // The mean of the normals of the drawn faces around the point, as in the paper.
       Vector3d faces(0, 0, 0);
       for (std::size_t f = 0; f < patch->triangle_count; ++f) {
         for (const std::uint16_t c : patch->triangles[f]) {

@@ -1,4 +1,5 @@
-// Free bodies, springs and snapping panels against closed forms, for tests/acceptance/PHYSICS.md.
+// Free bodies, springs and snapping panels compared with closed forms, for
+// tests/acceptance/PHYSICS.md.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -54,7 +55,7 @@ TEST(PhysicsOfBodies, MassPropertiesAreThoseOfABlock) {
                  found.inertia[2]);
 }
 
-// Nearly along its long axis a block wobbles at w (I3 - I1)(I2 - I1) / (I2 I3), square root.
+// A block that spins nearly about its long axis wobbles at w sqrt((I3 - I1)(I2 - I1) / (I2 I3)).
 TEST(PhysicsOfBodies, ASpinningBlockWobblesAtTheRateOfEuler) {
   RigidBody body = RigidBody::build(free_block()).value();
   const Vector3d inertia = body.settings().mass.inertia;

@@ -19,7 +19,7 @@
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/effect/map_settings.h"
 
-// Clay and snapping walls through the whole of an object: contact, surface, shape, mesh.
+// Clay and snapping walls through a whole object: contact, surface, shape, mesh.
 
 namespace thimble::render {
 namespace {
@@ -45,7 +45,8 @@ TriangleMesh mesh_now(const ObjectTouch& object, TriangleMesh mesh) {
   return mesh;
 }
 
-// Tells the least area of a triangle seen along its first normal, over its first area.
+// Returns the minimum area of a triangle projected along its initial normal, relative to its
+// initial area.
 double least_seen_area(const TriangleMesh& first, const TriangleMesh& now) {
   double least = 1;
   for (const auto& triangle : first.triangles) {
@@ -61,7 +62,7 @@ double least_seen_area(const TriangleMesh& first, const TriangleMesh& now) {
   return least;
 }
 
-// Puts the tip somewhere for a tick, with the speed that it has on its way there.
+// Moves the tip to a place for one tick, with the speed of that move.
 class Tip {
  public:
   explicit Tip(ObjectTouch& object) : object_(object) {}
@@ -95,15 +96,15 @@ int presses() {
   return support::long_form() ? 1000 : 150;
 }
 
-// Through contact and mesh: set = x_max - F_y / k, heat = F_y * set, and the second
-// press is as stiff as the first.
+// Through contact and mesh: set = x_max - F_y / k, heat = F_y * set, and the second press has the
+// same stiffness as the first.
 TEST(HardCaseClayPress, KeepsTheSetBeyondYield) {
   double worst = 0;
   support::Random random(34);
   for (int i = 0; i < 50; ++i) {
     const TriangleMesh mesh =
         support::box({random.uniform(0.02, 0.05), random.uniform(0.02, 0.05), 0.02});
-    // In the middle of a triangle all three corners go in alike, so that the face stays level.
+    // In the middle of a triangle all three corners sink equally, so that the face stays level.
     Vector3d middle(0, 0, 0);
     for (const auto& [a, b, c] : mesh.triangles) {
       const auto p = [&](std::int32_t v) { return mesh.vertices[static_cast<std::size_t>(v)]; };
@@ -150,7 +151,7 @@ TEST(HardCaseClayPress, KeepsTheSetBeyondYield) {
                    "m");
 }
 
-// Random presses at all speeds and places, wherever the hand goes meanwhile.
+// Random presses at all speeds and places, along any path between them.
 TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
   double least = 1, least_work = 1e9;
   std::uint64_t lost = 0;
@@ -179,7 +180,7 @@ TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
         p_before = p;
         felt += command.touch.in_contact;
       };
-      // Round the object, in, aside, out.
+      // Around the object, in, sideways, out.
       const Vector3d start = p_before.normalized() * 0.045;
       go(start);
       for (int k = 1; k <= 40; ++k) go((start * (40 - k) + from * k).normalized() * 0.045);
@@ -198,8 +199,8 @@ TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
     least_work = std::min(least_work, work / heat);
     lost += object->lost_contacts();
     EXPECT_GT(felt, 10 * presses());
-    // What was put in is what became heat and what stands in no spring any more, and the flat
-    // tracker's own account around edges (PHYSICS 3) on top.
+    // The work put in is the heat and the energy of the springs, plus the flat tracker's own error
+    // around edges (PHYSICS 3).
     EXPECT_GT(heat, 0.05);
     EXPECT_GT(work, 0.9 * heat);
   }
@@ -234,7 +235,7 @@ TEST(Clay, FlowsNoFasterThanItsRateAndNoFartherThanItsLimit) {
   EXPECT_NEAR(farthest(*bound), 2e-3, 1e-6);
 }
 
-// The probe leaves a pit and goes in again, over its edge and along its walls.
+// The probe leaves a pit and enters it again, over its edge and along its walls.
 TEST(HardCaseClayPit, ForceIsContinuousOnReturn) {
   const TriangleMesh mesh = support::icosphere(5, 0.03);
   auto object =
@@ -243,7 +244,7 @@ TEST(HardCaseClayPit, ForceIsContinuousOnReturn) {
   tip.at({0, 0, 0.032});
   for (int i = 0; i <= 400; ++i) tip.at({0, 0, 0.0305 - 1e-5 * i});  // a pit of about 3 mm
   for (int i = 0; i <= 400; ++i) tip.at({0, 0, 0.0265 + 1e-5 * i});
-  // A free mass with a hand's spring slides over the edge, into the pit and out, at 60 mm/s.
+  // A free mass on a hand's spring slides over the edge, into the pit and out, at 60 mm/s.
   support::Stylus stylus{.hand_stiffness = 300, .hand_damping = 3};
   stylus.p_WT = stylus.p_WH = {-0.016, 0, 0.0275};
   double most = 0, jump = 0;
@@ -269,7 +270,7 @@ TEST(HardCaseClayPit, ForceIsContinuousOnReturn) {
                    0, "1");
 }
 
-// The stated truss [PHYSICS 4], through contact and mesh: a panel in a plate.
+// Truss of [PHYSICS 4], through contact and mesh: a panel in a plate.
 ShapeChoice stated_truss() {
   return {.clay = {},
           .snap = SnapChoice{.force = 0.994992, .depth = 12e-3, .radius = 20e-3, .panels = 2}};
@@ -301,10 +302,11 @@ TEST(HardCaseSnapThrough, TrussSnapsAtItsLimitLoad) {
     if (f > 0) last_in = depth;
   }
   EXPECT_NEAR(limit, 0.994992, 0.005 * 0.994992);
-  EXPECT_NEAR(way_at_limit, 2.58577e-3, 0.02 * 2.58577e-3);  // flat at the top: the place is soft
+  EXPECT_NEAR(way_at_limit, 2.58577e-3,
+              0.02 * 2.58577e-3);  // zero slope at the maximum: the place is poorly defined
   EXPECT_EQ(object->shape()->snap()->snaps(), 1);
   EXPECT_GT(last_in, 13.9e-3);
-  // The account closes: what the hand put in is in the spring, the bars, or released.
+  // The energy account closes: the hand's work is in the spring, in the bars, or released.
   const double kept = f_before * f_before / (2 * kStiffness) + object->shape()->snap()->energy() +
                       object->shape()->snap()->released();
   EXPECT_NEAR(work, kept, 0.01 * 3.877e-3);
@@ -326,7 +328,7 @@ TEST(HardCaseSnapInHand, HandCausesNoSecondSnap) {
   double z_end = 0;
   for (int i = 0; i < 6000; ++i) {
     stylus.p_WH.z() = top + 1e-3 - std::min(i * 3e-6, 9e-3);
-    // The force is that of the tick's place; between two ticks it is taken as their mean.
+    // The force belongs to the tick's position; between two ticks their mean is used.
     const Vector3d p = stylus.p_WT;
     const auto felt = stylus.follow(*object);
     const double damper = felt.f_T_W.norm() - kStiffness * felt.touch.depth;
@@ -349,7 +351,7 @@ TEST(HardCaseSnapInHand, HandCausesNoSecondSnap) {
                    static_cast<double>(snap.snaps()), 1, "1");
   record_hard_case(33, "the same", "<= error of the account of energy",
                    std::abs(work - kept) / std::max(work, 3.877e-3), 0.01, "1");
-  // Let go: it stays in its second shape.
+  // After release it stays in its second shape.
   for (int i = 0; i < 1000; ++i) {
     stylus.p_WH.z() = top + 5e-3;
     stylus.follow(*object);
@@ -380,7 +382,7 @@ TEST(Snap, ComesBackFromAPressBelowTheThreshold) {
   }
 }
 
-TEST(Shape, MovesAFewVerticesPerTickAndAsksTheHeapForNothing) {
+TEST(Shape, MovesFewVerticesPerTickWithoutAllocation) {
   const TriangleMesh mesh = support::bumpy_sphere(4, 0.04, 0.1, 4);
   auto object = shaped(mesh,
                        {.clay = ClayChoice{.yield_force = 2, .radius = 4e-3},
@@ -399,7 +401,7 @@ TEST(Shape, MovesAFewVerticesPerTickAndAsksTheHeapForNothing) {
   EXPECT_GT(least_seen_area(mesh, mesh_now(*object, mesh)), 0.1);
 }
 
-TEST(Shape, RefusesOrSurvivesNonsense) {
+TEST(Shape, RefusesOrSurvivesInvalidInput) {
   const TriangleMesh mesh = support::icosphere(3, 0.03);
   const auto refused = [&](const ShapeChoice& shape, double stiffness = kStiffness,
                            ContactChoice contact = {}) {

@@ -1,4 +1,4 @@
-// Clay that splits the triangles under a print: the mesh, the print, and what is felt meanwhile.
+// Clay that splits the triangles under a print: the mesh, the print, and the force meanwhile.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -47,7 +47,7 @@ TriangleMesh now(const ObjectTouch& object) {
   return mesh;
 }
 
-/// Puts the tip somewhere for a tick.
+/// Moves the tip to a place for one tick.
 class Tip {
  public:
   explicit Tip(ObjectTouch& object) : object_(object) {}
@@ -65,9 +65,8 @@ class Tip {
   std::uint64_t tick_ = 0;
 };
 
-/// Presses a plate of `cells` x `cells` squares of 10 mm in its middle and tells by how much its
-/// top differs from the print that was asked for, as shares of its depth: most, and root of the
-/// mean square.
+/// Presses a plate of `cells` x `cells` squares of 10 mm in its middle. Returns the deviation of
+/// its top from the requested print, as a fraction of its depth: maximum and RMS.
 struct PrintError {
   double most = 0, mean = 0;
   std::int32_t triangles = 0;
@@ -82,7 +81,7 @@ PrintError print_error(double radius, double edge, const Vector3d& aside) {
   const Vector3d place = aside + Vector3d(0, 0, top);
   tip.at(place + Vector3d(0, 0, 1e-3));
   const double depth = 0.2 * radius + 0.5 / kStiffness;
-  // A finger that has rested there for a moment, so that all is split before anything flows.
+  // The finger first rests for a moment, so that all triangles are split before anything flows.
   for (int i = 0; i < 600; ++i) tip.at(place - Vector3d(0, 0, 0.45 / kStiffness));
   constexpr int kTicks = 500;
   for (int i = 0; i <= kTicks; ++i) {
@@ -99,12 +98,12 @@ PrintError print_error(double radius, double edge, const Vector3d& aside) {
     const auto p = [&](std::size_t k) {
       return mesh.vertices[static_cast<std::size_t>(corners[k])];
     };
-    // What was pressed went straight down: where it is tells where it was.
+    // Pressed vertices move straight down, so their horizontal position is the original one.
     const double side =
         std::max({(p(1) - p(0)).norm(), (p(2) - p(1)).norm(), (p(0) - p(2)).norm()});
     const int fine = std::clamp(static_cast<int>(30 * side / radius), 2, 30);
     for (int n = 0; n < (fine + 1) * (fine + 2) / 2; ++n) {
-      // Places in rows over the triangle, its corners and edges among them.
+      // Places in rows over the triangle, including its corners and edges.
       int row = 0, left = n;
       while (left > row) left -= ++row;
       const Vector3d w = Vector3d(fine - row, row - left, left) / fine;
@@ -123,8 +122,8 @@ PrintError print_error(double radius, double edge, const Vector3d& aside) {
   return error;
 }
 
-// Triangles of 10 mm, prints as wide as 1, 2, 3 and 5 of them, at two places.
-TEST(ClayRefinement, MakesPrintsAsAskedForHoweverCoarseTheMesh) {
+// Triangles of 10 mm, prints 1, 2, 3 and 5 times as wide, at two places.
+TEST(ClayRefinement, MakesTheRequestedPrintOnAnyMesh) {
   for (const double widths : {1.0, 2.0, 3.0, 5.0}) {
     const double radius = widths * 0.01 / 2;
     for (const Vector3d& aside : {Vector3d(0.0033, 0.0017, 0), Vector3d(1e-4, 2e-4, 0)}) {
@@ -144,8 +143,8 @@ TEST(ClayRefinement, MakesPrintsAsAskedForHoweverCoarseTheMesh) {
   }
 }
 
-// A furrow as deep as it is wide, drawn to and fro: its walls are steep, and splitting them again
-// and again would take all triangles there are.
+// A furrow as deep as it is wide, drawn back and forth: its walls are steep, and unlimited
+// splitting would use up all triangles.
 TEST(ClayRefinement, SplitsWallsNoFinerThanTheFloor) {
   constexpr double kEdge = 0.7e-3, kTop = 0.02;
   auto object = clay_of(support::plate(0.1, 0.04, 10),
@@ -166,7 +165,7 @@ TEST(ClayRefinement, SplitsWallsNoFinerThanTheFloor) {
     if (middle.z() < 0 || middle.head<2>().cwiseAbs().maxCoeff() > 0.045) continue;
     lowest = std::min(lowest, middle.z());
     for (std::size_t k = 0; k < 3; ++k) {
-      // All that was pressed went straight down: seen from above the mesh is as it was at first.
+      // Pressed vertices move straight down: seen from above, the mesh is unchanged.
       const Vector3d side = p(k + 1) - p(k);
       shortest = std::min(shortest, side.head<2>().norm());
       steepest = std::max(steepest, std::abs(side.z()) / side.head<2>().norm());
@@ -186,12 +185,12 @@ TEST(ClayRefinement, SplitsWallsNoFinerThanTheFloor) {
 }
 
 struct Difference {
-  double most = 0;                  // of a force from that of the mesh that is not split, N
+  double most = 0;                  // difference of a force from that of the unsplit mesh, N
   double step = 0, step_whole = 0;  // largest changes of the forces in a tick, N
   std::int32_t split = 0;
 };
 
-// A stroke that presses with less than the yield force: all that happens is splitting.
+// A stroke that presses with less than the yield force, so that splitting is the only change.
 template <class Path>
 Difference felt_by_splitting(const TriangleMesh& mesh, Path path) {
   const ClayChoice plain{.yield_force = 3, .radius = 0.006};
@@ -235,14 +234,15 @@ TEST(ClayRefinement, ChangesNoForceByItself) {
     std::printf("ball: %d more triangles, %.1e N; largest step %.3f N, whole %.3f\n", ball.split,
                 ball.most, ball.step, ball.step_whole);
     EXPECT_LT(ball.step, 1.05 * ball.step_whole);
-    // Where several places of the surface are the nearest around them, the way to a place decides.
+    // If several places of the surface are the nearest in their surroundings, the path to a place
+    // decides.
     if (level == 2) {
       EXPECT_LT(ball.most, 1e-9);
     }
   }
 }
 
-TEST(ClayVolume, StaysWhereItIsAskedToBeKept) {
+TEST(ClayVolume, IsKeptOnRequest) {
   for (const double edge : {0.0, 0.0008}) {
     const TriangleMesh mesh =
         edge > 0 ? support::plate(0.1, 0.04, 10) : support::icosphere(4, 0.03);
@@ -283,7 +283,7 @@ TEST(ClayVolume, StaysWhereItIsAskedToBeKept) {
   }
 }
 
-/// Presses at random places, aside and out again.
+/// Presses at random places, moves sideways and out again.
 void press_at_random(Tip& tip, support::Random& random, double size, Vector3d& p_before) {
   const Vector3d from = 1.3 * size * random.direction();
   const Vector3d to =
@@ -298,7 +298,7 @@ void press_at_random(Tip& tip, support::Random& random, double size, Vector3d& p
   p_before = 1.9 * aside;
 }
 
-// Seeded strokes, with what is found at their end and no heap on the way.
+// Random strokes with a fixed seed: checks the mesh at their end, and that no tick allocates.
 TEST(ClayRefinement, ThousandPrintsKeepTheMeshClosed) {
   struct Case {
     TriangleMesh mesh;
@@ -334,7 +334,7 @@ TEST(ClayRefinement, ThousandPrintsKeepTheMeshClosed) {
     EXPECT_EQ(object->lost_contacts(), 0u);
     std::printf("%d prints: %zu triangles, heat %.2f J\n", one.prints, mesh.triangles.size(),
                 object->shape()->clay()->dissipated());
-    // The same to the bit when it is done again.
+    // A repetition is bit-identical.
     for (int i = 0; i < 100; ++i) press_at_random(tip_again, random_again, 0.03, before_again);
     auto third = clay_of(one.mesh, clay);
     Tip tip_third(*third);
@@ -346,7 +346,7 @@ TEST(ClayRefinement, ThousandPrintsKeepTheMeshClosed) {
   }
 }
 
-TEST(ClayRefinement, RefusesWhatDoesNotGoWithIt) {
+TEST(ClayRefinement, RefusesIncompatibleSettings) {
   const TriangleMesh mesh = support::icosphere(3, 0.03);
   const auto refused = [&](ClayChoice clay, bool dent, bool snap) {
     SurfaceChoice surface{.spring = {.stiffness = kStiffness}, .shape = {.clay = clay, .snap = {}}};

@@ -49,7 +49,7 @@ SurfaceChoice surface_of(double stiffness, double damping, double friction_stiff
   return surface;
 }
 
-// Several tips on one body, without dampers unless said.
+// Several tips on one body, without dampers unless stated.
 struct Tips {
   std::vector<std::unique_ptr<ObjectTouch>> touches;
   std::shared_ptr<SharedBody> body;
@@ -69,7 +69,7 @@ struct Tips {
     body = std::move(object.body);
   }
 
-  // Moves on by a tick with the tips at these places; gives what the first one felt.
+  // Advances a tick with the tips at these places; returns the force on the first one.
   Vector3d step(const std::vector<Vector3d>& tips) {
     Vector3d first(0, 0, 0);
     touching = false;
@@ -88,7 +88,7 @@ struct Tips {
     const auto p = touches[0]->pose().p_WB;
     return {p[0], p[1], p[2]};
   }
-  // Of a cube of this mass.
+  // Energy of a cube of this mass.
   double energy(double mass) const {
     const double inertia = mass * 0.04 * 0.04 / 6;
     return body->momentum_W().squaredNorm() / (2 * mass) +
@@ -97,14 +97,15 @@ struct Tips {
   bool touching = false;
 };
 
-// Roots of the step of a body of mass m at a resting tip, by the product's own functions.
+// Roots of the step of a body of mass m on a resting tip, computed with the product's own
+// functions.
 struct StepMatrix {
   double determinant, trace;
 };
 StepMatrix step_matrix(double m, double k, double b, double h, double known_k, double known_b) {
   double a[2][2];
   for (int column = 0; column < 2; ++column) {
-    // So small that no force is beyond what a body takes.
+    // So small that no force exceeds the limit of a body.
     constexpr double kSmall = 1e-6;
     const double x = column == 0 ? kSmall : 0, v = column == 0 ? 0 : kSmall / h;
     TranslatingBody body(m, 0, 1, h);
@@ -142,13 +143,13 @@ TEST(BodyCoupling, StepOfABodyAtATipHasBothRootsInTheUnitCircle) {
   }
 }
 
-// The scale at which a body comes back from a tip at rest: its speed after over that before.
+// Ratio of a body's speed after the impact on a tip at rest to its speed before.
 double restitution(const MotionChoice& motion, const SurfaceChoice& surface, double stiffness,
                    double tick, double speed, double phase, std::size_t tips, double off) {
   MotionChoice thrown = motion;
   thrown.v_W = {0, 0, -speed};
   Tips rig(thrown, surface, stiffness, tick, tips);
-  // Below the cube by a part of the way of a tick.
+  // Below the cube by a fraction of a tick's motion.
   const double below = -0.02 - speed * tick * (2 + phase);
   const std::vector<Vector3d> at{{0.001 + off, 0.002, below}, {-0.003 + off, 0.001, below}};
   const double before = rig.energy(motion.mass);
@@ -242,7 +243,7 @@ TEST(HardCaseRestingBody, HeldBodySwingsNoFurther) {
                         cube(), motion, {400, 0, 1 / rate});
         driver::DeviceState state;
         state.dt = 1 / rate;
-        // Held beside the middle, so that a body that can turn swings as a pendulum.
+        // Held off its middle, so that a body that can turn swings like a pendulum.
         state.p_WT = {0.004, 0, 0.01};
         double deepest = 0;
         for (int i = 0; i < 5 * rate; ++i) {
@@ -253,7 +254,7 @@ TEST(HardCaseRestingBody, HeldBodySwingsNoFurther) {
           // The share softens the spring to k / (1 + k h^2 / m).
           worst = std::max(worst, deepest / (2 * kGravity * (mass / 500 + 1 / (rate * rate))));
         } else {
-          // It can hang lower by what its middle was above the tip, and no lower.
+          // It can hang lower by the initial height of its middle above the tip, and no lower.
           EXPECT_LE(deepest, 0.03 + 3 * kGravity * (mass / 500 + 1 / (rate * rate)))
               << rate << " " << mass;
         }
@@ -299,7 +300,7 @@ TEST(HardCaseRestingBody, PinchedBlockComesToRest) {
                             "<= way in the fourth second", loudest * 1e3, 0.2, "mm");
 }
 
-// Closed forms. The step has first-order damping of its own, so these are at 20 kHz.
+// Closed forms. The step has first-order damping of its own, so these tests run at 20 kHz.
 TEST(PhysicsOfCoupling, AHeldBodySwingsAtTheFrequencyOfItsSpring) {
   const double rate = 2e4, mass = 0.1;
   MotionChoice motion{.mass = mass};
@@ -334,19 +335,19 @@ TEST(PhysicsOfCoupling, AHeldBodySwingsAtTheFrequencyOfItsSpring) {
                  -(*damped)->pose().p_WB[2]);
 }
 
-TEST(PhysicsOfCoupling, ABlockComesBackFromATipAsItCame) {
+TEST(PhysicsOfCoupling, ABlockReboundsFromATipAtItsSpeed) {
   const double rate = 2e4;
   const MotionChoice motion{.mass = 0.1};
   const double back =
       restitution(motion, surface_of(1000, 0, 0, 1 / rate), 1000, 1 / rate, 0.1, 0.5, 1, 0);
-  // What the step itself takes: a factor of 1 - k h^2 / (4 m) per tick, over half a swing.
+  // Loss of the step itself: a factor of 1 - k h^2 / (4 m) per tick, over half a period.
   expect_physics({"tip and body", "restitution of a block of 100 g at a tip, 1000 N/m, 20 kHz",
                   "1 (no damper)", "1", 1, 0.01},
                  back);
   const double zeta = 1 / (2 * std::sqrt(1000 * 0.1));
   const double damped =
       restitution(motion, surface_of(1000, 1, 0, 1 / rate), 1000, 1 / rate, 0.1, 0.5, 1, 0);
-  // The spring-damper never pulls: contact ends where the force ends [Schwager], at the phase of
+  // The spring-damper never pulls: contact ends when the force is zero [Schwager], at the phase of
   // the closed form.
   const double root = std::sqrt(1 - zeta * zeta);
   const double end = std::atan2(2 * zeta * root, 2 * zeta * zeta - 1);

@@ -59,11 +59,10 @@ TEST(DentSettings, ReadEachOfTheirNumbers) {
   support::VariantSettings both(
       support::VariantSettings::Values{{"region", "whole"}, {"rings", 2.0}});
   settings.read(both, {});
-  EXPECT_NE(both.mistakes.find("rings cannot stand together with region: whole"),
-            std::string::npos);
+  EXPECT_NE(both.mistakes.find("rings cannot be combined with region: whole"), std::string::npos);
 }
 
-TEST(DentMotion, LeavesAVertexThatDoesNotMoveWhereItIs) {
+TEST(DentMotion, RestingVertexIsNotMoved) {
   const auto mesh = ball();
   DentMotion motion = motion_of(*mesh, {});
   const std::array<std::int32_t, 1> first{0};
@@ -82,12 +81,12 @@ TEST(DentMotion, LeavesAVertexThatDoesNotMoveWhereItIs) {
   EXPECT_GT(still, 50);
 }
 
-TEST(DentMotion, TellsTheForceThatMovedTheVertex) {
+TEST(DentMotion, ReturnsTheForceThatMovedTheVertex) {
   const auto mesh = ball();
   for (const SpringScheme scheme :
        {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet, SpringScheme::kImplicitEuler}) {
     DentSettings settings;
-    settings.stiffness = 1e-6;  // nothing but the cursor's spring
+    settings.stiffness = 1e-6;  // only the cursor's spring
     settings.damping = settings.neighbour_stiffness = settings.neighbour_damping = 0;
     settings.integrator = scheme;
     DentMotion motion = motion_of(*mesh, settings);
@@ -107,7 +106,7 @@ TEST(DentMotion, TellsTheForceThatMovedTheVertex) {
   }
 }
 
-TEST(PatchDrawing, GivesNothingWhereItHasNoRoomForAll) {
+TEST(PatchDrawing, ReturnsNothingIfThePatchDoesNotFit) {
   const auto mesh = ball(3);
   const DentMotion motion = motion_of(*mesh, {});
   PatchDrawing drawing(mesh);

@@ -1,5 +1,5 @@
-// Dents against closed forms: how deep they are, how they swing and fade, from fast to slow and up
-// to 20 kHz.
+// Dents compared with closed forms: their depth, oscillation and decay, from fast to slow and up to
+// 20 kHz.
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
@@ -27,7 +27,7 @@ using support::expect_physics;
 
 const char* const kDent = "dent";
 
-// A plate of 50 mm whose vertices all move, and the places on it that are pressed.
+// A plate of 50 mm whose vertices can all move, and the places where it is pressed.
 class Plate {
  public:
   Plate()
@@ -71,7 +71,7 @@ class Plate {
     MatrixXd K = settings.stiffness * MatrixXd::Identity(n, n);
     for (const auto& [edge, there] : edges) {
       const auto [a, b] = edge;
-      // As strong around a vertex at every valence: its share of a valence of 6.
+      // The same strength around a vertex at every valence: relative to a valence of 6.
       const double k =
           settings.neighbour_stiffness * 12 /
           (valence[static_cast<std::size_t>(a)] + valence[static_cast<std::size_t>(b)]);
@@ -102,7 +102,7 @@ class Plate {
   Vector3d n_{0, 0, 1};
 };
 
-// Springs of a dent whose fastest inner motion has w h at this rate.
+// Springs of a dent whose fastest internal motion has the given w h at this rate.
 DentSettings settings_of(double omega_h, double rate, SpringScheme scheme) {
   DentSettings settings;
   settings.stiffness = 20;
@@ -116,12 +116,12 @@ DentSettings settings_of(double omega_h, double rate, SpringScheme scheme) {
   return settings;
 }
 
-// A dent is let go and swings freely. Returns its largest error over a part of a period, as a share
-// of the dent, against the modes of its springs, each by its own closed form.
+// Releases a dent, which oscillates freely. Returns its maximum error over a part of a period, as a
+// fraction of the dent, compared with the modes of its springs, each in closed form.
 double release_error(const Plate& plate, const DentSettings& settings, double omega_h,
                      double periods, bool damped_by_step) {
   BendablePolygon dent = plate.build(settings);
-  // Brought there at the speed of a hand, so that there is something to let go.
+  // Pressed at the speed of a hand, so that there is motion to release.
   for (int i = 0; i < 200; ++i) plate.press(dent, 0.002);
   const VectorXd u = plate.displacements(dent), v = plate.velocities(dent);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(plate.stiffness(settings) / settings.mass);
@@ -137,8 +137,8 @@ double release_error(const Plate& plate, const DentSettings& settings, double om
     for (int k = 0; k < a.size(); ++k) {
       const double omega = std::sqrt(modes.eigenvalues()(k)), h = settings.step, t = i * h;
       if (damped_by_step) {
-        // The closed form of implicit Euler: each step is a turn by atan(w h) and a factor of
-        // 1 / sqrt(1 + w^2 h^2).
+        // Closed form of implicit Euler: each step is a rotation by atan(w h) and a factor of 1 /
+        // sqrt(1 + w^2 h^2).
         const double turn = i * std::atan(omega * h);
         const double fade = std::pow(1 + omega * omega * h * h, -0.5 * i);
         truth(k) = fade * (a(k) * std::cos(turn) + c(k) / omega * std::sin(turn));
@@ -168,7 +168,7 @@ TEST(PhysicsOfDents, ReleasedDentsSwingAsTheirModesDo) {
   }
 }
 
-TEST(PhysicsOfDents, ImplicitEulerDampsAsItsClosedFormSays) {
+TEST(PhysicsOfDents, ImplicitEulerDampsByItsClosedForm) {
   const Plate plate;
   for (const double rate : {1e3, 2e4}) {
     for (const double omega_h : {0.3, 0.1, 0.01, 0.001}) {
@@ -187,7 +187,7 @@ TEST(PhysicsOfDents, ImplicitEulerDampsAsItsClosedFormSays) {
   }
 }
 
-// However heavy the vertices are: at rest the same springs have the same dent.
+// At rest the same springs have the same dent, regardless of the vertices' mass.
 TEST(PhysicsOfDents, StaticDepthDoesNotDependOnTheMass) {
   const Plate plate;
   DentSettings fast;
@@ -214,7 +214,8 @@ TEST(PhysicsOfDents, StaticDepthDoesNotDependOnTheMass) {
   }
 }
 
-// A heavily damped dent fades by its slowest rate: springs to the base points have no modes.
+// A heavily damped dent decays at its slowest rate: with springs only to the base points there are
+// no modes.
 TEST(PhysicsOfDents, OverdampedDentCreepsBackAtItsRate) {
   const Plate plate;
   for (const double rate : {1e3, 2e4}) {

@@ -1,4 +1,4 @@
-// What the hand feels of a dent's springs, through whole objects.
+// Force of a dent's springs on the hand, through whole objects.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -25,11 +25,11 @@ using Eigen::Vector3d;
 using support::any_weights;
 
 constexpr double kTick = 1e-3;
-constexpr double kSurface = 1e-6;  // N/m: what is felt is the pull alone
+constexpr double kSurface = 1e-6;  // N/m: so soft that the force is that of the dent's pull
 
 DentSettings quiet() {
   DentSettings settings;
-  settings.damping = 2;  // settles within the presses of a test
+  settings.damping = 2;  // settles within a press of the test
   settings.pull = 1;
   return settings;
 }
@@ -44,7 +44,7 @@ const BodyPull& pull_of(const ObjectTouch& object) {
   return dynamic_cast<const DentedTouch&>(object).pull();
 }
 
-/// Leads the tip to a place (W, m) over `ticks` ticks.
+/// Moves the tip to a place (W, m) over `ticks` ticks.
 class Tip {
  public:
   Tip(ObjectTouch& object, const Vector3d& p) : object_(object) { go(p, 1); }
@@ -96,11 +96,12 @@ std::vector<Shape> shapes() {
           {"plate", support::plate(0.08, 0.03, 8)}};
 }
 
-/// Finds how stiff the dent feels at random places, least and most over the mean.
+/// Returns the stiffness of the dent at random places, minimum and maximum relative to the mean.
 std::array<double, 2> spread_of_pull(const TriangleMesh& mesh, double between, double beside_it) {
   DentSettings settings = quiet();
   settings.neighbour_stiffness = between * settings.stiffness;
-  // No fresh cases: the bounds are those of these places; others find 0.918 and 0.833 on the plate.
+  // Fixed seed: the bounds are those of these places; other seeds give 0.918 and 0.833 on the
+  // plate.
   support::Random random(std::uint64_t{5});
   std::array<double, 2> range{1e9, 0};
   double sum = 0;
@@ -113,7 +114,7 @@ std::array<double, 2> spread_of_pull(const TriangleMesh& mesh, double between, d
     Tip tip(*object, place + 1e-4 * corner.n);
     tip.go(place - kDepth * corner.n, 20);
     const auto command = tip.stay(120);
-    // Near an edge the tip may belong to the other side, and lie less deep there.
+    // Near an edge the tip may belong to the other side, and be less deep there.
     const double depth = object->mesh()->depth(command.touch.feature, place - kDepth * corner.n);
     const double stiffness = command.f_T_W.dot(command.touch.n_W) / depth + beside_it;
     range = {std::min(range[0], stiffness), std::max(range[1], stiffness)};
@@ -123,7 +124,7 @@ std::array<double, 2> spread_of_pull(const TriangleMesh& mesh, double between, d
   return {range[0] / sum, range[1] / sum};
 }
 
-TEST(DentPull, IsAlikeInTheMiddleOverEdgesAndOverCorners) {
+TEST(DentPull, IsEqualOnFacesEdgesAndCorners) {
   for (const Shape& shape : shapes()) {
     for (const double between : {0.0, 0.25, 1.0}) {
       const auto [least, most] = spread_of_pull(shape.mesh, between, 0);
@@ -132,14 +133,15 @@ TEST(DentPull, IsAlikeInTheMiddleOverEdgesAndOverCorners) {
       EXPECT_GT(least, between == 0 ? 0.98 : between < 1 ? 0.93 : 0.85) << shape.name;
       EXPECT_LT(most, between == 0 ? 1.02 : 1.05) << shape.name;
     }
-    // Under a given force the tip goes in alike, within 5 %: by the pull and a surface as stiff.
+    // A given force moves the tip equally far at all places, within 5 %: pull and surface of the
+    // same stiffness.
     const auto [least, most] = spread_of_pull(shape.mesh, 0.25, 450);
     EXPECT_GT(least, 0.95) << shape.name;
     EXPECT_LT(most, 1.05) << shape.name;
   }
 }
 
-TEST(DentPull, StaysWhileTheTipSlidesFromTheMiddleToACornerAndBack) {
+TEST(DentPull, IsSteadyWhileTheTipSlidesToACornerAndBack) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const Corner corner(ball, 3);
   const Vector3d middle = corner.at(Vector3d::Constant(1.0 / 3));
@@ -168,8 +170,8 @@ TEST(DentPull, StaysWhileTheTipSlidesFromTheMiddleToACornerAndBack) {
   }
 }
 
-/// Gauss's nodes and weights over 0 to 1 [any table of numerical methods]: exact for polynomials of
-/// degree 2 n - 1.
+/// Returns Gauss's nodes and weights over 0 to 1 [any table of numerical methods]: exact for
+/// polynomials of degree 2 n - 1.
 std::vector<std::array<double, 2>> gauss(int n) {
   std::vector<std::array<double, 2>> nodes;
   for (int i = 0; i < n; ++i) {
@@ -189,8 +191,8 @@ std::vector<std::array<double, 2>> gauss(int n) {
   return nodes;
 }
 
-/// Sums up the work along a smooth way inside one cell, from s = 0 to 1, each place held until
-/// nothing moves any more.
+/// Sums up the work along a smooth path inside one cell, from s = 0 to 1. At each place it waits
+/// until the motion has stopped.
 void work_along(Tip& tip, const std::function<Vector3d(double)>& way, double& net, double& gross) {
   for (const auto& [s, weight] : gauss(24)) {
     tip.go(way(s), 20);
@@ -205,7 +207,7 @@ void work_along(Tip& tip, const std::function<Vector3d(double)>& way, double& ne
   }
 }
 
-/// Finds the energy of all springs, the cursor's among them, with the tip held at a place (J).
+/// Returns the energy of all springs, including the cursor's, with the tip held at a place (J).
 double energy_at(Tip& tip, const DentedTouch& object, const Vector3d& p) {
   tip.go(p, 20);
   const auto command = tip.stay(400);
@@ -224,11 +226,11 @@ double energy_at(Tip& tip, const DentedTouch& object, const Vector3d& p) {
 }
 
 struct Loop {
-  double net = 0;    // share of what goes in and out
-  double jumps = 0;  // what the energy's jumps at the two crossings explain of it
+  double net = 0;    // as a fraction of the work in and out
+  double jumps = 0;  // the part of it due to jumps of the energy at the two crossings
 };
 
-/// Leads a tip around a closed way of two halves, one on each side of the middle of an edge; both
+/// Moves a tip around a closed path of two halves, one on each side of the middle of an edge. Both
 /// begin and end on the edge plane of the first triangle and its neighbour.
 Loop work_across_an_edge(const TriangleMesh& mesh, const DentSettings& settings) {
   const auto contact = ContactMesh::build(mesh).value();
@@ -265,7 +267,7 @@ Loop work_across_an_edge(const TriangleMesh& mesh, const DentSettings& settings)
   return {net / gross, (jump(half(1, 0)(0)) - jump(half(1, 0)(1))) / gross};
 }
 
-// Steps until nothing moves, so that what is left is rounding.
+// Steps until the motion has stopped, so that the rest is rounding.
 DentSettings exact(double between) {
   DentSettings settings = quiet();
   settings.neighbour_stiffness = between * settings.stiffness;
@@ -275,7 +277,7 @@ DentSettings exact(double between) {
   return settings;
 }
 
-TEST(DentPull, DoesNoWorkAroundAClosedWayInsideATriangle) {
+TEST(DentPull, DoesNoWorkOnAClosedPathInATriangle) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const Corner corner(ball, 3);
   const Vector3d middle = corner.at({0.5, 0.3, 0.2});
@@ -300,10 +302,10 @@ TEST(DentPull, DoesNoWorkAroundAClosedWayInsideATriangle) {
 }
 
 TEST(DentPull, DoesNoWorkAroundAClosedWayAcrossAnEdge) {
-  // Edge planes meet vertices from all sides alike on even meshes; on others the feet of the two
-  // sides lie apart along the edge by a small part of the depth, and the energy jumps there where
-  // springs between vertices make it differ along the edge. That is all that a loop there keeps:
-  // within each triangle the pull is the energy's gradient as before.
+  // On even meshes, edge planes are symmetric around vertices. On others, the closest points of the
+  // two sides are apart along the edge by a small part of the depth. The energy jumps there if
+  // springs between vertices make it vary along the edge. These jumps are the only source of the
+  // net work of a loop: within each triangle the pull is still the gradient of the energy.
   for (const double between : {0.0, 0.25}) {
     const Loop even = work_across_an_edge(support::icosphere(0, 0.05), exact(between));
     const Loop flat = work_across_an_edge(support::plate(0.08, 0.03, 4), exact(between));

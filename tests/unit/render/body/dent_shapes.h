@@ -14,7 +14,7 @@
 
 namespace thimble::support {
 
-/// Builds a dent over a mesh of its own.
+/// Returns a dent over a mesh of its own.
 inline render::BendablePolygon dent_in(const render::TriangleMesh& mesh,
                                        const render::DentSettings& settings = {}) {
   auto contact =
@@ -22,8 +22,8 @@ inline render::BendablePolygon dent_in(const render::TriangleMesh& mesh,
   return render::BendablePolygon::build(std::move(contact), settings).value();
 }
 
-/// Draws weights of a place on a triangle: anywhere, or near to an edge or a corner in half of the
-/// cases.
+/// Returns random weights of a place on a triangle: anywhere, or in half of the cases near an edge
+/// or a corner.
 inline Eigen::Vector3d any_weights(Random& random) {
   Eigen::Vector3d w{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
   const auto k = static_cast<Eigen::Index>(random.bits() % 3);
@@ -40,7 +40,7 @@ inline void press(render::BendablePolygon& dent, std::int32_t triangle, const Ei
   dent.touch(triangle, w, render::point_at(mesh, triangle, w) - depth * mesh.cell(triangle).face.n);
 }
 
-/// Presses until nothing moves any more.
+/// Presses until the motion has stopped.
 inline void settle(render::BendablePolygon& dent, std::int32_t triangle, const Eigen::Vector3d& w,
                    double depth) {
   for (int i = 0; i < 120; ++i) press(dent, triangle, w, depth);

@@ -1,5 +1,5 @@
-// Bodies on a floor against closed forms: sliding, stopping, pushing, spinning, tilting, rocking,
-// impacts.
+// Bodies on a floor compared with closed forms: sliding, stopping, pushing, spinning, tilting,
+// rocking, impacts.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -38,7 +38,7 @@ struct Stand {
   Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();
 };
 
-// A block with the given half sides (m), standing on z = 0 if it is not moved.
+// Returns a block with the given half sides (m), standing on z = 0 unless it is moved.
 RigidBody block(const Vector3d& half, const Stand& stand) {
   TriangleMesh mesh = support::box(half);
   for (Vector3d& p : mesh.vertices) {
@@ -71,7 +71,7 @@ RigidBody disc(int points, double friction, double mass = 0.2) {
   return RigidBody::build(settings).value();
 }
 
-// A body that cannot tip over: all its inertia is far out, and it stands on 1 or 2 points.
+// Returns a body that cannot tip over: its inertia is very large, and it stands on 1 or 2 points.
 RigidBody point_stand(int points, double friction) {
   RigidBodySettings settings;
   settings.mass.mass = 0.2;
@@ -120,7 +120,7 @@ TEST(PhysicsOfFloors, SlidingStopsAtTheDistanceOfTheLaw) {
   EXPECT_EQ(body.kinetic_energy(), 0);
 }
 
-TEST(PhysicsOfFloors, APushBeyondFrictionAcceleratesByTheRest) {
+TEST(PhysicsOfFloors, PushAboveFrictionAcceleratesByTheRest) {
   for (const double push : {3.5, 5.0, 20.0}) {
     RigidBody body = block({0.05, 0.05, 0.02}, {.friction = 0.3, .mass = 1});
     for (int i = 0; i < 500; ++i) {
@@ -170,7 +170,7 @@ TEST(PhysicsOfFloors, ASpinningDiscSlowsDownByTheTorqueOfItsRim) {
   }
 }
 
-// A block pushed at its upper edge tips over where F 2 h > m g w.
+// A block pushed at its upper edge tips over if F 2 h > m g w.
 TEST(PhysicsOfFloors, ABlockTipsAtTheForceOfTheLaw) {
   const double w = 0.01, h = 0.02;
   const auto turns = [&](double force) {
@@ -192,7 +192,7 @@ TEST(PhysicsOfFloors, ABlockTipsAtTheForceOfTheLaw) {
                  (low + high) / 2);
 }
 
-// On an inclined plane a body slides beyond the angle of friction, and a block tips beyond w / h.
+// On an inclined plane, a body slides beyond the friction angle, and a block tips beyond w / h.
 TEST(PhysicsOfFloors, ABlockSlidesOnAPlaneSteeperThanItsFriction) {
   const auto speed = [](double slope) {
     RigidBody body = block({0.02, 0.02, 0.005}, {.friction = 0.3, .gravity = 0});
@@ -234,7 +234,7 @@ TEST(PhysicsOfFloors, AFlatDropNeitherReboundsNorTumbles) {
                  tumble);
 }
 
-// A block falls on one of its edges: it turns about this edge and about no other axis.
+// A block that falls on one of its edges turns about this edge and about no other axis.
 TEST(PhysicsOfFloors, AnEdgeHitDoesNotRoll) {
   double roll = 0;
   for (const double angle : {0.2, 0.6, 1.0}) {
@@ -263,9 +263,9 @@ TEST(PhysicsOfFloors, AnEdgeHitDoesNotRoll) {
       {kBody, "the same: rolling about the other axes, 3 angles", "0", "rad/s", 0, 1e-9, 1}, roll);
 }
 
-// [Housner]: a block that rocks over to its other edge keeps 1 - 1.5 sin^2(a) of its angular
-// velocity, with tan(a) = w / h.
-TEST(PhysicsOfFloors, ARockingBlockLosesWhatHousnerSays) {
+// [Housner]: a block that rocks onto its other edge keeps 1 - 1.5 sin^2(a) of its angular velocity,
+// with tan(a) = w / h.
+TEST(PhysicsOfFloors, RockingBlockLosesSpeedByHousner) {
   for (const double w : {0.01, 0.02, 0.03}) {
     const double h = 0.05, tick = 1e-4;
     const double alpha = std::atan(w / h), start = alpha / 2;
@@ -276,7 +276,7 @@ TEST(PhysicsOfFloors, ARockingBlockLosesWhatHousnerSays) {
         block({w, 0.02, h},
               {.friction = 3, .mass = 0.2, .at = centre - Vector3d(0, 0, h), .turned = lean});
     const Eigen::Quaterniond first = body.q_WB();
-    // The tilt at which it turns back on the other edge gives the energy that was left.
+    // The tilt at which it turns back on the other edge gives the remaining energy.
     double farthest = 0;
     for (int i = 0; i < 20000; ++i) {
       body.step(tick);
@@ -352,7 +352,7 @@ TEST(PhysicsOfFloors, ABodyThatOnlyTranslatesObeysTheSameLaws) {
       (0.3 * kGravity * 0.2 - pushed.body().v_W().x()) / 0.1);
 }
 
-// The conditions that the impulses must satisfy, at random states on up to 16 points.
+// The conditions that the impulses must satisfy, in random states on up to 16 points.
 TEST(FloorImpulses, SatisfyTheConditionsOfContactAndFriction) {
   support::Random random(12);
   int unsolved = 0;
@@ -387,7 +387,8 @@ TEST(FloorImpulses, SatisfyTheConditionsOfContactAndFriction) {
             100);  // of 3000 states harsher than any tick of a body: 1 to 16 points, mu to 3
 }
 
-// Where all points slide one way each has a part of the load, and their order does not matter.
+// If all points slide in the same direction, each carries a part of the load, and their order does
+// not matter.
 TEST(FloorImpulses, DoNotDependOnTheOrderOfThePoints) {
   support::Random random(13);
   for (int i = 0; i < 300; ++i) {

@@ -55,7 +55,7 @@ TriangleMesh block() {
   return support::box({0.03, 0.02, 0.01});
 }
 
-// Writes down what it is pushed by; stands still.
+// Motion that records its pushes and does not move.
 struct Spy {
   std::vector<std::pair<Vector3d, Vector3d>>* pushes;
   double gain = 0;
@@ -124,8 +124,8 @@ TEST(MovingTouch, FixedBodyFeelsLikeTheObject) {
   }
 }
 
-// A stylus meets bodies of 1 g to 100 kg through contact and friction stages, at any
-// stiffness a scene can name, in the middle and off it.
+// A stylus meets bodies of 1 g to 100 kg through contact and friction stages, at any stiffness that
+// a scene may set, at the centre and away from it.
 TEST(HardCaseRigidBody, TouchKeepsTheMomenta) {
   double worst = 0, gain = -1;
   for (const double mass : {1e-3, 1e-2, 0.1, 1.0, 100.0}) {
@@ -133,7 +133,7 @@ TEST(HardCaseRigidBody, TouchKeepsTheMomenta) {
       for (const double off : {0.0, 0.015}) {
         for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
           const MotionChoice motion{.kind = kind, .mass = mass};
-          // A sampled wall that stands still is passive for b > K T / 2 [PHYSICS 1.2].
+          // A sampled wall at rest is passive for b > K T / 2 [PHYSICS 1.2].
           const double damping = std::max(1.0, 0.6 * kTick * stiffness);
           auto object = moving(block(), motion, stiffness, damping, true);
           support::Stylus stylus;
@@ -176,8 +176,8 @@ TEST(HardCaseRigidBody, TouchKeepsTheMomenta) {
   support::record_hard_case(36, "the same", "<= energy beyond the first", gain, 1e-9, "1");
 }
 
-// The same without any damping, held by a hand against a floor or not: springs alone do not
-// oscillate up, even at stiffnesses that no arm could show.
+// The same without any damping, held against a floor by a hand or not: springs by themselves do not
+// start to oscillate, even at stiffnesses beyond any arm.
 TEST(MovingTouch, RestingHandCausesNoOscillation) {
   for (const double mass : {1e-3, 1e-2, 1.0, 100.0}) {
     for (const double stiffness : {200.0, 2000.0, 5000.0}) {
@@ -202,7 +202,7 @@ TEST(MovingTouch, RestingHandCausesNoOscillation) {
 }
 
 TEST(MovingTouch, FastBodyCannotPassARestingTip) {
-  // A plate of 1 mm runs or turns over a tip that stands still: 2 to 9 mm per tick.
+  // A plate of 1 mm moves or turns past a tip at rest: 2 to 9 mm per tick.
   const TriangleMesh plate = support::plate(0.06, 0.001, 6);
   support::Random random(28);
   for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
@@ -226,7 +226,7 @@ TEST(MovingTouch, FastBodyCannotPassARestingTip) {
   }
 }
 
-// [BP 4.3]: with time scale s a body feels as one of mass / s^2.
+// [BP 4.3]: with time scale s a body feels like one of mass / s^2.
 TEST(MovingTouch, FeelsHeavierByTheSquareOfTheTimeScale) {
   for (const double s : {0.25, 0.5, 2.0}) {
     for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
@@ -246,8 +246,8 @@ TEST(MovingTouch, FeelsHeavierByTheSquareOfTheTimeScale) {
 }
 
 TEST(MovingTouch, LeavingTheWorkspaceIsHarmless) {
-  // Hard case 37's cousin: a light block is pushed on and on; it stays at its reach, where the hand
-  // feels a wall, and far away it is felt no more.
+  // Similar to hard case 37: a light block is pushed continuously. It stops at its reach, where the
+  // hand feels a wall, and far away it has no force.
   for (const double mass : {1e-3, 0.1, 10.0}) {
     for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
       auto object = moving(block(), {.kind = kind, .mass = mass, .reach = 0.05}, 800, 1);
@@ -260,20 +260,20 @@ TEST(MovingTouch, LeavingTheWorkspaceIsHarmless) {
         stylus.p_WH = {-0.04 + std::min(i * 2.5e-4, 1.0), 0, 0};
         const auto felt = stylus.follow(*object);
         ASSERT_TRUE(felt.f_T_W.allFinite());
-        // Of the hand's pull, 300 N/m * 1 m at most, nothing comes back larger.
+        // No force exceeds the hand's pull, at most 300 N/m * 1 m.
         ASSERT_LT(felt.f_T_W.norm(), 400);
         jump = std::max(jump, (felt.f_T_W - before).norm());
         before = felt.f_T_W;
         const auto p = object->pose().p_WB;
         ASSERT_LT(Vector3d(p[0], p[1], p[2]).norm(), 0.2);
       }
-      // No kick: the largest change in a tick is what a wall makes of the tip's speed, or less.
+      // No kick: the largest change in a tick is at most that of a wall at the tip's speed.
       EXPECT_LT(jump, 60) << mass;
     }
   }
 }
 
-TEST(HeldTouch, IsAsHeavyAsItIsAndSlipsOutWhereTheBodyCannotFollow) {
+TEST(HeldTouch, FeelsItsWeightAndSlipsOutOfReach) {
   for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
     for (const double mass : {1e-3, 0.1, 0.15}) {
       MotionChoice motion{.kind = kind, .mass = mass, .damping = 0.1, .reach = 0.08};
@@ -285,7 +285,7 @@ TEST(HeldTouch, IsAsHeavyAsItIsAndSlipsOutWhereTheBodyCannotFollow) {
       stylus.p_WT = stylus.p_WH = {0, 0, 0.01};
       for (int i = 0; i < 4000; ++i) stylus.follow(*object);
       EXPECT_NEAR(stylus.follow(*object).f_T_W.z(), -9.81 * mass, 0.02 * 9.81 * mass) << mass;
-      // Carried to the workspace's edge and on, to 1 m beyond it.
+      // Carried to the workspace's edge and beyond, up to 1 m.
       bool slipped = false;
       for (int i = 0; i < 6000; ++i) {
         stylus.p_WH.x() = std::min(i * 2.5e-4, 1.0);
@@ -301,7 +301,7 @@ TEST(HeldTouch, IsAsHeavyAsItIsAndSlipsOutWhereTheBodyCannotFollow) {
   }
 }
 
-TEST(MovingTouch, RefusesOrSurvivesNonsense) {
+TEST(MovingTouch, RefusesOrSurvivesInvalidInput) {
   const MotionChoice good{.kind = MotionKind::kRigid, .mass = 0.1};
   const auto refused = [&](const MotionChoice& choice, const TriangleMesh& mesh) {
     auto touch = build_object_touch(block(), {}, surface_of(500, 1)).value();
@@ -360,7 +360,7 @@ TEST(MovingTouch, RefusesOrSurvivesNonsense) {
   }
 }
 
-TEST(MovingTouch, TellsWhereItIsAndPutsItsMeshThere) {
+TEST(MovingTouch, ReportsItsPoseAndMovesItsMesh) {
   MotionChoice motion{.kind = MotionKind::kRigid, .mass = 0.1};
   motion.v_W = {0.1, 0, 0};
   motion.omega_W = {0, 0, 1};
@@ -381,7 +381,7 @@ TEST(MovingTouch, TellsWhereItIsAndPutsItsMeshThere) {
   EXPECT_FALSE(object->inside({-0.029, 0, 0}));
 }
 
-TEST(MovingTouch, StandsOnItsFloorAndAsksTheHeapForNothing) {
+TEST(MovingTouch, RestsOnItsFloorWithoutAllocation) {
   for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
     MotionChoice motion{.kind = kind, .mass = 0.1};
     motion.gravity_W = {0, 0, -9.81};

@@ -19,7 +19,7 @@ struct Motion {
   long double x, v;
 };
 
-// Is the textbook's closed form, with complex roots; the double root by its own formula.
+// Returns the textbook's closed form, with complex roots; the double root by its own formula.
 Motion closed_form(double mass, double stiffness, double damping, long double t, long double x0,
                    long double v0, long double f) {
   const long double m = mass, k = stiffness, b = damping;
@@ -27,8 +27,8 @@ Motion closed_form(double mass, double stiffness, double damping, long double t,
   const long double a = b / (2 * m);
   const long double d = a * a - k / m;
   const long double y0 = x0 - rest;
-  // At zeta = 1 the rounding of b leaves d about 1e-16 a^2, where the two roots would cancel: the
-  // double root is then exact to d t^2 / 6 of what is left, below 1e-16.
+  // At zeta = 1 the rounding of b leaves d of about 1e-16 a^2, where the two roots would cancel.
+  // The double root is then exact to d t^2 / 6, below 1e-16.
   if (std::abs(d) < 1e-14L * a * a) {
     const long double e = std::exp(-a * t);
     const long double c = v0 + a * y0;
@@ -44,7 +44,7 @@ Motion closed_form(double mass, double stiffness, double damping, long double t,
   return {rest + (e1 + e2).real(), (r1 * e1 + r2 * e2).real()};
 }
 
-// Runs over k 10 to 1e5 N/m, m 1 mg to 10 g, h 0.125 to 30 ms and dampings around critical.
+// Calls `visit` for k 10 to 1e5 N/m, m 1 mg to 10 g, h 0.125 to 30 ms and dampings around critical.
 template <class Visit>
 void for_all(Visit&& visit) {
   for (const double k : {10.0, 47.0, 300.0, 1e3, 8e3, 1e5}) {
@@ -70,7 +70,7 @@ TEST(HardCaseOscillator, StepMatchesTheClosedForm) {
     double x = x0;
     double v = v0;
     OscillatorStep::of(m, k, b, h).apply(x, v, f);
-    // Against the size of the motion that x, v and f together stand for.
+    // Relative to the size of the motion due to x, v and f together.
     const double size = std::abs(x0) + std::abs(v0) / omega + std::abs(f) / k;
     worst = std::max({worst, std::abs(static_cast<double>(x - truth.x)) / size,
                       std::abs(static_cast<double>(v - truth.v)) / (size * omega)});
@@ -103,7 +103,7 @@ TEST(OscillatorStep, HoldsWithoutSpringOrDamper) {
   OscillatorStep::of(0.5, 0, 0, 0.1).apply(x, v, 3.0);
   EXPECT_DOUBLE_EQ(x, 1 + 2 * 0.1 + 0.5 * 6 * 0.01);
   EXPECT_DOUBLE_EQ(v, 2 + 6 * 0.1);
-  // A damper alone: v falls to f / b, and the way is what the textbook says.
+  // Only a damper: v approaches f / b, and the distance is that of the textbook.
   for (const double b : {1e-9, 0.3, 40.0, 1e6}) {
     const double m = 0.5, h = 0.1;
     const long double tau = m / static_cast<long double>(b);
@@ -120,7 +120,7 @@ TEST(OscillatorStep, HoldsWithoutSpringOrDamper) {
 }
 
 TEST(OscillatorStep, IsTheSameOnBothSidesOfEachOfItsBranches) {
-  // A nudge of 1e-9 in damping or step must not show as more than that.
+  // A change of damping or step by 1e-9 must not have a larger effect.
   support::Random random(3);
   for (int i = 0; i < 2000; ++i) {
     const double zeta = random.uniform(0.5, 2.5);
@@ -136,7 +136,7 @@ TEST(OscillatorStep, IsTheSameOnBothSidesOfEachOfItsBranches) {
   }
 }
 
-TEST(OscillatorStep, StaysWhereItIsWhenToldNonsense) {
+TEST(OscillatorStep, IgnoresInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -1.0}) {

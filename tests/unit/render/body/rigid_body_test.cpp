@@ -25,7 +25,7 @@ using support::record_hard_case;
 
 constexpr double kTick = 1e-3;
 
-// A block of 60 x 40 x 20 mm, closed; moved and turned if asked for.
+// Returns a closed block of 60 x 40 x 20 mm, moved and turned on request.
 TriangleMesh block(const Vector3d& at = {0, 0, 0},
                    const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
   TriangleMesh mesh;
@@ -45,7 +45,7 @@ RigidBody body_of(const TriangleMesh& mesh, double mass) {
   return RigidBody::build(settings).value();
 }
 
-TEST(MassProperties, AreThoseOfABlockWhereverAndHoweverItStands) {
+TEST(MassProperties, AreThoseOfABlockInAnyPose) {
   support::Random random(1);
   for (int i = 0; i < 50; ++i) {
     const Vector3d at = random.in_box(i < 25 ? 0.1 : 1e4);
@@ -59,13 +59,13 @@ TEST(MassProperties, AreThoseOfABlockWhereverAndHoweverItStands) {
         0.3 / 12 *
         Vector3d(0.04 * 0.04 + 0.02 * 0.02, 0.06 * 0.06 + 0.02 * 0.02, 0.06 * 0.06 + 0.04 * 0.04);
     EXPECT_LT((found->inertia - truth).norm(), digits * 100 * truth.norm());
-    // The axis of least inertia is the longest side.
+    // The axis of the smallest inertia is the longest side.
     const Vector3d long_axis = found->q_WB * Vector3d::UnitX();
     EXPECT_NEAR(std::abs(long_axis.dot(turned * Vector3d::UnitX())), 1, digits * 1e3);
   }
 }
 
-TEST(MassProperties, TendToThoseOfASphereAndRefuseWhatHasNoVolume) {
+TEST(MassProperties, ApproachASphereAndRefuseZeroVolume) {
   const auto ball = mass_properties(support::icosphere(4, 0.05), 2);
   ASSERT_TRUE(ball);
   EXPECT_NEAR(ball->inertia[0], 0.4 * 2 * 0.05 * 0.05, 0.01 * 2e-3);
@@ -86,7 +86,7 @@ struct Elliptic {
   double sn, cn, dn;
 };
 
-// Finds Jacobi's functions by the arithmetic-geometric mean, for modulus k.
+// Returns Jacobi's functions for modulus k, by the arithmetic-geometric mean.
 Elliptic jacobi(double u, double k) {
   double a[32], c[32];
   a[0] = 1;
@@ -106,7 +106,7 @@ Elliptic jacobi(double u, double k) {
   return {sn, std::cos(phi), std::sqrt(1 - k * k * sn * sn)};
 }
 
-// Is the free top's closed form in B, for I1 < I2 < I3 and L^2 > 2 E I2; w2 = 0 at t = 0.
+// Closed form of the free top in B, for I1 < I2 < I3 and L^2 > 2 E I2; w2 = 0 at t = 0.
 struct FreeTop {
   double w1, w2, w3, rate, k;
 
@@ -122,21 +122,21 @@ struct FreeTop {
   double period() const { return 4 * std::comp_ellint_1(k) / rate; }
 };
 
-// Spin about the middle axis, against the closed form.
+// Spin about the middle axis, compared with the closed form.
 TEST(HardCaseRigidBody, TumblesWithTheClosedFormPeriod) {
   double worst_period = 0, worst_energy = 0, worst_momentum = 0;
   for (const double tilt : {0.003, 0.03, 0.3}) {
     for (const double spin : {2.0, 20.0, 60.0}) {
       RigidBody body = body_of(block(), 0.3);
       const Vector3d inertia = body.settings().mass.inertia;
-      // About the middle axis, a little towards the third; w1 = 0 stands for sn at its end.
+      // About the middle axis, slightly towards the third; w1 = 0 corresponds to sn at its end.
       const Vector3d omega(0, spin * std::cos(tilt), spin * std::sin(tilt));
       const Vector3d angular_B = inertia.cwiseProduct(omega);
       body.set_momentum({0, 0, 0}, body.q_WB() * angular_B);
       const double energy = body.kinetic_energy();
       const FreeTop top(inertia, energy, angular_B.norm());
       ASSERT_LT(top.k, 1);
-      // The period is told by the zeros of w2, a quarter and three quarters in.
+      // The zeros of w2, a quarter and three quarters of the period in, determine the period.
       std::vector<double> zeros;
       double before = spin;
       double worst = 0;
@@ -170,7 +170,7 @@ TEST(HardCaseRigidBody, FollowsTheClosedForm) {
   double worst = 0;
   RigidBody body = body_of(block(), 0.3);
   const Vector3d inertia = body.settings().mass.inertia;
-  const Vector3d start(5, 0, 12);  // w2 = 0: where sn begins
+  const Vector3d start(5, 0, 12);  // w2 = 0: start of sn
   body.set_momentum({0, 0, 0}, body.q_WB() * inertia.cwiseProduct(start));
   const FreeTop top(inertia, body.kinetic_energy(), body.angular_momentum_W().norm());
   EXPECT_NEAR(top.w1, 5, 1e-9);
@@ -204,7 +204,7 @@ TEST(RigidBody, TurnsWithOrderFour) {
   EXPECT_NEAR(std::log2(error(4e-3) / error(2e-3)), 4, 0.2);
 }
 
-// However fast it spins and however long the step.
+// At any spin and any step.
 TEST(HardCaseRigidBody, NeverSpinsItselfUp) {
   support::Random random(36);
   for (int i = 0; i < 100; ++i) {
@@ -222,7 +222,7 @@ TEST(HardCaseRigidBody, NeverSpinsItselfUp) {
   }
 }
 
-TEST(RigidBody, FallsComesToRestOnItsFloorAndStays) {
+TEST(RigidBody, FallsAndRestsOnItsFloor) {
   for (const double friction : {0.0, 0.4}) {
     RigidBodySettings settings;
     const TriangleMesh mesh = block(
@@ -242,7 +242,7 @@ TEST(RigidBody, FallsComesToRestOnItsFloorAndStays) {
       most = std::max(most, body.kinetic_energy() + body.potential_energy());
     }
     EXPECT_LE(most, energy * 1.001);
-    // Flat on one of its sides; the largest is the likeliest, but an edge is not.
+    // Flat on one of its sides. The largest side is the most likely, and an edge is impossible.
     const double height = body.p_WC().z();
     EXPECT_LT(std::min({std::abs(height - 0.01), std::abs(height - 0.02), std::abs(height - 0.03)}),
               1e-4);
@@ -281,8 +281,8 @@ TEST(RigidBody, FallsAndFadesByTheLaws) {
   EXPECT_EQ(stuck.kinetic_energy(), 0);
 }
 
-// The torque is -c omega about every axis, against Euler's equations by small steps of RK4.
-TEST(RigidBody, TumblesToRestAsTheTorqueOfItsDampingSays) {
+// The torque is -c omega about every axis; compared with Euler's equations in small RK4 steps.
+TEST(RigidBody, TumblesToRestByItsDampingTorque) {
   RigidBodySettings settings;
   settings.mass = mass_properties(block(), 0.3).value();
   settings.angular_damping = 5e-5;
@@ -310,7 +310,7 @@ TEST(RigidBody, TumblesToRestAsTheTorqueOfItsDampingSays) {
   }
 }
 
-// Two equal inertias leave one part of the split, and the step no error.
+// Two equal inertias leave one part of the splitting, and the step has no error.
 TEST(FreeTurn, IsExactForABodyWithAnAxisOfSymmetry) {
   for (const Vector3d& inertia : {Vector3d(1e-4, 2e-4, 2e-4), Vector3d(2e-4, 2e-4, 3e-4)}) {
     const int odd = inertia[0] < inertia[1] ? 0 : 2;
@@ -364,7 +364,7 @@ TEST(TranslatingBody, BalancesItsMomentumAndNeverDiverges) {
     }
     EXPECT_LT((body.momentum_W() - given).norm(), 1e-9 * size);
   }
-  // Thick liquid: the speed is bounded by force over damping at any step.
+  // Viscous liquid: the speed is bounded by force over damping at any step.
   for (const double step : {1e-4, 1e-2, 10.0}) {
     TranslatingBody body(1e-6, 50, 1, step);
     for (int i = 0; i < 100; ++i) {
@@ -384,7 +384,7 @@ TEST(TranslatingBody, BalancesItsMomentumAndNeverDiverges) {
   EXPECT_EQ(body.p_W().norm(), 0);
 }
 
-TEST(RigidBody, RefusesOrSurvivesNonsense) {
+TEST(RigidBody, RefusesOrSurvivesInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   RigidBodySettings good;
   good.mass = mass_properties(block(), 0.3).value();
@@ -423,7 +423,7 @@ TEST(RigidBody, RefusesOrSurvivesNonsense) {
   EXPECT_EQ(body.kinetic_energy(), 0);
 }
 
-TEST(RigidBody, AsksTheHeapForNothing) {
+TEST(RigidBody, DoesNotAllocate) {
   RigidBodySettings settings;
   settings.mass = mass_properties(block(), 0.3).value();
   settings.floor = Floor{};

@@ -12,7 +12,7 @@
 namespace thimble::render {
 namespace {
 
-// The truss of [PHYSICS 4], which gives its limit load, stiffnesses and energies.
+// Truss of [PHYSICS 4], which states its limit load, stiffnesses and energies.
 constexpr SnapSettings kStated{
     .half_span = 20e-3, .rise = 6e-3, .bar_stiffness = 5000, .speed_max = 1e9};
 
@@ -30,7 +30,7 @@ TEST(SnapTruss, HasTheStatedLimitLoadStiffnessesAndBarrier) {
   EXPECT_NEAR(truss.energy(6e-3), 3.877e-3, 1e-6);
   EXPECT_EQ(truss.force(0), 0);
   EXPECT_NEAR(truss.force(12e-3), 0, 1e-12);
-  // Force and stiffness are the slopes of energy and force.
+  // Force and stiffness are the derivatives of energy and force.
   support::Random random(32);
   for (int i = 0; i < 200; ++i) {
     const double u = random.uniform(-5e-3, 18e-3);
@@ -83,7 +83,7 @@ TEST(HardCaseSnapThrough, SnapsOnceEachWay) {
                    0.005, "1");
   record_hard_case(32, kLoad, "<= error of the energy released",
                    std::abs(base.released() / 11.63e-3 - 1), 0.02, "1");
-  // Unloaded it rests in its new shape.
+  // Without load it rests in its new shape.
   for (; load > 0; load -= 1e-4) base.pull_by_load(load, 1e-3);
   base.pull_by_load(0, 1e-3);
   EXPECT_EQ(base.snaps(), 1);
@@ -95,10 +95,10 @@ TEST(HardCaseSnapThrough, SnapsOnceEachWay) {
   EXPECT_NEAR(base.released(), 2 * 11.63e-3, 0.02 * 2 * 11.63e-3);
 }
 
-// With the vertex driven in and out: the loop through its own spring.
+// The vertex is driven in and out: the loop through its own spring.
 TEST(HardCaseSnapThrough, LoopRepeatsAndWorkIsAccounted) {
   double worst = 0;
-  constexpr double kSpring = 200;  // softer than the truss is steep, so that it jumps
+  constexpr double kSpring = 200;  // softer than the truss's steepest slope, so that it jumps
   constexpr double kIn = 25e-3;
   SnapBase base = stated_base();
   constexpr int kTicks = 20000;
@@ -112,8 +112,7 @@ TEST(HardCaseSnapThrough, LoopRepeatsAndWorkIsAccounted) {
     std::vector<double> forces;
     double before = 0;
     for (int i = 1; i <= 2 * kTicks; ++i) {
-      const double share =
-          1 - std::abs(1 - static_cast<double>(i) / kTicks);  // 0 up to 1, and back
+      const double share = 1 - std::abs(1 - static_cast<double>(i) / kTicks);  // 0 to 1, and back
       const double way = -13e-3 + (kIn + 13e-3) * share;
       if (i == 1) before = way;
       base.pull_by_spring(way, kSpring, 1e-3);
@@ -123,7 +122,7 @@ TEST(HardCaseSnapThrough, LoopRepeatsAndWorkIsAccounted) {
       before = way;
       forces.push_back(now);
     }
-    if (loop == 0) continue;  // the first begins elsewhere
+    if (loop == 0) continue;  // the first begins at another place
     EXPECT_EQ(base.snaps(), snaps + 2);
     EXPECT_NEAR(work, base.released() - released, 1e-3 * work);
     if (loop == 1) {
@@ -140,7 +139,7 @@ TEST(HardCaseSnapThrough, LoopRepeatsAndWorkIsAccounted) {
                             "<= difference of their work", worst, 1e-6, "1");
 }
 
-// Displacement control: driven stiffly it never jumps, and the force is the law's.
+// Displacement control: driven stiffly it never jumps, and the force follows the law.
 TEST(HardCaseSnapThrough, StiffDriveFollowsTheLaw) {
   constexpr double kSpring = 1e6;
   SnapBase base = stated_base();
@@ -167,7 +166,7 @@ TEST(HardCaseSnapThrough, StiffDriveFollowsTheLaw) {
                             std::abs(at / 2.58577e-3 - 1), 0.005, "1");
 }
 
-TEST(SnapBase, RunsNoFasterThanItMayAndReleasesTheSame) {
+TEST(SnapBase, SpeedLimitKeepsTheReleasedEnergy) {
   SnapSettings slow = kStated;
   slow.speed_max = 0.5;
   SnapBase base(slow, {0, 0, -1});
@@ -186,7 +185,7 @@ TEST(SnapBase, RunsNoFasterThanItMayAndReleasesTheSame) {
   EXPECT_EQ(base.displacement(), base.way() * Eigen::Vector3d(0, 0, -1));
 }
 
-TEST(SnapBase, StaysStillOnNonsense) {
+TEST(SnapBase, IgnoresInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   SnapBase base = stated_base();

@@ -1,4 +1,4 @@
-// A mesh whose edges are split, with all that is built over it, is the same as one built anew.
+// A mesh whose edges are split, with all structures over it, equals a newly built one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void split_somewhere(MovingMesh& mesh, support::Random& random) {
   mesh.split_edge(t, edge, random.bits() % 2 == 0);
 }
 
-TEST(SplitEdge, LeavesTheMeshAndAllOverItAsIfBuiltAnew) {
+TEST(SplitEdge, EqualsANewlyBuiltMesh) {
   support::Random random(3);
   for (const TriangleMesh& start :
        {support::icosphere(0, 0.05), support::torus(0.035, 0.015, 12, 8),
@@ -89,17 +89,17 @@ TEST(SplitEdge, LeavesTheMeshAndAllOverItAsIfBuiltAnew) {
   }
 }
 
-TEST(SplitEdge, SplitsNothingWhereItMayNotOrTwoTrianglesShareMore) {
+TEST(SplitEdge, RejectsForbiddenAndDoublySharedEdges) {
   const TriangleMesh box = support::box({0.03, 0.02, 0.01});
   ContactMesh stiff = ContactMesh::build(box).value();
   EXPECT_LT(stiff.split_edge(0, 0, true).vertex, 0);
   EXPECT_EQ(stiff.triangle_count(), 12);
   ContactMesh full = ContactMesh::build(box, {.triangles_max = 13}).value();
   EXPECT_LT(full.split_edge(0, 0, true).vertex, 0);
-  // No vertex comes to have more triangles than normals have room for.
+  // No vertex gets more triangles than its normals have room for.
   ContactMesh grown = ContactMesh::build(box, {.triangles_max = 2000}).value();
   for (int i = 0; i < 200; ++i) {
-    // The edge opposite of vertex 0, wherever it is.
+    // The edge opposite vertex 0.
     const std::int32_t t = grown.fan(0)[0];
     const auto& corners = grown.corners(t);
     const std::size_t k = corners[0] == 0 ? 1 : corners[1] == 0 ? 2 : 0;

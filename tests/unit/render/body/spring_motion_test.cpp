@@ -32,7 +32,7 @@ SpringMotionOptions with(SpringScheme scheme, double step, Beyond beyond = Beyon
   return options;
 }
 
-// Is a sheet with a frame that does not move: a membrane. Dampers are a share of the springs.
+// Returns a sheet with a fixed frame: a membrane. Dampers are proportional to the springs.
 SpringNetwork<1> sheet(std::int32_t n, double relaxation) {
   const double k = 1000;
   const MeshSpringSettings settings{1e-3, k, relaxation * k, k, relaxation * k};
@@ -67,7 +67,7 @@ TEST(HardCaseStepLimit, ExplicitMotionIsBoundedBelowIt) {
   const SpringNetwork<1> damped = sheet(8, 2e-4);
   for (const SpringScheme scheme : {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet}) {
     const double limit = largest_step(scheme, free.bounds());
-    // Near the limit these conserve an energy that the true one may stand above by 1 / (1 - 0.98).
+    // Near the limit these conserve an energy that the true one may exceed by 1 / (1 - 0.98).
     EXPECT_LT(below(growth(free, scheme, 0.98 * limit, 3000)), 60) << name_of(scheme);
     EXPECT_GT(above(growth(free, scheme, 1.02 * limit, 3000)), 1e6) << name_of(scheme);
   }
@@ -135,7 +135,8 @@ void expect_passive(SpringScheme scheme, double stiffness, double step, int roun
   }
 }
 
-// The proof in the header, at any number of rounds, so that the bound on work costs no stability.
+// Checks the proof in the header for any number of rounds, so that the bound on work does not
+// reduce stability.
 TEST(SpringMotion, NeverGainsMoreThanTheWorkDone) {
   std::uint64_t seed = 0;
   for (const SpringScheme scheme : {SpringScheme::kImplicitEuler, SpringScheme::kTrapezoid}) {
@@ -158,7 +159,7 @@ TEST(HardCaseMembrane, SymplecticStepsKeepTheEnergy) {
   for (const SpringScheme scheme : {SpringScheme::kSymplecticEuler, SpringScheme::kVerlet}) {
     auto motion = SpringMotion<1>::build(network, with(scheme, step)).value();
     support::throw_nodes(motion, 1e-3, 0, 4);
-    // Averages over windows, since these schemes oscillate about the energy that they keep.
+    // Averages over windows, because these schemes oscillate about the energy that they conserve.
     const auto average = [&] {
       double sum = 0;
       for (int i = 0; i < 1000; ++i) {
@@ -178,7 +179,7 @@ TEST(HardCaseMembrane, SymplecticStepsKeepTheEnergy) {
 
 TEST(HardCaseMembrane, ImplicitEulerFadesByItsLaw) {
   double worst = 0;
-  // One mode alone: it fades by 1 / sqrt(1 + w^2 h^2) per step.
+  // A single mode decays by 1 / sqrt(1 + w^2 h^2) per step.
   const std::vector<BodyNode> nodes{{1e-3, 0, 0}, {1e-3, 0, 0}};
   const std::vector<BodySpring<1>> springs{{0, 1, 500, 0}};
   const double omega = std::sqrt(2 * 500 / 1e-3);
@@ -201,7 +202,7 @@ TEST(HardCaseMembrane, ImplicitEulerFadesByItsLaw) {
                             "<= error of the fading per step", worst, 0.01, "1");
 }
 
-TEST(SpringMotion, KeepsMomentumWhereNothingHoldsTheBody) {
+TEST(SpringMotion, FreeBodyKeepsItsMomentum) {
   const MeshSpringSettings settings{1e-3, 0, 0, 300, 0.01, true};
   const auto network = join_vertices(support::icosphere(1, 0.03), settings).value();
   for (const SpringScheme scheme :
@@ -225,18 +226,18 @@ TEST(SpringMotion, KeepsMomentumWhereNothingHoldsTheBody) {
   }
 }
 
-TEST(SpringMotion, TakesSubstepsOrRefusesAndSaysSo) {
+TEST(SpringMotion, UsesSubstepsOrRefusesWithTheLimit) {
   const SpringNetwork<1> network = sheet(8, 0);
   const auto refused =
       SpringMotion<1>::build(network, with(SpringScheme::kVerlet, 5e-3, Beyond::kRefuse));
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("bears steps up to 0."), std::string::npos)
+  EXPECT_NE(refused.error().message.find("is stable for steps up to 0."), std::string::npos)
       << refused.error().message;
   auto motion =
       SpringMotion<1>::build(network, with(SpringScheme::kVerlet, 5e-3, Beyond::kSubstep)).value();
   EXPECT_GT(motion.substeps(), 1);
   EXPECT_LT(5e-3 / motion.substeps(), largest_step(SpringScheme::kVerlet, network.bounds()));
-  EXPECT_NE(motion.describe().find("verlet bears steps up to 0."), std::string::npos);
+  EXPECT_NE(motion.describe().find("verlet is stable for steps up to 0."), std::string::npos);
   support::throw_nodes(motion, 1e-3, 0, 4);
   const double before = motion.energy();
   for (int i = 0; i < 1000; ++i) motion.step();
@@ -254,7 +255,7 @@ TEST(SpringMotion, TakesSubstepsOrRefusesAndSaysSo) {
   EXPECT_EQ(by_default->substeps(), 1);
 }
 
-TEST(SpringMotion, TakesNonsenseForNoForce) {
+TEST(SpringMotion, InvalidForceIsTakenAsZero) {
   auto motion = SpringMotion<1>::build(sheet(4, 0), {}).value();
   motion.push(3, SpringMotion<1>::Vector(std::numeric_limits<double>::quiet_NaN()));
   motion.push(4, SpringMotion<1>::Vector(std::numeric_limits<double>::infinity()));
@@ -286,7 +287,7 @@ TEST(SpringMotion, IsExactWhereNothingJoinsTheNodes) {
   }
 }
 
-TEST(ModalMotion, IsWhatAVeryFineStepTendsTo) {
+TEST(ModalMotion, IsTheLimitOfFineSteps) {
   const MeshSpringSettings settings{1e-3, 40, 0.002, 300, 0.015, true};  // dampers are 5e-5 of k
   const auto network = join_vertices(support::icosphere(1, 0.03), settings).value();
   auto modal = ModalMotion<3>::build(network, 5e-3).value();
@@ -307,7 +308,7 @@ TEST(ModalMotion, IsWhatAVeryFineStepTendsTo) {
   EXPECT_NEAR(modal.energy(), motion.energy(), 1e-5 * motion.energy());
 }
 
-TEST(ModalMotion, RefusesWhatItCannotDoExactly) {
+TEST(ModalMotion, RefusesInexactCases) {
   std::vector<BodyNode> nodes{{1e-3, 10, 0.1}, {1e-3, 10, 0}, {1e-3, 10, 0}};
   const std::vector<BodySpring<1>> springs{{0, 1, 50, 0}, {1, 2, 80, 0}};
   EXPECT_FALSE(ModalMotion<1>::build(SpringNetwork<1>::build(nodes, springs).value(), 1e-3));
@@ -317,7 +318,7 @@ TEST(ModalMotion, RefusesWhatItCannotDoExactly) {
   EXPECT_FALSE(ModalMotion<1>::build(sheet(41, 0), 1e-3));
 }
 
-TEST(SpringMotion, AsksTheHeapForNothing) {
+TEST(SpringMotion, DoesNotAllocate) {
   const auto network =
       join_vertices(support::icosphere(2, 0.03), {1e-3, 40, 0.002, 300, 0.015, true}).value();
   for (const SpringScheme scheme :
@@ -339,7 +340,7 @@ TEST(SpringMotion, AsksTheHeapForNothing) {
               modal.add(4, modal.u(3), modal.v(3));
             }),
             0);
-  // A compiler may leave out a vector that nobody reads, but no such call.
+  // A compiler may remove an unused vector, but not such a call.
   EXPECT_GT(support::heap_calls_of([] { ::operator delete(::operator new(10)); }), 0);
 }
 

@@ -65,8 +65,8 @@ TEST(SpringNetwork, FindsTheHighestFrequency) {
 }
 
 TEST(SpringNetwork, KnowsTheLimitsOfTriangleGrids) {
-  // [PHYSICS 4]: 5.92 (directed), 8.91 (heights), 12 (Gershgorin), in k/m. On an endless sheet it
-  // would be 6 and 9.
+  // [PHYSICS 4]: 5.92 (directed), 8.91 (heights), 12 (Gershgorin), in k/m. An infinite sheet would
+  // have 6 and 9.
   const MeshSpringSettings settings{1e-3, 0, 0, 1000, 0, true};
   const TriangleMesh sheet = support::triangle_sheet(24, 5e-3);
   const double unit = settings.neighbour_stiffness / settings.mass;
@@ -75,12 +75,12 @@ TEST(SpringNetwork, KnowsTheLimitsOfTriangleGrids) {
   EXPECT_NEAR(directed.omega_max * directed.omega_max / unit, 5.92, 0.08);
   EXPECT_NEAR(heights.omega_max * heights.omega_max / unit, 8.91, 0.08);
   EXPECT_NEAR(heights.omega_gershgorin * heights.omega_gershgorin / unit, 12, 1e-9);
-  // Longest steps at k = 1 N/mm and 1 g per vertex: below the 1 ms of a tick.
+  // Maximum steps at k = 1 N/mm and 1 g per vertex: below the 1 ms of a tick.
   EXPECT_NEAR(largest_step(SpringScheme::kVerlet, directed), 0.82e-3, 0.01e-3);
   EXPECT_NEAR(largest_step(SpringScheme::kVerlet, heights), 0.67e-3, 0.01e-3);
 }
 
-TEST(SpringNetwork, HoldsAVertexThatNoTriangleNames) {
+TEST(SpringNetwork, HoldsAnUnusedVertex) {
   TriangleMesh mesh = support::icosphere(0, 0.03);
   mesh.vertices.emplace_back(1, 1, 1);
   const auto network = join_vertices(mesh, {1e-3, 100, 0, 1000, 0, true});
@@ -88,7 +88,7 @@ TEST(SpringNetwork, HoldsAVertexThatNoTriangleNames) {
   EXPECT_TRUE(network->neighbours(12).empty());
 }
 
-TEST(SpringNetwork, RefusesWhatIsNoBody) {
+TEST(SpringNetwork, RefusesInvalidBodies) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   const auto build = [](BodyNode node, BodySpring<3> spring) {

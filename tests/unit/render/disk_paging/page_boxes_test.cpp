@@ -12,7 +12,7 @@
 #include "support/meshes/shapes.h"
 #include "support/scratch.h"
 
-// Boxes of a page file that its checksum does not give away.
+// Damaged boxes of a page file with a valid checksum.
 
 namespace thimble::render {
 namespace {
@@ -36,13 +36,13 @@ std::size_t pages_of(const std::string& bytes) {
   return PageFile::open(written("counted.pages", bytes))->boxes().size();
 }
 
-/// Opens a file of these bytes and tells what was wrong with it.
+/// Opens a file of these bytes and returns the error.
 std::string refusal(const std::string& bytes) {
   const auto opened = PageFile::open(written("damaged_boxes.pages", bytes));
   return opened ? "" : opened.error().message;
 }
 
-/// Writes the checksum of all that stands before the pages anew.
+/// Recomputes the checksum of everything before the pages.
 void put_sum_right(std::string& bytes, std::size_t pages) {
   constexpr std::size_t kSum = 20, kHeader = 72;
   std::memset(bytes.data() + kSum, 0, 4);
@@ -56,7 +56,7 @@ void put_sum_right(std::string& bytes, std::size_t pages) {
   std::memcpy(bytes.data() + kSum, &folded, 4);
 }
 
-TEST(PageFile, IsRefusedWithBoxesThatNoTrianglesHave) {
+TEST(PageFile, IsRefusedWithImpossibleBoxes) {
   const std::string good = good_file();
   const std::size_t pages = pages_of(good);
   std::string same = good;

@@ -53,14 +53,14 @@ std::shared_ptr<PagedSurface> open(const PagingSettings& settings,
   return std::move(opened).value();
 }
 
-/// As support::bumpy_sphere: found from the surface itself, by the tree's answer.
+/// As support::bumpy_sphere: measured on the surface itself, by the tree's answer.
 double radius_at(const Vector3d& direction) {
   static const TreeSearch<PackedSurface> tree(ball());
   const Entry entry = tree.first_entry(2 * kRadius * direction, Vector3d::Zero());
   return 2 * kRadius * (1 - entry.parameter);
 }
 
-/// Moves a tip over a paged surface and watches that what is felt never jumps.
+/// Moves a tip over a paged surface and checks that the force never jumps.
 class Hand {
  public:
   explicit Hand(PagedContact paged) : contact(std::move(paged)) {}
@@ -90,14 +90,14 @@ class Hand {
   const Vector3d& tip() const { return state_.p_WT; }
 
   PagedContact contact;
-  double largest_jump = 0;  // of the felt depth vector beyond what the tip moved, m
+  double largest_jump = 0;  // of the depth vector, beyond the tip's motion, m
   double largest_end = 0;   // depth in the last tick of a contact, m
 
  private:
   driver::DeviceState state_;
 };
 
-/// On a wandering way over the ball, `depth` below the sphere that it is bumped from.
+/// A wandering path over the ball, `depth` below the sphere that was bumped.
 class Way {
  public:
   explicit Way(std::uint64_t seed) : random_(seed) {}
@@ -112,13 +112,13 @@ class Way {
   Vector3d at_{0, 0, 1}, axis_{1, 0, 0};
 };
 
-TEST(PagedContact, FeelsWhatTheContactInMemoryFeels) {
+TEST(PagedContact, MatchesTheContactInMemory) {
   Hand hand(PagedContact(open({.frames = 24, .reach = 0.003, .horizon = 0.02})));
   MemoryContact reference((PackedSurface(ball())));
   Way way(support::seed_of(1));
   int touching = 0;
   for (int i = 0; i < 20'000; ++i) {
-    // In and out, as the depth sways.
+    // In and out, as the depth oscillates.
     const Vector3d p = way.next(2e-4, 4e-4 + 6e-4 * std::sin(0.01 * i));
     const ContactState& felt = hand.move(p);
     const ContactState& expected = support::move_tip(reference, p);
@@ -135,7 +135,7 @@ TEST(PagedContact, FeelsWhatTheContactInMemoryFeels) {
   EXPECT_GT(touching, 10'000);
 }
 
-TEST(PagedContact, FeelsAPlacedMeshAsIfItHadBeenMoved) {
+TEST(PagedContact, PlacedMeshFeelsLikeAMovedOne) {
   const PagedPlace place{.scale = 0.7,
                          .R_WM = Eigen::AngleAxisd(0.8, Vector3d(1, 2, 3).normalized()).matrix(),
                          .p_WM = {0.02, -0.3, 0.1}};
@@ -156,7 +156,7 @@ TEST(PagedContact, FeelsAPlacedMeshAsIfItHadBeenMoved) {
   }
 }
 
-TEST(PagedContact, BringsWhatAPressedTipTouchesHoweverDeepItIs) {
+TEST(PagedContact, LoadsTheTouchedSurfaceAtAnyDepth) {
   Hand hand(PagedContact(open({.frames = 8, .reach = 0.002, .horizon = 0.02})));
   Way way(support::seed_of(3));
   for (int i = 0; i < 4'000; ++i) {
@@ -181,7 +181,7 @@ TEST(PagedContact, StalledLoaderCausesNoJump) {
     }
     ASSERT_TRUE(hand.contact.state().touching);
     const std::uint64_t missed = hand.contact.misses();
-    // 0.3 m/s, and nobody loads.
+    // 0.3 m/s without a loader.
     const int ticks = static_cast<int>(stall / kTick);
     for (int i = 0; i < ticks; ++i) {
       const ContactState& felt = hand.move(way.next(3e-4, 0.0015));
@@ -191,20 +191,20 @@ TEST(PagedContact, StalledLoaderCausesNoJump) {
       EXPECT_GT(hand.contact.misses(), missed + 10);
     }
     hand.serve();
-    // What was held fades; where the plane had left the tip, the surface comes back slowly.
+    // A held plane fades; where the plane has left the tip, the surface returns slowly.
     for (int i = 0; i < 600; ++i) {
       hand.move(way.next(1e-5, 0.0015));
       hand.serve();
     }
     EXPECT_TRUE(hand.contact.state().touching);
     EXPECT_NEAR(hand.contact.state().depth, 0.0015, 2e-4) << stall;
-    // The plane of a hold may be off by what the ball curves away; it fades over 32 ticks.
+    // A held plane may deviate by the ball's curvature; it fades over 32 ticks.
     EXPECT_LT(hand.largest_jump, 5e-4) << stall;
   }
 }
 
-TEST(PagedContact, DoesNotThrowOutATipThatCameInUnseen) {
-  // A free mass at 0.5 m/s, no page in memory: it gets 8 mm deep before the loader wakes.
+TEST(PagedContact, TipThatEnteredUnseenIsNotThrownOut) {
+  // A free mass at 0.5 m/s, no page in memory: it gets 8 mm deep before the loader runs.
   Hand hand(PagedContact(open({.frames = 80, .reach = 0.003, .horizon = 0.01})));
   const double mass = 0.1;  // kg, arm and fingers
   double z = radius_at({0, 0, 1}) + 0.002, v = -0.5;
@@ -220,12 +220,12 @@ TEST(PagedContact, DoesNotThrowOutATipThatCameInUnseen) {
     deepest = std::max(deepest, radius_at({0, 0, 1}) - z);
   }
   EXPECT_GT(deepest, 0.007);
-  EXPECT_GT(z, radius_at({0, 0, 1}) - 1e-3);               // it is let out,
+  EXPECT_GT(z, radius_at({0, 0, 1}) - 1e-3);               // the surface pushes it out,
   EXPECT_LT(fastest_out, 2.5 * PagedContact::kRiseSpeed);  // but slowly
 }
 
-TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
-  // A coarse ball: over the middle of a triangle its smooth surface stands 3 mm above it.
+TEST(PagedContact, ReturnsSlowlyAfterAnUnseenEntryIntoABulge) {
+  // A coarse ball: over the middle of a triangle its smooth surface is 3 mm above it.
   const PackedSurface coarse = PackedSurface::build(support::icosphere(1, kRadius)).value();
   const auto file = support::scratch_folder() / "coarse.pages";
   ASSERT_TRUE(write_page_file(coarse, file).ok());
@@ -235,7 +235,7 @@ TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
   const double triangles = middle.norm() * coarse.step();
   ASSERT_GT(coarse.rise(), 0.002);
   for (const double share : {0.2, 0.8}) {
-    // Hand watches that the depth never grows by more than the tip sinks and 20 um per tick.
+    // Hand checks that the depth never grows by more than the tip's motion plus 20 um per tick.
     Hand hand(PagedContact(open({.frames = 4, .reach = 0.003, .horizon = 0.01}, file)));
     MemoryContact whole = MemoryContact::build(support::icosphere(1, kRadius)).value();
     support::move_tip(whole, 0.06 * middle.normalized());
@@ -261,8 +261,8 @@ TEST(PagedContact, ComesBackSlowlyToATipThatWentIntoABulgeUnseen) {
   }
 }
 
-TEST(PagedContact, DoesNotTouchWhatAnUnseenTipWentAround) {
-  // From above to the side of the ball outside of it: the straight way between leads through it.
+TEST(PagedContact, BypassedSurfaceIsNotContact) {
+  // From above to the side, outside the ball; the straight path between them crosses it.
   Hand hand(PagedContact(open({.frames = 80, .reach = 1, .horizon = 0})));
   hand.move({0, 0, 0.054});
   for (int i = 0; i <= 300; ++i) {
@@ -278,14 +278,14 @@ TEST(PagedContact, DoesNotTouchWhatAnUnseenTipWentAround) {
   EXPECT_EQ(hand.contact.misses(), misses);
 }
 
-TEST(PagedContact, MeetsNoWallInFreeAirAfterAHoldWasLeft) {
+TEST(PagedContact, ReleasedHoldLeavesNoWallInFreeAir) {
   Hand hand(PagedContact(open({.frames = 80, .reach = 0.003, .horizon = 0})));
   const double top = radius_at({0, 0, 1});
   hand.move({0, 0, top + 0.001});
   hand.serve();
   hand.move({0, 0, top - 0.001});
   ASSERT_TRUE(hand.contact.state().touching);
-  // Sideways over absent pages, off, and down beside the ball, where the held plane goes on.
+  // Sideways over absent pages, up, and down next to the ball, where the held plane continues.
   for (int i = 0; i <= 200; ++i) hand.move({2e-4 * i, 0, top - 0.001});
   EXPECT_GT(hand.contact.misses(), 100u);
   for (int i = 0; i <= 50; ++i) hand.move({0.04, 0, top - 0.001 + 1e-4 * i});
@@ -309,7 +309,7 @@ TEST(PagedContact, NeverJumpsWhileItsPagesComeAndGoAtRandom) {
     const ContactState& felt = hand.move(way.next(step, 8e-4 + 1.2e-3 * std::sin(0.007 * i)));
     ASSERT_TRUE(std::isfinite(felt.depth) && felt.n_W.allFinite());
     touching += felt.touching;
-    // The loader is away now and then, for up to some tenths of a second.
+    // The loader pauses at times, for up to some tenths of a second.
     if (serving <= 0 && random.bits() % 40 == 0) serving = static_cast<int>(random.bits() % 300);
     if (serving-- > 0) hand.contact.surface().serve();
   }
@@ -320,7 +320,7 @@ TEST(PagedContact, NeverJumpsWhileItsPagesComeAndGoAtRandom) {
   EXPECT_LT(hand.largest_end, 2e-4);
 }
 
-TEST(PagedContact, HoldsOverAPageThatIsDamaged) {
+TEST(PagedContact, HoldsThePlaneOverADamagedPage) {
   const auto path = support::scratch_folder() / "damaged_ball.pages";
   std::filesystem::copy_file(ball_file(), path, std::filesystem::copy_options::overwrite_existing);
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path));
@@ -350,9 +350,9 @@ TEST(PagedContact, HoldsOverAPageThatIsDamaged) {
   EXPECT_LT(hand.largest_jump, 5e-4);
 }
 
-TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
-  // Whole by their checksums, but made by nobody who knew what he did: neighbours that lead
-  // anywhere and round in circles, corners and normals of any bits.
+TEST(PagedContact, EveryTickEndsOnInvalidRecords) {
+  // Valid checksums, but invalid contents: neighbours that lead anywhere and around in circles,
+  // corners and normals of random bits.
   support::Random random(13);
   for (int round = 0; round < (support::long_form() ? 200 : 12); ++round) {
     std::vector<PackedTriangle> records(ball().triangles().begin(), ball().triangles().end());
@@ -392,7 +392,7 @@ TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
     for (int i = 0; i < 2'000; ++i) {
       state.p_WT = way.next(2e-4, 4e-4 + 6e-4 * std::sin(0.01 * i));
       const ContactState felt = contact.update(state);
-      // A depth that is no number means no force; a force has a direction.
+      // A depth of NaN means no force; a force has a direction.
       if (felt.touching && felt.depth > 0) {
         ASSERT_TRUE(std::isfinite(felt.depth));
       }
@@ -401,7 +401,7 @@ TEST(PagedContact, EndsEveryTickOnRecordsOfNonsense) {
   }
 }
 
-TEST(PagedContact, LeavesTheHeapAloneInEveryTick) {
+TEST(PagedContact, DoesNotAllocateInATick) {
   Hand hand(PagedContact(open({.frames = 8, .reach = 0.002, .horizon = 0.004})));
   Way way(support::seed_of(8));
   std::vector<Vector3d> tips;
@@ -418,8 +418,8 @@ TEST(PagedContact, LeavesTheHeapAloneInEveryTick) {
   EXPECT_GT(hand.contact.misses(), 10u);
 }
 
-TEST(PagedContact, FindsTheSurfaceAgainHoweverFarItWentUnseen) {
-  // More of the ball lies between where it was last known to be free and where it is than fits the
+TEST(PagedContact, FindsTheSurfaceAfterAnyUnseenMove) {
+  // More of the ball lies between the last place known to be free and the present one than fits the
   // frames.
   Hand hand(PagedContact(open({.frames = 5, .reach = 0.002, .horizon = 0.01})));
   Way way(support::seed_of(9));
@@ -434,7 +434,7 @@ TEST(PagedContact, FindsTheSurfaceAgainHoweverFarItWentUnseen) {
 }
 
 TEST(PagedContact, NeverJumpsWhileAThreadLoadsForIt) {
-  // Few frames and a fast tip, so that the loader is late and gives pages up all the time.
+  // Few frames and a fast tip, so that the loader is late and discards pages all the time.
   const auto surface = open({.frames = 5, .reach = 0.002, .horizon = 0.01});
   Hand hand((PagedContact(surface)));
   surface->start_loader();
@@ -449,7 +449,7 @@ TEST(PagedContact, NeverJumpsWhileAThreadLoadsForIt) {
     ASSERT_TRUE(std::isfinite(felt.depth) && felt.n_W.allFinite());
     touching += felt.touching;
     if (i % 64 != 0) continue;
-    // Until the loader has done something, on a busy machine too; at times it has nothing to do.
+    // Until the loader has done something, even on a busy machine; at times it has nothing to do.
     const auto before = surface->counters();
     for (int wait = 0; wait < 60; ++wait) {
       std::this_thread::sleep_for(std::chrono::microseconds(300));

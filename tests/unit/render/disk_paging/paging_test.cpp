@@ -67,7 +67,7 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Opens a file of these bytes and tells what was wrong with it.
+/// Opens a file of these bytes and returns the error.
 std::string refusal(const std::string& bytes) {
   const auto path = support::scratch_folder() / "damaged.pages";
   std::ofstream(path, std::ios::binary) << bytes;
@@ -75,7 +75,7 @@ std::string refusal(const std::string& bytes) {
   return opened ? "" : opened.error().message;
 }
 
-TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
+TEST(PageFile, ReturnsEveryRecordAndABoxPerPage) {
   const auto file = PageFile::open(page_file());
   ASSERT_TRUE(file.ok()) << file.error().message;
   ASSERT_EQ(file->triangle_count(), bumpy().triangle_count());
@@ -104,11 +104,11 @@ TEST(PageFile, GivesBackEveryRecordAndABoxAroundEachPage) {
   EXPECT_EQ(file->read_page(-1, triangles), 0);
 }
 
-TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
+TEST(PageFile, ForeignOrDamagedFileIsRefusedWithAReason) {
   const std::string good = bytes_of(page_file());
   EXPECT_EQ(refusal(good), "");
-  EXPECT_NE(refusal("").find("this is no page file"), std::string::npos);
-  EXPECT_NE(refusal("OFF\n4 4 0\n" + std::string(200, ' ')).find("no page file"),
+  EXPECT_NE(refusal("").find("not a page file"), std::string::npos);
+  EXPECT_NE(refusal("OFF\n4 4 0\n" + std::string(200, ' ')).find("not a page file"),
             std::string::npos);
   EXPECT_NE(refusal(good.substr(0, good.size() - 1)).find("it ends after"), std::string::npos);
   std::string other = good;
@@ -123,7 +123,7 @@ TEST(PageFile, IsRefusedWithAReasonWhenItIsNoneOrDamaged) {
             std::string::npos);
 }
 
-TEST(PageFile, GivesNoPageThatIsDamagedInAnyBit) {
+TEST(PageFile, DamagedPagesAreNotReturned) {
   support::Random random(5);
   const std::string good = bytes_of(page_file());
   const std::size_t records_at =
@@ -162,19 +162,19 @@ TEST(PageFile, RefusesAWrongNumberOfTriangles) {
   ASSERT_TRUE(writer->append(bumpy().triangles().first(9)).ok());
   const auto done = writer->finish();
   ASSERT_FALSE(done.ok());
-  EXPECT_NE(done.error().message.find("9 triangles were written, but 10 promised"),
+  EXPECT_NE(done.error().message.find("9 triangles were written, but 10 were announced"),
             std::string::npos);
   EXPECT_FALSE(PageFile::open(path).ok());
   EXPECT_FALSE(PageFileWriter::create(path, {{0, 0, 0}, 1}, 0).ok());
   EXPECT_FALSE(PageFileWriter::create("/no/such/folder/x.pages", {{0, 0, 0}, 1}, 1).ok());
 }
 
-TEST(PagedSurface, HoldsEverythingWithinReachOfTheTipAndAheadOfIt) {
+TEST(PagedSurface, LoadsPagesWithinReachAndAhead) {
   const PagingSettings settings{.frames = 12, .reach = 0.004, .horizon = 0.02};
   const auto surface = open(settings);
   support::Random random(6);
   for (int step = 0; step < 300; ++step) {
-    // A spiral from pole to pole, so that every page comes and goes.
+    // A spiral from pole to pole, so that every page is loaded and discarded.
     const double down = 0.01 * step, around = 0.3 * step;
     const Vector3d p_W = 0.05 * Vector3d(std::sin(down) * std::cos(around),
                                          std::sin(down) * std::sin(around), std::cos(down));
@@ -211,7 +211,7 @@ TEST(PagedSurface, FindsTheEntriesOfATreeInMemory) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(7);
-  EXPECT_FALSE(surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}).complete);  // nothing is there yet
+  EXPECT_FALSE(surface->first_entry({0, 0, 0.08}, {0, 0, 0.03}).complete);  // nothing is loaded yet
   tick(*surface, {0, 0, 0.05});
   serve_all(*surface);
   int entries = 0;
@@ -231,7 +231,7 @@ TEST(PagedSurface, FindsTheEntriesOfATreeInMemory) {
   EXPECT_GT(entries, 10'000);
 }
 
-TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
+TEST(PagedSurface, MatchesInsideAndNearestOfATreeInMemory) {
   const auto surface = open({.frames = 64, .reach = 1, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(9);
@@ -245,7 +245,7 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
   int within = 0;
   for (int k = 0; k < 5'000; ++k) {
     const auto t = static_cast<std::int32_t>(random.bits() % 20'480);
-    // Corners, middles of edges, places near the surface and anywhere.
+    // Corners, midpoints of edges, places near the surface and anywhere.
     Vector3d p = random.in_box(0.06);
     if (k % 4 == 0) p = bumpy().position(t, 0);
     if (k % 4 == 1) p = 0.5 * (bumpy().position(t, 0) + bumpy().position(t, 1));
@@ -269,8 +269,8 @@ TEST(PagedSurface, KnowsInsideAndNearestAsATreeInMemoryDoes) {
   EXPECT_LT(within, 4000);
 }
 
-TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
-  // A few pages of many: every answer that claims to be complete must be right.
+TEST(PagedSurface, ReportsUnknownInsteadOfAWrongAnswer) {
+  // A few of many pages: every answer that claims to be complete must be correct.
   const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(10);
@@ -298,7 +298,7 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
       if (complete) {
         const SurfacePoint expected = tree.closest(p, 0.01);
         ASSERT_EQ(nearest < 0, expected.triangle < 0);
-        // Equally near ones share an edge or a corner: which is named is a matter of rounding.
+        // Equally near triangles share an edge or a corner; rounding decides which one is returned.
         if (nearest >= 0) {
           EXPECT_NEAR(distance_to(nearest, p), expected.distance, 1e-12);
         }
@@ -310,8 +310,8 @@ TEST(PagedSurface, SaysThatItCannotKnowRatherThanAnythingWrong) {
 }
 
 TEST(PagedSurface, LoadingNeverShowsAWrongRecord) {
-  // A fast tip, few frames, and a servo that looks at packed triangles as long as a tick lasts:
-  // what the thread sanitizer and the comparison would catch is a frame that is reused too early.
+  // A fast tip, few frames, and a servo that reads packed triangles for a whole tick. The thread
+  // sanitizer and the comparison would detect a frame that is reused too early.
   const auto surface = open({.frames = 6, .reach = 0.003, .horizon = 0.01});
   surface->start_loader();
   support::Random random(8);

@@ -55,8 +55,8 @@ MagneticSnap point_and_line() {
   return {settings, turned()};
 }
 
-// Works around closed ways through the field; as in texture_test, even steps of a smooth way.
-// Where the force has a kink (the rim of a snap) the sum converges with the square of the step.
+// Work around closed paths through the field; as in texture_test, in even steps of a smooth path.
+// If the force has a kink (the rim of a snap), the sum converges with the square of the step.
 template <class F>
 void expect_no_work(const F& field, int steps, const char* what) {
   support::Random random(7);
@@ -77,7 +77,7 @@ void expect_no_work(const F& field, int steps, const char* what) {
   }
 }
 
-TEST(Fields, ThatAreConservativeDoNoWorkAroundAClosedWay) {
+TEST(Fields, ConservativeFieldsDoNoWorkOnAClosedPath) {
   expect_no_work(three_charges(), 4000, "charges");
   expect_no_work(point_and_line(), 400000, "magnetic snap");
   expect_no_work(Gravity({.mass = 0.1}, {}), 1000, "gravity");
@@ -113,7 +113,7 @@ TEST(PointCharges, LargestForceIsAtRadiusOverRootTwo) {
       EXPECT_GE(f.dot(p) * force, 0);
     }
     EXPECT_EQ(charge.force(at({0, 0, 0})), Vector3d::Zero());
-    // Far away it is Coulomb's law: a quarter of the force at twice the distance.
+    // Far away Coulomb's law holds: a quarter of the force at twice the distance.
     EXPECT_NEAR(charge.force(at({2, 0, 0})).x() / charge.force(at({1, 0, 0})).x(), 0.25, 1e-4);
   }
 }
@@ -133,7 +133,7 @@ TEST(MagneticSnap, PullsWithoutAStepAtTheCaptureRadius) {
   }
 }
 
-TEST(MagneticSnap, LetsTheTipRunAlongALineFreely) {
+TEST(MagneticSnap, TipSlidesFreelyAlongALine) {
   MagneticSnap::Settings settings;
   settings.targets = {{.from_O = {-0.05, 0, 0}, .to_O = {0.05, 0, 0}, .force = 2, .radius = 0.01}};
   const MagneticSnap line(settings, {});
@@ -160,8 +160,8 @@ TEST(Viscous, TakesEnergyOutOfEveryMotion) {
   }
 }
 
-// A free mass in the liquid, with the velocity by differences and a late force: its speed at the
-// end against the beginning.
+// A free mass in the liquid, with velocity by differences and a late force: ratio of its final to
+// its initial speed.
 double speed_left(double damping, double mass, int late) {
   const double tick = 0.001;
   double x = 0, v = 0.1, before = 0;
@@ -176,7 +176,7 @@ double speed_left(double damping, double mass, int late) {
   return std::abs(v) / 0.1;
 }
 
-TEST(Viscous, RefusesWhatTheLoopCannotHold) {
+TEST(Viscous, RefusesDampingAboveTheLoopsLimit) {
   for (const int late : {0, 1, 3}) {
     EffectContext known;
     known.tip_mass = 0.075;
@@ -189,8 +189,8 @@ TEST(Viscous, RefusesWhatTheLoopCannotHold) {
       return reader.mistakes;
     };
     EXPECT_EQ(mistakes(0.99 * most), "");
-    EXPECT_NE(mistakes(1.01 * most).find("ms late makes an arm of 0.075 kg"), std::string::npos);
-    // What is taken does hold, and not far above it does not.
+    EXPECT_NE(mistakes(1.01 * most).find("ms, an arm of 0.075 kg oscillates"), std::string::npos);
+    // An accepted damping is stable, and one slightly above the limit is not.
     EXPECT_LT(speed_left(0.99 * most, 0.075, late), 1e-3) << late;
     EXPECT_GT(speed_left(1.35 * most, 0.075, late), 1e3) << late;
     EXPECT_NE(mistakes(-1).find("damping"), std::string::npos);
@@ -198,7 +198,7 @@ TEST(Viscous, RefusesWhatTheLoopCannotHold) {
   }
 }
 
-TEST(FieldTable, EveryFieldTouchesWithoutTheHeap) {
+TEST(FieldTable, NoFieldAllocates) {
   std::set<std::string_view> names;
   for (const FieldKind& kind : field_table()) {
     EXPECT_TRUE(names.insert(kind.name).second);
@@ -242,7 +242,8 @@ TEST(FieldTable, RefusesBadSettingsWithTheReason) {
   EXPECT_NE(mistakes("gravity", {{"mass", kNan}}, {}).find("mass"), std::string::npos);
 }
 
-/// Returns the largest difference of a field's force and its potential's slope at random places, N.
+/// Returns the largest difference of a field's force and its potential's gradient at random places,
+/// N.
 template <class F>
 double worst_slope(const F& field) {
   support::Random random(11);
@@ -260,7 +261,7 @@ double worst_slope(const F& field) {
   return worst;
 }
 
-TEST(Field, PotentialsHaveTheForceAsTheirSlope) {
+TEST(Field, ForceIsTheGradientOfThePotential) {
   Gravity::Settings weight;
   weight.mass = 0.2;
   EXPECT_LT(worst_slope(Gravity(weight, turned())), 1e-7);
@@ -275,7 +276,7 @@ TEST(Field, PotentialsHaveTheForceAsTheirSlope) {
   EXPECT_LT(worst_slope(MagneticSnap(snap, turned())), 1e-5);
 }
 
-TEST(Field, NamesItsEnergyWithItsForce) {
+TEST(Field, ReturnsItsEnergyWithItsForce) {
   Gravity::Settings weight;
   weight.mass = 0.2;
   const Gravity field(weight, EffectContext{});
@@ -285,7 +286,7 @@ TEST(Field, NamesItsEnergyWithItsForce) {
   EXPECT_TRUE(command.f_program_W.isZero(0));
 }
 
-TEST(Field, OfAFunctionIsAProgramsForce) {
+TEST(Field, OfAFunctionIsTheProgramsForce) {
   const auto touch =
       field_of([](const driver::DeviceState&) noexcept { return Vector3d(0, 0, 1); });
   EXPECT_EQ(touch->update(at({0, 0, 0})).f_program_W, Vector3d(0, 0, 1));

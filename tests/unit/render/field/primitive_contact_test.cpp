@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Faces by their numbers.
+// Numbers of the faces.
 constexpr std::int32_t kLeft = 0, kRight = 1, kFront = 2, kBack = 3, kBottom = 4, kTop = 5;
 
 driver::DeviceState at(const Vector3d& p_WT, const Vector3d& v_WT = Vector3d::Zero()) {
@@ -90,7 +90,7 @@ void expect_nothing_for_bad_numbers(Contact contact, const Vector3d& outside,
       const auto command = touch(at(p));
       EXPECT_EQ(command.f_T_W, Vector3d::Zero());
       EXPECT_FALSE(command.touch.in_contact);
-      // And the next tick is a first one: inside, so nothing.
+      // The next tick is a first one: inside, so there is no contact.
       EXPECT_FALSE(touch(at(inside)).touch.in_contact);
     }
   }
@@ -131,7 +131,7 @@ TEST(WedgeBox, PushesOutOfTheNearestFace) {
     std::int32_t face;
     double depth;
   };
-  // A box of 20 x 30 x 40 mm, places counted by hand.
+  // A box of 20 x 30 x 40 mm, places computed by hand.
   const WedgeBox box{{.half_sides = {0.010, 0.015, 0.020}}};
   for (const Case& c :
        {Case{{-0.008, 0, 0}, kLeft, 0.002}, Case{{0.009, 0.013, 0}, kRight, 0.001},
@@ -159,7 +159,7 @@ TEST(WedgeBox, KeepsTheForcesStrengthFromWedgeToWedge) {
 }
 
 TEST(WedgeBox, PopsThroughAPlateAtStiffnessTimesHalfItsThickness) {
-  // PHYSICS 3: a plate of 2 mm at 1 N/mm lets go at 1 N.
+  // PHYSICS 3: a plate of 2 mm at 1 N/mm is pushed through at 1 N.
   const WedgeBox plate{{.half_sides = {0.05, 0.05, 0.001}}};
   ContactForceLaw touch{PrimitiveContact(plate), SpringDamper{1000, 0}};
   double largest = 0;
@@ -188,8 +188,8 @@ TEST(EntryFaceContact, HoldsTheTipBeforeAPlateAtAnyDepth) {
   }
 }
 
-TEST(EntryFaceContact, PushesOutOfTheFaceByWhichThePathCameIn) {
-  // The same place, reached by six ways (Fig. 2a: "it is not clear which is appropriate").
+TEST(EntryFaceContact, PushesOutOfTheEntryFace) {
+  // The same place, reached by six paths (Fig. 2a: "it is not clear which is appropriate").
   const Vector3d place(0.004, -0.003, 0.005);
   for (std::int32_t face = 0; face < 6; ++face) {
     EntryFaceContact contact(kCube);
@@ -212,20 +212,22 @@ struct Entry {
 TEST(EntryFaceContact, FastPathEntersTheRightFace) {
   for (const Entry& c : {
            Entry{{0.03, 0, 0.01}, {0.01, 0, 0.015}, kRight},   // slanted, through the right
-           Entry{{0.021, 0, 0.03}, {0.01, 0, 0.015}, kTop},    // past x = 20 mm first, in by z
+           Entry{{0.021, 0, 0.03}, {0.01, 0, 0.015}, kTop},    // past x = 20 mm first, enters by z
            Entry{{0.03, 0, 0.021}, {0.015, 0, 0.01}, kRight},  // below z = 20 mm first
-           Entry{{0.03, 0, 0.03}, {0.01, 0, 0.005}, kRight},  // below z = 20 mm first, then in by x
-           Entry{{0.03, 0, 0.04}, {0.01, 0, 0.0}, kTop},      // through the edge, steep
-           Entry{{0.04, 0, 0.03}, {0.0, 0, 0.01}, kRight},    // through the edge, flat
+           Entry{{0.03, 0, 0.03},
+                 {0.01, 0, 0.005},
+                 kRight},                                 // below z = 20 mm first, then enters by x
+           Entry{{0.03, 0, 0.04}, {0.01, 0, 0.0}, kTop},  // through the edge, steep
+           Entry{{0.04, 0, 0.03}, {0.0, 0, 0.01}, kRight},         // through the edge, flat
            Entry{{0.03, 0.03, 0.03}, {0.01, 0.01, 0.01}, kRight},  // the corner: the first
            Entry{{0.03, 0.03, 0.04}, {0.01, 0.01, 0.0}, kTop},     // the corner, steep
-           Entry{{0, 0, 0.05}, {0, 0, -0.05}, kTop},          // in and out within the tick: held
-           Entry{{0, 0, 0.05}, {0.1, 0, -0.05}, -1},          // out by the side: free
+           Entry{{0, 0, 0.05}, {0, 0, -0.05}, kTop},  // in and out within the tick: keeps contact
+           Entry{{0, 0, 0.05}, {0.1, 0, -0.05}, -1},  // leaves by the side: free
            Entry{{0.03, 0, 0.021}, {0.01, 0, 0.021}, -1},     // over the top
            Entry{{0.03, 0, 0.02}, {0.01, 0, 0.02}, -1},       // along the top's plane
-           Entry{{0.0, 0, 0.02}, {0.0, 0, 0.019}, kTop},      // begins on the top itself
+           Entry{{0.0, 0, 0.02}, {0.0, 0, 0.019}, kTop},      // begins on the top face itself
            Entry{{0.02, 0, 0.02}, {0.019, 0, 0.0185}, kTop},  // begins on the edge
-           Entry{{0.05, 0, 0}, {0.03, 0, 0}, -1},             // ends short of it
+           Entry{{0.05, 0, 0}, {0.03, 0, 0}, -1},             // ends before it
            Entry{{0.05, 0, 0}, {0.02, 0, 0}, -1},             // ends on the face: depth 0
            Entry{{0.05, 0, 0.0199999}, {0.0199999, 0, 0}, kRight},
        }) {
@@ -237,7 +239,7 @@ TEST(EntryFaceContact, FastPathEntersTheRightFace) {
   }
 }
 
-TEST(EntryFaceContact, LetsGoAboveItsFaceAndSidewaysWithoutAPull) {
+TEST(EntryFaceContact, ReleasesWithoutAPull) {
   ContactForceLaw touch{EntryFaceContact(kCube), SpringDamper{1000, 0}};
   touch(at({0.018, 0, 0.03}));
   EXPECT_EQ(touch(at({0.018, 0, 0.01})).touch.feature, kTop);
@@ -245,7 +247,7 @@ TEST(EntryFaceContact, LetsGoAboveItsFaceAndSidewaysWithoutAPull) {
   const auto out = touch(at({0.0201, 0, 0.01}));  // out by the right face
   EXPECT_FALSE(out.touch.in_contact);
   EXPECT_EQ(out.f_T_W, Vector3d::Zero());
-  EXPECT_EQ(touch(at({0.0199, 0, 0.01})).touch.feature, kRight);  // and in again by it
+  EXPECT_EQ(touch(at({0.0199, 0, 0.01})).touch.feature, kRight);  // and enters it again
   EXPECT_FALSE(touch(at({0.021, 0, 0.01})).touch.in_contact);
   EXPECT_FALSE(touch(at({0.01, 0, 0.021})).touch.in_contact);
   EXPECT_TRUE(touch(at({0.01, 0, 0.0199})).touch.in_contact);
@@ -266,7 +268,7 @@ TEST(EntryFaceContact, EveryPathInsideBeginsContact) {
     contact.update(at(from));
     const ContactState& state = contact.update(at(to));
     ASSERT_TRUE(state.touching);
-    ASSERT_GT(state.n_W.dot(from - to), 0);  // the path came against the face
+    ASSERT_GT(state.n_W.dot(from - to), 0);  // the path moved towards the face
     // The face is the one whose plane the path crosses last.
     const Vector3d p_O = box.to_box(from), q_O = box.to_box(to);
     double latest = -1;
@@ -280,8 +282,8 @@ TEST(EntryFaceContact, EveryPathInsideBeginsContact) {
   }
 }
 
-// Work of the hand along a straight way, J: halves the way until force and place change evenly,
-// which they do inside a wedge.
+// Returns the work of the hand along a straight path, J: halves the path until force and place
+// change evenly, which holds inside a wedge.
 template <class Shape>
 double work_along(const Shape& shape, const Vector3d& from, const Vector3d& to, double& gross) {
   const auto force = [&](const Vector3d& p) -> Vector3d {
@@ -316,7 +318,7 @@ TEST(WedgeBox, DoesNoWorkAroundAClosedLoop) {
 }
 
 TEST(Sphere, DoesNoWorkAroundAClosedLoop) {
-  // A smooth closed way inside: the sum over equal steps of it converges faster than any power.
+  // A smooth closed path inside: the sum over equal steps converges faster than any power.
   const Sphere ball{.p_WO = {0.001, 0.002, 0.003}, .radius = 0.05};
   constexpr int kSteps = 2000;
   double work = 0, gross = 0;
@@ -333,7 +335,7 @@ TEST(Sphere, DoesNoWorkAroundAClosedLoop) {
 
 TEST(PrimitiveContact, GivesTheSameAnswersAtEveryScale) {
   support::Random random(6);
-  // Powers of two, so that scaling itself rounds nothing.
+  // Powers of two, so that the scaling itself has no rounding.
   for (const double scale : {0x1p-20, 0x1p-3, 0x1p10}) {
     for (int i = 0; i < 300; ++i) {
       const Box box{.R_WO = random_rotation(random),
@@ -361,7 +363,7 @@ TEST(PrimitiveContact, GivesTheSameAnswersAtEveryScale) {
   }
 }
 
-TEST(PrimitiveTouch, IsBuiltForEveryShapeAndAsksTheHeapForNothing) {
+TEST(PrimitiveTouch, IsBuiltForEveryShapeWithoutAllocation) {
   const std::vector<Primitive> shapes{HalfSpace{.p_WO = {0, 0, 0.02}}, Sphere{.radius = 0.02},
                                       WedgeBox{kCube}, EntryFaceBox{kCube}};
   for (const Primitive& shape : shapes) {

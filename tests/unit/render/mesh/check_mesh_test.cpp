@@ -33,7 +33,7 @@ TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
-TEST(CheckMesh, FindsNothingWrongWithClosedShapesAndMeasuresThem) {
+TEST(CheckMesh, FindsNoFaultInClosedShapesAndMeasuresThem) {
   const MeshFindings box = check_mesh(support::box({0.5, 1, 1.5}));
   EXPECT_TRUE(box.touchable());
   EXPECT_DOUBLE_EQ(box.volume, 6);
@@ -96,13 +96,13 @@ TEST(CheckMesh, FindsDegenerateTrianglesAtEveryScale) {
         support::add_vertex(mesh, (mesh.vertices[0] + mesh.vertices[1]) / 2);
     mesh.triangles.push_back({0, middle, 1});
     EXPECT_EQ(count(check_mesh(mesh), Kind::kDegenerateTriangle), 2u) << scale;
-    // A sliver that is a millionth as high as long is thin, not degenerate.
+    // A sliver with a height of a millionth of its length is thin, not degenerate.
     TriangleMesh sliver = support::box({scale, scale, 1e-6 * scale});
     EXPECT_TRUE(check_mesh(sliver).touchable()) << scale;
   }
 }
 
-TEST(CheckMesh, FindsWhatNoMeshShouldHold) {
+TEST(CheckMesh, FindsInvalidNumbersAndIndices) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
   mesh.triangles.push_back({0, 1, 99});
@@ -115,7 +115,7 @@ TEST(CheckMesh, FindsWhatNoMeshShouldHold) {
   EXPECT_FALSE(check_mesh({}).touchable());
 }
 
-TEST(CheckMesh, TellsCavitiesFromComponentsThatAreInsideOut) {
+TEST(CheckMesh, DistinguishesCavitiesFromInsideOutParts) {
   EXPECT_EQ(count(check_mesh(turned(support::box({1, 1, 1}))), Kind::kInsideOut), 1u);
   TriangleMesh shell = support::icosphere(2, 3);
   append(shell, turned(support::icosphere(2, 2)));
@@ -131,7 +131,7 @@ TEST(CheckMesh, TellsCavitiesFromComponentsThatAreInsideOut) {
 TEST(CheckMesh, DescribesAFaultWithCountPlaceAndRemedy) {
   EXPECT_EQ(describe({Kind::kOpenEdge, 3, "edge 1-2 near (0, 0, 0)"}),
             "3 edges belong to only one triangle, so the mesh has a hole (the first: edge 1-2 near "
-            "(0, 0, 0)); a repair fills holes, and what stays open can be a sheet.");
+            "(0, 0, 0)); a repair fills holes, and open parts can be used as sheets.");
   EXPECT_EQ(describe({Kind::kDegenerateTriangle, 1, "triangle 4"}),
             "1 triangle has no area (triangle 4); a repair drops such triangles.");
 }

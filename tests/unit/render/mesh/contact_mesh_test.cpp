@@ -33,7 +33,7 @@ TEST(ContactMesh, GivesNeighboursTheSameEdgePlaneWithOppositeSign) {
   }
 }
 
-TEST(ContactMesh, GivesTheSameEdgePlanesWhereItKeepsNone) {
+TEST(ContactMesh, ComputedEdgePlanesEqualStoredOnes) {
   for (const TriangleMesh& mesh :
        {support::bumpy_sphere(3, 0.05, 0.3, 6), support::wedge(0.08, 0.1, 0.1),
         support::plate(0.1, 0.0002, 3)}) {
@@ -77,7 +77,7 @@ TEST(ContactMesh, PutsEdgePlanesThroughTheEdgeAndTheAverageNormal) {
   }
 }
 
-TEST(ContactMesh, TurnsWhatIsInsideOutOnlyIfAllowed) {
+TEST(ContactMesh, ReversesInsideOutPartsOnlyIfAllowed) {
   TriangleMesh mesh = support::icosphere(1, 1);
   for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
   const auto turned = ContactMesh::build(mesh);
@@ -89,14 +89,14 @@ TEST(ContactMesh, TurnsWhatIsInsideOutOnlyIfAllowed) {
   EXPECT_NE(refused.error().message.find("normals pointing into"), std::string::npos);
 }
 
-TEST(ContactMesh, RefusesAFaultyMeshWithAllItsSentences) {
+TEST(ContactMesh, RefusesAFaultyMeshWithAllReasons) {
   TriangleMesh mesh = support::icosphere(1, 1);
   mesh.triangles.pop_back();
   std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
   const auto refused = ContactMesh::build(mesh);
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message.find("has a hole"), std::string::npos);
-  EXPECT_NE(refused.error().message.find("wound against each other"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("opposite orientation"), std::string::npos);
   EXPECT_FALSE(ContactMesh::build({}).ok());
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The rough angle leaves some roundings open: 73 of these triangles come out otherwise where the
-// exact arc is not asked then.
-TEST(CornerAngles, AreThoseOfTheExactArcToTheBit) {
+// The approximate angle leaves some roundings undecided: 73 of these triangles would differ without
+// the exact arc.
+TEST(CornerAngles, AreBitIdenticalToTheExactArc) {
   constexpr int kTriangles = 3'000'000;
   support::Random random(31);
   const auto any = [&random] {

@@ -55,14 +55,14 @@ TEST(FillHoles, ClosesABoxWithoutLidByAFlatOne) {
 }
 
 TEST(FillHoles, ClosesAHoleInACurvedSurfaceWithoutASpikeOrADent) {
-  for (const double opening : {0.2, 0.4, 0.7}) {  // rad, from the hole's middle to its rim
+  for (const double opening : {0.2, 0.4, 0.7}) {  // rad, from the hole's centre to its rim
     const TriangleMesh ball = support::icosphere(4, 1);
     const RepairedMesh repaired = repair_mesh(
         without(ball, [&](const Vector3d& p) { return std::acos(p.normalized().z()) < opening; }));
     const MeshFindings found = check_mesh(repaired.mesh);
     ASSERT_TRUE(found.touchable()) << opening;
     EXPECT_EQ(found.euler_characteristic, 2) << opening;
-    // What is missing is at most the cap over the plane of the rim.
+    // The missing volume is at most the cap over the plane of the rim.
     const double height = 1 - std::cos(opening + 0.05);
     const double cap = std::numbers::pi * height * height * (3 - height) / 3;
     EXPECT_GT(found.volume, check_mesh(ball).volume - cap) << opening;
@@ -72,7 +72,7 @@ TEST(FillHoles, ClosesAHoleInACurvedSurfaceWithoutASpikeOrADent) {
   }
 }
 
-TEST(FillHoles, ClosesWholePartsOrNoneAndKnowsASheet) {
+TEST(FillHoles, ClosesWholePartsOrNoneAndRecognisesASheet) {
   const TriangleMesh ball = support::icosphere(3, 1);
   const auto bowl = without(ball, [](const Vector3d& p) { return p.z() > -0.2; });
   EXPECT_EQ(count(repair_mesh(bowl), Kind::kFilledHole), 0u);  // more than half of its area
@@ -85,7 +85,7 @@ TEST(FillHoles, ClosesWholePartsOrNoneAndKnowsASheet) {
   EXPECT_FALSE(check_mesh(repair_mesh(small, none).mesh).touchable());
   EXPECT_TRUE(check_mesh(repair_mesh(small).mesh).touchable());
 
-  // A washer: its inner hole is small, but its outer rim is no hole.
+  // A washer: its inner hole is small, and its outer rim is not a hole.
   TriangleMesh washer;
   for (int i = 0; i < 24; ++i) {
     const double a = 2 * std::numbers::pi * i / 24;
@@ -101,7 +101,7 @@ TEST(FillHoles, ClosesWholePartsOrNoneAndKnowsASheet) {
   EXPECT_EQ(same.mesh.triangles, washer.triangles);
 }
 
-TEST(FillHoles, TakesALongRimForNoHole) {
+TEST(FillHoles, LongRimIsNotAHole) {
   for (const int edges : {1500, 2500}) {
     TriangleMesh cup;  // a long cup, whose lid would be a thirtieth of its area
     cup.vertices = {{0, 0, -3}};
@@ -114,9 +114,9 @@ TEST(FillHoles, TakesALongRimForNoHole) {
   }
 }
 
-TEST(FillHoles, JoinsACornerAgainWhereAHoleComesToItTwice) {
+TEST(FillHoles, MergesACornerThatAHoleVisitsTwice) {
   TriangleMesh mesh = support::icosphere(2, 1);
-  // Two triangles of a fan that share its vertex only.
+  // Two triangles of a fan that share only its vertex.
   const std::int32_t vertex = mesh.triangles[0][0];
   std::vector<std::size_t> fan;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -154,10 +154,10 @@ TEST(FillHoles, ClosesWhateverIsTornOutAtRandom) {
     const RepairedMesh repaired = repair_mesh(torn);
     const MeshFindings found = check_mesh(repaired.mesh);
     for (const MeshFault& fault : found.faults) {
-      // What is left may be open; nothing that a filling does makes another fault.
+      // The rest may be open; a filling creates no other fault.
       EXPECT_EQ(fault.kind, MeshFault::Kind::kOpenEdge) << round << ": " << describe(fault);
     }
-    // Crumbs that lost all their neighbours are sheets; the body is whole.
+    // Fragments that lost all their neighbours are sheets; the body is complete.
     const MeshComponents parts = find_components(repaired.mesh, sorted_edge_uses(repaired.mesh));
     std::vector<std::size_t> size(parts.count, 0);
     for (const std::int32_t part : parts.component_of) ++size[static_cast<std::size_t>(part)];

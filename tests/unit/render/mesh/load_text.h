@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// The folder of the small meshes of the tests.
+/// Folder of the tests' small meshes.
 inline const std::filesystem::path kMeshFolder =
     std::filesystem::path(THIMBLE_TEST_DATA) / "meshes";
 
@@ -20,7 +20,7 @@ inline std::string bytes_of_file(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Writes a file of this name into a folder of the tests alone and returns where it is.
+/// Writes a file of this name into a folder that only the tests use. Returns its path.
 inline std::filesystem::path write_mesh_file(const std::string& name, const std::string& bytes) {
   const std::filesystem::path file = support::scratch_folder() / "mesh_text" / name;
   std::filesystem::create_directories(file.parent_path());
@@ -34,7 +34,7 @@ inline driver::Result<TriangleMesh> load_text(const std::string& name, const std
   return load_mesh(write_mesh_file(name, bytes), info);
 }
 
-/// Returns why a file with these bytes is refused, without its folder; "read" if it is not.
+/// Returns the error for a file with these bytes, without its folder; "read" if it is accepted.
 inline std::string refusal(const std::string& name, const std::string& bytes) {
   const auto mesh = load_text(name, bytes);
   if (mesh) return "read";

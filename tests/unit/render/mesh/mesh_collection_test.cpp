@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = THIMBLE_MESHES;
 constexpr double kSize = 0.1;           // longest side of every mesh, m
-constexpr double kStiffness = 1000;     // N/m, the hard feel of [PHYSICS 6]
+constexpr double kStiffness = 1000;     // N/m, hard surface of [PHYSICS 6]
 constexpr double kForceMax = 5;         // N
 constexpr double kStep = 0.0002;        // m per tick
 constexpr double kStartAbove = 1e-5;    // m
@@ -35,21 +35,21 @@ int ticks_per_mesh() {
   return support::long_form() ? 10000 : 1000;
 }
 
-// Is what a walk over one mesh met.
+// Results of a walk over one mesh.
 struct Stroke {
   int in_contact = 0;
   int starts = 0;
   int left = 0;
   int lost = 0;
   int not_finite = 0;
-  int jumps = 0;  // ticks whose depth rose by more than the tip moved
+  int jumps = 0;  // ticks whose depth grew by more than the tip moved
   double depth_max = 0;
-  double jump_max = 0;  // m beyond the move
+  double jump_max = 0;  // m, beyond the tip's motion
   TrackerCounters counters;
 };
 
-// Walks over the whole surface: a wandering way along it, begun anew at a random triangle every so
-// often and wherever the way leads off the surface.
+// Walks over the whole surface along a wandering path. Restarts at a random triangle now and then,
+// and if the path leaves the surface.
 Stroke stroke(MeshContact& contact, int ticks) {
   support::Random random(21);
   Stroke result;
@@ -70,7 +70,7 @@ Stroke stroke(MeshContact& contact, int ticks) {
                                                static_cast<std::uint64_t>(mesh.triangle_count()));
       const Vector3d middle = (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3;
       const Vector3d above = middle + kStartAbove * mesh.cell(t).face.n;
-      // A tip that is nowhere for a moment has let go of whatever it touched.
+      // A tip with an invalid position for a tick loses any contact.
       move(Vector3d::Constant(std::nan("")));
       move(above);
       p = middle - kStartAbove * mesh.cell(t).face.n;
@@ -118,17 +118,17 @@ std::string csv_text(std::string text) {
   return '"' + text + '"';
 }
 
-// Says in two words of describe() which fault a refusal must name.
+// Returns whether an error names one of the faults, by two words of describe().
 bool names_a_fault(const std::string& reason) {
   for (const char* words :
        {"has a hole", "more than two triangles", "share nothing else", "no area", "repeat",
-        "one side only", "cannot be read", "truncated", "no face with three corners", "wound"}) {
+        "only one side", "cannot be read", "truncated", "no face with three corners", "wound"}) {
     if (reason.find(words) != std::string::npos) return true;
   }
   return false;
 }
 
-TEST(MeshCollection, EachIsStrokedOrRefusedWithItsFault) {
+TEST(MeshCollection, EveryMeshIsTouchableOrRefused) {
   if (!fs::exists(kFolder / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";
   }
@@ -185,8 +185,8 @@ TEST(MeshCollection, EachIsStrokedOrRefusedWithItsFault) {
   EXPECT_GE(stroked, 85);
 }
 
-// Cells of large thin faces reach under each other: a walk that ended in the wrong one showed a
-// tip of 0.7 mm as 60 mm deep.
+// Cells of large thin faces overlap: a walk that ended in the wrong one reported a depth of 60 mm
+// instead of 0.7 mm.
 TEST(SurfaceTracker, DoesNotJumpIntoTheCellOfAFaceFarAway) {
   if (!fs::exists(kFolder / "mpi_triang.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";

@@ -34,7 +34,7 @@ driver::Result<TriangleMesh> load_bytes(const std::string& name, const std::stri
 TEST(MeshFormats, ReadTheSameBoxFromEach) {
   struct Case {
     const char* name;
-    double scale;  // of lengths: a DAE file's unit is applied
+    double scale;  // of lengths: the unit of a DAE file is applied
     std::optional<double> unit;
     char up;
   };
@@ -56,23 +56,23 @@ TEST(MeshFormats, ReadTheSameBoxFromEach) {
   }
 }
 
-TEST(MeshFormats, PutPartsWhereTheFileSays) {
+TEST(MeshFormats, ApplyTheNodesOfTheFile) {
   MeshFileInfo info;
   const auto placed = load_mesh(kMeshes / "placed_box.gltf", &info);
   ASSERT_TRUE(placed.ok()) << placed.error().message;
   EXPECT_LT((check_mesh(*placed).box_min - Eigen::Vector3d(10, 0, 0)).norm(), 1e-6);
   EXPECT_LT((check_mesh(*placed).box_max - Eigen::Vector3d(12, 2, 3)).norm(), 1e-6);
   ASSERT_EQ(info.notes.size(), 1u);
-  EXPECT_EQ(info.notes[0], "1 of 1 part was put where the file's nodes say.");
+  EXPECT_EQ(info.notes[0], "1 of 1 part was placed by the file's nodes.");
 
   const auto two = load_mesh(kMeshes / "two_boxes.3mf", &info);
   ASSERT_TRUE(two.ok()) << two.error().message;
   EXPECT_EQ(check_mesh(*two).components, 2u);
   EXPECT_LT((check_mesh(*two).box_max - Eigen::Vector3d(21, 2, 3)).norm(), 1e-6);
-  EXPECT_EQ(info.unit, 0.001);  // 3MF counts in mm where it names nothing else
+  EXPECT_EQ(info.unit, 0.001);  // the unit of 3MF is mm if the file names no other
 }
 
-TEST(MeshFormats, KeepTheOuterSideOfAMirroredPartOutside) {
+TEST(MeshFormats, MirroredPartKeepsItsOutside) {
   std::string text = bytes_of(kMeshes / "placed_box.gltf");
   const std::size_t scale = text.find("2,\n    1,\n    1");
   ASSERT_NE(scale, std::string::npos);
@@ -87,7 +87,7 @@ TEST(MeshFormats, KeepTheOuterSideOfAMirroredPartOutside) {
   EXPECT_NEAR(check_mesh(*mesh).volume, 12, 1e-6);
 }
 
-TEST(MeshFormats, SeeNoFileOutsideOfTheMeshsFolder) {
+TEST(MeshFormats, ReadNoFileOutsideTheMeshsFolder) {
   const fs::path folder = support::scratch_folder() / "mesh_formats";
   fs::create_directories(folder / "below");
   fs::copy_file(kMeshes / "placed_box.bin", folder / "placed_box.bin",
@@ -100,17 +100,17 @@ TEST(MeshFormats, SeeNoFileOutsideOfTheMeshsFolder) {
     other.replace(other.find("placed_box.bin"), 14, name);
     const auto mesh = load_bytes("below/outside.gltf", other);
     ASSERT_FALSE(mesh.ok()) << name;
-    EXPECT_NE(mesh.error().message.find("no GLTF file that can be read"), std::string::npos);
+    EXPECT_NE(mesh.error().message.find("the GLTF file could not be read"), std::string::npos);
   }
 }
 
-TEST(MeshFormats, TakeStlWithBytesAfterItsEndAndInCapitals) {
+TEST(MeshFormats, AcceptStlWithTrailingBytesAndInCapitals) {
   MeshFileInfo info;
   const std::string binary = bytes_of(kMeshes / "box_binary.stl");
   ASSERT_TRUE(load_bytes("longer.stl", binary + "some program's own", &info).ok());
   ASSERT_EQ(info.notes.size(), 1u);
-  EXPECT_EQ(info.notes[0], "18 bytes after the last triangle were left out.");
-  // A binary file may call itself solid.
+  EXPECT_EQ(info.notes[0], "18 bytes after the last triangle were ignored.");
+  // A binary file may begin with "solid".
   std::string solid = binary;
   solid.replace(0, 6, "solid ");
   EXPECT_TRUE(load_bytes("solid.stl", solid + "more").ok());
@@ -122,12 +122,12 @@ TEST(MeshFormats, TakeStlWithBytesAfterItsEndAndInCapitals) {
 
   const auto cut = load_bytes("cut.stl", binary.substr(0, binary.size() - 1));
   ASSERT_FALSE(cut.ok());
-  EXPECT_NE(cut.error().message.find("promises 12 triangles, but it has bytes for 11 only"),
+  EXPECT_NE(cut.error().message.find("declares 12 triangles, but it has bytes for only 11"),
             std::string::npos)
       << cut.error().message;
 }
 
-TEST(MeshFormats, TakeAByteOrderMarkAndNameTheOneTheyCannot) {
+TEST(MeshFormats, AcceptUtf8MarksAndRefuseUtf16) {
   for (const char* name : {"box.off", "box.obj", "box.ply", "box_ascii.stl"}) {
     const std::string bytes = bytes_of(kMeshes / name);
     const auto mesh = load_bytes(std::string("mark_") + name, "\xEF\xBB\xBF" + bytes);
@@ -139,12 +139,12 @@ TEST(MeshFormats, TakeAByteOrderMarkAndNameTheOneTheyCannot) {
   }
 }
 
-TEST(MeshFormats, RefuseAUnitThatTheyDoNotKnow) {
+TEST(MeshFormats, RefuseAnUnknownUnit) {
   std::string text = bytes_of(kMeshes / "box.amf");
   text.replace(text.find("\"meter\""), 7, "\"league\"");
   const auto mesh = load_bytes("league.amf", text);
   ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(mesh.error().message.find("a unit that its format does not know"), std::string::npos);
+  EXPECT_NE(mesh.error().message.find("an unknown length unit"), std::string::npos);
 }
 
 TEST(MeshFormats, RefuseMorphControllersOfDae) {
@@ -162,7 +162,7 @@ TEST(MeshFormats, RefuseMorphControllersOfDae) {
   text.replace(text.find(plain), plain.size(), R"(<instance_controller url="#m"/>)");
   const auto mesh = load_bytes("morph.dae", text);
   ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(mesh.error().message.find("it has a morph controller, which is not read of DAE"),
+  EXPECT_NE(mesh.error().message.find("it has a morph controller, which is not supported in DAE"),
             std::string::npos)
       << mesh.error().message;
 }
@@ -194,8 +194,8 @@ TEST(MeshFormats, AnswerGarbageWithASentence) {
   }
 }
 
-// Assimp never gets past a letter among the corners, and asks for memory meanwhile.
-TEST(MeshFormats, AreGivenUpSoonWhereTheirReaderNeverEnds) {
+// Assimp never passes a letter among the corners, and allocates memory meanwhile.
+TEST(MeshFormats, EndlessReadersAreAborted) {
   std::string bytes = bytes_of(kMeshes / "box.dae");
   const std::size_t corners = bytes.find("<p>");
   ASSERT_NE(corners, std::string::npos);

@@ -46,7 +46,7 @@ std::string as_stl(const TriangleMesh& mesh) {
   return text + "endsolid ball\n";
 }
 
-// Returns how far the vertices of a mesh are from the ball, as a share of its size.
+// Returns the distance of a mesh's vertices from the ball, as a fraction of its size.
 double distance_from_ball(const TriangleMesh& mesh) {
   double worst = 0;
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
@@ -64,7 +64,7 @@ class MeshPrecision : public testing::TestWithParam<const char*> {
   }
 };
 
-// Doubles are 4.7e-10 apart at 4e6: 7.8e-9 of the ball. What is read must be what was written.
+// Doubles are 4.7e-10 apart at 4e6: 7.8e-9 of the ball. A file must be read as it was written.
 TEST_P(MeshPrecision, KeepsABallInSurveyCoordinates) {
   const auto mesh = load();
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;

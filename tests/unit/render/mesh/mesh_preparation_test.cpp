@@ -35,7 +35,7 @@ TEST(WeldMesh, ClosesATriangleSoup) {
   EXPECT_TRUE(check_mesh(weld_mesh(soup)).touchable());
 }
 
-TEST(PlacedMesh, KeepsTheOuterSideOutsideForEveryScale) {
+TEST(PlacedMesh, KeepsItsOutsideForEveryScale) {
   const Eigen::Matrix3d R_WO = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).matrix();
   for (const double scale : {0.001, 2.0, -2.0}) {
     const MeshFindings findings =
@@ -64,7 +64,7 @@ TEST(Adjacency, IsMutualAndSharesTheEdgeItNames) {
   }
 }
 
-TEST(Adjacency, SaysWhyAMeshHasNone) {
+TEST(Adjacency, IsRefusedWithAReason) {
   TriangleMesh open = support::box({1, 1, 1});
   open.triangles.pop_back();
   EXPECT_NE(find_adjacency(open).error().message.find("so the mesh has a hole"), std::string::npos);
@@ -73,7 +73,8 @@ TEST(Adjacency, SaysWhyAMeshHasNone) {
   EXPECT_NE(find_adjacency(fin).error().message.find("3 triangles"), std::string::npos);
   TriangleMesh flipped = support::box({1, 1, 1});
   std::swap(flipped.triangles[0][0], flipped.triangles[0][1]);
-  EXPECT_NE(find_adjacency(flipped).error().message.find("wound against"), std::string::npos);
+  EXPECT_NE(find_adjacency(flipped).error().message.find("opposite orientation"),
+            std::string::npos);
   TriangleMesh broken = support::box({1, 1, 1});
   broken.triangles[0][0] = 77;
   EXPECT_NE(find_adjacency(broken).error().message.find("Triangle 0"), std::string::npos);

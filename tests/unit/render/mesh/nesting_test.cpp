@@ -28,24 +28,23 @@ std::vector<bool> inside_out(const TriangleMesh& mesh) {
   return find_components(mesh, sorted_edge_uses(mesh)).inside_out;
 }
 
-// 500 boxes one in the other: with a look at every pair of boxes and all their corners this took 48
-// s.
-TEST(Nesting, TellsMatterFromCavitiesOfManyBoxesOneInTheOther) {
+// 500 nested boxes: a comparison of every pair of boxes with all their corners took 48 s.
+TEST(Nesting, DistinguishesCavitiesInManyNestedBoxes) {
   TriangleMesh mesh;
   constexpr int kBoxes = 500;
   for (int i = 0; i < kBoxes; ++i) {
-    // From the inside out, each wound the right way: the outermost bounds matter.
+    // From the inside out, each correctly oriented: the outermost encloses matter.
     append(support::box(Vector3d::Constant(1 + 0.01 * i)), {0, 0, 0}, (kBoxes - 1 - i) % 2 == 1,
            mesh);
   }
   EXPECT_TRUE(check_mesh(mesh).touchable());
-  // Turned all round, all are wrong.
+  // With all triangles reversed, all boxes are wrong.
   for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
   for (const bool wrong : inside_out(mesh)) EXPECT_TRUE(wrong);
 }
 
-TEST(Nesting, TellsMatterFromCavitiesAmongBubblesAndCrumbs) {
-  // A ball with bubbles, a crumb in each third one, and crumbs beside the ball.
+TEST(Nesting, DistinguishesCavitiesAmongBubblesAndFragments) {
+  // A ball with bubbles, a fragment in every third one, and fragments next to the ball.
   TriangleMesh mesh;
   append(support::icosphere(4, 1), {0, 0, 0}, false, mesh);
   const TriangleMesh bubble = support::icosphere(2, 0.05), crumb = support::icosphere(1, 0.02);
@@ -65,9 +64,9 @@ TEST(Nesting, TellsMatterFromCavitiesAmongBubblesAndCrumbs) {
   EXPECT_TRUE(check_mesh(mesh).touchable());
 }
 
-// What lies in a part's box need not lie in it: a ray from a ball in a ring's hole leaves the ring
-// as often as it enters.
-TEST(Nesting, KnowsABallInTheHoleOfARingFromOneInTheRing) {
+// A part in another part's box need not be inside it: a ray from a ball in a ring's hole leaves the
+// ring as often as it enters.
+TEST(Nesting, BallInARingsHoleIsNotInTheRing) {
   for (const bool in_the_tube : {false, true}) {
     TriangleMesh mesh = support::torus(1, 0.4, 48, 24);
     append(support::icosphere(2, 0.1), in_the_tube ? Vector3d(0, 1, 0) : Vector3d(0, 0, 0), false,
@@ -76,7 +75,8 @@ TEST(Nesting, KnowsABallInTheHoleOfARingFromOneInTheRing) {
   }
 }
 
-// A hub of 100,000 triangles cost their square in the normals and in the packed triangles: minutes.
+// A hub of 100,000 triangles once took quadratic time in the normals and in the packed triangles:
+// minutes.
 TEST(Nesting, PreparesAHubOfManyTriangles) {
   const TriangleMesh hub = support::needle(100'000, 0.05, 0.1);
   const auto mesh = ContactMesh::build(hub);

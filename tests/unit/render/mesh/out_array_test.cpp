@@ -41,7 +41,7 @@ TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
-// Turns about half of the triangles round; `turns` says which with -1, as the OUT array must.
+// Reverses about half of the triangles and marks them with -1 in `turns`, as the OUT array must.
 TriangleMesh shuffled(TriangleMesh mesh, OutArray& turns) {
   support::Random random(5);
   turns.clear();
@@ -68,7 +68,7 @@ TriangleMesh crossed_box() {
   return mesh;
 }
 
-TEST(OutArray, TellsWhichTrianglesWereTurned) {
+TEST(OutArray, ReportsReversedTriangles) {
   TriangleMesh shell = support::icosphere(2, 3);
   append(shell, turned(support::icosphere(2, 2)));
   append(shell, support::icosphere(2, 1));
@@ -105,7 +105,7 @@ TEST(OutArray, HoldsAtEveryScaleAndFarFromTheOrigin) {
   }
 }
 
-TEST(OutArray, SaysNothingOfWhatHasNoSide) {
+TEST(OutArray, IsZeroForTrianglesWithoutASide) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back({0, 1, 99});
@@ -140,7 +140,7 @@ TEST(OutArray, IsTheSameInTheCycleForEightyThousandTriangles) {
   EXPECT_EQ(same, kAsked);
 }
 
-TEST(OrientMesh, WindsShuffledMeshesAsTheyWereAndReportsIt) {
+TEST(OrientMesh, RestoresShuffledMeshesAndReportsIt) {
   TriangleMesh shell = support::icosphere(2, 3);
   append(shell, turned(support::icosphere(2, 2)));
   for (const TriangleMesh& mesh : {support::torus(3, 1, 24, 12), shell, support::box({1, 1, 1})}) {
@@ -154,21 +154,22 @@ TEST(OrientMesh, WindsShuffledMeshesAsTheyWereAndReportsIt) {
     EXPECT_EQ(turns[static_cast<std::size_t>(report.first_turned)], -1);
     EXPECT_EQ(report.mended_components, check_mesh(mixed).components);
     EXPECT_EQ(report.one_sided_components, 0u);
-    // Done once, nothing is left to do.
+    // After one pass nothing is left to do.
     const auto once = mixed.triangles;
     EXPECT_EQ(orient_mesh(mixed).turned_triangles, 0u);
     EXPECT_EQ(mixed.triangles, once);
   }
 }
 
-TEST(OrientMesh, KeepsTheMajorityOfAnOpenPartAndLeavesAOneSidedOne) {
+TEST(OrientMesh, OrientsOpenPartsByMajorityAndKeepsOneSided) {
   TriangleMesh open = support::icosphere(2, 1);
   open.triangles.resize(open.triangles.size() - 7);
   const auto whole = open.triangles;
   for (const std::size_t t : {3u, 40u, 77u}) std::swap(open.triangles[t][1], open.triangles[t][2]);
   EXPECT_EQ(orient_mesh(open).turned_triangles, 3u);
   for (std::size_t t = 0; t < whole.size(); ++t) {
-    // Turned twice, a triangle may begin with another corner; its way round is what counts.
+    // A triangle that was reversed twice may begin with another corner; only its orientation
+    // counts.
     const auto& [a, b, c] = open.triangles[t];
     const auto& [d, e, f] = whole[t];
     EXPECT_TRUE((a == d && b == e && c == f) || (b == d && c == e && a == f) ||
@@ -195,10 +196,10 @@ TEST(OrientMesh, KeepsTheMajorityOfAnOpenPartAndLeavesAOneSidedOne) {
   EXPECT_EQ(report.one_sided_components, 1u);
   EXPECT_EQ(report.turned_triangles, 0u);
   EXPECT_EQ(strip.triangles, before);
-  EXPECT_NE(describe(report).find("one side only"), std::string::npos);
+  EXPECT_NE(describe(report).find("only one side"), std::string::npos);
 }
 
-TEST(OrientMesh, IsDoneByTheContactMeshAndTold) {
+TEST(OrientMesh, IsDoneAndReportedByTheContactMesh) {
   OutArray turns;
   const TriangleMesh mixed = shuffled(support::bumpy_sphere(3, 0.05, 0.3, 6), turns);
   const auto contact = ContactMesh::build(mixed);
@@ -207,10 +208,10 @@ TEST(OrientMesh, IsDoneByTheContactMeshAndTold) {
             static_cast<std::size_t>(std::count(turns.begin(), turns.end(), -1)));
   EXPECT_EQ(contact->turned_components(), 0u);
   EXPECT_GT(contact->depth(0, Vector3d::Zero()), 0);
-  EXPECT_NE(describe(contact->orientation()).find("turned round"), std::string::npos);
+  EXPECT_NE(describe(contact->orientation()).find("reversed"), std::string::npos);
   const auto refused = ContactMesh::build(mixed, {.orient = false});
   ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().message.find("wound against each other"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("opposite orientation"), std::string::npos);
 }
 
 TEST(OrientMesh, OrientsTheShuffledFilesAsTheParityOfRaysDoes) {
@@ -225,7 +226,7 @@ TEST(OrientMesh, OrientsTheShuffledFilesAsTheParityOfRaysDoes) {
     EXPECT_GT(orient_mesh(by_winding).turned_triangles, 0u) << name;
     EXPECT_TRUE(check_mesh(by_winding).touchable()) << name;
     EXPECT_GT(check_mesh(by_winding).volume, 0) << name;
-    // Where a mesh passes through itself, rays see the matter that is there, and winding does not.
+    // Where a mesh passes through itself, rays see the matter there, and orientation does not.
     if (std::string(name) == "boeing.off") continue;
     TriangleMesh by_rays = file;
     const OutArray out = compute_out_array(file);
@@ -264,14 +265,15 @@ TEST(OutArray, AgreesWithTheWindingOfScannedMeshes) {
   EXPECT_EQ(undecided, 0u);
 }
 
-TEST(FindNeighbour, GivesTheArraysAnswers) {
+TEST(FindNeighbour, MatchesTheArray) {
   const TriangleMesh torus = support::torus(3, 1, 20, 10);
   std::size_t meshes = 0;
   const auto compare = [&meshes](const TriangleMesh& mesh, const std::string& name) {
     const auto array = find_adjacency(mesh);
     if (!array) return;
     ++meshes;
-    // All of a small mesh, a share of a large one: in the cycle each answer costs a pass.
+    // All triangles of a small mesh, a part of a large one: in the cycle each answer takes a pass
+    // over the mesh.
     const std::size_t step = 1 + mesh.triangles.size() / 2000;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -291,10 +293,10 @@ TEST(FindNeighbour, GivesTheArraysAnswers) {
   EXPECT_GT(meshes, 80u);
 }
 
-TEST(FindNeighbour, SaysThereIsNoneOverAnOpenEdge) {
+TEST(FindNeighbour, ReturnsNoneOverAnOpenEdge) {
   TriangleMesh mesh = support::box({1, 1, 1});
   mesh.triangles.erase(mesh.triangles.begin() + 1);
-  EXPECT_EQ(find_neighbour(mesh, 0, 2), -1);  // edge 3-0, whose other triangle is gone
+  EXPECT_EQ(find_neighbour(mesh, 0, 2), -1);  // edge 3-0, whose other triangle was removed
   EXPECT_GE(find_neighbour(mesh, 0, 0), 0);
 }
 

@@ -8,7 +8,7 @@
 namespace thimble::render {
 namespace {
 
-// A tetrahedron whose positions and more are in base64: `accessors` and `views` say where.
+// A tetrahedron whose positions and more are in base64, described by `accessors` and `views`.
 std::string gltf_text(const std::string& node, const std::string& mesh,
                       const std::string& accessors, const std::string& views,
                       const std::string& data, std::size_t length, const std::string& more = "") {
@@ -37,14 +37,13 @@ std::string quantized_text(const std::string& node, const std::string& normalize
 TEST(ReadGltf, RefusesRequiredExtensionsByName) {
   const auto mesh = load_mesh(kMeshFolder / "unknown_required.gltf");
   ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(
-      mesh.error().message.find(
-          "it requires the glTF extension \"FOO_bar\", which is not read. Export it without."),
-      std::string::npos)
+  EXPECT_NE(mesh.error().message.find("it requires the glTF extension \"FOO_bar\", which is not "
+                                      "supported. Export the mesh without it."),
+            std::string::npos)
       << mesh.error().message;
 }
 
-TEST(ReadGltf, PutsInstancesWhereTheyAre) {
+TEST(ReadGltf, PlacesInstances) {
   const auto mesh = load_mesh(kMeshFolder / "instancing.gltf");
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   const MeshFindings found = check_mesh(*mesh);
@@ -64,7 +63,7 @@ TEST(ReadGltf, ReadsQuantizedPositions) {
 }
 
 TEST(ReadGltf, AppliesMorphWeights) {
-  // The target moves each vertex by (127, 0, 0), half of which is applied.
+  // The target moves each vertex by (127, 0, 0); half of it is applied.
   const std::string accessors =
       R"({"bufferView": 0, "componentType": 5120, "count": 4, "type": "VEC3"}, )" + kIndices +
       R"(, {"bufferView": 2, "componentType": 5120, "count": 4, "type": "VEC3"})";
@@ -82,7 +81,7 @@ TEST(ReadGltf, AppliesMorphWeights) {
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).box_max.x(), 190.5);
   ASSERT_EQ(info.notes.size(), 1U);
   EXPECT_EQ(info.notes[0], "Morph targets were applied with the weights of the file.");
-  // The node's own weights count before the mesh's.
+  // The node's own weights take precedence over the mesh's.
   const auto own =
       load_text("own.gltf", gltf_text(R"(, "weights": [1])",
                                       R"(, "targets": [{"POSITION": 2}]}], "weights": [0.5])",
@@ -91,7 +90,7 @@ TEST(ReadGltf, AppliesMorphWeights) {
   EXPECT_DOUBLE_EQ(check_mesh(*own).box_min.x(), 127);
 }
 
-TEST(ReadGltf, PutsSparsePositionsOver) {
+TEST(ReadGltf, AppliesSparsePositions) {
   // Vertex 1 becomes (0, 0, 0) + (127, 0, 0) of the sparse values.
   const auto mesh = load_text(
       "sparse.gltf",
@@ -116,7 +115,7 @@ TEST(ReadGltf, OpensPercentEncodedNames) {
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).volume, 12);
   text.replace(text.find("my%20"), 5, "%2e%2e/my%20");
-  EXPECT_NE(refusal("below/percent.gltf", text).find("a file outside of its folder"),
+  EXPECT_NE(refusal("below/percent.gltf", text).find("a file outside its folder"),
             std::string::npos);
 }
 
@@ -127,9 +126,10 @@ TEST(ReadGltf, RefusesDracoWithoutOtherPositions) {
       R"({"KHR_draco_mesh_compression": {"bufferView": 0}}}]}], "accessors": )"
       R"([{"componentType": 5126, "count": 3, "type": "VEC3"}], )"
       R"("extensionsRequired": ["KHR_draco_mesh_compression"]})";
-  EXPECT_EQ(refusal("draco.gltf", text),
-            "draco.gltf: it is packed by the glTF extension KHR_draco_mesh_compression, which is "
-            "not read. Export it without.");
+  EXPECT_EQ(
+      refusal("draco.gltf", text),
+      "draco.gltf: it is compressed with the glTF extension KHR_draco_mesh_compression, which "
+      "is not supported. Export the mesh without it.");
 }
 
 TEST(ReadGltf, ReadsStripsAndFans) {
@@ -160,7 +160,7 @@ TEST(ReadGltf, RefusesNumbersBeyondTheBuffer) {
             std::string::npos);
 }
 
-TEST(Read3mf, PutsObjectsOfASecondModelInPlace) {
+TEST(Read3mf, PlacesObjectsOfASecondModel) {
   MeshFileInfo info;
   const auto mesh = load_mesh(kMeshFolder / "production.3mf", &info);
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
@@ -211,20 +211,19 @@ TEST(Read3mf, RefusesRequiredExtensionsByName) {
                                R"(<item objectid="1"/>)"))),
       "beams.3mf: it requires the extension \"b\" of 3MF "
       "(http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02), which is not "
-      "read. Export it without.");
+      "supported. Export the mesh without it.");
 }
 
-TEST(Read3mf, RefusesComponentsNestedWithoutAnEnd) {
+TEST(Read3mf, RefusesCyclicComponents) {
   std::string text = model_text("", R"(<item objectid="2"/>)");
   text.insert(text.find("</resources>"),
               R"(<object id="2"><components><component objectid="2"/></components></object>)");
-  EXPECT_NE(refusal("nested.3mf", archive_of(text)).find("nested in each other without an end"),
-            std::string::npos);
+  EXPECT_NE(refusal("nested.3mf", archive_of(text)).find("nested too deeply"), std::string::npos);
 }
 
-TEST(Read3mf, RefusesObjectsThatAreNotThere) {
+TEST(Read3mf, RefusesMissingObjects) {
   EXPECT_NE(refusal("gone.3mf", archive_of(model_text("", R"(<item objectid="7"/>)")))
-                .find("it names object 7 of 3D/3dmodel.model, which does not exist"),
+                .find("it refers to object 7 of 3D/3dmodel.model, which does not exist"),
             std::string::npos);
   EXPECT_NE(refusal("none.3mf", archive_of(model_text("", ""))).find("its build has no item"),
             std::string::npos);

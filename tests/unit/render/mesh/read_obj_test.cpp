@@ -13,7 +13,7 @@ const std::string kCornersOfBox =
 const std::string kFacesOfBox =
     "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 
-// Returns the volume of a mesh that is closed; -1 with a failure for any other.
+// Returns the volume of a closed mesh; adds a failure and returns -1 for any other.
 double closed_volume(const driver::Result<TriangleMesh>& mesh) {
   EXPECT_TRUE(mesh.ok()) << mesh.error().message;
   if (!mesh) return -1;
@@ -34,7 +34,7 @@ TEST(ReadObj, ReadsExponentsWrittenByFortran) {
   EXPECT_NEAR(closed_volume(mesh), 0.01 * 0.009 * 0.009, 1e-18);
 }
 
-TEST(ReadObj, RefusesNumbersWithSomethingBehindThem) {
+TEST(ReadObj, RefusesNumbersWithTrailingText) {
   for (const char* word : {"1,250.5", "1mm", "1_000", "0x10", "1e", "--1", "+-1", "1.0.0", "nan",
                            "inf", "1e300", "1e999", "1D", "e5"}) {
     const std::string text = std::string("v 0 0 0\nv ") + word + " 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -57,12 +57,12 @@ TEST(ReadObj, TakesCommentsBehindFaces) {
   EXPECT_DOUBLE_EQ(closed_volume(load_mesh(kMeshFolder / "comment_f.obj")), 1);
 }
 
-TEST(ReadObj, LeavesColoursAndOpacityOut) {
+TEST(ReadObj, IgnoresColoursAndOpacity) {
   EXPECT_DOUBLE_EQ(closed_volume(load_mesh(kMeshFolder / "rgba.obj")), 1);
   EXPECT_TRUE(load_text("rgb.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nf 1 2 3\n").ok());
 }
 
-TEST(ReadObj, RefusesVerticesWithAnotherCountOfNumbers) {
+TEST(ReadObj, RefusesVerticesWithAWrongCountOfNumbers) {
   const std::string rest = "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_EQ(refusal("two.obj", "v 0 0" + rest),
             "two.obj:1: a vertex has 2 numbers; it needs 3, 4, 6 or 7.");
@@ -72,7 +72,7 @@ TEST(ReadObj, RefusesVerticesWithAnotherCountOfNumbers) {
             "eight.obj:1: a vertex has at most 7 numbers.");
   EXPECT_TRUE(load_text("weight.obj", "v 0 0 0 1" + rest).ok());
   EXPECT_EQ(refusal("weight.obj", "v 0 0 0 2" + rest),
-            "weight.obj:1: a vertex with a weight other than 1 is not read.");
+            "weight.obj:1: vertex weights other than 1 are not supported.");
 }
 
 TEST(ReadObj, CountsNegativeCornersFromTheEnd) {
@@ -85,16 +85,16 @@ TEST(ReadObj, CountsNegativeCornersFromTheEnd) {
 TEST(ReadObj, ReadsFacesBeforeTheirVertices) {
   EXPECT_DOUBLE_EQ(closed_volume(load_text("early.obj", kFacesOfBox + kCornersOfBox)), 1);
   EXPECT_EQ(refusal("early.obj", "\n" + kFacesOfBox + "v 0 0 0\n"),
-            "early.obj:2: the face names vertex 3; the file has 1.");
+            "early.obj:2: the face refers to vertex 3; the file has 1.");
 }
 
-TEST(ReadObj, NamesTheLineOfACornerThatIsNone) {
+TEST(ReadObj, NamesTheLineOfAnInvalidCorner) {
   for (const char* corner : {"0", "x", "1/2/3/4", "1.5", "1/x", "/1", "1/0", "4294967297", "1,"}) {
     const std::string text = "# c\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + std::string(corner) + "\n";
     EXPECT_EQ(refusal("corner.obj", text).substr(0, 23), "corner.obj:5: the face ") << corner;
   }
   EXPECT_EQ(refusal("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 2 3\n"),
-            "far.obj:4: the face names vertex -4; so far there are 3.");
+            "far.obj:4: the face refers to vertex -4; so far there are 3.");
 }
 
 TEST(ReadObj, JoinsLinesThatEndInABackslash) {
@@ -120,8 +120,8 @@ TEST(ReadObj, SplitsConcaveFacesWithoutChangingTheirArea) {
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).area, 1);
 }
 
-// A saw of this many corners at the top, above a straight edge: one face, whose area is 1.5 for
-// each corner but the last.
+// A saw with this many corners at the top, above a straight edge: one face, with an area of 1.5 for
+// each corner except the last.
 std::string saw(int corners) {
   std::string text, face = "f";
   for (int i = 0; i < corners; ++i) {
@@ -139,7 +139,7 @@ TEST(ReadObj, SplitsConcaveFacesOfThousandsOfCorners) {
   EXPECT_NEAR(check_mesh(*mesh).area, 1.5 * 1997, 1e-9);
 }
 
-TEST(ReadObj, RefusesConcaveFacesThatAreTooLargeToSplit) {
+TEST(ReadObj, RefusesTooLargeConcaveFaces) {
   EXPECT_EQ(refusal("saw.obj", saw(3002)),
             "saw.obj:3005: the face is concave and has 3004 corners; at most 2000 are supported. "
             "Save the mesh as triangles.");
@@ -149,13 +149,14 @@ TEST(ReadObj, ReportsLinesAndPoints) {
   MeshFileInfo info;
   ASSERT_TRUE(load_text("lines.obj", kCornersOfBox + kFacesOfBox + "l 1 2\np 3\n", &info).ok());
   ASSERT_EQ(info.notes.size(), 1U);
-  EXPECT_EQ(info.notes[0], "Lines and points were left out: they cannot be touched.");
+  EXPECT_EQ(info.notes[0], "Lines and points were ignored: only faces can be touched.");
 }
 
-TEST(ReadObj, RefusesShapesThatWouldBeMissing) {
-  EXPECT_EQ(refusal("nurbs.obj", kCornersOfBox + "cstype bspline\nsurf 0 1 0 1 1 2 3\n"),
-            "nurbs.obj:10: \"surf\": free-form surfaces are not read. Save the mesh as polygons in "
-            "one file.");
+TEST(ReadObj, RefusesUnsupportedShapes) {
+  EXPECT_EQ(
+      refusal("nurbs.obj", kCornersOfBox + "cstype bspline\nsurf 0 1 0 1 1 2 3\n"),
+      "nurbs.obj:10: \"surf\": free-form surfaces are not supported. Save the mesh as polygons in "
+      "one file.");
   EXPECT_EQ(refusal("call.obj", "call other.obj\n").substr(0, 30),
             "call.obj:1: \"call\": included f");
 }

@@ -15,7 +15,7 @@ std::string facet_text(const std::string& corners, const std::string& normal = "
          "endloop\nendfacet\nendsolid a\n";
 }
 
-// The corners of a binary file of one triangle.
+// A binary file of one triangle; `first` is its first coordinate.
 std::string binary_triangle(float first) {
   std::string bytes(84 + 50, '\0');
   const std::uint32_t count = 1;
@@ -34,7 +34,7 @@ TEST(ReadStl, KeepsDoublePrecisionOfText) {
   EXPECT_EQ(mesh->vertices[0].x(), 500000.1234567891);
 }
 
-TEST(ReadStl, LeavesNormalsOutWhateverTheyAre) {
+TEST(ReadStl, IgnoresNormals) {
   const auto mesh = load_mesh(kMeshFolder / "nanind_normal.stl");
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   EXPECT_TRUE(check_mesh(*mesh).touchable());
@@ -51,7 +51,7 @@ TEST(ReadStl, ReadsFacetsOfFourCornersWhole) {
   EXPECT_DOUBLE_EQ(check_mesh(*mesh).area, 1);
 }
 
-TEST(ReadStl, RefusesNumbersWithSomethingBehindThem) {
+TEST(ReadStl, RefusesNumbersWithTrailingText) {
   for (const char* word : {"1,250.5", "1mm", "nan", "1e999"}) {
     EXPECT_EQ(refusal("number.stl", facet_text("vertex 0 0 0\nvertex " + std::string(word) +
                                                " 0 0\nvertex 0 1 0\n")),
@@ -110,7 +110,7 @@ TEST(ReadStl, TakesEveryWordInANameOfASolid) {
   EXPECT_TRUE(load_text("name.stl", text).ok());
 }
 
-TEST(ReadStl, RefusesBinaryCornersThatAreNoNumbers) {
+TEST(ReadStl, RefusesBinaryCornersThatAreNotFinite) {
   EXPECT_TRUE(load_text("binary.stl", binary_triangle(0)).ok());
   EXPECT_EQ(refusal("binary.stl", binary_triangle(std::numeric_limits<float>::quiet_NaN())),
             "binary.stl: triangle 0 has a coordinate that is not a number between -1e15 and 1e15.");
@@ -121,17 +121,17 @@ TEST(ReadStl, ReportsCoarseStepsOfABinaryFile) {
   ASSERT_TRUE(load_text("far.stl", binary_triangle(1000), &info).ok());
   ASSERT_EQ(info.notes.size(), 1U);
   EXPECT_EQ(info.notes[0],
-            "Its coordinates are in single precision and reach 1e+03, where their steps are "
-            "6.1e-05: 4.3e-05 of its size. Move it to the origin in the program that made it, or "
-            "export it as OBJ.");
+            "The coordinates are in single precision and reach 1e+03, where one step is "
+            "6.1e-05: 4.3e-05 of the size of the mesh. Move the mesh to the origin in its program "
+            "or export it as OBJ.");
 }
 
-TEST(ReadStl, RefusesABinaryFileWhoseStepsHideItsShape) {
+TEST(ReadStl, RefusesABinaryFileWithTooCoarseSteps) {
   EXPECT_EQ(refusal("farther.stl", binary_triangle(4e6)).substr(0, 84),
-            "farther.stl: Its coordinates are in single precision and reach 4e+06, where their st");
+            "farther.stl: The coordinates are in single precision and reach 4e+06, where one step");
 }
 
-TEST(LoadMesh, ReadsAFileAsWhatItsContentsAre) {
+TEST(LoadMesh, ReadsAFileByItsContents) {
   const struct {
     const char* name;
     const char* source;
@@ -151,7 +151,7 @@ TEST(LoadMesh, ReadsAFileAsWhatItsContentsAre) {
     ASSERT_TRUE(mesh.ok()) << mesh.error().message;
     EXPECT_EQ(info.kind, now.kind);
     EXPECT_EQ(info.notes.at(0),
-              std::string("Its contents are ") + now.kind + ", so it was read as that.");
+              std::string("Its contents are ") + now.kind + ", so the extension was ignored.");
   }
 }
 
@@ -163,7 +163,7 @@ TEST(LoadMesh, RefusesPlyFilesWithShapesThatAreNotRead) {
                                 "property float z\nelement tristrips 1\nproperty list int int "
                                 "vertex_indices\n" +
                                 corners + "3 0 1 2\n")
-          .find("triangle strips (tristrips), which are not read"),
+          .find("triangle strips (tristrips), which are not supported"),
       std::string::npos);
   EXPECT_NE(refusal("flat.ply", "ply\nformat ascii 1.0\n" + vertices +
                                     "element face 1\nproperty list int int vertex_indices\n"

@@ -27,7 +27,7 @@ using Fault = MeshFault::Kind;
 using Kind = RepairChange::Kind;
 namespace fs = std::filesystem;
 
-constexpr double kSize = 0.1;    // m, as the objects of a scene
+constexpr double kSize = 0.1;    // m, like the objects of a scene
 constexpr double kCrack = 1e-6;  // m [PHYSICS 7, case 24]
 
 std::size_t count(const RepairedMesh& repaired, Kind kind) {
@@ -48,7 +48,7 @@ TriangleMesh good() {
   return support::bumpy_sphere(3, kSize / 2, 0.2, 6);
 }
 
-// Every triangle with corners of its own, each moved by up to `apart`.
+// Every triangle with its own corners, each moved by up to `apart`.
 TriangleMesh soup(const TriangleMesh& mesh, double apart) {
   support::Random random(3);
   TriangleMesh torn;
@@ -63,7 +63,7 @@ TriangleMesh soup(const TriangleMesh& mesh, double apart) {
   return torn;
 }
 
-// Gives one side of an edge a vertex in its middle: two triangles against one.
+// Gives one side of an edge a vertex in its middle: two triangles next to one.
 TriangleMesh with_t_junction(TriangleMesh mesh, double apart) {
   const auto [a, b, c] = mesh.triangles[0];
   const Vector3d middle =
@@ -75,8 +75,8 @@ TriangleMesh with_t_junction(TriangleMesh mesh, double apart) {
   return mesh;
 }
 
-// Presses into the mesh from all around; returns how often a tip that is inside touched nothing, or
-// anything was not finite.
+// Presses into the mesh from all around. Returns how often a tip inside had no contact, or a result
+// was not finite.
 int fall_throughs(const TriangleMesh& mesh) {
   auto contact = MeshContact::build(mesh);
   if (!contact) {
@@ -129,7 +129,7 @@ TEST(RepairMesh, WeldsOnlyWithinTheTolerance) {
   }
   EXPECT_LE(moved, kCrack);
   EXPECT_GT(moved, 0);
-  // Beyond the tolerance, or without it, nothing is guessed.
+  // Beyond the tolerance, or without one, a repair does not guess.
   EXPECT_FALSE(check_mesh(repair_mesh(soup(good(), 1e-4)).mesh).touchable());
   EXPECT_EQ(count(repair_mesh(torn, {.weld = false}), Kind::kWeldedVertex), 0u);
   EXPECT_EQ(count(repair_mesh(torn, {.tolerance = 0}), Kind::kWeldedVertex), 0u);
@@ -151,7 +151,7 @@ TEST(RepairMesh, GivesTheSameAnswerAtEveryScale) {
   }
 }
 
-TEST(RepairMesh, DropsWhatIsBrokenFlatOrDoubledAndTellsWhere) {
+TEST(RepairMesh, DropsAndReportsBrokenFlatAndDoubleTriangles) {
   TriangleMesh mesh = good();
   const auto whole = mesh.triangles;
   const auto nowhere =
@@ -170,7 +170,7 @@ TEST(RepairMesh, DropsWhatIsBrokenFlatOrDoubledAndTellsWhere) {
   EXPECT_EQ(repaired.mesh.triangles, whole);
   EXPECT_EQ(repaired.changes[0].where, "triangle " + std::to_string(whole.size()));
   EXPECT_EQ(describe(repaired.changes[1]).find("1 triangle with no area was dropped"), 0u);
-  // A repair that may drop nothing leaves them, and falls over none of them.
+  // A repair that may drop nothing keeps them and does not fail on them.
   const RepairedMesh kept = repair_mesh(mesh, {.drop = false});
   EXPECT_EQ(kept.mesh.triangles.size(), mesh.triangles.size());
 }
@@ -202,7 +202,7 @@ TEST(RepairMesh, GivesPartsThatShareAVertexOneEach) {
   const RepairedMesh repaired = repair_mesh(mesh);
   EXPECT_EQ(count(repaired, Kind::kSplitVertex), 1u);
   EXPECT_TRUE(check_mesh(repaired.mesh).touchable());
-  // Written and read again they stay apart, though loading joins equal places.
+  // After writing and reading they are still separate, although loading merges equal positions.
   const fs::path file = support::scratch_folder() / "split.off";
   ASSERT_TRUE(save_mesh(repaired.mesh, file).ok());
   const auto loaded = load_mesh(file);
@@ -211,8 +211,8 @@ TEST(RepairMesh, GivesPartsThatShareAVertexOneEach) {
   EXPECT_EQ(loaded->triangles, repaired.mesh.triangles);
 }
 
-TEST(SaveMesh, SaysWhyItCannotWrite) {
-  EXPECT_NE(save_mesh(good(), "mesh.stl").error().message.find("end in .off"), std::string::npos);
+TEST(SaveMesh, ReportsWhyItCannotWrite) {
+  EXPECT_NE(save_mesh(good(), "mesh.stl").error().message.find("ends in .off"), std::string::npos);
   EXPECT_NE(save_mesh(good(), "/no_such_folder/a.off").error().message.find("cannot be written"),
             std::string::npos);
 }
@@ -236,8 +236,8 @@ TEST(CheckMesh, ListsThePlacesOfFaultsUpToABound) {
   EXPECT_EQ(many.faults[0].places.size(), kPlacesMax);
 }
 
-// Hard case 24 [PHYSICS 7]: a fault is told on loading, and nothing falls through what a repair
-// promises to mend.
+// Hard case 24 [PHYSICS 7]: a fault is reported on loading, and no tip falls through a repaired
+// mesh.
 TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
   TriangleMesh crack = good();
   const auto doubled = support::add_vertex(crack, crack.vertices[9] + Vector3d(0, 0, kCrack));
@@ -268,7 +268,7 @@ TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
         Case{"crack of 1 um", crack, true, "has a hole"},
         Case{"duplicate vertices", soup(good(), 0), true, "has a hole"},
         Case{"repeated triangle", repeated, true, "repeats another one"},
-        Case{"flipped face", flipped, false, "1 triangle was turned round"}}) {
+        Case{"flipped face", flipped, false, "1 triangle was reversed"}}) {
     const auto loaded = ContactMesh::build(now.mesh);
     EXPECT_EQ(!loaded.ok(), now.refused) << now.name;
     const std::string told = loaded ? describe(loaded->orientation()) : loaded.error().message;
@@ -283,8 +283,8 @@ TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
     fallen += through;
   }
   support::record_hard_case(24, "T-junctions, crack, doubled vertices and triangle, flipped face",
-                            "== faults told on loading", told_of, 6, "1");
-  support::record_hard_case(24, "the same, mended: tip pressed on it at random",
+                            "== faults reported on loading", told_of, 6, "1");
+  support::record_hard_case(24, "the same, repaired: tip pressed on it at random",
                             "== ticks fallen through or not finite", fallen, 0, "1");
 }
 
@@ -304,7 +304,7 @@ TEST(HardCaseBrokenMesh, FinIsRefusedAfterRepair) {
                             "== refused with the reason", refused, 2, "1");
 }
 
-TEST(RepairMesh, MendsOrLeavesNamedEveryScannedMesh) {
+TEST(RepairMesh, RepairsOrReportsEveryScannedMesh) {
   const fs::path folder = THIMBLE_MESHES;
   if (!fs::exists(folder / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";
@@ -317,7 +317,7 @@ TEST(RepairMesh, MendsOrLeavesNamedEveryScannedMesh) {
     const bool before = ContactMesh::build(*mesh).ok();
     const RepairedMesh repaired = repair_mesh(*mesh);
     const auto after = ContactMesh::build(repaired.mesh);
-    // What could be touched can be touched still.
+    // A mesh that was valid is still valid.
     EXPECT_TRUE(after.ok() || !before) << entry.path();
     mended += !before && after.ok();
     for (const MeshFault& fault : check_mesh(repaired.mesh).faults) {
@@ -325,7 +325,7 @@ TEST(RepairMesh, MendsOrLeavesNamedEveryScannedMesh) {
                   fault.kind == Fault::kFlippedEdge)
           << entry.path() << ": " << describe(fault);
     }
-    // A second repair finds no triangle left to change.
+    // A second repair has no triangle to change.
     const RepairedMesh twice = repair_mesh(repaired.mesh);
     EXPECT_EQ(twice.mesh.triangles.size(), repaired.mesh.triangles.size()) << entry.path();
     EXPECT_EQ(count(twice, Kind::kTurnedTriangle), 0u) << entry.path();

@@ -11,14 +11,14 @@
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/repair_mesh.h"
 
-// Single steps of repair_mesh and of thicken_sheets.
+// Single steps of repair_mesh and thicken_sheets.
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
 
-TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
+TEST(WeldOpenEdges, KeepsInvalidVertexNumbers) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e-9, 0, 0}, {0, 0, 1}, {0, 1, 1}};
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {-1, 99, 0}, {-7, 1'000'000'000, 3}};
@@ -28,9 +28,9 @@ TEST(WeldOpenEdges, LeavesNumbersAloneThatNameNoVertex) {
   EXPECT_EQ(mesh.triangles[3], (std::array<std::int32_t, 3>{-7, 1'000'000'000, 0}));
 }
 
-TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
+TEST(RepairMesh, SeparatesBodiesThatTouchAlongASplitEdge) {
   // Two prisms over triangles that share the edge x = y = 0, which has a vertex in its middle: at
-  // that vertex the faces of each body hang together over the parted edge alone.
+  // that vertex the faces of each body are connected only across the split edge.
   TriangleMesh mesh;
   const auto add = [&mesh](double x, double y, double z) {
     mesh.vertices.emplace_back(x, y, z);
@@ -58,11 +58,11 @@ TEST(RepairMesh, PartsTwoBodiesThatTouchAlongAnEdgeOfSeveralPieces) {
   const RepairedMesh repaired = repair_mesh(mesh);
   EXPECT_TRUE(check_mesh(repaired.mesh).touchable());
   EXPECT_EQ(repaired.mesh.triangles.size(), mesh.triangles.size());
-  EXPECT_EQ(repaired.mesh.vertices.size(), 18u);  // nine for each body
+  EXPECT_EQ(repaired.mesh.vertices.size(), 18u);  // nine per body
 }
 
-TEST(AmbiguousEdges, AreCutIntoPiecesThatKnowTheirTriangle) {
-  // Triangles that hang together at random: over some edges front and back are one at both ends.
+TEST(AmbiguousEdges, AreSplitIntoPiecesWithKnownTriangles) {
+  // Randomly connected triangles: at some edges, front and back coincide at both ends.
   support::Random random(5);
   std::size_t cuts = 0;
   for (int i = 0; i < 50; ++i) {

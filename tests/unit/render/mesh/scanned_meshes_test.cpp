@@ -98,8 +98,8 @@ TEST(ScannedMeshes, ElephantKeepsContactBelowItsSkin) {
     }
     ++in_contact;
     if (tick % 200 == 0) inside_seen += support::is_inside(mesh, p);
-    // Unless the tracker says that no cell could be had, or that another face around is nearer, the
-    // tip is in the active triangle's cell.
+    // Unless the tracker reports that no cell was found, or that another face of the fan is nearer,
+    // the tip is in the active triangle's cell.
     const TrackerCounters& now = contact.counters();
     const bool settled = now.cycles != counters.cycles || now.long_walks != counters.long_walks ||
                          now.found_near != counters.found_near ||

@@ -37,7 +37,7 @@ TEST(VertexNormals, DoNotDependOnHowFlatGroundIsCutUp) {
   }
 }
 
-TEST(VertexNormals, ComeCloserToATorusWithTheSquareOfTheEdgeLength) {
+TEST(VertexNormals, ErrorOnATorusFallsWithTheSquaredEdge) {
   const support::TorusSurface surface{0.05, 0.02};
   double before = 0;
   for (const int fine : {1, 2, 4}) {
@@ -56,7 +56,7 @@ TEST(VertexNormals, ComeCloserToATorusWithTheSquareOfTheEdgeLength) {
   EXPECT_LT(before, 1e-3);
 }
 
-TEST(SmoothNormals, KeepTheFacesOfABoxSharpToTheBit) {
+TEST(SmoothNormals, BoxFacesKeepTheirExactNormals) {
   const ContactMesh mesh = prepared_mesh(support::box({0.01, 0.02, 0.03}));
   const SmoothNormals normals(mesh);
   int creases = 0;
@@ -66,10 +66,10 @@ TEST(SmoothNormals, KeepTheFacesOfABoxSharpToTheBit) {
       creases += normals.crease(t, k);
     }
   }
-  EXPECT_EQ(creases, 24);  // 12 edges, each seen from both sides
+  EXPECT_EQ(creases, 24);  // 12 edges, each counted from both sides
 }
 
-TEST(SmoothNormals, AreTheSameFromBothSidesOfAnEdgeThatIsNoCrease) {
+TEST(SmoothNormals, AgreeOnBothSidesOfASmoothEdge) {
   int smooth = 0;
   int creases = 0;
   for (const TriangleMesh& shape :
@@ -139,8 +139,8 @@ TEST(SmoothNormals, FittedNormalsAreExactOnFlatGround) {
   }
 }
 
-TEST(SmoothNormals, ThatAreFittedLeanAwayFromNoFaceOfANeedle) {
-  // Points of a needle are no paraboloid: there the mean of the faces must stand.
+TEST(SmoothNormals, FittedNormalsFaceAllFacesOfANeedle) {
+  // The vertices of a needle are not a paraboloid: there the mean of the faces must be used.
   const ContactMesh mesh = prepared_mesh(support::needle(64, 0.05, 0.002));
   const SmoothNormals fitted(mesh, std::numbers::pi);
   const SmoothNormals angle(mesh, std::numbers::pi, NormalWeights::kAngle);

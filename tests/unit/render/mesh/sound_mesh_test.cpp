@@ -15,8 +15,8 @@
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"
 
-// Large meshes are looked at on a thread of their own while contact is built as if they were sound:
-// what is wrong with them must be told all the same, and by every way of contact alike.
+// Large meshes are checked on another thread while contact is built as if they were valid. Their
+// faults must still be reported, and in the same way by every kind of contact.
 
 namespace thimble::render {
 namespace {
@@ -39,7 +39,7 @@ std::string refusal(const TriangleMesh& mesh, TrackerChoice tracker) {
   return touch ? "" : touch.error().message;
 }
 
-TEST(SoundMesh, TellsTheSameOfABrokenMeshWhicheverWayItIsTouched) {
+TEST(SoundMesh, ReportsTheSameFaultForEveryTracker) {
   TriangleMesh hole = ball(), beyond = ball(), nowhere = ball(), doubled = ball(), empty;
   hole.triangles.erase(hole.triangles.begin() + 2000);
   beyond.triangles[3000][1] = 1 << 30;
@@ -55,7 +55,7 @@ TEST(SoundMesh, TellsTheSameOfABrokenMeshWhicheverWayItIsTouched) {
   }
 }
 
-TEST(SoundMesh, TurnsALargeMeshThatIsInsideOutForEveryWayOfContact) {
+TEST(SoundMesh, OrientsALargeInsideOutMeshForEveryTracker) {
   const TriangleMesh wrong = inside_out(ball());
   ASSERT_TRUE(look_at_mesh(wrong, true));
   EXPECT_TRUE(look_at_mesh(wrong, true)->turned);
@@ -95,7 +95,7 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   return both;
 }
 
-TEST(SurelySound, KnowsSingleBodiesAtOnce) {
+TEST(SurelySound, AcceptsSingleBodies) {
   for (const TriangleMesh& mesh :
        {ball(), support::bumpy_sphere(3, 0.05, 0.3, 6), support::wedge(0.08, 0.1, 0.1),
         support::needle(64, 0.1, 0.01), support::plate(0.1, 0.0002, 3),
@@ -105,7 +105,7 @@ TEST(SurelySound, KnowsSingleBodiesAtOnce) {
   }
 }
 
-TEST(SurelySound, SaysNothingOfWhatIsWrongOrLessPlain) {
+TEST(SurelySound, AcceptsNoFaultyOrComplexMesh) {
   const TriangleMesh sound = support::icosphere(2, 0.05);
   TriangleMesh hole = sound, flipped = sound, flat = sound, nowhere = sound, pinched = sound;
   hole.triangles.pop_back();
@@ -113,7 +113,7 @@ TEST(SurelySound, SaysNothingOfWhatIsWrongOrLessPlain) {
   flat.vertices[static_cast<std::size_t>(flat.triangles[3][0])] =
       flat.vertices[static_cast<std::size_t>(flat.triangles[3][1])];
   nowhere.vertices.push_back({0, 0, std::numeric_limits<double>::quiet_NaN()});
-  // Two vertices far from each other become one: two fans there, and one component still.
+  // Two distant vertices become one: two fans there, but still one component.
   for (auto& triangle : pinched.triangles) std::replace(triangle.begin(), triangle.end(), 20, 140);
   TriangleMesh pillow{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
   for (const TriangleMesh* mesh : {&hole, &flipped, &flat, &nowhere, &pinched, &pillow}) {
@@ -128,9 +128,9 @@ TEST(SurelySound, SaysNothingOfWhatIsWrongOrLessPlain) {
   EXPECT_TRUE(look_at_mesh(joined(sound, away), true));
 }
 
-// Any damage that it does not see would be felt: it must be one that check_mesh does not see
-// either.
-TEST(SurelySound, NeverCallsWhatCheckMeshRefusesSound) {
+// Undetected damage would be felt: the quick check may miss only faults that check_mesh misses as
+// well.
+TEST(SurelySound, AcceptsNoMeshThatCheckMeshRefuses) {
   support::Random random(5);
   const auto below = [&random](std::size_t count) {
     return static_cast<std::size_t>(random.bits() % count);
@@ -161,7 +161,7 @@ TEST(SurelySound, NeverCallsWhatCheckMeshRefusesSound) {
         break;
       }
       case 4:
-        // Turned inside out by pulling vertices through.
+        // Turned inside out by moving vertices through the mesh.
         for (Eigen::Vector3d& p : mesh.vertices) p.z() *= random.uniform(-1, 1) > 0 ? 1 : -1;
         break;
       case 5:

@@ -62,7 +62,7 @@ TriangleMesh moebius_strip(int pieces) {
   return mesh;
 }
 
-// Half planes about one edge.
+// Half planes that share one edge.
 TriangleMesh book(int pages) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, -0.05}, {0, 0, 0.05}};
@@ -72,7 +72,7 @@ TriangleMesh book(int pages) {
     for (const double z : {-0.05, 0.05}) {
       mesh.vertices.emplace_back(0.05 * std::cos(a), 0.05 * std::sin(a), z);
     }
-    // Wound as it happens.
+    // Random orientation.
     if (i % 2 == 0) {
       mesh.triangles.push_back({0, first, first + 1});
       mesh.triangles.push_back({0, first + 1, 1});
@@ -103,20 +103,20 @@ TEST(ThickenSheets, MakesAThinBodyOfASheet) {
   EXPECT_DOUBLE_EQ(thick.report.thinnest, kThickness);
 }
 
-TEST(ThickenSheets, ClosesWhatHasOneSideOrManyPages) {
+TEST(ThickenSheets, ClosesOneSidedAndMultiplePageSheets) {
   expect_closed(moebius_strip(40), "Moebius strip");
   for (int pages = 2; pages < 8; ++pages) expect_closed(book(pages), std::to_string(pages));
   TriangleMesh triangle;
   triangle.vertices = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}};
   triangle.triangles = {{0, 1, 2}};
   expect_closed(triangle, "triangle");
-  // A fin on a body makes both a sheet.
+  // A fin on a body makes a sheet of both.
   TriangleMesh fin = support::box(Vector3d::Constant(0.05));
   fin.triangles.push_back({0, 1, support::add_vertex(fin, {0, -0.1, -0.1})});
   expect_closed(fin, "box with a fin");
 }
 
-TEST(ThickenSheets, LeavesClosedPartsAsTheyAre) {
+TEST(ThickenSheets, DoesNotChangeClosedParts) {
   TriangleMesh mesh = support::icosphere(2, 0.05);
   const std::size_t closed = mesh.triangles.size();
   const TriangleMesh beside = sheet(0.1, 2);
@@ -131,8 +131,8 @@ TEST(ThickenSheets, LeavesClosedPartsAsTheyAre) {
   for (std::size_t t = 0; t < closed; ++t) EXPECT_EQ(thick.mesh.triangles[t], mesh.triangles[t]);
 }
 
-// Whatever triangles over few vertices: edges of many triangles, and fans that meet at corners.
-TEST(ThickenSheets, ClosesTrianglesThatHangTogetherAtRandom) {
+// Random triangles over few vertices: edges of many triangles, and fans that meet at corners.
+TEST(ThickenSheets, ClosesRandomlyConnectedTriangles) {
   support::Random random(31);
   for (int round = 0; round < 300; ++round) {
     TriangleMesh mesh;
@@ -155,8 +155,8 @@ TEST(ThickenSheets, ClosesTrianglesThatHangTogetherAtRandom) {
   }
 }
 
-// The same on a lattice, where triangles lie in one plane and on top of each other.
-TEST(ThickenSheets, ClosesTrianglesThatLieOnTopOfEachOther) {
+// The same on a lattice, where triangles are coplanar and on top of each other.
+TEST(ThickenSheets, ClosesCoplanarOverlappingTriangles) {
   support::Random random(32);
   for (int round = 0; round < 300; ++round) {
     TriangleMesh mesh;
@@ -175,7 +175,7 @@ TEST(ThickenSheets, ClosesTrianglesThatLieOnTopOfEachOther) {
   }
 }
 
-TEST(ThickenSheets, MakesASheetThinnerWhereItBendsTooSharply) {
+TEST(ThickenSheets, SharpBendsMakeASheetThinner) {
   TriangleMesh pipe = sheet(0.06, 24);  // half a pipe of 3 mm, in a sheet of 10 mm
   for (Vector3d& p : pipe.vertices) {
     const double a = std::numbers::pi * (p.x() / 0.06 + 0.5);
@@ -185,7 +185,7 @@ TEST(ThickenSheets, MakesASheetThinnerWhereItBendsTooSharply) {
   EXPECT_TRUE(check_mesh(thick.mesh).touchable());
   EXPECT_LT(thick.report.thinnest, 0.01);
   EXPECT_GT(thick.report.thinnest, 0.0005);
-  // No face of it looks the other way: fronts come first, backs beside them.
+  // No face has the opposite direction: fronts come first, then their backs.
   for (std::size_t t = 0; t < pipe.triangles.size(); ++t) {
     const auto normal = [](const TriangleMesh& mesh, std::size_t i) {
       const auto& [a, b, c] = mesh.triangles[i];
@@ -215,7 +215,7 @@ TEST(ThickenSheets, HoldsADeepTipFromBothSides) {
     move(*contact, p);
     double deepest = 0;
     for (int tick = 0; tick < 20000; ++tick) {
-      // Wanders below the sheet, 40 mm deep at most and 10 mm or more from its rim.
+      // Wanders below the sheet, at most 40 mm deep and at least 10 mm from its rim.
       Vector3d to = p + random.in_box(0.001) - Vector3d(0, 0, side * 0.0001);
       to = to.cwiseMax(Vector3d(-0.04, -0.04, -0.04)).cwiseMin(Vector3d(0.04, 0.04, 0.04));
       if (side * to.z() > 0) to.z() = 0;
@@ -230,13 +230,13 @@ TEST(ThickenSheets, HoldsADeepTipFromBothSides) {
   }
 }
 
-TEST(ThickenSheets, GivesNoEnergyToAHandThatComesAndGoes) {
+TEST(ThickenSheets, RepeatedEntryGivesNoEnergyToTheHand) {
   const ThickenedMesh thick = thicken_sheets(sheet(0.1, 6), kThickness);
   auto contact = GodObjectContact::build(thick.mesh);
   ASSERT_TRUE(contact.ok());
   support::Random random(17);
   for (int round = 0; round < 100; ++round) {
-    // A closed path: in on one side, about below the sheet and over its rim, and out.
+    // A closed path: in on one side, around below the sheet, over its rim, and out.
     std::vector<Vector3d> corners{{0, 0, 0.02}};
     for (int i = 0; i < 6; ++i) corners.push_back(random.in_box(0.06));
     corners.emplace_back(0.2, 0, 0.02);
@@ -255,7 +255,7 @@ TEST(ThickenSheets, GivesNoEnergyToAHandThatComesAndGoes) {
         p = to;
       }
     }
-    EXPECT_LT(work, 1e-5) << round;  // J given to the hand; the spring stores some 1 J
+    EXPECT_LT(work, 1e-5) << round;  // J returned to the hand; the spring stores about 1 J
   }
 }
 

@@ -53,7 +53,7 @@ TEST(TouchingParts, FindsFlushPartsInSurveyCoordinates) {
 
 TEST(TouchingParts, FindsNothingBetweenPartsWithAGap) {
   EXPECT_EQ(parts_of_boxes({2.001, 0.4, 0.3}).pairs, 0U);
-  // Boxes of the parts meet, the parts do not.
+  // The boxes of the parts overlap, the parts do not.
   TriangleMesh balls = support::icosphere(3, 1);
   const auto first = static_cast<std::int32_t>(balls.vertices.size());
   const TriangleMesh other = balls;
@@ -85,7 +85,7 @@ TEST(TouchingParts, CountsEveryPairOnce) {
 }
 
 TEST(TouchingParts, AgreesWithEveryPairOfTriangles) {
-  // Small boxes, some of which touch; what two boxes on axes do is known.
+  // Small boxes, some of which touch; the result for two axis-aligned boxes is known.
   std::vector<Vector3d> centers;
   auto seed = static_cast<std::uint32_t>(support::seed_of(5));
   const auto next = [&seed] {
@@ -107,7 +107,7 @@ TEST(TouchingParts, AgreesWithEveryPairOfTriangles) {
   EXPECT_EQ(find_touching_parts(mesh).pairs, wanted);
 }
 
-TEST(TouchingParts, TakesAnyMesh) {
+TEST(TouchingParts, AcceptsAnyMesh) {
   TriangleMesh mesh;
   add_box(mesh, {0, 0, 0}, {1, 1, 1});
   add_box(mesh, {0.5, 0, 0}, {1, 1, 1});
@@ -124,7 +124,7 @@ TEST(TouchingParts, AreDescribedWithAPlaceAndARemedy) {
   const std::string text = describe(find_touching_parts(*mesh));
   EXPECT_EQ(text.substr(0, 70),
             "1 pair of parts overlap or lie flush against each other (first: triang");
-  EXPECT_NE(text.find("Join them to one body in a mesh editor."), std::string::npos);
+  EXPECT_NE(text.find("Join them into one body in a mesh editor."), std::string::npos);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ LocalModel plane(double stiffness = 800, std::int64_t time_ns = 0) {
   return model;
 }
 
-/// Moves a tip tick by tick over what is felt, and keeps the book of true springs.
+/// Moves a tip tick by tick and sums up the work, as true springs would give it.
 struct Tip {
   explicit Tip(const ModelTouchSettings& settings = {.stiffness_max = 2000}) {
     auto made = ModelTouch::make(slot, settings);
@@ -46,14 +46,14 @@ struct Tip {
     state.p_WT = p_W;
     const Vector3d before = felt.f_T_W;
     felt = touch->update(state);
-    // What a hand got out of the force on this way, the mean of both ends: exact for springs.
+    // Work of the force on the hand along this path, with the mean of both ends: exact for springs.
     given += 0.5 * (before + felt.f_T_W).dot(way);
     most_given = std::max(most_given, given);
     change = (felt.f_T_W - before).norm();
     begun = true;
     return felt;
   }
-  /// Lets `ticks` pass at the same place.
+  /// Advances `ticks` ticks at the same place.
   const driver::ForceCommand& stay(int ticks) {
     for (int i = 0; i < ticks; ++i) to(state.p_WT);
     return felt;
@@ -71,7 +71,7 @@ Vector3d at_depth(double depth) {
   return {0, 0, -depth};
 }
 
-TEST(ModelTouch, FeelsAPlaneAsTheSpringThatItIs) {
+TEST(ModelTouch, PlaneFeelsLikeItsSpring) {
   Tip tip;
   ASSERT_TRUE(tip.slot.publish(plane()));
   EXPECT_EQ(tip.to(at_depth(-0.001)).f_T_W, Vector3d::Zero());
@@ -87,7 +87,7 @@ TEST(ModelTouch, FeelsAPlaneAsTheSpringThatItIs) {
   EXPECT_FALSE(tip.felt.touch.in_contact);
 }
 
-TEST(ModelTouch, DampsWhatGoesInAndNeverHoldsWhatLeaves) {
+TEST(ModelTouch, DampsEntryOnly) {
   Tip tip;
   LocalModel model = plane();
   model.damping = 2;
@@ -95,13 +95,13 @@ TEST(ModelTouch, DampsWhatGoesInAndNeverHoldsWhatLeaves) {
   tip.to(at_depth(-0.001));
   tip.state.v_WT = {0, 0, -0.1};
   EXPECT_NEAR(tip.to(at_depth(0.001)).f_T_W.z(), 0.8 + 0.2, 1e-9);
-  tip.state.v_WT = {0.1, 0, 0};  // along the plane: nothing
+  tip.state.v_WT = {0.1, 0, 0};  // along the plane: no force
   EXPECT_NEAR(tip.to(at_depth(0.001)).f_T_W.z(), 0.8, 1e-9);
   tip.state.v_WT = {0, 0, 1};
   EXPECT_EQ(tip.to(at_depth(0.001)).f_T_W, Vector3d::Zero());
 }
 
-/// Draws a model near a place: springs of any strength in any direction, one to three of them.
+/// Returns a random model near a place: one to three springs of any strength and direction.
 LocalModel any_model(support::Random& random, const Vector3d& near_W, std::int64_t time_ns) {
   const auto direction = [&random] {
     return Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}
@@ -123,9 +123,9 @@ LocalModel any_model(support::Random& random, const Vector3d& near_W, std::int64
   return model;
 }
 
-TEST(ModelTouch, ForceChangesLittleWhateverModelsCome) {
-  // The tip rests, so that all change is on the way to models, which need have nothing to do with
-  // each other. Begin and end of a touch are no jump either.
+TEST(ModelTouch, ForceChangeIsBoundedForAnyModels) {
+  // The tip rests, so that all changes are due to new models, which may be unrelated. The begin and
+  // end of a touch are not jumps either.
   support::Random random(1);
   Tip tip({.stiffness_max = 2000, .power = 1});
   for (int k = 0; k < 20'000; ++k) {
@@ -139,9 +139,9 @@ TEST(ModelTouch, ForceChangesLittleWhateverModelsCome) {
   EXPECT_GT(tip.touch->counters().taken, 1000u);
 }
 
-TEST(ModelTouch, GivesNoEnergyWhateverModelsCome) {
-  // Around closed ways through models that know nothing of each other: an honest spring each, but
-  // together a machine that would give energy for ever, were there no account.
+TEST(ModelTouch, GivesNoEnergyForAnyModels) {
+  // Around closed paths through unrelated models: each is a valid spring, but together they would
+  // generate energy without limit if there were no account.
   double most = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     support::Random random(support::seed_of(seed));
@@ -159,8 +159,8 @@ TEST(ModelTouch, GivesNoEnergyWhateverModelsCome) {
   EXPECT_LE(most, 1e-6);
 }
 
-TEST(ModelTouch, GivesBackNoMoreThanAnySurfaceTook) {
-  // In and out of surfaces at many speeds and phases: what comes out is what went in, or less.
+TEST(ModelTouch, ReturnsNoMoreEnergyThanItTook) {
+  // In and out of surfaces at many speeds and phases: the work returned is at most the work put in.
   double least_share = 1;
   for (const auto feel :
        {SlowSurface::Feel::kEven, SlowSurface::Feel::kStiffening, SlowSurface::Feel::kSoftening}) {
@@ -186,27 +186,27 @@ TEST(ModelTouch, GivesBackNoMoreThanAnySurfaceTook) {
           taken = std::max(taken, -given);
           before = force;
         }
-        // The book of this test is one tick coarse where a model comes.
+        // This test's sum has an error of one tick when a model arrives.
         EXPECT_LE(given, 0.003 * taken) << static_cast<int>(feel) << " " << speed << " " << phase;
         least_share = std::min(least_share, 1 + given / taken);
       }
     }
   }
-  EXPECT_GT(least_share, 0.8);  // and no more is lost than lateness must cost
+  EXPECT_GT(least_share, 0.8);  // and lateness causes no additional loss
 }
 
-TEST(ModelTouch, BeginsWhereTheTipIsIfASurfaceComesUpBehindIt) {
+TEST(ModelTouch, SurfaceBehindTheTipBeginsAtTheTip) {
   Tip tip({.stiffness_max = 2000, .power = 0});
   tip.to(at_depth(0.002));
   ASSERT_TRUE(tip.slot.publish(plane()));
-  // Nothing is given to who did nothing: not a bit, for as long as it takes.
+  // A hand that does nothing receives no force at any time.
   EXPECT_EQ(tip.stay(100).f_T_W, Vector3d::Zero());
-  // Pressed on, it pushes back from there; let out, it follows, and pushes from the outermost
-  // place.
+  // A tip that presses on is pushed back from there. A tip that moves out is followed, and then
+  // pushed from the outermost place.
   EXPECT_NEAR(tip.to(at_depth(0.0025)).f_T_W.z(), 800 * 0.0005, 1e-6);
   EXPECT_EQ(tip.to(at_depth(0.001)).f_T_W, Vector3d::Zero());
   EXPECT_NEAR(tip.to(at_depth(0.002)).f_T_W.z(), 800 * 0.001, 1e-6);
-  // With a little power it comes back to where it belongs in time.
+  // With a small power it returns to the model's surface over time.
   Tip helped({.stiffness_max = 2000, .power = 0.001});
   helped.to(at_depth(0.002));
   for (int k = 0; k < 4000; ++k) {
@@ -218,7 +218,7 @@ TEST(ModelTouch, BeginsWhereTheTipIsIfASurfaceComesUpBehindIt) {
   EXPECT_NEAR(helped.felt.f_T_W.z(), 1.6, 0.01);
 }
 
-TEST(ModelTouch, HoldsAModelThenLetsItFadeAndSaysSo) {
+TEST(ModelTouch, HoldsThenFadesAModelAndReportsIt) {
   Tip tip;
   EXPECT_EQ(tip.touch->age(), ModelAge::kNothing);
   ASSERT_TRUE(tip.slot.publish(plane()));
@@ -242,7 +242,7 @@ TEST(ModelTouch, HoldsAModelThenLetsItFadeAndSaysSo) {
   EXPECT_EQ(tip.touch->counters().faded, 1u);
   EXPECT_EQ(name(tip.touch->age()), "silent");
   EXPECT_EQ(tip.to(at_depth(0.005)).f_T_W, Vector3d::Zero());
-  // It speaks again: nobody is thrown out.
+  // Models arrive again: the tip is not thrown out.
   ASSERT_TRUE(tip.slot.publish(plane(800, tip.state.time_ns)));
   EXPECT_LE(tip.stay(1).f_T_W.z(), 0.0031);
   EXPECT_EQ(tip.touch->age(), ModelAge::kFollowed);
@@ -259,7 +259,7 @@ TEST(ModelTouch, LimitsAModelThatIsTooStiff) {
   EXPECT_EQ(tip.touch->counters().softened, 1u);
 }
 
-TEST(ModelTouch, RefusesWhatIsNoModelAndSaysWhy) {
+TEST(ModelTouch, RefusesInvalidModelsWithAReason) {
   struct Case {
     ModelFlaw flaw;
     const char* word;
@@ -292,11 +292,11 @@ TEST(ModelTouch, RefusesWhatIsNoModelAndSaysWhy) {
   }
   EXPECT_EQ(slot.count(), 0u);
   EXPECT_TRUE(slot.publish(plane()));
-  LocalModel nothing;  // nothing is near: that is a model, too
+  LocalModel nothing;  // nothing is near: also a model
   EXPECT_TRUE(slot.publish(nothing));
 }
 
-TEST(ModelTouch, RefusesTimesThatHaveNotComeOrAreOver) {
+TEST(ModelTouch, RefusesFutureAndPastTimes) {
   Tip tip;
   tip.to(at_depth(-0.001));
   tip.stay(100);
@@ -308,12 +308,12 @@ TEST(ModelTouch, RefusesTimesThatHaveNotComeOrAreOver) {
   tip.to(at_depth(-0.001));
   tip.to(at_depth(0.001));
   EXPECT_EQ(tip.touch->counters().taken, 1u);
-  ASSERT_TRUE(tip.slot.publish(plane(100, 40'000'000)));  // overtaken by a newer one
+  ASSERT_TRUE(tip.slot.publish(plane(100, 40'000'000)));  // superseded by a newer one
   EXPECT_NEAR(tip.to(at_depth(0.002)).f_T_W.z(), 1.6, 1e-9);
   EXPECT_EQ(tip.touch->counters().refused, 2u);
 }
 
-TEST(ModelTouch, ForgetsNothingOverATipThatIsNowhere) {
+TEST(ModelTouch, KeepsItsStateOverAnInvalidTip) {
   Tip tip;
   ASSERT_TRUE(tip.slot.publish(plane()));
   tip.to(at_depth(-0.001));
@@ -327,7 +327,7 @@ TEST(ModelTouch, ForgetsNothingOverATipThatIsNowhere) {
   EXPECT_NEAR(tip.to(at_depth(0.0015)).f_T_W.z(), 1.2, 1e-9);
 }
 
-TEST(ModelTouch, RefusesSettingsThatMeanNothing) {
+TEST(ModelTouch, RefusesInvalidSettings) {
   ModelSlot slot;
   const auto refused = [&slot](ModelTouchSettings settings, const std::string& word) {
     const auto made = ModelTouch::make(slot, settings);
@@ -346,7 +346,7 @@ TEST(ModelTouch, RefusesSettingsThatMeanNothing) {
   refused({.stiffness_max = 1000, .reserve = -1}, "reserve");
 }
 
-TEST(ModelTouch, AsksTheHeapForNothing) {
+TEST(ModelTouch, DoesNotAllocate) {
   Tip tip;
   support::Random random(3);
   int calls = 0;
@@ -360,9 +360,9 @@ TEST(ModelTouch, AsksTheHeapForNothing) {
   EXPECT_EQ(calls, 0);
 }
 
-TEST(ModelTouch, FollowsAnotherThreadWithoutATornModel) {
-  // The writer's models are planes whose force and stiffness go together: a mixture of two would
-  // have its surface elsewhere.
+TEST(ModelTouch, ModelsOfAnotherThreadAreNeverTorn) {
+  // The writer's models are planes whose force and stiffness match: a mixture of two would have
+  // another surface.
   ModelSlot slot;
   std::atomic<bool> over{false};
   std::thread writer([&] {

@@ -25,10 +25,10 @@ double side_of(const BoxNode& node, std::size_t side, std::size_t child) {
          static_cast<double>(node.scale()) * node.sides[side][child];
 }
 
-TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
+TEST(BoxNode, TightlyContainsItsChildren) {
   support::Random random(1);
   for (int round = 0; round < 2000; ++round) {
-    // From a point to the whole lattice, anywhere on it.
+    // From a point to the whole lattice, at any place.
     const double size = std::exp2(random.uniform(-2, 30));
     const Vector3d middle = random.in_box(0x1p30 - size);
     std::array<LatticeAabb, BoxNode::kChildrenMax> boxes;
@@ -47,7 +47,7 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       longest = std::max(longest, whole.max[axis] - whole.min[axis]);
     }
-    // 1/127 of the node's size for each side, and what a float of 2^30 cannot tell.
+    // 1/127 of the node's size per side, and the rounding of a float of 2^30.
     const double room = longest / 127 + 130;
     EXPECT_EQ(node.children(), (1u << count) - 1);
     EXPECT_GE(node.scale(), 1);
@@ -73,9 +73,9 @@ TEST(BoxNode, HoldsItsChildrensBoxesAndLittleMore) {
   }
 }
 
-// Every thing is reached from the root by the names alone, once, at any size; and a box that
-// changes leaves the tree that would have been built.
-TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
+// Every item is reachable from the root exactly once, at any size; and a changed box leaves the
+// tree that would have been built.
+TEST(TreeNodes, ContainEveryItemOnceWithinTheirBoxes) {
   support::Random random(3);
   for (const std::size_t things : {1U, 2U, 7U, 8U, 9U, 63U, 64U, 65U, 512U, 1000U, 4097U}) {
     std::vector<LatticeAabb> boxes(things);
@@ -133,8 +133,8 @@ TEST(TreeNodes, HoldEveryThingOnceInBoxesAboveIt) {
   }
 }
 
-// Eight packed triangles, 64 and so on that follow each other lie about in a square, from the first
-// on: the nodes of the tree are no larger than they must be.
+// Groups of 8, 64 and more consecutive packed triangles fill approximately a square, so that the
+// nodes of the tree are as small as possible.
 TEST(PackedSurface, KeepsEightsTogether) {
   const PackedSurface surface =
       PackedSurface::build(support::bumpy_sphere(5, 0.05, 0.1, 4)).value();
@@ -158,13 +158,13 @@ TEST(PackedSurface, KeepsEightsTogether) {
       sizes += (high - low).norm();
     }
     const double side = std::sqrt(area * static_cast<double>(block) / static_cast<double>(count));
-    // The diagonal of such a square is 1.41, and triangles stand out of it.
+    // The diagonal of such a square is 1.41, and triangles extend beyond it.
     EXPECT_LE(sizes / static_cast<double>(count / block), 2.2 * side) << block;
   }
 }
 
-// Trivially so where the processor has no wide lanes.
-TEST(WideLanes, GiveTheAnswersOfPlainOnesToTheBit) {
+// Trivially so if the processor has no wide lanes.
+TEST(WideLanes, AreBitIdenticalToPlainOnes) {
   for (const TriangleMesh& shape :
        {support::bumpy_sphere(3, 0.05, 0.3, 6), support::needle(64, 0.08, 0.01)}) {
     const PackedSurface surface = PackedSurface::build(shape).value();

@@ -17,14 +17,14 @@
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 
-// Large meshes are built on two threads. The answers are those of plain code on one.
+// Large meshes are built on two threads. The results are those of plain code on one.
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
 
-TEST(InHalves, DoesEachItemOnce) {
+TEST(InHalves, ProcessesEachItemOnce) {
   for (const std::size_t count : {0u, 1u, 19999u, 20000u, 20001u, 50001u}) {
     std::vector<std::atomic<int>> done(count);
     in_halves(count, [&done](std::size_t begin, std::size_t end) {
@@ -35,7 +35,7 @@ TEST(InHalves, DoesEachItemOnce) {
   }
 }
 
-// By sorting what each cut is made of.
+// Sorts the elements of each cut.
 void order_plainly(std::span<PlacedIndex> items) {
   if (items.size() <= 8) return;
   std::size_t unit = 8;
@@ -59,7 +59,7 @@ void order_plainly(std::span<PlacedIndex> items) {
 
 TEST(BlockOrder, HasTheSameBlocksAsPlainSorting) {
   support::Random random(3);
-  // Above the size from which parts are ordered beside each other, and with places that are equal.
+  // Above the size from which parts are ordered in parallel, and with equal places.
   for (const std::size_t count : {9u, 700u, 60001u}) {
     std::vector<PlacedIndex> items(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -82,9 +82,9 @@ TEST(BlockOrder, HasTheSameBlocksAsPlainSorting) {
   }
 }
 
-// What the corners of a surface without creases hold: sums of normals by angles in single
+// Corner normals of a surface without creases: sums of normals weighted by angles in single
 // precision, in the order of the packed triangles.
-TEST(PackedSurface, HasTheNormalsOfPlainSumsWhereTwoThreadsBuiltIt) {
+TEST(PackedSurface, TwoThreadsBuildTheNormalsOfPlainSums) {
   const TriangleMesh mesh = support::bumpy_sphere(6, 0.05, 0.1, 5);  // 81,920 triangles
   const auto surface = PackedSurface::build(mesh);
   ASSERT_TRUE(surface) << surface.error().message;
@@ -124,7 +124,7 @@ TEST(PackedSurface, HasTheNormalsOfPlainSumsWhereTwoThreadsBuiltIt) {
 
 TEST(PackedSurface, ReportsTheFirstFlatTriangle) {
   TriangleMesh mesh = support::icosphere(6, 0.05);
-  // Onto the middle of an edge of its own: no area left of one triangle beside it.
+  // Moves a vertex onto the midpoint of its own edge, so that a triangle has no area.
   const auto flatten = [&mesh](std::size_t t) {
     const auto [a, b, c] = mesh.triangles[t];
     mesh.vertices[static_cast<std::size_t>(c)] = mesh.vertices[static_cast<std::size_t>(a)];

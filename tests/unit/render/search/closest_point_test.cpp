@@ -23,7 +23,7 @@ TEST(ClosestPoint, EqualsThePlainAnswerInAllSevenRegions) {
   }
 }
 
-TEST(ClosestPoint, IsACornerToTheBitWhereACornerIsNearest) {
+TEST(ClosestPoint, NearestCornerIsBitIdentical) {
   const Vector3d a(0.1, 0.2, 0.3), b(1.1, 0.2, 0.3), c(0.1, 1.2, 0.3);
   EXPECT_EQ(closest_point({-1, -1, 2}, a, b, c), a);
   EXPECT_EQ(closest_point({9, 0, -2}, a, b, c), b);

@@ -1,5 +1,5 @@
-// Eight triangles at once against a segment and a nearest point: none that counts is left out, and
-// few others stay.
+// Eight triangles at once compared with a segment and a closest point: no relevant one is omitted,
+// and few others are kept.
 #include "search/eight_triangles.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ EightTriangles packed(const Eight& triangles) {
   return eight;
 }
 
-/// Eight triangles about as large as a volume, whose corners are a third as far as they may be.
+/// Eight triangles about as large as a volume, with corners within a third of the allowed distance.
 Eight drawn(support::Random& random) {
   constexpr double kSize = 1e4;
   Eight triangles;
@@ -41,7 +41,7 @@ bool crossed(const Corners& corners, const Vector3d& from, const Vector3d& to) {
   return crossing(from, to, corners[0], corners[1], corners[2]) != Crossing::kNone;
 }
 
-/// Asks about a segment, and counts what is kept beside what is crossed.
+/// Query of a segment; counts the kept triangles besides those crossed.
 struct Asked {
   int kept = 0, crossings = 0, all = 0;
 
@@ -59,7 +59,7 @@ struct Asked {
   }
 };
 
-TEST(EightTriangles, LeaveOutNoneThatASegmentCrosses) {
+TEST(EightTriangles, KeepAllThatASegmentCrosses) {
   support::Random random(1);
   Asked asked;
   for (int i = 0; i < 20000; ++i) {
@@ -70,13 +70,13 @@ TEST(EightTriangles, LeaveOutNoneThatASegmentCrosses) {
   EXPECT_GT(asked.crossings, 2000);
 }
 
-TEST(EightTriangles, LeaveOutNoneThatASegmentBarelyTouches) {
+TEST(EightTriangles, KeepAllThatASegmentBarelyTouches) {
   support::Random random(2);
   Asked asked;
   for (int i = 0; i < 20000; ++i) {
     const Eight triangles = drawn(random);
     const Corners& at = triangles[random.bits() % triangles.size()];
-    // At a corner, on an edge, or in the plane: where it goes by, begins or ends.
+    // At a corner, on an edge, or in the plane: where it passes, begins or ends.
     const double s = random.uniform(0, 1);
     const Vector3d edge = at[0] + s * (at[1] - at[0]);
     const Vector3d inside = edge + random.uniform(0, 1) * (at[2] - edge);
@@ -88,7 +88,7 @@ TEST(EightTriangles, LeaveOutNoneThatASegmentBarelyTouches) {
   EXPECT_GT(asked.crossings, 5000);
 }
 
-TEST(EightTriangles, LeaveOutNoneOfANumberThatIsWrongAsFarAsItSays) {
+TEST(EightTriangles, KeepAllWithinTheStatedErrorOfANumber) {
   support::Random random(3);
   constexpr double kWrong = 300;
   int moved_in = 0;
@@ -107,7 +107,7 @@ TEST(EightTriangles, LeaveOutNoneOfANumberThatIsWrongAsFarAsItSays) {
   EXPECT_GT(moved_in, 100);
 }
 
-TEST(EightTriangles, KeepFewThatATicksPathDoesNotCross) {
+TEST(EightTriangles, KeepFewThatAPathDoesNotCross) {
   support::Random random(4);
   Asked asked;
   for (int i = 0; i < 20000; ++i) {
@@ -120,7 +120,7 @@ TEST(EightTriangles, KeepFewThatATicksPathDoesNotCross) {
   EXPECT_LT(asked.kept, 0.004 * asked.all);
 }
 
-TEST(EightTriangles, LeaveOutNothingByNumbersThatOverflow) {
+TEST(EightTriangles, OverflowOmitsNoCrossedTriangle) {
   support::Random random(5);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (const double size : {1e15, 1e30, 1e300, kNaN}) {
@@ -134,7 +134,7 @@ TEST(EightTriangles, LeaveOutNothingByNumbersThatOverflow) {
   }
 }
 
-/// The nearest point of one of eight triangles, and which of the others are kept beside it.
+/// Closest point of one of eight triangles, and which of the others are kept.
 struct Nearest {
   Vector3d p;
   std::array<double, EightTriangles::kMost> squared;
@@ -178,7 +178,7 @@ TEST(EightTriangles, KeepEveryTriangleWithinTheBound) {
   EXPECT_GT(nearer, 50000);
 }
 
-TEST(EightTriangles, KeepFewBesideTheNearest) {
+TEST(EightTriangles, KeepFewOthersThanTheNearest) {
   support::Random random(9);
   int kept = 0, farther = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -194,7 +194,8 @@ TEST(EightTriangles, KeepFewBesideTheNearest) {
       ++farther;
     }
   }
-  // Those that reach over the plane across the way to the nearest point, but farther beside it.
+  // Those that cross the plane perpendicular to the path at the closest point, but farther to the
+  // side.
   EXPECT_LT(kept, 0.5 * farther) << kept << " of " << farther;
 }
 
@@ -215,7 +216,7 @@ TEST(EightTriangles, InexactPointKeepsNearTriangles) {
   EXPECT_GT(nearer, 20000);
 }
 
-TEST(EightTriangles, LeaveOutNothingNearByNumbersThatOverflow) {
+TEST(EightTriangles, OverflowOmitsNoNearTriangle) {
   support::Random random(8);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (const double size : {1e20, 1e30, 1e300, kNaN}) {

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// By divisions alone, as it is meant.
+// With divisions only, as defined.
 double kept_by_division(double parameter, const Vector3d& way, const Vector3d& a, const Vector3d& b,
                         const Vector3d& c) {
   double begin = 0, end = 1;
@@ -25,7 +25,7 @@ double kept_by_division(double parameter, const Vector3d& way, const Vector3d& a
   return std::max(begin, std::min(parameter, end));
 }
 
-TEST(KeptInBox, IsThatOfDivisionsToTheBit) {
+TEST(KeptInBox, IsBitIdenticalToDivision) {
   support::Random random(14);
   int kept = 0, moved = 0;
   for (int i = 0; i < 300000; ++i) {
@@ -33,7 +33,8 @@ TEST(KeptInBox, IsThatOfDivisionsToTheBit) {
     Vector3d way = random.in_box(2e6);
     if (i % 5 == 0) way[i % 3] = 0;
     double parameter = random.uniform(0, 1);
-    // Through a point of the triangle, or at a corner of its box, and the numbers beside that.
+    // Through a point of the triangle, or at a corner of its box, and the adjacent floating-point
+    // numbers.
     if (i % 2 == 0) way = ((a + b + c) / 3) / parameter;
     if (i % 4 == 1 && way[i % 3] != 0) {
       parameter = std::min({a[i % 3], b[i % 3], c[i % 3]}) / way[i % 3];
@@ -45,7 +46,7 @@ TEST(KeptInBox, IsThatOfDivisionsToTheBit) {
   }
   EXPECT_GT(kept, 100000);
   EXPECT_GT(moved, 10000);
-  // Where the division itself decides: the segment along one side of a box without width.
+  // Cases that the division itself decides: the segment along one side of a box of zero width.
   const Vector3d flat(0.1, 0.3, 0.7), side(0.1, 0.3, 0.9), way(1, 3, 8);
   for (double parameter = 0.0999; parameter < 0.1001; parameter += 1e-7) {
     ASSERT_EQ(kept_in_box(parameter, way, flat, side, flat),

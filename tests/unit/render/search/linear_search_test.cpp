@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A mesh with its search, and the points that a test wants.
+// A mesh with its search, and the points of a test.
 struct Scene {
   explicit Scene(const TriangleMesh& shape, std::uint64_t seed = 5)
       : mesh(shape),
@@ -79,7 +79,7 @@ TEST(LinearSearch, EntersVerticesAndEdgesExactlyOnce) {
   }
   for (const Vector3d& target : targets) {
     for (const double reach : {2.0, 1.0}) {
-      // The second segment ends on the target itself: it or the one that goes on must enter.
+      // The second segment ends on the target itself: either it or the next one must enter.
       const Vector3d begin = 2 * target;
       const Vector3d end = begin - reach * target;
       EXPECT_EQ(scene.net_entries(begin, end) + scene.net_entries(end, 0.1 * target), 1);
@@ -113,7 +113,7 @@ TEST(LinearSearch, SegmentsThatMeetOnTheSurfaceMissNothing) {
   EXPECT_GT(changes, 1000);
 }
 
-TEST(LinearSearch, TellsInsideLikeTheWindingNumber) {
+TEST(LinearSearch, InsideMatchesTheWindingNumber) {
   Scene scene(support::torus(0.05, 0.02, 30, 20));
   int inside = 0;
   for (int i = 0; i < 5000; ++i) {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Does the same by the definition, in double precision throughout.
+// The same by the definition, in double precision throughout.
 class Definition {
  public:
   explicit Definition(const PackedTriangle& packed) {
@@ -24,7 +24,7 @@ class Definition {
     }
   }
 
-  // Finds the weights and the depth by Newton's iteration on p = sum l_i (x_i - d n_i).
+  // Computes the weights and the depth by Newton's iteration on p = sum l_i (x_i - d n_i).
   void locate(const Vector3d& p) {
     Vector3d l1_l2_d(1.0 / 3, 1.0 / 3, 0);
     for (int round = 0; round < 20; ++round) {
@@ -47,8 +47,8 @@ class Definition {
     const double below = (q - p).dot(normal);
     bend /= 1 + size;
     depth = below + bend;
-    // A smooth surface below its triangles is felt from those on, by a parabola up to twice as
-    // deep.
+    // A smooth surface below its triangles begins at the triangles and follows a parabola, up to
+    // twice its depth.
     if (below >= 0 && below < -2 * bend) depth = below * below / (-4 * bend);
   }
 
@@ -72,7 +72,7 @@ TEST(OffsetTriangle, MatchesItsDefinition) {
       const PackedTriangle& packed = surface.triangle(t);
       offset.unpack(packed);
       Definition truth(packed);
-      // Somewhere below the triangle, not deeper than it is long.
+      // Somewhere below the triangle, not deeper than its length.
       const double a = random.uniform(0, 1), b = random.uniform(0, 1 - a);
       const double edge = (truth.x[1] - truth.x[0]).norm();
       const double d = edge * random.uniform(-0.05, 0.3);
@@ -97,7 +97,7 @@ TEST(OffsetTriangle, MatchesItsDefinition) {
 }
 
 TEST(OffsetTriangle, GivesTheWholeSizeOfALatticeItsRightSides) {
-  // A face of a cube as long as the lattice: differences of its corners need 33 bits.
+  // A face of a cube of the lattice's size: differences of its corners need 33 bits.
   const PackedSurface surface = PackedSurface::build(support::box({0.1, 0.1, 0.1})).value();
   OffsetTriangle offset;
   for (std::int32_t t = 0; t < surface.triangle_count(); ++t) {

@@ -17,7 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A ball of 10 cm with bumps and hollows, made by arithmetic that is the same on every processor.
+/// Returns a ball of 10 cm with bumps and dents, built with arithmetic that is the same on every
+/// processor.
 TriangleMesh lumpy_ball(int subdivisions) {
   TriangleMesh mesh = support::icosphere(subdivisions, 0.05);
   for (Vector3d& p : mesh.vertices) {
@@ -27,7 +28,8 @@ TriangleMesh lumpy_ball(int subdivisions) {
   return mesh;
 }
 
-/// A tip that creeps, slides, jumps and is put near a vertex, now outside and now within.
+/// A tip that creeps, slides, jumps and moves close to a vertex, at times outside and at times
+/// inside.
 class WanderingTip {
  public:
   WanderingTip(const TriangleMesh& mesh, std::uint64_t seed) : mesh_(mesh), random_(seed) {}
@@ -50,7 +52,8 @@ class WanderingTip {
   }
 
  private:
-  // One draw in a statement: a compiler may choose the order of those in one expression.
+  // One random draw per statement, because the order of evaluation within an expression is
+  // unspecified.
   Vector3d away(double distance) { return distance * random_.direction(); }
   const Vector3d& some_vertex() { return mesh_.vertices[random_.bits() % mesh_.vertices.size()]; }
 
@@ -61,7 +64,7 @@ class WanderingTip {
 
 struct Answers {
   std::uint64_t hash = 0;
-  double touched = 0;  // share of them
+  double touched = 0;  // fraction of them
 };
 
 Answers ask(const TriangleMesh& mesh, TrackerChoice tracker, int questions) {
@@ -87,9 +90,9 @@ Answers ask(const TriangleMesh& mesh, TrackerChoice tracker, int questions) {
   return {hash.value(), static_cast<double>(touched) / questions};
 }
 
-// A changed answer, in any bit, is seen: what changes one on purpose stores new hashes and says why
-// in the changelog. gcc and clang have these.
-TEST(RandomQuestions, HaveTheAnswersThatAreStored) {
+// Detects any changed bit of an answer. An intended change stores new hashes and is explained in
+// the changelog. gcc and clang have these hashes.
+TEST(RandomQuestions, HaveTheStoredAnswers) {
   const bool all = support::long_form();
   struct Stored {
     const char* name;

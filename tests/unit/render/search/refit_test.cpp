@@ -18,7 +18,7 @@
 #include "support/seed.h"
 #include "track/moving_mesh.h"
 
-// A mesh that has moved, with all that is built over it, is the same as one built anew there.
+// A mesh that has moved, with all structures built over it, equals a newly built one.
 
 namespace thimble::render {
 namespace {
@@ -41,7 +41,7 @@ std::vector<TriangleMesh> shapes() {
   return {support::icosphere(3, kSize), support::torus(0.035, 0.015, 40, 20), slivers()};
 }
 
-// A dent inwards, one outwards, or all back to the start: in every third round each.
+// A dent inwards, one outwards, or all back to the start, in turns.
 std::vector<VertexMove> next_moves(const ContactMesh& mesh, const TriangleMesh& start, int round,
                                    support::Random& random) {
   if (round % 3 == 2) {
@@ -71,13 +71,14 @@ void expect_same_answers(const ContactSearch& moved, const ContactSearch& anew,
     const Entry wanted = anew.first_entry(from, to);
     const Entry found = moved.first_entry(from, to);
     ASSERT_EQ(found.triangle, wanted.triangle);
-    ASSERT_EQ(found.parameter, wanted.parameter);  // to the bit
+    ASSERT_EQ(found.parameter, wanted.parameter);  // bit-identical
     entries += wanted.triangle >= 0;
     ASSERT_EQ(moved.inside(from), anew.inside(from));
     const SurfacePoint near = anew.closest(from, 0.01);
     const SurfacePoint nearest = moved.closest(from, 0.01);
     ASSERT_EQ(nearest.triangle >= 0, near.triangle >= 0);
-    // Of triangles that share the nearest point the order of asking decides, and the last digit.
+    // Among triangles that share the closest point, the order of the queries decides, and the last
+    // digit.
     if (near.triangle >= 0) {
       ASSERT_NEAR(nearest.distance, near.distance, 1e-15);
     }
@@ -85,7 +86,7 @@ void expect_same_answers(const ContactSearch& moved, const ContactSearch& anew,
   }
 }
 
-TEST(MovingMesh, IsSearchedAsOneBuiltAnew) {
+TEST(MovingMesh, IsSearchedLikeANewMesh) {
   for (const auto choice : {SearchChoice::kLinear, SearchChoice::kTree}) {
     std::uint64_t seed = 10;
     for (const TriangleMesh& shape : shapes()) {
@@ -105,12 +106,12 @@ TEST(MovingMesh, IsSearchedAsOneBuiltAnew) {
   }
 }
 
-TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
+TEST(MovingMesh, HasThePlanesAndNormalsOfANewMesh) {
   for (const auto weights :
        {NormalWeights::kAngle, NormalWeights::kRound, NormalWeights::kFitted}) {
     std::uint64_t seed = 20;
     for (const TriangleMesh& shape : shapes()) {
-      // Creases come and go: dents are steeper than this.
+      // Creases appear and disappear: dents are steeper than this.
       constexpr double kCrease = 0.25;
       MovingMesh surface(ContactMesh::build(shape, {.room = 0.2}).value(),
                          {.normals = weights, .crease_angle = kCrease});
@@ -129,7 +130,7 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
           for (std::size_t k = 0; k < 3; ++k) {
             ASSERT_EQ(surface.mesh().edge_planes(t)[k].n, planes.edge_planes(t)[k].n);
             ASSERT_EQ(surface.mesh().edge_planes(t)[k].d, planes.edge_planes(t)[k].d);
-            ASSERT_EQ(surface.normals()->corners(t)[k], anew.corners(t)[k]) << t;  // to the bit
+            ASSERT_EQ(surface.normals()->corners(t)[k], anew.corners(t)[k]) << t;  // bit-identical
             ASSERT_EQ(surface.normals()->crease(t, k), anew.crease(t, k)) << t;
             changed += before.crease(t, k) != anew.crease(t, k);
           }
@@ -140,7 +141,7 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfOneBuiltAnew) {
   }
 }
 
-TEST(MovingMesh, MovesWithoutTheHeap) {
+TEST(MovingMesh, MovesWithoutAllocation) {
   const TriangleMesh shape = support::needle(64, 0.08, 0.01);
   for (const auto weights : {NormalWeights::kAngle, NormalWeights::kFitted}) {
     for (const auto choice : {SearchChoice::kLinear, SearchChoice::kTree}) {
@@ -158,7 +159,7 @@ TEST(MovingMesh, MovesWithoutTheHeap) {
   }
 }
 
-TEST(MovingMesh, LeavesAVertexThatIsSentOutOfTheBoxOrNowhere) {
+TEST(MovingMesh, IgnoresMovesOutOfTheBoxOrToNaN) {
   MovingMesh surface(ContactMesh::build(support::icosphere(2, kSize), {.room = 0.1}).value(), {});
   const Vector3d before = surface.mesh().position(7);
   const double nan = std::numeric_limits<double>::quiet_NaN();

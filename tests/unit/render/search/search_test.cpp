@@ -35,7 +35,7 @@ int scaled_count(int full, int brief) {
   return support::long_form() ? full : brief;
 }
 
-// One surface with all its searches; the linear one is what the others are held against.
+// One surface with all its searches; the linear one is the reference.
 template <class Surface>
 struct Searches {
   explicit Searches(const Surface& surface) : linear(surface), grid(surface), tree(surface) {}
@@ -45,7 +45,7 @@ struct Searches {
     for (const ContactSearch* search : others()) {
       const Entry found = search->first_entry(from, to);
       ASSERT_EQ(found.triangle, wanted.triangle) << from.transpose() << " to " << to.transpose();
-      // To the bit: the same numbers in the same order.
+      // Bit-identical: the same numbers in the same order.
       ASSERT_EQ(found.parameter, wanted.parameter);
     }
     entries += wanted.triangle >= 0;
@@ -76,7 +76,7 @@ struct Searches {
   int entries = 0, insides = 0;
 };
 
-// Segments of a tick, of a hand's breadth and through everything, around a mesh of size 2 * half.
+// Segments of a tick, of a hand's breadth and across everything, around a mesh of size 2 * half.
 template <class Surface>
 void expect_same_on_random_segments(const Surface& surface, const Vector3d& middle, double half,
                                     int count, std::uint64_t seed) {
@@ -158,8 +158,8 @@ TEST(EverySearch, IsIndependentOfScaleAndOrigin) {
   }
 }
 
-// Points on a coarse lattice: nearly all lie on planes, edges or corners, many segments within
-// faces or along edges, some of no length.
+// Points on a coarse lattice: nearly all are on planes, edges or corners, many segments are within
+// faces or along edges, some have no length.
 TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
   for (const bool compact : {false, true}) {
     const TriangleMesh shape = support::plate(1, 0.5, 4);
@@ -189,7 +189,7 @@ TEST(EverySearch, GivesTheSameAnswersWhereEverythingIsDegenerate) {
   }
 }
 
-TEST(EverySearch, FindsNothingForNaNAndComesBackFromHugeWays) {
+TEST(EverySearch, FindsNothingForNaNAndEndsForHugeSegments) {
   const ContactMesh mesh = ContactMesh::build(support::icosphere(2, 1)).value();
   Searches<ContactMesh> searches(mesh);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -220,7 +220,7 @@ TEST(EverySearch, FindsNothingForNaNAndComesBackFromHugeWays) {
   EXPECT_GE(searches.entries, 200);
 }
 
-TEST(EverySearch, FindsWhatAPointLiesOnWithinARadiusOfZero) {
+TEST(EverySearch, FindsTheTriangleOfAPointWithRadiusZero) {
   const ContactMesh box = ContactMesh::build(support::box({1, 1, 1})).value();
   const Searches<ContactMesh> searches(box);
   for (const Vector3d& on : {Vector3d(1, 1, 1), Vector3d(0.25, 0.5, 1), Vector3d(-1, 0, 0.5)}) {
@@ -234,7 +234,7 @@ TEST(EverySearch, FindsWhatAPointLiesOnWithinARadiusOfZero) {
   }
 }
 
-TEST(EverySearch, TellsAClearanceThatNoTriangleReachesInto) {
+TEST(EverySearch, ReturnsAClearanceWithoutTriangles) {
   for (const TriangleMesh& shape : shapes()) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     Searches<ContactMesh> searches(mesh);
@@ -252,8 +252,8 @@ TEST(EverySearch, TellsAClearanceThatNoTriangleReachesInto) {
   }
 }
 
-// Walks of ticks of every length near and far from the surface: the remembered ball changes no
-// answer, and saves most questions.
+// Walks with ticks of every length near and far from the surface: the remembered ball changes no
+// answer, and saves most queries.
 TEST(FreeSpace, MissesNothingOnAWalk) {
   const ContactMesh mesh = ContactMesh::build(support::bumpy_sphere(3, 0.05, 0.3, 6)).value();
   for (const auto choice : {SearchChoice::kLinear, SearchChoice::kGrid, SearchChoice::kTree}) {
@@ -278,7 +278,7 @@ TEST(FreeSpace, MissesNothingOnAWalk) {
   }
 }
 
-TEST(FreeSpace, HoldsATipThatIsFarAway) {
+TEST(FreeSpace, ContainsADistantTip) {
   const ContactMesh mesh = ContactMesh::build(support::icosphere(3, 0.05)).value();
   for (const auto choice : {SearchChoice::kGrid, SearchChoice::kTree}) {
     const auto search = make_search(mesh, choice);
@@ -290,7 +290,7 @@ TEST(FreeSpace, HoldsATipThatIsFarAway) {
   }
 }
 
-// Case 28: 2 m/s at 1 kHz is 2 mm per tick, through a plate of 1 mm, begun at every phase.
+// Case 28: 2 m/s at 1 kHz is 2 mm per tick, through a plate of 1 mm, starting at every phase.
 template <class Build>
 void expect_no_tunnelling(Build build) {
   const TriangleMesh shape = support::plate(0.1, 0.001, 8);
@@ -323,7 +323,7 @@ TEST(EverySearch, LetsNoTrackerTunnelThroughAPlate) {
   });
 }
 
-TEST(EverySearch, AnswersWithoutTheHeap) {
+TEST(EverySearch, AnswersWithoutAllocation) {
   const ContactMesh mesh = ContactMesh::build(support::torus(0.035, 0.015, 40, 20)).value();
   Searches<ContactMesh> searches(mesh);
   support::Random random(81);
@@ -343,18 +343,18 @@ TEST(EverySearch, AnswersWithoutTheHeap) {
   EXPECT_GT(sum, 0);
 }
 
-TEST(MakeSearch, TakesTheTreeFromEightThousandTriangles) {
+TEST(MakeSearch, UsesTheTreeFromEightThousandTriangles) {
   const ContactMesh fewer = ContactMesh::build(support::icosphere(4, 0.05)).value();  // 5,120
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(fewer).get()), nullptr);
   const ContactMesh more = ContactMesh::build(support::icosphere(5, 0.05)).value();  // 20,480
   EXPECT_NE(dynamic_cast<const TreeSearch<ContactMesh>*>(make_search(more).get()), nullptr);
 }
 
-TEST(MakeSearch, TakesTheTreeWhereMostTrianglesLieInOneCorner) {
+TEST(MakeSearch, UsesTheTreeForUnevenTriangles) {
   const TriangleMesh even = support::icosphere(3, 0.05);
   const ContactMesh mesh = ContactMesh::build(even).value();
   EXPECT_NE(dynamic_cast<const GridSearch<ContactMesh>*>(make_search(mesh).get()), nullptr);
-  // The same ball beside one a thousand times larger.
+  // The same ball next to one a thousand times larger.
   TriangleMesh uneven = even;
   const TriangleMesh large =
       placed(support::icosphere(0, 0.05), 1000, Eigen::Matrix3d::Identity(), Vector3d(100, 0, 0));

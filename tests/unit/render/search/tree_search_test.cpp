@@ -22,8 +22,8 @@ int scaled(int full, int brief) {
   return support::long_form() ? full : brief;
 }
 
-// Puts the positions of a packed surface, rounded as they are, back into a mesh in the order of
-// its packed triangles.
+// Returns the rounded positions of a packed surface as a mesh, in the order of its packed
+// triangles.
 TriangleMesh mesh_of(const PackedSurface& surface) {
   TriangleMesh mesh;
   for (std::int32_t t = 0; t < surface.triangle_count(); ++t) {
@@ -61,7 +61,7 @@ struct Scene {
   int entries = 0;
 };
 
-TEST(TreeSearch, GivesTheAnswersOfTheLinearSearchOnRandomSegments) {
+TEST(TreeSearch, MatchesLinearSearchOnRandomSegments) {
   for (const TriangleMesh& shape :
        {support::bumpy_sphere(3, 0.05, 0.3, 6), support::torus(0.035, 0.015, 40, 20),
         support::plate(0.1, 0.01, 6), support::needle(64, 0.08, 0.01),
@@ -100,7 +100,7 @@ TEST(TreeSearch, MatchesLinearSearchAtVerticesAndEdges) {
   EXPECT_GT(scene.entries, 3000);
 }
 
-TEST(TreeSearch, MissesNothingBetweenSegmentsThatMeetOnTheSurface) {
+TEST(TreeSearch, SegmentsThatMeetOnTheSurfaceMissNothing) {
   // Coordinates on a coarse grid: nearly every point lies exactly on planes, edges or corners.
   Scene scene(support::plate(1, 0.5, 4));
   support::Random random(13);
@@ -154,8 +154,8 @@ TEST(TreeSearch, FindsTheNearestPointLikeBruteForce) {
   }
 }
 
-// More boxes on a level than are asked side by side: near the middle of a ball all are as near, and
-// a chord through the crowded fan of a needle's tip, or along its side, meets very many.
+// More boxes on a level than are queried in parallel: near the middle of a ball all are equally
+// near, and a chord through the dense fan of a needle's tip, or along its side, meets very many.
 TEST(TreeSearch, GivesTheSameAnswersWhereVeryManyBoxesAreMet) {
   support::Random random(12);
   Scene ball(support::icosphere(4, 0.05));

@@ -1,4 +1,4 @@
-// Friction takes energy and gives none: case 18 of [PHYSICS 7], and beyond it any way at all.
+// Friction takes energy and gives none: case 18 of [PHYSICS 7], and along arbitrary paths.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using support::make_friction;
 using support::Rubbing;
 
-/// Moves like a hand: four sines of 0.3 to 4 Hz in x and y, that begin at rest.
+/// Moves like a hand: four sines of 0.3 to 4 Hz in x and y, starting at rest.
 class RandomHand {
  public:
   explicit RandomHand(support::Random& random) {
@@ -46,7 +46,7 @@ class RandomHand {
   std::array<Sine, 4> sines_;
 };
 
-// 60 s in ten contacts, each from rest; the force of a tick works until the next, as motors hold
+// 60 s in ten contacts, each from rest; the force of a tick is held until the next, as motors hold
 // it.
 double most_energy_to_the_hand(AnyStage& friction, double step) {
   support::Random random(11);
@@ -86,7 +86,7 @@ TEST(HardCaseFrictionEnergy, RandomHandGainsNoEnergy) {
                             "<= largest work given in a window from rest", most, 0, "J");
 }
 
-/// The bristle as it must not be: bent by no more than a fixed way, so stiffer under more load.
+/// A wrong bristle: its maximum deflection is fixed, so it is stiffer under more load.
 class LoadStiffenedLaw {
  public:
   Vector3d pull(const SlideTick& tick) noexcept {
@@ -104,12 +104,12 @@ class LoadStiffenedLaw {
   CoulombSettings& coulomb() noexcept { return coulomb_; }
 
  private:
-  CoulombSettings coulomb_;  // for viewers to turn; not felt
+  CoulombSettings coulomb_;  // knobs for viewers; no effect here
   Vector3d bend_{0, 0, 0};
 };
 
-// Work between two ticks by the mean of their forces: what the law itself does, without the
-// sampling's own leak (that is the loop's affair, and what bounds the stiffness).
+// Work between two ticks by the mean of their forces: that of the law itself, without the error of
+// sampling (which the loop causes, and which limits the stiffness).
 double most_energy_on_any_way(AnyStage& friction, double size) {
   support::Random random(5);
   Rubbing rubbing{friction};
@@ -129,7 +129,7 @@ double most_energy_on_any_way(AnyStage& friction, double size) {
   return most;
 }
 
-TEST(FrictionWithASpring, MakesNoEnergyOnAnyWayUnderAnyLoad) {
+TEST(FrictionWithASpring, GeneratesNoEnergyOnAnyPathUnderAnyLoad) {
   const auto with_spring = support::frictions_with("z_max");
   EXPECT_GE(with_spring.size(), 6U);
   for (const std::string& name : with_spring) {
@@ -140,7 +140,7 @@ TEST(FrictionWithASpring, MakesNoEnergyOnAnyWayUnderAnyLoad) {
   }
 }
 
-// Out by 0.1 mm under a light load, back under a heavy one, again and again.
+// Out by 0.1 mm under a light load, back under a heavy one, repeatedly.
 double most_energy_by_pressing(AnyStage& friction) {
   Rubbing rubbing{friction};
   double work = 0, most = 0, x_before = 0, f_before = 0;
@@ -164,12 +164,12 @@ TEST(FrictionWithASpring, PressingHarderMakesNoEnergy) {
     const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
     EXPECT_LE(most_energy_by_pressing(*friction), 1e-12) << name;
   }
-  // The guard, and the reason why the bristle's spring is the same at every load.
+  // Negative control, and the reason why the bristle's spring is the same at every load.
   AnyStageOf<FrictionStage<LoadStiffenedLaw>> pumping({{}, support::phantom_context()});
   EXPECT_GT(most_energy_by_pressing(pumping), 1e-4);
 }
 
-TEST(TheBristle, MakesNoEnergyRollingAroundABall) {
+TEST(TheBristle, RollingAroundABallGeneratesNoEnergy) {
   support::Random random(3);
   for (const double size : {1e-5, 3e-4}) {
     const auto friction = make_friction("bristle", MapSettings({{"coefficient", 0.5}}));

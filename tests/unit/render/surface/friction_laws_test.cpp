@@ -1,4 +1,4 @@
-// What each friction promises by itself: the naive one's closed forms, exact updates, stiction.
+// Properties of single friction laws: the naive one's closed forms, exact updates, stiction.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ double counted(double x) {
   return kStep * std::round(x / kStep);
 }
 
-// A law that is complete, and laws that each lack one thing that FrictionStage uses.
+// A complete law, and laws that each lack one member that FrictionStage uses.
 struct WholeLaw : BristleLaw {
   using BristleLaw::BristleLaw;
 };
@@ -120,7 +120,8 @@ TEST(HardCaseLugre, NeverGrows) {
 }
 
 TEST(HardCaseLugre, GuardEulerStepDiverges) {
-  // The guard of the test above: z <- z + T v - T sigma0 |v| z / g where T sigma0 |v| / g > 2.
+  // Negative control of the test above: z <- z + T v - T sigma0 |v| z / g with T sigma0 |v| / g >
+  // 2.
   const double stiffness = 1e5, level = 0.5;
   const auto force_after = [&](double share) {
     const double speed = share * level / (1e-3 * stiffness);
@@ -134,7 +135,7 @@ TEST(HardCaseLugre, GuardEulerStepDiverges) {
                    std::min(force_after(2.2), 1e12), 1e6, "N");
 }
 
-TEST(DahlFriction, TakesOneLongStepAsExactlyAsManyShortOnes) {
+TEST(DahlFriction, LongStepEqualsManyShortOnes) {
   for (const double way : {1e-6, 5e-5, 3e-4, 1e-2}) {
     auto one = stage<DahlLaw>({.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 2500});
     auto many = stage<DahlLaw>({.coulomb = {.sliding = 0.5, .holding = 0.5}, .stiffness = 2500});
@@ -154,11 +155,11 @@ TEST(BristleFriction, HoldsWithStaticAndSlidesWithSlidingFriction) {
   Rubbing rubbing{bristle};
   double most = 0;
   for (int k = 0; k < 1000; ++k) most = std::max(most, -rubbing.at_x(1e-6 * k));
-  EXPECT_NEAR(most, 0.6, 2.1e-3);  // one move of 1 um before
+  EXPECT_NEAR(most, 0.6, 2.1e-3);  // one step of 1 um earlier
   EXPECT_NEAR(-rubbing.at_x(0.001), 0.4, 1e-12);
   // It stays at the sliding level at rest, and under a tremor of a few counts.
   for (int k = 0; k < 100; ++k) EXPECT_LE(-rubbing.at_x(0.001 - 3e-5 * (k % 2)), 0.4 + 1e-12);
-  // Bent back by more than half, it holds again with static friction.
+  // After a deflection back by more than half, it holds again with static friction.
   rubbing.at_x(0.0008);
   most = 0;
   for (int k = 0; k < 500; ++k) most = std::max(most, -rubbing.at_x(0.0008 + 1e-6 * k));
@@ -209,8 +210,8 @@ TEST(HardCaseHysteresis, LoopAreaMatches) {
 }
 
 TEST(BristleFriction, CurveDoesNotStretchTheBristle) {
-  // Around a cylinder about y of 5 mm: first bent along y at rest, then turned by two turns. What
-  // was bent along the axis stays; what turns with the surface is neither lost nor made.
+  // Around a cylinder about y of 5 mm: first deflected along y at rest, then turned twice. The
+  // deflection along the axis stays; the deflection that turns with the surface keeps its size.
   auto bristle = stage<BristleLaw>({.coulomb = {.sliding = 5, .holding = 5}, .stiffness = 2000});
   Rubbing rubbing{bristle};
   const auto point = [&](double angle, double y) {

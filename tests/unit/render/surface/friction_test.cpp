@@ -1,4 +1,4 @@
-// What every friction promises, whichever a scene names.
+// Properties that every friction law must have.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ MapSettings half() {
   return MapSettings({{"coefficient", 0.5}});
 }
 
-// A header of the folder with a name is a law.
+// Each header of the folder with a name is a law.
 std::vector<std::string> laws_of_folder() {
   std::vector<std::string> names;
   const std::regex name("kName = \"(\\w+)\"");
@@ -56,7 +56,7 @@ TEST(EveryFriction, IsInTheTable) {
   EXPECT_GE(known.size(), 8U);
 }
 
-TEST(EveryFriction, RestsUnlessItIsKnownNotTo) {
+TEST(EveryFriction, HoldsAtRestUnlessDocumentedOtherwise) {
   std::vector<std::string_view> restless;
   for (const EffectKind& kind : effect_table()) {
     if (!kind.rests) restless.push_back(kind.name);
@@ -130,8 +130,9 @@ TEST(EveryFriction, FadesWithTheNormalForceAndForgetsOnLeaving) {
     Rubbing rubbing{*friction};
     double x = 0;
     for (int k = 0; k < 300; ++k) rubbing.at_x(x += 1e-4);
-    EXPECT_LT(rubbing.at_x(x), name == "naive" ? 1 : -0.2) << name;  // naive holds nothing at rest
-    // Lifting off while sliding on: never more than the share of what presses.
+    EXPECT_LT(rubbing.at_x(x), name == "naive" ? 1 : -0.2)
+        << name;  // the naive law has no force at rest
+    // Lifts off while sliding: the friction never exceeds its fraction of the normal force.
     for (int k = 1; k <= 100; ++k) {
       rubbing.load = 1 - 0.01 * k;
       rubbing.depth = 0.001 * rubbing.load;
@@ -144,7 +145,7 @@ TEST(EveryFriction, FadesWithTheNormalForceAndForgetsOnLeaving) {
   }
 }
 
-TEST(EveryFriction, HoldsBackInAnyDirectionAlike) {
+TEST(EveryFriction, IsEqualInAllDirections) {
   for (const std::string& name : support::friction_names()) {
     double first = 0;
     for (int i = 0; i < 12; ++i) {
@@ -161,7 +162,7 @@ TEST(EveryFriction, HoldsBackInAnyDirectionAlike) {
   }
 }
 
-TEST(EveryFriction, AsksTheHeapForNothing) {
+TEST(EveryFriction, DoesNotAllocate) {
   for (const std::string& name : support::friction_names()) {
     const auto friction = make_friction(name, half());
     Rubbing rubbing{*friction};
@@ -174,7 +175,7 @@ TEST(EveryFriction, AsksTheHeapForNothing) {
   }
 }
 
-TEST(EveryFriction, RefusesSettingsThatMakeNoSense) {
+TEST(EveryFriction, RefusesInvalidSettings) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::string& name : support::friction_names()) {
     EXPECT_TRUE(complaints_of(name, half()).empty()) << name;
@@ -243,7 +244,7 @@ TEST(StickStiffness, IsBoundByLatencyAndByTheEncoder) {
   arm.delay = 0.001;
   EXPECT_NEAR(stick_stiffness_max(arm), 3.005 / (1.5 * 0.0015), 1e-9);
   arm.encoder_step = 3e-5;
-  arm.tip_coulomb = 0;  // not known: the first bound alone
+  arm.tip_coulomb = 0;  // unknown: only the first bound applies
   EXPECT_NEAR(stick_stiffness_max(arm), 3.005 / (1.5 * 0.0015), 1e-9);
 }
 

@@ -18,7 +18,7 @@ LiveSetting setting(double least, double most, double value) {
   return {.name = "gain", .unit = "1", .least = least, .most = most, .value = value};
 }
 
-TEST(LiveSettings, TurnTheStageThatTheyBelongTo) {
+TEST(LiveSettings, ChangeTheirStage) {
   Knob one, other;
   LiveSettings settings(1000, 10);
   settings.set_group("texture");
@@ -35,7 +35,7 @@ TEST(LiveSettings, TurnTheStageThatTheyBelongTo) {
   EXPECT_EQ(other.value, 0.5);
 }
 
-TEST(LiveSettings, HaveBoundsThatHoldWhatTheSceneHas) {
+TEST(LiveSettings, BoundsIncludeTheScenesValues) {
   Knob knob;
   LiveSettings settings(1000, 10);
   settings.add<turn>(knob, setting(0, 2, 3));
@@ -47,7 +47,7 @@ TEST(LiveSettings, HaveBoundsThatHoldWhatTheSceneHas) {
   EXPECT_EQ(settings.list()[1].most, 2);
 }
 
-TEST(LiveSettings, LeaveOutWhatCannotBeTurned) {
+TEST(LiveSettings, OmitFixedSettings) {
   Knob knob;
   LiveSettings settings(1000, 10);
   settings.add<turn>(knob, setting(2, 2, 2));

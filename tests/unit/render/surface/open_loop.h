@@ -11,17 +11,17 @@
 
 namespace thimble::render {
 
-/// What a loop leaves open, as shares of what goes in and out of the bare contact.
+/// Net work of a closed loop, as fractions of the work in and out of the bare contact.
 struct OpenLoop {
   double plain = 0;  ///< Without a texture.
-  double added = 0;  ///< By the texture.
-  bool felt = true;  ///< Whether both tips were in contact all the way round.
+  double added = 0;  ///< Due to the texture.
+  bool felt = true;  ///< Whether both tips were in contact along the whole loop.
 };
 
-/// Leads two tips around the same closed way, s from 0 to a turn: one over the bare surface, one
+/// Moves two tips around the same closed path, s from 0 to a turn: one over the bare surface, one
 /// over the textured. Force and its derivatives may jump where the touched feature changes: each
-/// change is found by bisection, and between them the work is summed by Gauss' rule. `bare` and
-/// `rough` take a state and return a ForceCommand.
+/// change is found by bisection, and between changes the work is integrated by Gauss' rule. `bare`
+/// and `rough` take a state and return a ForceCommand.
 template <class Bare, class Rough, class Way>
 OpenLoop open_loop(Bare& bare, Rough& rough, const Eigen::Vector3d& outside, const Way& way,
                    int steps = 1500) {
@@ -43,7 +43,7 @@ OpenLoop open_loop(Bare& bare, Rough& rough, const Eigen::Vector3d& outside, con
   double plain = 0, added = 0, gross = 0;
   bool felt = true;
   const auto sum_over = [&](double from, double to) {
-    // Four places of Gauss' rule: exact up to the seventh power.
+    // Four points of Gauss' rule: exact up to the seventh power.
     constexpr std::array<double, 2> kPlace{0.339981043584856, 0.861136311594053};
     constexpr std::array<double, 2> kWeight{0.652145154862546, 0.347854845137454};
     for (const int k : {-2, -1, 1, 2}) {
@@ -66,8 +66,8 @@ OpenLoop open_loop(Bare& bare, Rough& rough, const Eigen::Vector3d& outside, con
   double feature = go(way(0.0))[2].x();
   for (int i = 1; i <= steps; ++i) {
     const double to = kRound * i / steps;
-    // As many changes as there are within one step; where what is touched depends on the way there,
-    // a place that was left may not be found again.
+    // Maximum number of changes within one step. If the touched feature depends on the path, a
+    // previous one may not be found again.
     constexpr int kChangesMax = 20;
     for (int change = 0; change < kChangesMax && go(way(to))[2].x() != feature; ++change) {
       double before = from, after = to;

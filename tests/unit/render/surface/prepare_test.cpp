@@ -15,7 +15,7 @@
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/scene_touch.h"
 
-// A law that prepares itself for a tick reads and changes nothing: forces are the same to the bit.
+// A law that prepares itself for a tick only reads: its forces are bit-identical.
 
 namespace thimble::render {
 namespace {
@@ -50,7 +50,7 @@ SceneTouch scene_of(const Way& way) {
   return SceneTouch(std::move(objects));
 }
 
-// The tip of tick `i`: it comes and goes, slowly and in leaps of several triangles.
+// The tip of tick `i`: approaches and leaves, slowly and in jumps of several triangles.
 Vector3d tip_of(std::size_t i) {
   const double t = 1e-3 * static_cast<double>(i);
   const Vector3d direction(std::sin(3 * t), std::cos(5 * t), std::sin(11 * t + 1));
@@ -71,12 +71,12 @@ TEST_P(Preparation, ChangesNoForceWhateverTickItIsFor) {
     driver::DeviceState expected = state;
     switch (i % 4) {
       case 0:
-        break;  // as it comes
+        break;  // as predicted
       case 1:
         expected.p_WT += random.in_box(1e-3);
         break;
       case 2:
-        expected.p_WT = random.in_box(0.1);  // anywhere, deep inside as well
+        expected.p_WT = random.in_box(0.1);  // anywhere, also deep inside
         break;
       default:
         expected.p_WT.x() = NAN;

@@ -15,13 +15,14 @@
 namespace thimble::render {
 namespace {
 
-// Of both polynomials, of the angle's own rounding and of the sums.
+// Error of both polynomials, of the angle's own rounding and of the sums.
 constexpr double kWrongMost = 2e-16;
 
 TEST(SinePair, IsSineAndCosineOfBothAngles) {
   support::Random random(17);
   for (int i = 0; i < 20'000; ++i) {
-    // Whole quarters and parts of them, whose angles stay small enough to be exact by a double.
+    // Whole quarter turns and parts of them, with angles small enough to be exact in double
+    // precision.
     const double whole[] = {std::floor(random.uniform(-1e6, 1e6)),
                             std::floor(random.uniform(-8, 8))};
     const double part[] = {std::round(random.uniform(-0.5, 0.5) * 0x1p30) * 0x1p-30,
@@ -37,7 +38,7 @@ TEST(SinePair, IsSineAndCosineOfBothAngles) {
   }
 }
 
-TEST(SinePair, HasTheStoredBitsOnEveryProcessorByEveryCompiler) {
+TEST(SinePair, IsBitIdenticalOnAllProcessorsAndCompilers) {
   support::Random random(std::uint64_t{18});
   support::RunHash hash;
   for (int i = 0; i < 20'000; ++i) {
@@ -60,7 +61,7 @@ TEST(SinePair, IsExactAtWholeQuartersAndPassesNan) {
 TEST(SinePair, RepeatsAfterWholeTurnsUpToItsLargestAngles) {
   support::Random random(20);
   for (int i = 0; i < 1000; ++i) {
-    const double quarters = std::floor(random.uniform(-8, 8)) / 4;  // exact beside many turns
+    const double quarters = std::floor(random.uniform(-8, 8)) / 4;  // exact also with many turns
     const double turns = std::floor(random.uniform(-0x1p48, 0x1p48 - 2));
     const SinePair found = sine_pair(Pair{quarters, quarters + 4 * turns});
     EXPECT_EQ(found.sine[0], found.sine[1]) << turns;
@@ -68,7 +69,7 @@ TEST(SinePair, RepeatsAfterWholeTurnsUpToItsLargestAngles) {
   }
 }
 
-TEST(WaveSum, IsTheSumOfItsWavesWhetherOddOrEvenInNumber) {
+TEST(WaveSum, IsTheSumOfAnOddOrEvenNumberOfWaves) {
   support::Random random(19);
   for (std::size_t count = 0; count < 6; ++count) {
     std::vector<Wave> waves;
@@ -81,7 +82,7 @@ TEST(WaveSum, IsTheSumOfItsWavesWhetherOddOrEvenInNumber) {
     }
     WaveSum sum(waves);
     for (const double factor : {1.0, 0.5}) {
-      sum.scale(factor);  // the second time on top of the first
+      sum.scale(factor);  // the second time in addition to the first
       const Eigen::Vector3d p_M = random.in_box(0.1);
       double height = -peak * factor;
       Eigen::Vector3d slope_M = Eigen::Vector3d::Zero();

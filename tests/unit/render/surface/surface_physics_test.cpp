@@ -1,4 +1,5 @@
-// Surfaces, frictions, textures and fields against closed forms, for tests/acceptance/PHYSICS.md.
+// Surfaces, frictions, textures and fields compared with closed forms, for
+// tests/acceptance/PHYSICS.md.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -52,7 +53,7 @@ TEST(PhysicsOfSurfaces, ATextureHasItsAmplitudeAndWavelength) {
   touch(tip_at({0, 0, 1e-3}));
   double low = HUGE_VAL, high = 0, first = -1, last = -1;
   int crossings = 0;
-  const double mean = 800 * (0.001 - 0.0001);  // peaks lie in the surface
+  const double mean = 800 * (0.001 - 0.0001);  // peaks are in the surface
   double before = touch(tip_at({0, 0, -1e-3})).f_T_W.z() - mean;
   for (int i = 1; i <= 20000; ++i) {
     const double force = touch(tip_at({1e-6 * i, 0, -1e-3})).f_T_W.z();
@@ -82,7 +83,7 @@ double slide(const std::string& name, const std::string& key, double value) {
   return felt;
 }
 
-TEST(PhysicsOfFriction, SlidingHoldsBackByTheCoefficient) {
+TEST(PhysicsOfFriction, SlidingForceFollowsTheCoefficient) {
   for (const char* name : {"bristle", "dahl", "karnopp", "implicit_coulomb"}) {
     expect_physics({"friction", std::string(name) + ", sliding at 40 mm/s under 1 N, mu = 0.4",
                     "mu N", "N", 0.4, 1e-3},
@@ -90,7 +91,7 @@ TEST(PhysicsOfFriction, SlidingHoldsBackByTheCoefficient) {
   }
 }
 
-TEST(PhysicsOfFriction, ABristleLetsGoAtStaticFriction) {
+TEST(PhysicsOfFriction, BristleSlipsAtStaticFriction) {
   for (const char* name : {"bristle", "stiction_point"}) {
     const auto friction = support::make_friction(
         name,
@@ -128,7 +129,7 @@ TEST(PhysicsOfFields, FieldsPullByTheirLaws) {
   expect_physics({"field: charges", "distance of the largest force, a = 10 mm", "a / sqrt(2)", "m",
                   0.01 / std::sqrt(2), 1e-3},
                  where);
-  // Far away as Coulomb's law: four times the distance, a sixteenth of the force.
+  // Far away Coulomb's law holds: four times the distance, a sixteenth of the force.
   expect_physics({"field: charges", "force at 1 m over that at 4 m", "16 (1 / r^2)", "1", 16, 1e-3},
                  field.force(tip_at({1, 0, 0})).x() / field.force(tip_at({4, 0, 0})).x());
   MagneticSnap::Settings snap;

@@ -1,4 +1,4 @@
-// Where textures are felt: at the place of the material below the tip, through whole objects.
+// Textures act at the place of the material below the tip; tested through whole objects.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -61,7 +61,7 @@ Sines::Settings waves(double amplitude) {
   return settings;
 }
 
-/// Waves that change along z alone.
+/// Waves that change only along z.
 Sines::Settings layers() {
   Sines::Settings settings;
   settings.waves = {{.amplitude = 0.0002, .wavelength = 0.004, .direction = {0, 0, 1}}};
@@ -87,8 +87,8 @@ struct Work {
   double net = 0, gross = 0;
 };
 
-/// Leads a tip from far outside to the start of a closed way and once around; gives the work of the
-/// force. The sum over even steps of a smooth closed way converges faster than any power.
+/// Moves a tip from far outside to the start of a closed path and once around; returns the work of
+/// the force. The sum over even steps of a smooth closed path converges faster than any power.
 template <class Way>
 Work work_around(ObjectTouch& object, const Vector3d& outside, const Way& way, int steps) {
   driver::ForceCommand command;
@@ -112,7 +112,7 @@ Work work_around(ObjectTouch& object, const Vector3d& outside, const Way& way, i
   return work;
 }
 
-TEST(TexturePlace, FeelsAsRoughAtEveryDepth) {
+TEST(TexturePlace, RoughnessIsIndependentOfDepth) {
   Sandpaper::Settings rough;
   rough.roughness = 20e-6;
   const auto ripple = [&](double depth) {
@@ -123,7 +123,7 @@ TEST(TexturePlace, FeelsAsRoughAtEveryDepth) {
     for (int i = 0; i < kPlaces; ++i) {
       const Vector3d p{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0};
       wall->update(at(p + Vector3d(0, 0, 0.001)));
-      // From just above the wall, straight in.
+      // From just above the wall straight in.
       wall->update(at(p - Vector3d(0, 0, 1e-7)));
       const double felt = wall->update(at(p - Vector3d(0, 0, depth))).f_T_W.z() / kStiffness;
       mean += felt / kPlaces;
@@ -144,7 +144,7 @@ TEST(TexturePlace, ClosedPathInATriangleDoesNoWork) {
   const auto p = [&](std::size_t k) { return ball.vertices[static_cast<std::size_t>(corners[k])]; };
   const Vector3d n = (p(1) - p(0)).cross(p(2) - p(0)).normalized();
   const Vector3d x = (p(1) - p(0)).normalized(), y = n.cross(x);
-  // Beside the middle, where edge planes lean unequally far away.
+  // Off the middle, where edge planes have different slopes.
   const Vector3d middle = 0.5 * p(0) + 0.3 * p(1) + 0.2 * p(2);
   for (const TrackerChoice tracker :
        {TrackerChoice::kEdgePlanes, TrackerChoice::kNormalProjection, TrackerChoice::kGodObject}) {
@@ -162,7 +162,7 @@ TEST(TexturePlace, ClosedPathInATriangleDoesNoWork) {
   }
 }
 
-TEST(TexturePlace, DoesNoWorkAroundAClosedWayInABallAtAnyDepth) {
+TEST(TexturePlace, ClosedPathInABallDoesNoWorkAtAnyDepth) {
   const auto way = [](double s) -> Vector3d {
     return (0.026 + 0.002 * std::sin(s)) *
            Vector3d(0.3 * std::cos(s), 0.4 * std::sin(s), 1).normalized();
@@ -192,9 +192,9 @@ Vector3d around_top(double s) {
          Vector3d(0.25 * std::cos(s), 0.2 * std::sin(s), 1).normalized();
 }
 
-TEST(TexturePlace, AddsNoWorkAcrossEdgesWhereTheFootIsOneMap) {
-  // Smooth shading leaves a little open by itself, for a shaded normal is no gradient: that is the
-  // contact's own figure. What a texture adds is the gradient of an energy.
+TEST(TexturePlace, ContinuousClosestPointAddsNoWorkOnEdges) {
+  // Smooth shading by itself has a small net work, because a shaded normal is not a gradient: that
+  // is the contact's own value. The part that a texture adds is the gradient of an energy.
   const TriangleMesh ball = support::icosphere(3, 0.05);
   ContactChoice offset = by(TrackerChoice::kOffset);
   ContactChoice round = offset, uncurved = offset, banded = offset;
@@ -204,10 +204,10 @@ TEST(TexturePlace, AddsNoWorkAcrossEdgesWhereTheFootIsOneMap) {
   struct Case {
     const char* name;
     ContactChoice choice;
-    double plain;  // bound of what the contact leaves open by itself
+    double plain;  // bound of the contact's own net work
     double added;
   };
-  // `compact` measures the depth in single precision where it is multiplied: 3e-7 of it.
+  // `compact` measures the depth in single precision, where it is multiplied: an error of 3e-7.
   for (const Case& one :
        {Case{"offset", offset, 1e-8, 1e-9}, Case{"offset, means of faces", round, 2e-6, 1e-9},
         Case{"offset, uncurved", uncurved, 2e-6, 1e-9},
@@ -222,8 +222,8 @@ TEST(TexturePlace, AddsNoWorkAcrossEdgesWhereTheFootIsOneMap) {
 }
 
 TEST(TexturePlace, JumpsOverEdgesAddLittleWork) {
-  // Over the edges of flat faces the foot jumps, and what is felt follows by the tip's path: no
-  // function of the place, and the contact itself takes energy there.
+  // At the edges of flat faces the closest point jumps, and the force depends on the tip's path: it
+  // is not a function of the place, and the contact itself takes energy there.
   const TriangleMesh ball = support::icosphere(3, 0.05);
   for (const auto& [tracker, most] :
        {std::pair{TrackerChoice::kEdgePlanes, 1e-3}, std::pair{TrackerChoice::kGodObject, 1e-2}}) {
@@ -236,7 +236,7 @@ TEST(TexturePlace, JumpsOverEdgesAddLittleWork) {
   }
 }
 
-TEST(TexturePlace, AddsNoWorkInsideAFaceHoweverItIsShaded) {
+TEST(TexturePlace, AddsNoWorkInsideAFaceWithAnyShading) {
   const TriangleMesh ball = support::icosphere(0, 0.05);
   const auto& corners = ball.triangles[3];
   const auto p = [&](std::size_t k) { return ball.vertices[static_cast<std::size_t>(corners[k])]; };
@@ -265,8 +265,8 @@ TEST(TexturePlace, AddsNoWorkInsideAFaceHoweverItIsShaded) {
 }
 
 TEST(TexturePlace, EdgePlanesAddWorkOnlyAtGaps) {
-  // On meshes of equal triangles the two feet are one. On others they lie apart below an edge, and
-  // the height jumps there.
+  // On meshes of equal triangles the two closest points coincide. On others they are apart below an
+  // edge, and the height jumps there.
   const auto open = [](const TriangleMesh& ball, const auto& shading, const Vector3d& outside,
                        const auto& way) {
     const auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(ball).value());
@@ -297,7 +297,7 @@ TEST(TexturePlace, EdgePlanesAddWorkOnlyAtGaps) {
     std::printf("edge_planes, %s: flat leaves %.2e open, the texture adds %.2e; bands %.2e, %.2e\n",
                 name, flat.plain, flat.added, banded.plain, banded.added);
     EXPECT_LT(std::abs(flat.plain), 1e-9) << name;
-    // Bands turn the normal without asking the depth.
+    // Bands turn the normal independently of the depth.
     EXPECT_LT(std::abs(banded.plain), 5e-3) << name;
     for (const double added : {flat.added, banded.added}) {
       EXPECT_LT(std::abs(added), equal ? 1e-9 : 1e-3) << name;
@@ -306,8 +306,8 @@ TEST(TexturePlace, EdgePlanesAddWorkOnlyAtGaps) {
 }
 
 TEST(TexturePlace, IsFixedToABodyThatTurns) {
-  // The tip goes along with a material place of a block that turns: it feels the same in the
-  // block's frame, whatever wave stands in the world there.
+  // The tip moves with a material place of a turning block: its force is constant in the block's
+  // frame, independent of waves in the world.
   const TriangleMesh block = support::box({0.03, 0.03, 0.03});
   constexpr double kRate = 2;  // rad/s
   MotionChoice motion;
@@ -333,10 +333,10 @@ TEST(TexturePlace, IsFixedToABodyThatTurns) {
   EXPECT_LT(most, 1e-4);
 }
 
-TEST(TexturePlace, IsFixedToClayAsItGivesWay) {
-  // Layers lie one below the other. Pressed in through two of them clay shows the height that it
-  // showed at first, since its surface is still made of the same: it gives way at its yield force,
-  // and the proxy stands as much higher above the tip as the surface was cut away there.
+TEST(TexturePlace, IsFixedToYieldingClay) {
+  // Layers are one below the other. Clay that is pressed in through two layers shows its initial
+  // height, because its surface is still the same material: it yields at its yield force, and the
+  // proxy is above the tip by the height that was pressed away.
   ShapeChoice shape;
   shape.step = kTick;
   shape.clay.emplace();
@@ -360,21 +360,21 @@ TEST(TexturePlace, IsFixedToClayAsItGivesWay) {
   const std::vector<double> bare =
       depths({.spring = {.stiffness = kStiffness, .damping = 0}, .effects = {}});
   const std::vector<double> rough = depths(textured<Sines>(layers()));
-  // At z = 20 mm, five wavelengths up: half way between peak and valley.
+  // At z = 20 mm, five wavelengths up: half-way between peak and valley.
   for (std::size_t i = 1200; i < bare.size(); ++i) {
     ASSERT_NEAR(rough[i] - bare[i], 0.0002, 1e-5) << i;
   }
 }
 
-// Where two walls of a hollow hold the tip the place is on their edge and moves along it only;
-// where three do, it is the corner and does not move. There and over a wall `J_MT` is held to
+// If two walls of a groove hold the tip, the place is on their edge and moves only along it. If
+// three do, it is the corner and does not move. There and over a wall, `J_MT` is compared with
 // differences of the places themselves.
 template <class Contact>
 void expect_places_in_a_hollow(const char* name, const Contact& made) {
   constexpr double kWall = 0.02, kStep = 1e-5, kAny = std::numeric_limits<double>::infinity();
   struct Case {
     Vector3d p, foot;
-    Vector3d moves;  // 1 where the place goes along with the tip, along an axis
+    Vector3d moves;  // 1 if the place moves with the tip along an axis
   };
   for (const Case& one : {Case{{0.023, 0.004, 0.003}, {kWall, kAny, kAny}, {kAny, kAny, kAny}},
                           Case{{0.023, 0.004, 0.022}, {kWall, 0.004, kWall}, {0, 1, 0}},
@@ -403,7 +403,7 @@ void expect_places_in_a_hollow(const char* name, const Contact& made) {
   }
 }
 
-TEST(TexturePlace, LiesOnTheEdgeOrCornerThatHoldsTheTipInAHollow) {
+TEST(TexturePlace, InAGrooveIsOnTheEdgeOrCorner) {
   const TriangleMesh hollow = support::block_around(support::box({0.02, 0.02, 0.02}), 0.05);
   const auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(hollow).value());
   const auto search = make_search(*mesh);
@@ -417,7 +417,7 @@ TEST(TexturePlace, LiesOnTheEdgeOrCornerThatHoldsTheTipInAHollow) {
   expect_places_in_a_hollow("god_object", GodObjectContact(mesh, search));
 }
 
-TEST(TexturePlace, NeverJumpsAndStandsStillUnderAHandThatRests) {
+TEST(TexturePlace, IsContinuousAndSteadyUnderARestingHand) {
   FootFollower place;
   SurfaceFoot found;
   found.p_M = {0, 0, 0};
@@ -436,13 +436,13 @@ TEST(TexturePlace, NeverJumpsAndStandsStillUnderAHandThatRests) {
     before = felt.p_M;
   }
   EXPECT_EQ(before, found.p_M);
-  // A surface that moves by itself counts as path.
+  // A surface that moves counts as path as well.
   found.p_M.x() += 3e-5;
   found.surface_path = 1e-5;
   EXPECT_EQ(place.follow({p, 0, -0.001}, 0.001, found).p_M, found.p_M);
 }
 
-TEST(TexturePlace, FindsItsFeetWithoutTheHeapOnEveryKindOfContact) {
+TEST(TexturePlace, FindsClosestPointsWithoutAllocation) {
   const TriangleMesh ball = support::icosphere(2, 0.05);
   for (std::size_t i = 0; i < kTrackerNames.size(); ++i) {
     auto object =

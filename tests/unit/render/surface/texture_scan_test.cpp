@@ -1,5 +1,5 @@
-// What textures leave open around closed ways over scanned meshes, where feet jump over creases,
-// hollows and the edges of flat faces: by how much, with every tracker and every texture.
+// Net work of textures around closed loops over scanned meshes, where closest points jump at
+// creases, grooves and edges of flat faces: its size with every tracker and every texture.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -37,11 +37,11 @@ constexpr double kSize = 0.1;  // longest side of every scan, m
 constexpr std::array kScans{"bunny00.off", "elephant.off", "hand.off", "camel.off"};
 constexpr std::array kTextures{"sines", "sandpaper", "height_map", "height_map along z"};
 
-// Bounds of what a texture adds around a closed way, as a share of what goes in and out. [measured]
-// Where the foot moves continuously that is 1e-13 with `offset`. Where cells share no swept side
-// (creases, hollows, cells that have turned over) the foot jumps by up to 3 mm, and the height with
-// it. `compact` keeps weights in single precision: its foot jumps a little at each edge. The faces
-// of the others share no swept side anywhere.
+// Bounds of the net work that a texture adds around a closed loop, as a fraction of the work in and
+// out. [measured] With `offset` it is 1e-13 where the closest point moves continuously. Where cells
+// do not share swept sides (creases, grooves, inverted cells) the closest point jumps by up to 3
+// mm, and the height with it. `compact` stores weights in single precision: its closest point jumps
+// slightly at each edge. The faces of the others never share swept sides.
 struct Bounds {
   double median = 0, of_nine_in_ten = 0;
 };
@@ -51,7 +51,7 @@ Bounds bounds(TrackerChoice tracker, std::size_t which) {
   if (tracker != TrackerChoice::kOffset && tracker != TrackerChoice::kPacked) {
     return {0.04, kOfNineInTen};
   }
-  // A height map along all axes leaves out how their parts change (height_map.h).
+  // A height map along all axes omits the change of its parts (height_map.h).
   if (which == 2) return {1e-2, kOfNineInTen};
   return {tracker == TrackerChoice::kOffset ? 5e-9 : 1e-3, kOfNineInTen};
 }
@@ -73,7 +73,7 @@ std::shared_ptr<const HeightImage> bumps() {
   return std::make_shared<const HeightImage>(kSide, kSide, std::move(values));
 }
 
-/// Some 0.1 mm high, over lengths of some 4 mm.
+/// About 0.1 mm high, over lengths of about 4 mm.
 SurfaceChoice texture(std::size_t which, TextureForm form) {
   if (which == 0) {
     Sines::Settings settings;
@@ -111,8 +111,8 @@ TriangleMesh scan(const char* name) {
   return mesh;
 }
 
-/// The shares that a texture adds over closed ways, smallest first: those of which both tips stay
-/// in contact all the way.
+/// Returns the fractions that a texture adds over closed loops, in ascending order: only of loops
+/// with both tips in contact all the way.
 std::vector<double> shares(const TriangleMesh& mesh, TrackerChoice tracker, std::size_t which,
                            TextureForm form, std::size_t loops, std::uint64_t seed) {
   ContactChoice choice;
@@ -151,7 +151,7 @@ std::vector<double> shares(const TriangleMesh& mesh, TrackerChoice tracker, std:
   return found;
 }
 
-/// The same of all scans.
+/// The same for all scans.
 std::vector<double> all_shares(TrackerChoice tracker, std::size_t which, TextureForm form) {
   const std::size_t loops = support::long_form() ? 44 : 6;
   std::vector<double> all;
@@ -191,8 +191,8 @@ TEST_P(TextureOnScansBy, AddsLittleWorkAroundClosedWays) {
   support::Covered("trackers").add(support::scene_name(GetParam()));
 }
 
-// What these bounds are worth: without the push down the slope ways are open by more.
-TEST(TextureOnScans, AddsFarMoreWorkWhereItChangesTheDepthOnly) {
+// Shows that these bounds are tight: without the force along the slope, loops have more net work.
+TEST(TextureOnScans, DepthOnlyTextureAddsFarMoreWork) {
   if (!scans_are_here()) GTEST_SKIP() << kNoScans;
   for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kPacked}) {
     const auto all = all_shares(tracker, 0, TextureForm::kDepthOnly);

@@ -54,7 +54,7 @@ Sines::Settings two_waves(TextureForm form) {
   return settings;
 }
 
-/// A picture of one sine each way, as heights.
+/// Returns an image of one sine in each direction, as heights.
 std::shared_ptr<const HeightImage> egg_box(std::size_t side) {
   std::vector<float> values;
   for (std::size_t row = 0; row < side; ++row) {
@@ -77,7 +77,7 @@ HeightMap::Settings egg_box_map(TextureForm form, HeightMap::Along along) {
   return settings;
 }
 
-// The force on the tip at a place, after one tick outside.
+// Returns the force on the tip at a place, after one tick outside.
 template <class Shape, class Stage>
 Vector3d force_at(const Shape& shape, const Stage& stage, const Vector3d& p_W) {
   ContactForceLaw touch{PrimitiveContact(shape), stage, SpringDamper{kStiffness, 0}};
@@ -85,14 +85,14 @@ Vector3d force_at(const Shape& shape, const Stage& stage, const Vector3d& p_W) {
   return touch(at(p_W)).f_T_W;
 }
 
-// Work of a force around a smooth closed way; the sum over even steps of a smooth closed way
-// converges faster than any power of their number. `gross` sums the sizes.
+// Returns the work of a force around a smooth closed path; the sum over even steps of a smooth
+// closed path converges faster than any power of their number. `gross` sums the magnitudes.
 template <class Force, class Way>
 double work_around(const Force& force, const Way& way, int steps, double& gross) {
   double work = 0;
   for (int i = 0; i < steps; ++i) {
     const double s = kTurn * i / steps;
-    // The way's direction by a five-point rule, exact to rounding for these few harmonics.
+    // The path's direction by a five-point rule, exact to rounding for these few harmonics.
     const double e = 1e-3;
     const Vector3d direction =
         (8 * (way(s + e) - way(s - e)) - (way(s + 2 * e) - way(s - 2 * e))) / (12 * e);
@@ -103,7 +103,7 @@ double work_around(const Force& force, const Way& way, int steps, double& gross)
   return work;
 }
 
-// A way round, below a wall at z = 0, deeper on one side of a wave than on the other.
+// A loop below a wall at z = 0, deeper on one side of a wave than on the other.
 Vector3d below_wall(double s) {
   return {0.0006 * std::cos(s), 0.0004 * std::sin(s), -0.002 + 0.0007 * std::sin(s + 1)};
 }
@@ -145,7 +145,7 @@ TEST(Textures, LateralTexturesDoNoWorkOnAClosedPath) {
       "height map, depth only");
 }
 
-TEST(Textures, DoNoWorkAroundAClosedWayInASphereEither) {
+TEST(Textures, DoNoWorkOnAClosedPathInASphere) {
   const Sphere ball{.p_WO = {0, 0, 0}, .radius = 0.02};
   const Sines waves(two_waves(TextureForm::kConservative), context());
   const auto way = [](double s) -> Vector3d {
@@ -155,7 +155,7 @@ TEST(Textures, DoNoWorkAroundAClosedWayInASphereEither) {
   double gross = 0;
   const double work =
       work_around([&](const Vector3d& p) { return force_at(ball, waves, p); }, way, 20000, gross);
-  // The five-point rule is the bound here: this way has all harmonics.
+  // The five-point rule is the limit here: this path has all harmonics.
   EXPECT_LT(std::abs(work), 1e-9 * gross);
 }
 
@@ -181,7 +181,7 @@ TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
   }
 }
 
-TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
+TEST(Textures, CutIntoSurfaceBeginsContactWithoutAStep) {
   const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const Sandpaper rough({}, known);
@@ -198,11 +198,11 @@ TEST(Textures, AreCutIntoTheSurfaceSoThatContactBeginsWithoutAStep) {
     EXPECT_GE(map.at(p, Vector3d::UnitZ()).height, -0.0003);
     EXPECT_LT(force_at(HalfSpace(), waves, {p.x(), p.y(), -1e-9}).norm(), 1e-5);
   }
-  EXPECT_GT(highest, -1e-5);  // and its peaks do lie in the surface
+  EXPECT_GT(highest, -1e-5);  // and its peaks are in the surface
 }
 
-// A picture that no turn and no mirror leaves as it is.
-TEST(HeightMaps, ReadTheSameWayRoundOnEveryFaceFromOutside) {
+// An image without any symmetry of rotation or reflection.
+TEST(HeightMaps, HaveTheSameOrientationOnEveryFace) {
   HeightMap::Settings settings;
   std::vector<float> values(64, 0.5f);
   for (std::size_t i = 0; i < 5; ++i) values[i * 8] = 1;  // an L
@@ -223,7 +223,7 @@ TEST(HeightMaps, ReadTheSameWayRoundOnEveryFaceFromOutside) {
         const Vector3d right = up.cross(n);  // as seen from outside, looking along -n
         const TextureHeight found = map.at(u * right + v * up, n);
         EXPECT_NEAR(found.height, wanted, 1e-12) << axis << " " << side;
-        // The slope belongs to the height.
+        // The slope is the derivative of the height.
         const double e = 1e-8;
         EXPECT_NEAR(found.slope_M.dot(right),
                     (map.at((u + e) * right + v * up, n).height -
@@ -266,7 +266,7 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
       ContactState far = contact;
       far.p_WP = q;
       (i % 2 ? bad_contact.depth : bad_contact.n_W[i % 3]) = kNan;
-      // A tip far away is never in contact; what counts is that nothing infinite comes out.
+      // A tip far away is never in contact; this tests that nothing becomes infinite.
       ASSERT_TRUE(felt(waves, far, q).allFinite());
       ASSERT_TRUE(felt(rough, far, q).allFinite());
       ASSERT_TRUE(felt(map, far, q).allFinite());
@@ -277,7 +277,7 @@ TEST(Textures, GiveNoForceForNaNAndNeverPull) {
   }
 }
 
-TEST(Textures, AskTheHeapForNothing) {
+TEST(Textures, DoNotAllocate) {
   const EffectContext known = context();
   ContactForceLaw touch{
       PrimitiveContact(HalfSpace()), Sines(two_waves(TextureForm::kConservative), known),
@@ -317,12 +317,12 @@ TEST(Sines, GiveTheForceTheLinesOfTheirWaves) {
   EXPECT_NEAR(line(push, 50), kStiffness * 0.00004, 1e-12);
   EXPECT_NEAR(line(push, 0), kStiffness * (0.002 - 0.00014), 1e-12);
   for (const int other : {10, 24, 26, 75, 100, 333}) EXPECT_LT(line(push, other), 1e-12);
-  // Aside: k (d - peaks) a 2 pi / L at 25 Hz, and what the two waves make of each other at 75 Hz.
+  // Lateral: k (d - peaks) a 2 pi / L at 25 Hz, and the product of the two waves at 75 Hz.
   EXPECT_NEAR(line(aside, 75), kStiffness * 0.0001 * 0.00004 / 2 * kTurn * 1500, 1e-12);
   EXPECT_NEAR(line(aside, 0), 0, 1e-12);
 }
 
-TEST(Sandpaper, IsTheSameForTheSameSeedAndHasTheRoughnessAskedFor) {
+TEST(Sandpaper, IsRepeatableAndHasTheRequestedRoughness) {
   Sandpaper::Settings settings;
   settings.roughness = 0.00004;
   const Sandpaper one(settings, EffectContext{}), again(settings, EffectContext{});
@@ -351,7 +351,7 @@ TEST(Sandpaper, HoldsNoWavesShorterThanItsBand) {
   constexpr double kStep = 0.0001;
   std::vector<double> heights;
   for (int k = 0; k < kPlaces; ++k) {
-    // A window whose leak falls off fast, so that what is beyond is not the window's.
+    // A window with fast falling leakage, so that power beyond the limit is not due to the window.
     const double window = std::pow(std::sin(kTurn * k / kPlaces / 2), 6);
     const double height = rough.height().at({k * kStep, 0, 0}).height;
     heights.push_back(window * (height + rough.height().relief() / 2));
@@ -444,7 +444,7 @@ VariantSettings::Values wave(double amplitude, double wavelength) {
   return {{"amplitude", amplitude}, {"wavelength", wavelength}};
 }
 
-TEST(TextureSettings, AreTakenWhenTheyCanBeFelt) {
+TEST(TextureSettings, PerceptibleOnesAreAccepted) {
   EXPECT_EQ(mistakes_of<Sines>(VariantSettings({}, {{"waves", {wave(0.0001, 0.002)}}})), "");
   EXPECT_EQ(
       mistakes_of<Sines>(VariantSettings(
@@ -461,12 +461,12 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
   const auto sines = [](const VariantSettings::Values& one) {
     return mistakes_of<Sines>(VariantSettings({}, {{"waves", {one}}}));
   };
-  // 5 N press 6.25 mm into 800 N/m.
+  // 5 N press 6.25 mm deep at 800 N/m.
   EXPECT_NE(sines(wave(0.0035, 0.1)).find("is 7 mm from peak to valley"), std::string::npos);
-  EXPECT_NE(sines(wave(0.0035, 0.1)).find("5 N press no deeper than 6.25 mm"), std::string::npos);
-  EXPECT_NE(sines(wave(0.001, 0.001)).find("as steep as 6.28"), std::string::npos);
+  EXPECT_NE(sines(wave(0.0035, 0.1)).find("5 N press only 6.25 mm deep"), std::string::npos);
+  EXPECT_NE(sines(wave(0.001, 0.001)).find("a slope of 6.28"), std::string::npos);
   // 0.1 m/s over 0.15 mm: 667 Hz.
-  EXPECT_NE(sines(wave(0.00001, 0.00015)).find("666.7 Hz; a loop of 1000 Hz shows 500 Hz"),
+  EXPECT_NE(sines(wave(0.00001, 0.00015)).find("666.7 Hz; a loop of 1000 Hz displays 500 Hz"),
             std::string::npos);
   EXPECT_NE(sines(wave(-0.001, 0.01)).find("amplitude"), std::string::npos);
   EXPECT_NE(sines(wave(kNan, 0.01)).find("amplitude"), std::string::npos);
@@ -488,7 +488,7 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
   std::ofstream(noise) << "nothing";
   EXPECT_NE(mistakes_of<HeightMap>(
                 VariantSettings({{"image", noise.string()}, {"width", 0.01}, {"height", 0.0}}))
-                .find("not a picture"),
+                .find("not a readable height image"),
             std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-// Contact on a mesh as large as memory takes, held to a truth in closed form.
+// Contact on the largest mesh that fits memory, compared with a closed form.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kJump = 0.02;                // m; a god-object slides so far in a few ticks
+constexpr double kJump = 0.02;                // m; a god-object slides that far in a few ticks
 constexpr double kRing = 0.04, kTube = 0.02;  // of a torus about z, m
 
 // Returns the depth (m) below a torus, in closed form.
@@ -34,8 +34,8 @@ double depth_below_torus(const Vector3d& p) {
   return kTube - std::hypot(p.head<2>().norm() - kRing, p.z());
 }
 
-// Strokes a torus at 0.2 to 1 mm below its surface, at up to 2 m/s, with a path of `jump` (m) in
-// every hundredth tick, and tells how far any tick is off the truth, m; -1 if contact is lost.
+// Strokes a torus at 0.2 to 1 mm below its surface, at up to 2 m/s, with a jump of `jump` (m) in
+// every hundredth tick. Returns the maximum error of the depth, m; -1 if contact is lost.
 template <class Contact>
 double worst_on_torus(Contact contact, int ticks, double jump) {
   support::Random random(31);
@@ -59,12 +59,12 @@ double worst_on_torus(Contact contact, int ticks, double jump) {
 }
 
 // At 10^7 triangles of 60 um a tick crosses hundreds of them, and the tip is 15 of them deep; the
-// short form takes 10^5 triangles and the same path.
-TEST(ContactOnATorus, IsNeverLostNorOffAtTenMillionTriangles) {
+// short form has 10^5 triangles and the same path.
+TEST(ContactOnATorus, IsAccurateAtTenMillionTriangles) {
   const int across = support::long_form() ? 1600 : 160;
   const auto mesh = std::make_shared<const ContactMesh>(
       ContactMesh::build(support::torus(kRing, kTube, 2 * across, across)).value());
-  // Of the triangles from the torus, and of the smooth surface over them.
+  // Distance of the triangles from the torus, and of the smooth surface above them.
   const double bulge = std::pow(std::numbers::pi * kTube / across, 2) / (2 * kTube) + 1e-6;
   const int ticks = support::long_form() ? 100'000 : 20'000;
   const auto search = make_search(*mesh);

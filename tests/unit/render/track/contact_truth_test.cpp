@@ -1,6 +1,6 @@
-// Whether every way of contact keeps the tip, and tells how deep it is, held to answers that share
-// no code with it: the winding number and the nearest point of all triangles. Every tracker gets
-// the same ticks.
+// Tests that every kind of contact keeps the tip and measures its depth, compared with references
+// that share no code with it: the winding number and the closest point of all triangles. Every
+// tracker gets the same ticks.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ constexpr double kSize = 0.1;  // longest side of every mesh, m
 constexpr std::array<const char*, 5> kWays{"edge_planes", "edge_planes, sized_band", "offset",
                                            "compact", "god_object"};
 
-// Calls `work` with the number of each way and its contact, as a scene makes it.
+// Calls `work` with the number of each kind of contact and the contact, built as in a scene.
 template <class Work>
 void with_each_way(const TriangleMesh& shape, Work&& work) {
   const auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(shape).value());
@@ -62,30 +62,31 @@ void with_each_way(const TriangleMesh& shape, Work&& work) {
   work(4, PathBounded(GodObjectContact(mesh, search)));
 }
 
-// What one way showed along a path.
+// Results of one kind of contact along a path.
 struct Judged {
   int ticks = 0, lost = 0, longest = 0;
   double lost_deepest = 0;  // m
-  int off = 0;              // ticks that find the tip more than kOff nearer or deeper than it is
-  int same_side = 0;        // of those, the nearest point looks the same way
-  int unexplained = 0;      // of all off, those that no promise explains (entry_face_kept)
+  int off = 0;              // ticks with a depth that differs by more than kOff
+  int same_side = 0;        // of these, the closest point has the same direction
+  int unexplained = 0;      // of all off, those not explained by entry_face_kept
 };
 
 constexpr double kOff = 1e-4;  // m
 
-// Faces that lean more than this away from the one that is felt, as a cosine, are another side.
+// Faces with a larger angle than this to the touched one, as a cosine, are on another side.
 constexpr double kAnotherSide = -0.25;
 
-// Is a mesh as judges see it: triangles wound as the contact is, and those around each vertex.
+// A mesh as the references see it: oriented like the contact's, and with the triangles around each
+// vertex.
 struct Oriented {
   TriangleMesh mesh;
   std::vector<std::vector<std::size_t>> around;
 };
 
-// Returns whether who tells the depth `found` may do so though other parts of the mesh are nearer:
-// the face that was entered is kept as long as the surface around it leads to none that is nearer
-// without going over to another side. So no triangle that shares a corner with the one that is felt
-// and does not look away from it may be nearer by more than 0.1 mm or 2 % of the depth.
+// Returns whether a contact may report the depth `found` although other parts of the mesh are
+// nearer: the entered face is kept until the surface around it leads to a nearer one without
+// crossing to another side. So no triangle that shares a corner with the touched one, and does not
+// face away from it, may be nearer by more than 0.1 mm or 2 % of the depth.
 bool entry_face_kept(const Oriented& oriented, const Vector3d& tip, const ContactState& found) {
   const auto felt = static_cast<std::size_t>(found.triangle);
   const Vector3d n = support::outward_normal(oriented.mesh, felt);
@@ -112,7 +113,7 @@ Judged judge(PathBounded<Contact>& contact, const Oriented& oriented, const Path
     const ContactState felt = support::move_tip(contact, path.tips[i]);
     const ContactState& found = contact.contact().state();
     if (!path.tips[i].allFinite()) {
-      // Bodies that pass through each other: who begins in another one is not seen to enter.
+      // Bodies that pass through each other: a tip that begins inside another one has no entry.
       entered = i + 1 < path.tips.size() && !support::is_inside(mesh, path.tips[i + 1]);
       continue;
     }
@@ -142,7 +143,7 @@ TriangleMesh scaled(const TriangleMesh& mesh) {
   return placed(mesh, side > 0 ? kSize / side : 1, Eigen::Matrix3d::Identity(), {0, 0, 0});
 }
 
-// What all meshes together showed of one way.
+// Results of one kind of contact over all meshes.
 struct Sum {
   Judged skin, deep;
   int meshes_lost = 0;
@@ -156,7 +157,7 @@ void add(Judged& sum, const Judged& more) {
   sum.unexplained += more.unexplained;
 }
 
-// Takes every way of contact along the same paths over one mesh.
+// Runs every kind of contact along the same paths over one mesh.
 void try_all(const std::string& name, const TriangleMesh& shape, int ticks,
              std::array<Sum, kWays.size()>& sums) {
   const auto mesh = ContactMesh::build(shape);
@@ -235,10 +236,10 @@ TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
   tell(sums);
 }
 
-// Of 100,000 ticks 0.2 to 1 mm below the elephant's skin edge planes are off the nearest point by
-// more than 0.1 mm only where that belongs to another sheet: the face that was entered is kept, and
-// no triangle around it that looks the same way is nearer, in all ticks but two. The nearest point
-// looks the other way in all but a few.
+// In 100,000 ticks 0.2 to 1 mm below the elephant's skin, edge planes differ from the closest point
+// by more than 0.1 mm only where that is on another sheet: the entered face is kept, and no
+// triangle around it with the same direction is nearer, in all ticks except two. The closest point
+// has the opposite direction in all except a few.
 TEST(ContactTruth, EdgePlanesMeasureTheNearestDistance) {
   if (!fs::exists(fs::path(THIMBLE_MESHES) / "elephant.off")) {
     GTEST_SKIP() << "The scanned meshes are not here: run app/fetch_meshes.sh to unpack them.";

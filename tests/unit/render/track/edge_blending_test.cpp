@@ -28,7 +28,7 @@ struct Shaded {
   SmoothNormals normals;
 };
 
-// Asks every shading, at widths from much less than a triangle to more than one.
+// Queries every shading, at widths from much less than a triangle to more than one.
 template <class Ask>
 void for_each_shading(double edge_length, Ask ask) {
   for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
@@ -85,7 +85,7 @@ TEST(EdgeBlending, EveryTriangleReachesTheVertexNormal) {
         for (const double away : {1e-3, 1e-5, 1e-7, 0.0}) {
           const Vector3d n =
               shading.normal(on.mesh, on.normals, t, weights_of(k, 1 - away, away * other));
-          // No faster than linear in the distance, with the narrowest band 1/50 of an edge wide.
+          // No faster than linear in the distance; the narrowest band is 1/50 of an edge wide.
           ASSERT_LT((n - wanted).norm(), 500 * away + 1e-14) << shading.kName;
           ASSERT_LE((n - wanted).norm(), before + 1e-14);
           before = (n - wanted).norm();
@@ -95,10 +95,10 @@ TEST(EdgeBlending, EveryTriangleReachesTheVertexNormal) {
   });
 }
 
-TEST(EdgeBlending, ChangesWithinATriangleByNoMoreThanItsBandAllows) {
+TEST(EdgeBlending, ChangeInATriangleIsBoundedByItsBand) {
   support::Random random(3);
   const Shaded on(support::icosphere(2, 0.05));
-  // Faces here meet at most at 0.3 rad: over a band the normal turns by half of that, near a vertex
+  // Faces meet here at 0.3 rad at most: over a band the normal turns by half of that, near a vertex
   // in two directions at once.
   for (const double width : {0.0005, 0.002, 0.01}) {
     const FixedBand shading{width};
@@ -118,14 +118,14 @@ TEST(EdgeBlending, ChangesWithinATriangleByNoMoreThanItsBandAllows) {
   }
 }
 
-// A change of weights, of sum 0.
+// A change of weights, with sum 0.
 Vector3d change_of(std::size_t corner, double at_corner, double at_next) {
   Vector3d change = weights_of(corner, at_corner, at_next);
   change[static_cast<Eigen::Index>((corner + 2) % 3)] -= 1;
   return change;
 }
 
-// How far the normal turns per metre just before a place less how far just after it, rad/m: a
+// Returns how far the normal turns per metre just before a place minus just after it, rad/m: a
 // second difference over the length of one step. `turn` is a change of weights.
 template <class Shading>
 double rate_jump(const Shaded& on, const Shading& shading, std::int32_t t, const Vector3d& weights,
@@ -141,8 +141,8 @@ TEST(EdgeBlending, SmoothProfileTurnsContinuouslyInside) {
   support::Random random(5);
   const Shaded on(support::icosphere(2, 0.05));
   double linear = 0, smooth = 0;
-  // Places where a rate may jump: at the end of a band beside each edge, half-way along an edge and
-  // anywhere. Triangles are 7 to 8 mm wide.
+  // Places where a rate may jump: at the end of a band next to each edge, half-way along an edge,
+  // and anywhere. Triangles are 7 to 8 mm wide.
   for (std::int32_t t = 0; t < on.mesh.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector3d edge = on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k);
@@ -164,7 +164,7 @@ TEST(EdgeBlending, SmoothProfileTurnsContinuouslyInside) {
       }
     }
   }
-  // Steps of some 0.1 um: what is continuous changes by its slope, at most 1 rad / mm^2 here.
+  // Steps of about 0.1 um: a continuous rate changes by its slope, at most 1 rad / mm^2 here.
   EXPECT_LT(smooth, 1e6 * 2e-7);
   EXPECT_GT(linear, 50);  // 0.1 rad within a band of 1 mm, or none
 }
@@ -182,7 +182,7 @@ TEST(EdgeBlending, SmoothProfileTurnsContinuouslyOverEdges) {
       const double height = edge.cross(side).norm() / edge.norm();
       const double foot = side.dot(edge) / edge.squaredNorm();
       const double up = 1e-7 / height;
-      // Straight away from the edge, by 0.1 um.
+      // Perpendicular to the edge, by 0.1 um.
       const Vector3d away = weights_of(k, 1 - along - up * (1 - foot), along - up * foot);
       for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
         for (const double width : {0.0005, 0.002, 0.02}) {
@@ -198,7 +198,7 @@ TEST(EdgeBlending, SmoothProfileTurnsContinuouslyOverEdges) {
       }
     }
   }
-  // It comes to a rest on every edge, so it is the same there from both sides.
+  // Its rate is zero on every edge, so it is the same from both sides.
   EXPECT_LT(smooth, 1);
   EXPECT_GT(linear, 100);
 }
@@ -239,11 +239,11 @@ TEST(EdgeBlending, FollowsTheFourPointRuleOfThePaper) {
       }
       const Vector3d& vertex = on.normals.corners(t)[k];
       EXPECT_EQ(at(weights_of(k, 1, 0)), vertex);
-      // Along an edge, half the band from its end: half way between ip2 and ip4.
+      // Along an edge, half the band from its end: half-way between ip2 and ip4.
       const double length = (on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k)).norm();
       const Vector3d near_end = at(weights_of(k, 1 - 0.0015 / length, 0.0015 / length));
       EXPECT_LT((near_end - ((own + next).normalized() + vertex).normalized()).norm(), 1e-4);
-      // Half the band from an edge: half way between ip1 and ip2.
+      // Half the band from an edge: half-way between ip1 and ip2.
       const Vector3d edge = on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k);
       const Vector3d side = on.mesh.position(t, (k + 2) % 3) - on.mesh.position(t, k);
       const double height = edge.cross(side).norm() / edge.norm();
@@ -280,7 +280,7 @@ TEST(CurvedDepth, KnowsHowFarASphereStandsAboveAnEdge) {
       const double length = (mesh.position(t, 0) - mesh.position(t, 1)).norm();
       const double sagitta = length * length / (8 * 0.03);
       const double height = height_above(mesh, normals, t, {0.5, 0.5, 0});
-      // On a sphere the formula gives exactly L^2 / 8R; the true sagitta is that to second order.
+      // On a sphere the formula gives exactly L^2 / 8R, which is the true sagitta to second order.
       ASSERT_NEAR(height, sagitta, 1e-12 * sagitta);
       const double true_sagitta = 0.03 - (mesh.position(t, 0) + mesh.position(t, 1)).norm() / 2;
       ASSERT_NEAR(height, true_sagitta, length * length / (12 * 0.03 * 0.03) * sagitta);
@@ -288,7 +288,7 @@ TEST(CurvedDepth, KnowsHowFarASphereStandsAboveAnEdge) {
   }
 }
 
-TEST(CurvedDepth, IsPositiveOverHillsAndNegativeOverHollows) {
+TEST(CurvedDepth, IsPositiveOnConvexAndNegativeOnConcave) {
   const support::TorusSurface surface{0.05, 0.02};
   const Shaded on(support::torus(0.05, 0.02, 96, 48));
   int hills = 0;
@@ -299,7 +299,7 @@ TEST(CurvedDepth, IsPositiveOverHillsAndNegativeOverHollows) {
       const double length = (on.mesh.position(t, k) - on.mesh.position(t, (k + 1) % 3)).norm();
       const double wanted = -surface.value(middle);
       const double height = height_above(on.mesh, on.normals, t, weights_of(k, 0.5, 0.5));
-      // Of the tightest bend's sagitta.
+      // Relative to the sagitta at the largest curvature.
       ASSERT_NEAR(height, wanted, 0.03 * length * length / (8 * 0.02));
       hills += wanted > 0.2 * length * length / (8 * 0.02);
       hollows += wanted < -0.2 * length * length / (8 * 0.02);
@@ -327,7 +327,7 @@ TEST(Blended, CurvedSurfaceBeginsWithoutAForceStep) {
   EXPECT_NEAR(contact.state().depth, 0.001999 + 0.03 - middle.norm(), 1e-4);
 }
 
-TEST(Blended, PushesAlongTheBlendedNormalAndAsksTheHeapForNothing) {
+TEST(Blended, PushesAlongItsNormalWithoutAllocation) {
   ContactForceLaw touch(
       Blended<MeshContact, FixedBand>(MeshContact::build(support::icosphere(3, 0.05)).value(),
                                       FixedBand{0.001}),

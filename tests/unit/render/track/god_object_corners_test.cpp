@@ -14,7 +14,7 @@ using support::move;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Is a convex hollow in a block, with a point well inside it.
+// A convex hollow in a block, with a point well inside it.
 struct Hollow {
   const char* name;
   TriangleMesh mesh;
@@ -94,11 +94,11 @@ TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
                             worst, 1e-9, "1");
   support::record_hard_case(25, "the same", "== way of the proxy in ten more ticks", moved_later, 0,
                             "m");
-  EXPECT_LT(most_hops, kHopsMax);  // that many end a search that has not settled
+  EXPECT_LT(most_hops, kHopsMax);  // that many end a search that has not converged
   support::record_hard_case(25, "the same", "< most hops in a tick", most_hops, kHopsMax, "1");
 }
 
-TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {
+TEST(GodObjectCorners, EqualTheQuadraticProgramAlongAPath) {
   for (const Hollow& hollow : hollows()) {
     const double size = 0.4;
     auto contact = GodObjectContact::build(support::block_around(hollow.mesh, size / 2)).value();
@@ -120,8 +120,9 @@ TEST(GodObjectCorners, EqualTheQuadraticProgramAllAlongAWay) {
   }
 }
 
-TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
-  // Projection on a convex set brings no two points farther apart: no jump, no tremor made louder.
+TEST(GodObjectCorners, ProxyMotionOutsideAConvexIsBounded) {
+  // Projection onto a convex set never increases the distance of two points: no jump, and no
+  // amplified tremor.
   const double size = 0.4;
   auto contact =
       GodObjectContact::build(support::block_around(support::icosphere(3, 0.05), size / 2)).value();
@@ -142,7 +143,7 @@ TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
     const Vector3d p_WP = state.touching ? state.p_WP : p;
     ASSERT_LE((p_WP - p_WP_before).norm(), (p - p_before).norm() + 1e-11 * size) << i;
     if (state.touching && depth_before > 0) {
-      // Tip and proxy each move by a step at most, and so does the arrow between them.
+      // Tip and proxy each move by at most a step, and so does the vector between them.
       const double turn = (state.n_W - n_before).norm() * std::min(state.depth, depth_before);
       ASSERT_LE(turn, 2 * (p - p_before).norm() + 1e-11 * size) << i;
       ++both;
@@ -155,7 +156,7 @@ TEST(GodObjectCorners, ConvexOutsideBoundsTheProxyMotion) {
   EXPECT_GT(both, ticks / 10);
 }
 
-TEST(GodObjectCorners, SlideOverAConvexEdgeToTheNextFace) {
+TEST(GodObjectCorners, ProxySlidesOverAConvexEdge) {
   // A ridge along y, 120 degrees: the tip passes below it from one flank to the other.
   const TriangleMesh ridge = support::wedge(120 * kDegree, 0.1, 0.1);
   auto contact = GodObjectContact::build(ridge).value();
@@ -175,7 +176,7 @@ TEST(GodObjectCorners, SlideOverAConvexEdgeToTheNextFace) {
   EXPECT_EQ(flanks, 1);
 }
 
-TEST(GodObjectCorners, AreReachedInOneTickFromTheOppositeWall) {
+TEST(GodObjectCorners, AreReachedInOneTickFromAnotherWall) {
   auto contact =
       GodObjectContact::build(support::block_around(support::box({0.05, 0.05, 0.05}), 0.2)).value();
   move(contact, {0, 0, 0});
@@ -185,7 +186,7 @@ TEST(GodObjectCorners, AreReachedInOneTickFromTheOppositeWall) {
   EXPECT_LT((state.p_WP - Vector3d(0.05, 0.05, -0.05)).norm(), 1e-12);
 }
 
-TEST(GodObjectCorners, StopAProxyThatLeavesOneWallAtTheOther) {
+TEST(GodObjectCorners, ProxyLeavingOneWallStopsAtTheOther) {
   auto contact =
       GodObjectContact::build(support::block_around(support::box({0.05, 0.05, 0.05}), 0.2)).value();
   move(contact, {0, 0, 0});
@@ -197,7 +198,7 @@ TEST(GodObjectCorners, StopAProxyThatLeavesOneWallAtTheOther) {
   EXPECT_EQ(contact.counters().stopped, 1U);
 }
 
-TEST(GodObjectCorners, CountAsManyConstraintsAsTheCornerHasFaces) {
+TEST(GodObjectCorners, HaveOneConstraintPerFaceOfTheCorner) {
   auto contact =
       GodObjectContact::build(support::block_around(support::box({0.05, 0.05, 0.05}), 0.2)).value();
   move(contact, {0, 0, 0});

@@ -18,13 +18,13 @@ inline const render::ContactState& move(render::GodObjectContact& contact, const
   return contact.update(state);
 }
 
-/// Returns the full length where THIMBLE_LONG=1 asks for it.
+/// Returns the full length if THIMBLE_LONG=1 is set.
 inline int length_of_run(int in_short, int in_full) {
   return long_form() ? in_full : in_short;
 }
 
-/// Makes a block with a hollow: the outside of the result near the origin is the inside of
-/// `hollow`, so a convex one gives concave corners only.
+/// Returns a block with a hollow: the outside of the result near the origin is the inside of
+/// `hollow`, so a convex one gives only concave corners.
 inline TriangleMesh block_around(const TriangleMesh& hollow, double half_side) {
   TriangleMesh mesh = box(Vector3d::Constant(half_side));
   const auto first = static_cast<std::int32_t>(mesh.vertices.size());
@@ -35,8 +35,8 @@ inline TriangleMesh block_around(const TriangleMesh& hollow, double half_side) {
   return mesh;
 }
 
-/// A random way of the tip through and around a mesh: long presses towards goals between two
-/// random vertices, or a little beside, with tremor, fast and slow.
+/// Random path of the tip through and around a mesh: long presses towards goals between two random
+/// vertices, or slightly off them, with tremor, fast and slow.
 class RandomTip {
  public:
   RandomTip(std::uint64_t seed, const TriangleMesh& mesh) : random_(seed), mesh_(mesh) {
@@ -73,13 +73,13 @@ class RandomTip {
   int left_ = 0;
 };
 
-/// What a plane `n . x + d >= 0` allows.
+/// Half-space `n . x + d >= 0`.
 struct Constraint {
   Vector3d n;
   double d;
 };
 
-/// Lists the distinct planes of a convex mesh, positive inside it.
+/// Returns the distinct planes of a convex mesh, positive inside it.
 inline std::vector<Constraint> planes_inside(const TriangleMesh& convex) {
   std::vector<Constraint> planes;
   for (std::size_t t = 0; t < convex.triangles.size(); ++t) {
@@ -93,8 +93,8 @@ inline std::vector<Constraint> planes_inside(const TriangleMesh& convex) {
   return planes;
 }
 
-/// Finds the point nearest to `p` that satisfies all constraints by trying each set of at most
-/// three as equations and keeping the nearest result that breaks none: slow and plain.
+/// Returns the point nearest to `p` that satisfies all constraints. Tries each set of at most three
+/// as equations and keeps the nearest result that violates none: slow and simple.
 inline Vector3d project_by_trial(const std::vector<Constraint>& planes, const Vector3d& p,
                                  double slack) {
   Vector3d best = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -21,7 +21,7 @@ using support::move;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Splits triangles by points a hair off one of their edges: slivers of 1e-11 of their length.
+// Splits triangles at points very close to one of their edges: slivers of 1e-11 of their length.
 TriangleMesh with_slivers(TriangleMesh mesh) {
   const std::size_t count = mesh.triangles.size();
   for (std::size_t t = 0; t < count; t += 3) {
@@ -36,8 +36,8 @@ TriangleMesh with_slivers(TriangleMesh mesh) {
   return mesh;
 }
 
-// Walks at random and asks each tick: is contact kept while the tip is inside, is the proxy outside
-// by the exact test, does standing still change nothing?
+// Walks at random and checks in each tick that contact is kept while the tip is inside, that the
+// proxy is outside by the exact test, and that a tip at rest changes nothing.
 void expect_sound_walk(const TriangleMesh& mesh, std::uint64_t seed) {
   auto contact = GodObjectContact::build(mesh).value();
   support::RandomTip tip(support::seed_of(seed), mesh);
@@ -95,9 +95,9 @@ TEST(GodObject, StaysOutsideAndKeepsContactOnTheElephant) {
   expect_sound_walk(elephant, 7);
 }
 
-TEST(GodObject, RestsWhereNoPointOfTheSurfaceAroundIsNearer) {
-  // Triangles that hold the proxy are asked by the slow reference; the way to the tip must begin in
-  // the material.
+TEST(GodObject, RestsAtALocallyClosestPoint) {
+  // Reference for the triangles that hold the proxy: a slow search; the path to the tip must begin
+  // in the material.
   const TriangleMesh mesh = support::bumpy_sphere(2, 0.05, 0.35, 7);
   auto contact = GodObjectContact::build(mesh).value();
   support::RandomTip tip(support::seed_of(12), mesh);
@@ -199,7 +199,7 @@ TEST(GodObject, DirectionTurnsWithTheFacesOfASphere) {
         0.0485 * Vector3d(std::cos(u) * std::cos(v), std::sin(u) * std::cos(v), std::sin(v));
     const ContactState& state = move(contact, p_WT);
     ASSERT_TRUE(state.touching) << i;
-    // A hop over a vertex turns by two bends at most.
+    // A hop over a vertex turns by at most two bends.
     if (i > 0) {
       ASSERT_LE((state.n_W - n_before).norm(), 2 * state.hops * bend + 1e-9) << i;
     }
@@ -209,8 +209,9 @@ TEST(GodObject, DirectionTurnsWithTheFacesOfASphere) {
   EXPECT_GT(hops, 1000);
 }
 
-TEST(GodObject, FinishesInLaterTicksASlideThatIsLongerThanOneMayBe) {
-  // Pushed past the middle of a fine sphere in one tick, the proxy slips round to the far side.
+TEST(GodObject, LongSlideContinuesInLaterTicks) {
+  // A proxy that is pushed past the middle of a fine sphere in one tick slips around to the far
+  // side.
   auto contact = GodObjectContact::build(support::icosphere(7, 0.05)).value();
   const Vector3d p_WT(-0.04, 1e-4, 2e-4);
   move(contact, {0.06, 1e-4, 2e-4});
@@ -226,14 +227,14 @@ TEST(GodObject, FinishesInLaterTicksASlideThatIsLongerThanOneMayBe) {
   EXPECT_NEAR(distance, 0.01, 1e-5);
 }
 
-// Strokes a mesh and its scaled and moved copy the same way and compares every tick.
+// Strokes a mesh and its scaled and moved copy along the same path and compares every tick.
 void expect_same_answers(const TriangleMesh& base, double scale, double offset) {
   const double size = 0.1;
   const Vector3d shift(offset, -offset, offset);
   auto reference = GodObjectContact::build(base).value();
   auto copy =
       GodObjectContact::build(placed(base, scale, Eigen::Matrix3d::Identity(), shift)).value();
-  // No fresh cases: a proxy near an edge may go either way by a rounding of its place.
+  // Fixed seed: near an edge, rounding of a place may decide where a proxy goes.
   support::Random random(std::uint64_t{9});
   Vector3d p(0.08, 0, 0);
   int touched = 0;
@@ -259,7 +260,7 @@ TEST(GodObject, GivesTheSameAnswersAtEveryScale) {
 }
 
 TEST(GodObject, GivesTheSameAnswersFarFromTheOrigin) {
-  // Vertices are rounded to 2e-12 m there: slivers thinner than that are other shapes.
+  // Vertices are rounded to 2e-12 m there: thinner slivers would be other shapes.
   expect_same_answers(support::bumpy_sphere(3, 0.05, 0.3, 6), 1, 1e4);
   expect_same_answers(support::block_around(support::box({0.03, 0.03, 0.03}), 0.05), 1, 1e4);
 }
@@ -282,7 +283,7 @@ TEST(GodObject, EndsContactForAPositionThatIsNaN) {
   EXPECT_TRUE(move(contact, {0.1, 0.2, 0.9}).touching);
 }
 
-TEST(GodObject, AsksTheHeapForNothing) {
+TEST(GodObject, DoesNotAllocate) {
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.35, 7);
   auto contact = GodObjectContact::build(mesh).value();
   support::RandomTip tip(support::seed_of(40), mesh);

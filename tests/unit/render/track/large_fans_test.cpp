@@ -1,4 +1,4 @@
-// Vertices with 400 to 10,000 faces: the tip of a cone, over which every tracker must find its way.
+// Vertices with 400 to 10,000 faces: the tip of a cone, which every tracker must cross.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -58,7 +58,7 @@ struct FanTip {
     state.p_WT = p;
     return object->update(state).f_T_W.norm();
   }
-  // Presses from outside to a depth at one place, and stays; gives the force at the end.
+  // Presses from outside to a depth at one place and stays; returns the final force.
   double press(double x, double y, double depth) const {
     double felt = 0;
     for (int i = 0; i <= 40; ++i) felt = force(below_fan(x, y, -0.003 + (0.003 + depth) * i / 40));

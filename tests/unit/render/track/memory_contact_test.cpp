@@ -35,14 +35,14 @@ const ContactState& move(MemoryContact& contact, const Vector3d& p_WT) {
   return contact.update(state);
 }
 
-// Brings the tip from outside along `n` to `p`. A tip that is thrown there through the body is
-// followed over a bounded number of triangles per tick, and let go when it is seen to be outside.
+// Moves the tip from outside along `n` to `p`. A tip that jumps there through the body is followed
+// over a bounded number of triangles per tick, and released when it is found to be outside.
 void enter(MemoryContact& contact, const Vector3d& p, const Vector3d& n, double reach) {
   for (int tick = 0; tick < 10 && move(contact, p + reach * n).touching; ++tick) continue;
   move(contact, p);
 }
 
-// Wanders over directions in steps of an angle.
+// Moves randomly over directions in steps of an angle.
 class Wanderer {
  public:
   Wanderer(std::uint64_t seed, double step) : random_(seed), step_(step) {}
@@ -69,7 +69,7 @@ TEST(MemoryContact, MeasuresCoarseSpheresExactly) {
       const Vector3d& u = tip.next();
       const ContactState& state = move(contact, 0.029 * u);
       ASSERT_TRUE(state.touching);
-      // Of the sagitta less than a tenth is left: averages of faces are not quite radial.
+      // Less than a tenth of the sagitta remains: averages of faces are not exactly radial.
       ASSERT_NEAR(state.depth, 0.001, 3e-5 * std::pow(0.25, level - 2) + 3e-7) << "level " << level;
       ASSERT_LT(std::acos(std::min(1.0, state.n_W.dot(u))), 0.025 * std::pow(0.5, level - 2));
       ASSERT_LT((state.p_WP - (0.029 * u + state.depth * state.n_W)).norm(), 1e-15);
@@ -99,8 +99,7 @@ TEST(MemoryContact, BulgeBeginsAndEndsWithoutAJump) {
   }
 }
 
-// What speaks against smoothing whatever a scene says nothing of: the edges of 20 triangles are no
-// creases.
+// A scene may name no smoothing, so even the edges of 20 triangles are not creases.
 TEST(MemoryContact, BallOf20TrianglesIsFeltOutside) {
   constexpr double kBall = 0.05;
   const TriangleMesh ball = support::icosphere(0, kBall);
@@ -116,7 +115,7 @@ TEST(MemoryContact, BallOf20TrianglesIsFeltOutside) {
   EXPECT_NEAR(height, kBall - middle.norm(), 0.05 * kBall);
 }
 
-TEST(MemoryContact, TouchesNoBulgeThatTheTipReachesFromInside) {
+TEST(MemoryContact, BulgeReachedFromInsideIsNotContact) {
   MemoryContact contact = MemoryContact::build(support::icosphere(2, 0.03)).value();
   const Vector3d u = (contact.surface().position(0, 0) + contact.surface().position(0, 1) +
                       contact.surface().position(0, 2))
@@ -154,13 +153,13 @@ TEST(MemoryContact, TorusErrorFallsWithTheSquaredEdge) {
 
 TEST(MemoryContact, IsContinuousOverEdgesAndVertices) {
   MemoryContact contact = MemoryContact::build(support::bumpy_sphere(3, 0.05, 0.2, 4)).value();
-  // By the numbers of the input, so that the places do not depend on how packed triangles are
-  // sorted.
+  // By the numbers of the input, so that the places do not depend on the order of the packed
+  // triangles.
   std::vector<std::int32_t> record_of(contact.surface().triangles().size());
   for (std::int32_t t = 0; t < contact.surface().triangle_count(); ++t) {
     record_of[static_cast<std::size_t>(contact.surface().source(t))] = t;
   }
-  // Through the middles and the corners of triangles, in steps of 1e-7 of the size.
+  // Through the midpoints and the corners of triangles, in steps of 1e-7 of the size.
   support::Random random(21);
   int hops = 0;
   for (int stroke = 0; stroke < scaled(2000, 200); ++stroke) {
@@ -179,7 +178,7 @@ TEST(MemoryContact, IsContinuousOverEdgesAndVertices) {
       constexpr double kStep = 1e-8;  // m
       const ContactState& now = move(contact, middle + i * kStep * way);
       ASSERT_TRUE(now.touching);
-      // The surface is at most 1.5 times as steep as the stroke, and turns in 2 mm by 1 rad.
+      // The surface is at most 1.5 times as steep as the stroke, and turns by 1 rad in 2 mm.
       ASSERT_LT(std::abs(now.depth - before.depth), 1.5 * kStep);
       ASSERT_LT((now.n_W - before.n_W).norm(), kStep / 2e-3);
       hops += now.hops;
@@ -213,7 +212,7 @@ TEST(MemoryContact, NeverLosesContactOnAScannedMesh) {
   MemoryContact contact = MemoryContact::build(load_mesh(file).value()).value();
   const PackedSurface& surface = contact.surface();
   const double size = 2 * kLatticeHalf * surface.step();
-  // From triangle to triangle, pressed in by a thousandth of the size.
+  // From triangle to triangle, a thousandth of the size deep.
   support::Random random(33);
   std::int32_t t = 0;
   int contacts = 0;
@@ -316,7 +315,7 @@ TEST(MemoryContact, StartInsideOrNaNIsNotContact) {
     EXPECT_FALSE(move(contact, {0.1, bad, 0.9}).touching);
     EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);
     EXPECT_FALSE(move(contact, {0, 0.1, 1.1}).touching);
-    // A tip that was outside before it was nowhere is not known to have come in.
+    // A tip that was outside before an invalid position is not known to have entered.
     EXPECT_FALSE(move(contact, {0.1, bad, 0.9}).touching);
     EXPECT_FALSE(move(contact, {0, 0.1, 0.9}).touching);
     EXPECT_FALSE(move(contact, {0, 0.1, 1.1}).touching);
@@ -324,7 +323,7 @@ TEST(MemoryContact, StartInsideOrNaNIsNotContact) {
   }
 }
 
-// The tick that stays in its triangle tells by the depth alone that the position is within range.
+// The tick that stays in its triangle checks only by the depth that the position is within range.
 TEST(MemoryContact, EveryPositionBeyondRangeEndsContact) {
   MemoryContact contact = MemoryContact::build(support::icosphere(4, 0.05)).value();
   support::Random random(21);
@@ -348,7 +347,7 @@ TEST(MemoryContact, EveryPositionBeyondRangeEndsContact) {
   }
 }
 
-TEST(MemoryContact, LeavesTheHeapAlone) {
+TEST(MemoryContact, DoesNotAllocate) {
   MemoryContact contact = MemoryContact::build(support::bumpy_sphere(3, 0.05, 0.3, 6)).value();
   support::Random random(71);
   int touched = 0;
@@ -360,7 +359,7 @@ TEST(MemoryContact, LeavesTheHeapAlone) {
   EXPECT_GT(contact.counters().found_near, 0u);
 }
 
-TEST(MemoryContact, StaysWithinItsHopsAroundANeedleAndInAThinPlate) {
+TEST(MemoryContact, HopsAreBoundedAroundANeedleAndInAPlate) {
   for (const TriangleMesh& mesh : {support::needle(64, 0.08, 0.01), support::plate(0.1, 0.0002, 20),
                                    support::wedge(5 * std::numbers::pi / 180, 0.1, 0.05)}) {
     MemoryContact contact = MemoryContact::build(mesh).value();
@@ -373,7 +372,8 @@ TEST(MemoryContact, StaysWithinItsHopsAroundANeedleAndInAThinPlate) {
       const bool was_touching = contact.state().touching;
       const ContactState& state = move(contact, p);
       ASSERT_LE(state.hops, kHopsMax);
-      if (state.hops == kHopsMax && state.touching) {  // a walk given up: the nearest is found anew
+      if (state.hops == kHopsMax &&
+          state.touching) {  // an abandoned walk: the closest point is searched again
         const double nearest = contact.search().closest(p, 1).distance;
         ASSERT_LE((state.p_WP - p).norm(), nearest + 1e-12) << i;
         ++given_up;

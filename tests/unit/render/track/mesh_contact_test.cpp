@@ -69,7 +69,8 @@ TEST(MeshContact, IsIndependentOfScaleAndOrigin) {
     std::mt19937_64 random(support::seed_of(9));
     std::normal_distribution<double> normal;
     Vector3d p(0.08, 0, 0);
-    // Who touched at the end of the last run may still touch after a jump: both begin anew.
+    // A tip in contact at the end of the last run may still be in contact after a jump: both begin
+    // again.
     move(reference, Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
     int touched = 0;
     for (int i = 0; i < 20000; ++i) {

@@ -35,7 +35,7 @@ std::shared_ptr<MovingMesh> moving(const TriangleMesh& shape) {
                                       MovingMeshOptions{.normals = NormalWeights::kAngle});
 }
 
-// Calls test(surface, contact) for each way to touch what moves.
+// Calls test(surface, contact) for each kind of contact with a moving surface.
 template <class Test>
 void for_each_way(const TriangleMesh& shape, Test test) {
   {
@@ -72,7 +72,7 @@ TEST(MovingContact, FollowsADeformingSurface) {
     ASSERT_TRUE(contact.state().touching);
     const std::int32_t centre = surface->mesh().corners(contact.state().triangle)[0];
     std::vector<VertexMove> dented;
-    // Tip and surface go 5 mm in, across and out again; the tip stays about 0.5 mm below.
+    // Tip and surface move 5 mm in, across and out again; the tip stays about 0.5 mm below.
     for (int tick = 0; tick < 400; ++tick) {
       const double depth = 0.005 * std::sin(M_PI * tick / 400);
       std::vector<VertexMove> moves;
@@ -91,12 +91,12 @@ TEST(MovingContact, FollowsADeformingSurface) {
       ASSERT_LT(state.depth, 0.0012) << tick;
       dented = moves;
     }
-    // It springs back in one tick while the tip stays where it is: deeper, and still touching.
+    // It springs back in one tick while the tip does not move: deeper, and still in contact.
     contact.move_vertices(support::back_to(shape.vertices, dented));
     const ContactState& state = contact.update(at({0, 0.001, kBallRadius - 0.003}));
     EXPECT_TRUE(state.touching);
     EXPECT_NEAR(state.depth, 0.003, 0.0005);
-    // It falls away farther than the tip follows.
+    // It recedes farther than the tip follows.
     std::vector<VertexMove> gone;
     for (const VertexMove& move : dented) {
       gone.push_back({move.vertex, shape.vertices[static_cast<std::size_t>(move.vertex)] -
@@ -107,9 +107,9 @@ TEST(MovingContact, FollowsADeformingSurface) {
   });
 }
 
-// Whatever moves, however far in one step: a tip that rests outside and comes to lie inside
-// touches, and one that comes to lie outside without a wall having passed does not.
-TEST(MovingContact, LetsNoMovingSurfaceThroughARestingTip) {
+// For any motion, however far in one step: a tip that rests outside and is inside afterwards
+// touches. One that is outside without a wall having passed does not.
+TEST(MovingContact, MovingSurfaceCannotPassARestingTip) {
   for (const TriangleMesh& shape :
        {support::icosphere(3, kBallRadius), support::torus(0.035, 0.015, 30, 16)}) {
     for_each_way(shape, [&](const auto& surface, auto contact) {
@@ -124,18 +124,18 @@ TEST(MovingContact, LetsNoMovingSurfaceThroughARestingTip) {
         contact.update(at(Vector3d::Constant(NAN)));
         contact.update(at(tip));
         const bool inside = surface->search().inside(tip);
-        // Up to ten times the edges in one step; then back.
+        // Up to ten times the edge length in one step; then back.
         const auto moves =
             support::dent(surface->mesh(), centre, out, random.uniform(0, 0.02), 0.02, random);
         contact.move_vertices(moves);
         const bool inside_now = surface->search().inside(tip);
-        // What begins inside was never outside: it touches nothing.
+        // A tip that begins inside was never outside: it has no contact.
         EXPECT_EQ(contact.state().touching, !inside && inside_now) << round;
         const bool touching = contact.update(at(tip)).touching;
         EXPECT_EQ(touching, !inside && inside_now) << round;
         caught += touching;
         if (round % 2 == 0) {
-          // Back out of it: let go, unless something else came by.
+          // Back out of it: released, unless another wall passed.
           contact.move_vertices(support::back_to(shape.vertices, moves));
           const bool still = surface->search().inside(tip);
           EXPECT_EQ(contact.update(at(tip)).touching, touching && still) << round;
@@ -148,7 +148,7 @@ TEST(MovingContact, LetsNoMovingSurfaceThroughARestingTip) {
   }
 }
 
-// A plate of 1 mm jumps by 20 mm, over a tip that was above it and is far below it afterwards.
+// A plate of 1 mm jumps by 20 mm, past a tip that was above it and is far below it afterwards.
 TEST(MovingContact, PlateThatSweepsOverTheTipIsFelt) {
   const TriangleMesh shape = support::plate(0.1, 0.001, 8);
   for_each_way(shape, [&](const auto& surface, auto contact) {
@@ -162,7 +162,7 @@ TEST(MovingContact, PlateThatSweepsOverTheTipIsFelt) {
       for (std::int32_t v = 0; v < surface->mesh().vertex_count(); ++v) {
         up.push_back({v, surface->mesh().position(v) + Vector3d(0, 0, 0.02)});
       }
-      // In whatever order the vertices come.
+      // In any order of the vertices.
       for (std::size_t i = up.size() - 1; i > 0; --i) std::swap(up[i], up[random.bits() % (i + 1)]);
       contact.move_vertices(up);
       ASSERT_FALSE(surface->search().inside(tip));
@@ -175,8 +175,9 @@ TEST(MovingContact, PlateThatSweepsOverTheTipIsFelt) {
   });
 }
 
-// A free tip remembers a ball without triangles: a surface that grows into it is felt all the same.
-TEST(MovingContact, ForgetsTheFreeSpaceThatTheSurfaceHasGrownInto) {
+// A free tip remembers a ball without triangles: a surface that grows into the ball must still be
+// felt.
+TEST(MovingContact, GrowingSurfaceInvalidatesFreeSpace) {
   const TriangleMesh shape = support::icosphere(3, kBallRadius);
   for_each_way(shape, [&](const auto& surface, auto contact) {
     for (int i = 0; i < 200; ++i) contact.update(at({0, 0, 0.07 + 1e-5 * i}));
@@ -190,7 +191,7 @@ TEST(MovingContact, ForgetsTheFreeSpaceThatTheSurfaceHasGrownInto) {
   });
 }
 
-TEST(MovingContact, MovesWithoutTheHeap) {
+TEST(MovingContact, MovesWithoutAllocation) {
   for_each_way(support::icosphere(3, kBallRadius), [&](const auto& surface, auto contact) {
     support::Random random(4);
     contact.update(at({0, 0, 0.06}));

@@ -24,13 +24,13 @@ void expect_equal(const Plane& a, const Plane& b) {
   EXPECT_EQ(a.d, b.d);
 }
 
-TEST(MovingMesh, HasThePlanesOfAMeshBuiltAnew) {
+TEST(MovingMesh, HasThePlanesOfANewMesh) {
   TriangleMesh shape = support::bumpy_sphere(3, kRadius, 0.3, 6);
   ContactMesh moved = ContactMesh::build(shape).value();
   support::Random random(3);
   for (std::size_t v = 0; v < shape.vertices.size(); ++v) {
     const Vector3d p = shape.vertices[v] * random.uniform(0.97, 1);
-    // The box stays, and with it the point that planes are relative to.
+    // The box is unchanged, and with it the origin of the planes.
     if ((shape.vertices[v].array() <= moved.box_min().array()).any() ||
         (shape.vertices[v].array() >= moved.box_max().array()).any()) {
       continue;
@@ -47,7 +47,7 @@ TEST(MovingMesh, HasThePlanesOfAMeshBuiltAnew) {
   }
 }
 
-// Finds the triangle that a ball's centre sees a point through.
+// Returns the triangle that is crossed by the line from the ball's centre to a point.
 std::int32_t triangle_over(const ContactMesh& mesh, const Vector3d& centre, const Vector3d& p) {
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     double least = INFINITY;
@@ -68,9 +68,9 @@ void move_ball(ContactMesh& mesh, const TriangleMesh& unit_ball, const Vector3d&
   }
 }
 
-TEST(MovingMesh, IsFollowedWhereItSwellsAndRunsUnderAStillTip) {
-  // A ball swells and shrinks by a tenth and runs past the tip at up to 0.3 m/s; the tip stands
-  // still but for staying 1 mm deep. Seen from the ball it slides over many triangles.
+TEST(MovingMesh, GrowingMovingMeshIsFollowedByARestingTip) {
+  // A ball that grows and shrinks by a tenth and moves past the tip at up to 0.3 m/s; the tip does
+  // not move, except to stay 1 mm deep. Relative to the ball it slides over many triangles.
   const TriangleMesh unit_ball = support::icosphere(3, 1);
   TriangleMesh shape = unit_ball;
   for (Vector3d& v : shape.vertices) v *= kRadius;
@@ -87,7 +87,7 @@ TEST(MovingMesh, IsFollowedWhereItSwellsAndRunsUnderAStillTip) {
     const double radius = kRadius * (1 + 0.1 * std::sin(20 * time));
     const Vector3d centre(0.015 * std::sin(11 * time), 0.012 * std::sin(17 * time), 0);
     move_ball(mesh, unit_ball, centre, radius);
-    // The search knows the new places too; SurfaceTracker asks it in doubt.
+    // The search must have the new positions as well; SurfaceTracker uses it in case of doubt.
     search.emplace(mesh);
     const Vector3d way = (0.03 * tip_way.normalized() - centre).normalized();
     const Vector3d p = centre + (radius - 0.001) * way;
@@ -95,7 +95,7 @@ TEST(MovingMesh, IsFollowedWhereItSwellsAndRunsUnderAStillTip) {
     ASSERT_TRUE(step.touching) << tick;
     active = tracker.active();
     hops += step.hops;
-    // Edge planes of a ball all go through its centre: the cell is what the centre sees.
+    // All edge planes of a ball pass through its centre: the cell is the one seen from the centre.
     double least = INFINITY;
     for (const Plane& plane : mesh.edge_planes(active)) {
       least = std::min(least, plane.distance(p - mesh.origin()));

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 using NormalProjectionContact = TrackedContact<NormalProjectionTracker>;
 
 // Puts the tip below a point near the middle of every convex edge and moves it out of the active
-// triangle's cell; gives the largest depth jump and, for the sake of the law, its largest error.
+// triangle's cell. Returns the largest depth jump and the largest error of the predicted jump.
 template <class Tracker>
 struct EdgeJumps {
   double jump = 0;
@@ -38,7 +38,7 @@ struct EdgeJumps {
         const Vector3d out =
             (mesh.position(t, (k + 1) % 3) - mesh.position(t, k)).cross(n).normalized();
         if (!(out.dot(n_next) > 0)) continue;  // concave
-        // Where the cell ends: straight below the edge for 4a, on the edge plane for 4b.
+        // The end of the cell: perpendicular below the edge for 4a, on the edge plane for 4b.
         const Plane& plane = mesh.edge_planes(t)[k];
         const Vector3d below = middle - depth * n;
         const double to_plane = plane.distance(below - mesh.origin()) / -plane.n.dot(out);
@@ -73,7 +73,7 @@ TEST(NormalProjectionTracker, JumpsInDepthByItsLaw) {
             << " um; 4b: below the step of " << 2e-3 << " um\n";
 }
 
-TEST(NormalProjectionTracker, TouchesWhereTheTipIsJustOnTheSurface) {
+TEST(NormalProjectionTracker, TipOnTheSurfaceIsInContact) {
   const ContactMesh mesh = ContactMesh::build(support::box({1, 1, 1})).value();
   const LinearSearch search(mesh);
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -88,7 +88,7 @@ TEST(NormalProjectionTracker, TouchesWhereTheTipIsJustOnTheSurface) {
   }
 }
 
-TEST(NormalProjectionTracker, LeavesGapsBelowHollowEdges) {
+TEST(NormalProjectionTracker, LeavesGapsBelowConcaveEdges) {
   const TriangleMesh shape = support::bumpy_sphere(3, 0.05, 0.3, 6);
   const auto gaps_and_losses = [&shape](auto contact) {
     support::Stroll stroll(contact, shape, 0.002, 0.0005, support::seed_of(7));

@@ -44,7 +44,7 @@ Vector3d any_weights(support::Random& random) {
   return w / w.sum();
 }
 
-TEST(OffsetFoot, FindsThePlaceAndDepthThatATipWasMadeFrom) {
+TEST(OffsetFoot, RecoversThePlaceAndDepthOfATip) {
   support::Random random(1);
   for (const TriangleMesh& shape :
        {support::icosphere(2, 0.05), support::torus(0.05, 0.02, 40, 20),
@@ -66,7 +66,7 @@ TEST(OffsetFoot, FindsThePlaceAndDepthThatATipWasMadeFrom) {
   }
 }
 
-TEST(OffsetFoot, IsTheSameSeenFromBothSidesOfASmoothEdge) {
+TEST(OffsetFoot, AgreesOnBothSidesOfASmoothEdge) {
   support::Random random(2);
   const ContactMesh mesh = prepared_mesh(support::bumpy_sphere(4, 0.05, 0.3, 6));
   const SmoothNormals normals(mesh);
@@ -87,7 +87,7 @@ TEST(OffsetFoot, IsTheSameSeenFromBothSidesOfASmoothEdge) {
   }
 }
 
-TEST(OffsetFoot, SaysSoWhereTheSunkenTriangleHasTurnedOver) {
+TEST(OffsetFoot, ReportsAnInvertedOffsetTriangle) {
   const ContactMesh mesh = prepared_mesh(support::icosphere(2, 0.05));
   const SmoothNormals normals(mesh);
   EXPECT_TRUE(
@@ -98,11 +98,11 @@ TEST(OffsetFoot, SaysSoWhereTheSunkenTriangleHasTurnedOver) {
           .found);
 }
 
-// Is the most by which the normal over a triangle, sunk by `depth`, turns per metre of the tip's
-// path. The normal is S / |S| with S = sum w_k n_k; along a path dS = sum dw_k n_k with sum dw_k =
-// 0, and w_k grows by at most 1 / h_k per metre across, h_k the offset triangle's height, more by
-// 1 / cos where the way down leans against the offset plane. So |dS| <= 3/2 max|n_i - n_j| / (h
-// cos).
+// Returns the maximum turn of the normal over a triangle, offset by `depth`, per metre of the tip's
+// path. The normal is S / |S| with S = sum w_k n_k. Along a path dS = sum dw_k n_k with sum dw_k =
+// 0, and w_k grows by at most 1 / h_k per metre across, with h_k the offset triangle's height; by 1
+// / cos more if the path downwards is inclined to the offset plane. So |dS| <= 3/2 max|n_i - n_j| /
+// (h cos).
 double turn_per_metre(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t t,
                       double depth) {
   const auto& n = normals.corners(t);
@@ -125,13 +125,13 @@ struct Smoothness {
   int checked = 0;
   int hops = 0;
   int lost = 0;
-  double worst_of_bound = 0;  // largest turn as a share of the derived bound
-  double worst_depth = 0;     // largest change of depth as a share of the path
+  double worst_of_bound = 0;  // largest turn as a fraction of the derived bound
+  double worst_depth = 0;     // largest change of depth as a fraction of the path
   double worst_turn = 0;      // largest |dn| L / |dp|
 };
 
-// Strolls and holds each tick against the derived bound of the triangles it began and ended on.
-// Ticks that run over creases or through more than two triangles are left out.
+// Walks and compares each tick with the derived bound of the triangles where it began and ended.
+// Omits ticks that cross creases or more than two triangles.
 Smoothness stroll_smoothly(const TriangleMesh& shape, double depth, double step, int ticks) {
   OffsetContact contact = OffsetContact::build(shape).value();
   const ContactMesh& mesh = contact.mesh();
@@ -152,7 +152,7 @@ Smoothness stroll_smoothly(const TriangleMesh& shape, double depth, double step,
     bool smooth = true;
     for (const std::int32_t t : {before.triangle, after.triangle}) {
       for (std::size_t k = 0; k < 3; ++k) {
-        // Also a crease at a corner that the path may cut.
+        // Also a crease at a corner that the path may cross.
         smooth = smooth && !normals.crease(t, k) &&
                  !normals.crease(mesh.cell(t).neighbours[k], 0) &&
                  !normals.crease(mesh.cell(t).neighbours[k], 1) &&
@@ -237,7 +237,7 @@ TEST(OffsetTracker, IsContinuousThroughEveryVertexAtDepth) {
     const Vector3d& n = normals.corners(t)[0];
     const double depth = 0.001;
     const Vector3d below = mesh.position(t, 0) - depth * n;
-    support::move_tip(contact, {std::nan(""), 0, 0});  // anew
+    support::move_tip(contact, {std::nan(""), 0, 0});  // a new contact
     support::move_tip(contact, mesh.position(t, 0) + depth * n);
     for (int i = 0; i < 20; ++i) {
       const ContactState& state = support::move_tip(contact, below + 1e-9 * random.direction());
@@ -250,7 +250,7 @@ TEST(OffsetTracker, IsContinuousThroughEveryVertexAtDepth) {
 }
 
 TEST(HardCaseEdgeCrossing, OffsetTrackerDoesNotJump) {
-  // The force changes per tick by at most 5 % and by what the path implies.
+  // The force changes per tick by at most 5 % and by the change of the path.
   int all_crossings = 0, all_lost = 0;
   const int wanted = support::long_form() ? 100000 : 10000;
   const double depth = 0.0008;
@@ -271,7 +271,7 @@ TEST(HardCaseEdgeCrossing, OffsetTrackerDoesNotJump) {
       crossings += stroll.after.hops;
       const Vector3d force_before = stroll.before.depth * stroll.before.n_W;
       const Vector3d force_after = stroll.after.depth * stroll.after.n_W;
-      // Depth may follow the path, twice as fast while the curvature correction sets in.
+      // Depth may change with the path, twice as fast while the curvature correction begins.
       ASSERT_LE((force_after - force_before).norm(), 0.05 * depth + 2 * stroll.moved);
     }
     all_crossings += crossings;
@@ -316,7 +316,7 @@ TEST(HardCaseFastStroke, TrackersMatchBruteForce) {
     bool flat_holds = false;
     bool any_flat_holds = false;
     for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
-      // The far side of the sphere, where cells run through the middle, is not asked.
+      // The far side of the sphere, where cells extend through the middle, is skipped.
       if (!(mesh.cell(t).face.n.dot(p) > 0.5 * p.norm())) continue;
       const OffsetFoot foot = find_offset_foot(mesh, normals, t, p, 0);
       if (foot.found && foot.weights.minCoeff() > 1e-9) {
@@ -348,7 +348,7 @@ TEST(HardCaseEdgeCrossing, OffsetTrackerKeepsCreasesExact) {
   OffsetContact contact = OffsetContact::build(support::box({0.05, 0.05, 0.05})).value();
   support::move_tip(contact, {0.01, 0.02, 0.06});
   for (int i = 0; i <= 1000; ++i) {
-    // Round the upper edge 1 mm inside: from the upper face to the one at +x.
+    // Around the upper edge 1 mm inside: from the upper face to the one at +x.
     const double along = 0.0975 * i / 1000;
     const double x = std::min(0.0, along - 0.0485) + 0.049;
     const double z = 0.049 - std::max(0.0, along - 0.0490);
@@ -366,7 +366,7 @@ TEST(HardCaseEdgeCrossing, OffsetTrackerKeepsCreasesExact) {
   EXPECT_LT((contact.state().n_W - Vector3d(1, 0, 0)).norm(), 1e-15);
 }
 
-TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
+TEST(OffsetTracker, KeepsContactAtAnyDepth) {
   support::Random random(11);
   for (const TriangleMesh& shape :
        {support::icosphere(3, 0.05), support::torus(0.05, 0.02, 40, 20),
@@ -378,13 +378,13 @@ TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
     const auto walk = [&] {
       Vector3d p(0.2, 0.2, 0.2);
       for (int i = 0; i < 20000; ++i) {
-        // Drawn half way between the middle and a vertex.
+        // Moved half-way between the middle and a vertex.
         const Vector3d middle = (contact.mesh().box_min() + contact.mesh().box_max()) / 2;
         p += 0.002 * random.direction() + 0.02 * ((middle + contact.mesh().position(0, 0)) / 2 - p);
         const bool was_free = !contact.state().touching;
         const ContactState& state = support::move_tip(contact, p);
         if (!state.touching) {
-          // A tip that came in by a second entry in the tick that ended a contact waits outside.
+          // A tip that entered a second time in the tick that ended a contact waits outside.
           if (!was_free) {
             ASSERT_FALSE(contact.search().inside(p));
           }
@@ -394,7 +394,7 @@ TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
         deepest = std::max(deepest, state.depth);
         ASSERT_GE(state.depth, 0);
         ASSERT_NEAR(state.n_W.norm(), 1, 1e-12);
-        ASSERT_LT(state.hops, kHopsMax);  // that many end a walk that has not settled
+        ASSERT_LT(state.hops, kHopsMax);  // that many end a walk that has not converged
       }
     };
     walk();
@@ -407,10 +407,10 @@ TEST(OffsetTracker, LosesNoContactHoweverDeepThePress) {
   }
 }
 
-TEST(OffsetTracker, ReturnsToTheNearSideAfterALeap) {
-  // A tip that leaps from one side of a ball to the other within a tick is followed over the
-  // surface, 64 triangles a tick, and not left on the far side's cells that reach through the
-  // middle.
+TEST(OffsetTracker, ReturnsToTheNearSideAfterAJump) {
+  // A tip that jumps from one side of a ball to the other within a tick is followed over the
+  // surface, 64 triangles per tick, and does not stay on the far side's cells that extend through
+  // the middle.
   const TriangleMesh shape = support::bumpy_sphere(6, 0.05, 0.1, 6);
   OffsetContact contact = OffsetContact::build(shape).value();
   const Vector3d p = 0.0485 * Vector3d(1, 0.1, 0.1).normalized();
@@ -426,8 +426,8 @@ TEST(OffsetTracker, ReturnsToTheNearSideAfterALeap) {
   }
 }
 
-TEST(OffsetTracker, IsHeldByBothFacesAtOnceBelowAHollowCrease) {
-  // A bar along y with an L for its section: the notch's faces meet at the origin's line.
+TEST(OffsetTracker, BothFacesHoldTheTipBelowAConcaveCrease) {
+  // A bar along y with an L-shaped section: the notch's faces meet in a line through the origin.
   TriangleMesh shape;
   const double outline[6][2] = {{-0.02, -0.02}, {0.03, -0.02}, {0.03, 0},
                                 {0, 0},         {0, 0.03},     {-0.02, 0.03}};
@@ -450,14 +450,14 @@ TEST(OffsetTracker, IsHeldByBothFacesAtOnceBelowAHollowCrease) {
   int sideways = 0;
   int both = 0;
   double depth_before = contact.state().depth;
-  // 2 mm below the notch, from under one of its faces to behind the other and on to the back.
+  // 2 mm below the notch, from below one of its faces to behind the other and on to the back.
   for (int i = 0; i <= 1000; ++i) {
     const double along = 0.02 * i / 1000;
     const Vector3d p = along < 0.012 ? Vector3d(0.01 - along, 0.001, -0.002)
                                      : Vector3d(-0.002, 0.001, along - 0.014);
     const ContactState& state = support::move_tip(contact, p);
     ASSERT_TRUE(state.touching);
-    // The crease is the nearest point of both faces between their normals.
+    // Between their normals, the crease is the closest point of both faces.
     const Vector3d to(std::max(-p.x(), 0.0), 0, std::max(-p.z(), 0.0));
     ASSERT_NEAR(state.depth, to.norm(), 1e-15) << p.transpose();
     ASSERT_LT((state.depth * state.n_W - to).norm(), 1e-15) << p.transpose();
@@ -489,7 +489,7 @@ TEST(OffsetTracker, IsIndependentOfScaleAndOrigin) {
     for (int i = 0; i < 5000; ++i) {
       if (!stroll.step()) break;
       if (!started) {
-        // In where the stroll is, straight from outside.
+        // In at the position of the walk, straight from outside.
         const Vector3d out = stroll.to + 2 * stroll.after.depth * stroll.after.n_W;
         support::move_tip(variant, {std::nan(""), 0, 0});
         support::move_tip(variant, v.scale * out + shift);

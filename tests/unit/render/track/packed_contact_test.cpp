@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What a script says is absent now.
+// Absent parts at present, according to a script.
 struct Absence {
   std::function<bool(const PackedTriangle&)> triangles = [](const PackedTriangle&) {
     return false;
@@ -27,7 +27,7 @@ struct Absence {
   bool searches = false;
 };
 
-// Drops packed triangles as a script says, as a surface on disk does.
+// Store that drops packed triangles according to a script, as a surface on disk does.
 class ScriptedStore {
  public:
   static constexpr bool kComplete = false;
@@ -108,7 +108,7 @@ TEST(PackedContact, MatchesTheContactInMemory) {
 
 TEST(PackedContact, AbsentRecordsHoldThePlane) {
   PackedScene scene(support::icosphere(4, 0.05));
-  // Nothing is at hand beyond 0.28 rad from the top, until the loader catches up.
+  // Nothing is loaded beyond 0.28 rad from the top, until the loader catches up.
   scene.absence.triangles = [&](const PackedTriangle& packed) {
     return packed.corner(0).x() > 0.28 * kLatticeHalf;
   };
@@ -122,7 +122,7 @@ TEST(PackedContact, AbsentRecordsHoldThePlane) {
       const ContactState& now = scene.move(on_stroke(kTurn * i));
       ASSERT_TRUE(now.touching);
       ASSERT_NEAR(now.n_W.norm(), 1, 1e-12);
-      // A move of 10 um and, while the plane fades, a thirtieth of what it had gone astray.
+      // A move of 10 um and, while the plane fades, a thirtieth of its error.
       ASSERT_LT(std::abs(now.depth - before.depth), 1.2e-5 + std::abs(held_depth - 1e-3) / 30);
       ASSERT_LT((now.n_W - before.n_W).norm(), 0.02);
       before = now;
@@ -135,7 +135,7 @@ TEST(PackedContact, AbsentRecordsHoldThePlane) {
   EXPECT_GT(scene.contact.ticks_held(), 300u);
   EXPECT_LT(scene.contact.ticks_held(), 1200u);
   held_depth = before.depth;
-  EXPECT_GT(std::abs(held_depth - 1e-3), 5e-5);  // a plane is no ball
+  EXPECT_GT(std::abs(held_depth - 1e-3), 5e-5);  // a plane differs from the ball
   scene.absence.triangles = [](const PackedTriangle&) { return false; };
   const std::uint64_t held = scene.contact.ticks_held();
   stroke(2301, 2400);
@@ -149,7 +149,7 @@ TEST(PackedContact, UnknownSearchKeepsContact) {
   ASSERT_TRUE(scene.move({0, 0, 0.049}).touching);
   scene.absence.searches = true;
   for (int i = 0; i <= 100; ++i) {
-    // Out through the surface: the plane says that nothing is felt there.
+    // Out through the surface: the plane predicts no contact there.
     const ContactState& state = scene.move({0, 0, 0.049 + 2e-5 * i});
     ASSERT_TRUE(state.touching);
     ASSERT_GE(state.depth, 0);
@@ -159,12 +159,12 @@ TEST(PackedContact, UnknownSearchKeepsContact) {
   EXPECT_FALSE(scene.move({0, 0, 0.052}).touching);
 }
 
-TEST(PackedContact, ExaminesLaterThePathThatItCouldNotExamine) {
+TEST(PackedContact, UnknownPathIsExaminedLater) {
   PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   scene.absence.searches = true;
   EXPECT_FALSE(scene.move({0, 0, 0.055}).touching);
-  EXPECT_FALSE(scene.move({0, 0, 0.049}).touching);  // through the surface, unseen
+  EXPECT_FALSE(scene.move({0, 0, 0.049}).touching);  // through the surface, which is absent
   EXPECT_EQ(scene.contact.ticks_held(), 2u);
   scene.absence.searches = false;
   const ContactState& state = scene.move({0, 0, 0.0489});
@@ -174,7 +174,7 @@ TEST(PackedContact, ExaminesLaterThePathThatItCouldNotExamine) {
   EXPECT_NEAR(state.depth, 1.1e-3, 2e-5);  // but soon
 }
 
-// A coarse ball, whose smooth surface stands millimetres above its triangles: contact begins there.
+// A coarse ball with a smooth surface millimetres above its triangles: contact begins there.
 struct Bulge {
   Bulge() : scene(support::icosphere(1, 0.05)) {
     // Down through the middle of a triangle.
@@ -182,7 +182,7 @@ struct Bulge {
     const Vector3d middle = (packed.corner(0) + packed.corner(1) + packed.corner(2)) / 3;
     way = middle.normalized();
     triangles = middle.norm() * scene.surface.step();
-    // Where contact begins when all is at hand.
+    // Start of the contact if everything is loaded.
     PackedScene whole(support::icosphere(1, 0.05));
     smooth = 0.06;
     while (!whole.move(smooth * way).touching && smooth > triangles) smooth -= 1e-5;
@@ -191,7 +191,7 @@ struct Bulge {
 
   PackedScene scene;
   Vector3d way{0, 0, 0};
-  double triangles = 0;  // heights over the middle, m: of the triangle,
+  double triangles = 0;  // heights above the middle, m: of the triangle,
   double smooth = 0;     // and of the smooth surface above it
 };
 
@@ -202,16 +202,16 @@ TEST(PackedContact, BeginsOnTheSmoothBulge) {
   double before = 0;
   for (double height = 0.06; height > bulge.triangles; height -= 1e-5) {
     const ContactState& state = bulge.move(height);
-    ASSERT_LT(state.depth - before, 1.2e-5);  // the tip's own move
+    ASSERT_LT(state.depth - before, 1.2e-5);  // the tip's own motion
     before = state.depth;
   }
   EXPECT_NEAR(before, bulge.smooth - bulge.triangles, 3e-5);
 }
 
-// While the tip goes down into the bulge nothing is known of it, or it is known but its packed
-// triangle is absent, or the one is there but not those around: it is felt as soon as they are back
-// or when the tip passes through the triangles, and then as if they had never been away. (That the
-// depth comes back slowly is for PagedContact to see to.)
+// While the tip goes down into the bulge nothing is loaded there, or its packed triangle is absent,
+// or only those around it are. It is felt as soon as they are loaded, or when the tip passes
+// through the triangles, and then as if they had never been absent. (PagedContact is responsible
+// for the slow return of the depth.)
 TEST(PackedContact, LoadedRecordsShowABulge) {
   enum class Absent { kSearches, kAllRecords, kRecordsAround };
   for (const Absent absent : {Absent::kSearches, Absent::kAllRecords, Absent::kRecordsAround}) {
@@ -229,7 +229,7 @@ TEST(PackedContact, LoadedRecordsShowABulge) {
       for (; height > seen; height -= 1e-5) {
         const bool touching = bulge.move(height).touching;
         const bool wanted = whole.move(height * bulge.way).touching;
-        // Of the packed triangles around none is needed over the middle of its own.
+        // Over the middle of its own packed triangle, none of those around is needed.
         ASSERT_EQ(touching, wanted && absent == Absent::kRecordsAround) << height;
       }
       bulge.scene.absence = {};
@@ -248,7 +248,7 @@ TEST(PackedContact, LoadedRecordsShowABulge) {
   }
 }
 
-TEST(PackedContact, LeavesTheHeapAloneWhileItHolds) {
+TEST(PackedContact, DoesNotAllocateWhileItHolds) {
   PackedScene scene(support::icosphere(3, 0.05));
   scene.move({0, 0, 0.06});
   scene.move(on_stroke(0));

@@ -109,7 +109,7 @@ TEST(PackedSurface, RefusesOpenSurfacesWithThePlace) {
   for (const TriangleMesh& mesh : {open, flipped, doubled}) {
     const auto refused = PackedSurface::build(mesh);
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("lacks a neighbour"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("lacks a unique neighbour"), std::string::npos);
   }
   TriangleMesh flat = support::box({1, 1, 1});
   for (Vector3d& v : flat.vertices) v.z() = v.y() = 0;

@@ -1,4 +1,4 @@
-// Tips that are past a thin plate within one tick, near its rim as well.
+// Tips that pass a thin plate within one tick, also near its rim.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -39,14 +39,14 @@ class PassedThroughBy : public testing::TestWithParam<TrackerChoice> {
   }
 };
 
-// Side of the plate's middle plane, 0 within the plate.
+// Side of the plate's mid-plane, 0 within the plate.
 int side_of(const Vector3d& p) {
   if (std::abs(p.z()) <= kThick / 2) return 0;
   return p.z() > 0 ? 1 : -1;
 }
 
-// A plate turns at 60 to 150 rad/s over a tip of up to 0.5 m/s, seen from the plate.
-TEST_P(PassedThroughBy, PlateThatTurnsFastCatchesEveryTip) {
+// A plate turns at 60 to 150 rad/s past a tip of up to 0.5 m/s, seen from the plate.
+TEST_P(PassedThroughBy, FastTurningPlateCatchesEveryTip) {
   support::Random random(7);
   int met = 0;
   for (int round = 0; round < 600; ++round) {
@@ -78,10 +78,10 @@ TEST_P(PassedThroughBy, PlateThatTurnsFastCatchesEveryTip) {
   support::Covered("trackers").add(support::scene_name(GetParam()));
 }
 
-// The same, for as long as the plate turns: a tip that is free again is on the side that it was
-// free on before, unless it has been beside the plate. Not so where a tick ends within the plate,
-// less than its thickness from the rim: the nearest face pushes the tip out, and that may be the
-// back.
+// The same, for the whole time that the plate turns: a released tip is on the side where it was
+// free before, unless it has been next to the plate. The exception is a tick that ends within the
+// plate, less than its thickness from the rim: the nearest face pushes the tip out, and that may be
+// the back.
 TEST_P(PassedThroughBy, CaughtTipLeavesBackOnlyInsideTheRim) {
   support::Random random(11);
   int held_behind = 0, passed = 0;
@@ -101,7 +101,7 @@ TEST_P(PassedThroughBy, CaughtTipLeavesBackOnlyInsideTheRim) {
       const bool touching = feel(*object, p).touch.in_contact;
       const bool beside = std::abs(p.x()) > kHalf || std::abs(p.y()) > kHalf;
       held_behind += touching && side_of(p) * side < 0;
-      // Beside the plate it is on neither side.
+      // Next to the plate it is on neither side.
       if (beside) side = 0;
       if (touching || beside) continue;
       if (side_of(p) * side < 0) {
@@ -116,7 +116,8 @@ TEST_P(PassedThroughBy, CaughtTipLeavesBackOnlyInsideTheRim) {
   EXPECT_LE(passed, 2);
 }
 
-// Held behind the plate the tip is pushed back through the face that it came by, until it is out.
+// A tip that is held behind the plate is pushed back through the face by which it came, until it is
+// out.
 TEST_P(PassedThroughBy, TipIsHeldByTheFaceItCameThrough) {
   const auto object = plate();
   feel(*object, {0.048, 0, 0.003});
@@ -131,10 +132,10 @@ TEST_P(PassedThroughBy, TipIsHeldByTheFaceItCameThrough) {
   EXPECT_FALSE(feel(*object, {0.048, 0, 0.001}).touch.in_contact);
 }
 
-// Nothing is between a tip that has slid over the rim and the place that held it.
+// No material is between a tip that has slid over the rim and the place that held it.
 TEST_P(PassedThroughBy, TipThatSlidesOverTheRimIsFree) {
   for (const double drop : {0.0006, 0.001, 0.002, 0.004}) {
-    // This tracker goes over to a face by the foot of its normal alone, and so stays longer.
+    // This tracker moves to a face only by the projection along its normal, and so stays longer.
     if (GetParam() == TrackerChoice::kNormalProjection && drop > 0.003) continue;
     const auto object = plate();
     feel(*object, {0.049, 0, 0.002});

@@ -38,13 +38,13 @@ namespace {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
-constexpr double kStiffness = 1000;                     // N/m, the hard feel of [PHYSICS 6]
+constexpr double kStiffness = 1000;                     // N/m, hard surface of [PHYSICS 6]
 constexpr double kTick = 1e-3;                          // s
 constexpr double kSize = 0.1;                           // longest side of every mesh, m
 constexpr double kBound = 1 + ProxyFilter::kPathRatio;  // of |df| / (K |dp|)
 constexpr std::array<const char*, 4> kContacts{"edge_planes", "compact", "offset", "god_object"};
 
-// Makes the contact stages as a scene makes them.
+// Return the contact stages as a scene builds them.
 MeshContact edge_planes(const TriangleMesh& mesh) {
   return MeshContact::build(mesh).value();
 }
@@ -75,15 +75,15 @@ Vector3d force(const ContactState& state) {
   return state.touching ? Vector3d(kStiffness * state.depth * state.n_W) : Vector3d(0, 0, 0);
 }
 
-// What a path met: the force that is felt, and the one that the stage inside found.
+// Results of a path: the output force, and the force of the inner stage.
 struct Jumps {
   int ticks = 0;
   int begun_deep = 0;
-  double ratio = 0;        // greatest |df| / (K |dp|) that was felt, beginnings included
-  double ratio_found = 0;  // the same of what was found
-  double jump_found = 0;   // N, greatest in contact where the tip moves at 0.1 m/s at most
-  double turn = 0;         // greatest |dn| (d + d') / (2 |dp|)
-  double depth = 0;        // m, greatest
+  double ratio = 0;        // max. |df| / (K |dp|) of the output, including beginnings
+  double ratio_found = 0;  // the same for the inner stage
+  double jump_found = 0;   // N, max. in contact while the tip moves at up to 0.1 m/s
+  double turn = 0;         // max. |dn| (d + d') / (2 |dp|)
+  double depth = 0;        // m, max.
   bool finite = true;
 
   void add(const Jumps& more) {
@@ -154,7 +154,7 @@ Jumps deep_stroke(Contact stage, const ContactMesh& mesh, int ticks, std::uint64
   return jumps;
 }
 
-// The found forces are not bounded; those that are felt are, on the same path.
+// The inner forces are not bounded; the output on the same path is.
 void expect_bounded(const Jumps& jumps, const std::string& what) {
   EXPECT_LE(jumps.ratio, kBound * (1 + 1e-9)) << what;
   EXPECT_LE(jumps.turn, kBound * (1 + 1e-9)) << what;
@@ -167,7 +167,7 @@ TriangleMesh scaled(const TriangleMesh& mesh) {
   return placed(mesh, side > 0 ? kSize / side : 1, Eigen::Matrix3d::Identity(), {0, 0, 0});
 }
 
-// Gives the meshes of the collection that are whole, all of them or every sixth.
+// Returns the intact meshes of the collection, all of them or every sixth.
 std::vector<std::pair<std::string, TriangleMesh>> collection(std::size_t every) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(THIMBLE_MESHES)) {
@@ -200,7 +200,7 @@ TEST(PathBounded, ChangesTheForceBoundedlyOnScannedMeshes) {
   for (const auto& [name, shape] : meshes) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
     with_each_contact(shape, [&, &name = name](std::size_t i, auto contact) {
-      // No fresh cases: the controls below count on a path that finds the jumps.
+      // Fixed seed: the controls below need a path that finds the jumps.
       const Jumps jumps = deep_stroke(std::move(contact), mesh, all ? 20000 : 4000, 21);
       expect_bounded(jumps, name + " " + kContacts[i]);
       sum[i].add(jumps);
@@ -214,7 +214,7 @@ TEST(PathBounded, ChangesTheForceBoundedlyOnScannedMeshes) {
         "found %.0f, over the bound on %zu meshes, by more than 2 N at 0.1 m/s on %zu\n",
         kContacts[i], meshes.size(), sum[i].ticks, 1e3 * sum[i].depth, sum[i].ratio, sum[i].turn,
         sum[i].ratio_found, over[i], strong[i]);
-    // Went deep, and without the bound the same paths show jumps almost everywhere.
+    // Checks that the paths went deep, and that without the bound they jump almost everywhere.
     EXPECT_GT(sum[i].depth, 0.02) << kContacts[i];
     EXPECT_GT(over[i], 3 * meshes.size() / 4) << kContacts[i];
     EXPECT_GT(strong[i], meshes.size() / 2) << kContacts[i];
@@ -222,7 +222,7 @@ TEST(PathBounded, ChangesTheForceBoundedlyOnScannedMeshes) {
   }
 }
 
-// A closed shape whose corners stand out at random: sharp peaks beside sharp pits.
+// A closed shape with random corners: sharp peaks next to sharp pits.
 TriangleMesh random_star(support::Random& random) {
   TriangleMesh mesh = support::icosphere(1 + static_cast<int>(random.bits() % 3), 0.05);
   const double rough = random.uniform(0.05, 0.6);
@@ -246,13 +246,13 @@ TEST(PathBounded, ChangesTheForceBoundedlyOnRandomMeshes) {
   for (std::size_t i = 0; i < kContacts.size(); ++i) EXPECT_GT(over[i], shapes / 2) << kContacts[i];
 }
 
-TEST(PathBounded, IsWhatWasFoundToTheBitOnSmoothShapes) {
+TEST(PathBounded, IsBitIdenticalOnSmoothShapes) {
   const auto behind = [](auto stage, const TriangleMesh& shape) {
     PathBounded contact(std::move(stage));
     const ContactMesh mesh = ContactMesh::build(shape).value();
     support::Random random(5);
     std::uint64_t ticks = 0;
-    // In from so far above that contact begins where the smooth surface does.
+    // Starts far enough above that contact begins at the smooth surface.
     Vector3d p = (mesh.position(0, 0) + mesh.position(0, 1) + mesh.position(0, 2)) / 3;
     Vector3d heading = random.direction();
     const Vector3d n = mesh.cell(0).face.n;
@@ -278,8 +278,8 @@ TEST(PathBounded, IsWhatWasFoundToTheBitOnSmoothShapes) {
   EXPECT_EQ(behind(god_object(ball), ball), 0u);
 }
 
-TEST(PathBounded, StandsStillWhileTheHandRests) {
-  // Over the edge of a box, deep inside: the nearest face changes and the anchor is on its way.
+TEST(PathBounded, IsSteadyWhileTheHandRests) {
+  // Over the edge of a box, deep inside: the nearest face changes and the filtered proxy follows.
   PathBounded contact(edge_planes(support::box({0.05, 0.05, 0.05})));
   support::move_tip(contact, {0.039, 0, 0.051});
   for (int i = 0; i < 140; ++i) support::move_tip(contact, {0.039, 0, 0.05 - 1e-4 * i});
@@ -295,7 +295,7 @@ TEST(PathBounded, StandsStillWhileTheHandRests) {
     EXPECT_EQ(now.n_W, before.n_W);
     EXPECT_EQ(now.depth, before.depth);
   }
-  // It arrives as the hand goes on.
+  // It arrives while the hand moves on.
   for (int i = 0; i < 200; ++i) support::move_tip(contact, {0.039, 0, 0.036 - 1e-4 * i});
   EXPECT_EQ(contact.state().n_W, Vector3d(1, 0, 0));
   EXPECT_EQ(contact.state().depth, contact.contact().state().depth);
@@ -314,14 +314,14 @@ ContactState found(double depth, const Vector3d& n_W) {
   return {.touching = true, .triangle = 7, .depth = depth, .n_W = n_W};
 }
 
-TEST(PathBounded, BeginsWithoutAStepHoweverDeepAContactIsFound) {
+TEST(PathBounded, ContactFoundDeepBeginsWithoutAForceStep) {
   ProxyFilter anchor;
   anchor.follow({0, 0, 0.001}, {});
   const ContactState deep = found(0.01, {0, 0, 1});
   EXPECT_FALSE(anchor.follow({0, 0, 0.0009}, deep));
   EXPECT_LE(anchor.felt().depth, kBound * 1e-4);
   EXPECT_EQ(anchor.felt().triangle, 7);
-  // And lets nobody be thrown out: what the hand has not put in stays away.
+  // It throws no tip out: the force has only the energy that the hand put in.
   for (int i = 1; i < 20; ++i) {
     EXPECT_FALSE(anchor.follow({0, 0, 0.0009 + 1e-5 * i}, deep));
     // 2 % of 10 mm over 0.3 mm of path, in energy.
@@ -353,7 +353,7 @@ TEST(PathBounded, FollowsASurfaceUnderARestingHand) {
   }
 }
 
-TEST(PathBounded, FeelsNothingOfAPathThatItDoesNotKnow) {
+TEST(PathBounded, UnknownPathGivesNoContact) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   ProxyFilter anchor;
   EXPECT_FALSE(anchor.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
@@ -367,9 +367,9 @@ TEST(PathBounded, FeelsNothingOfAPathThatItDoesNotKnow) {
   EXPECT_EQ(anchor.felt().depth, 0);
 }
 
-TEST(PathBounded, GivesNoEnergyThatTheHandHasNotPutInButTheGift) {
-  // Places that jump at random under a tip that wanders: work that tightens the spring, told by the
-  // anchor's steps alone, with no word of the account inside.
+TEST(PathBounded, EnergyIsBoundedByTheHandsWorkAndTheGift) {
+  // Places that jump at random under a wandering tip: work that tightens the spring, measured only
+  // by the filtered proxy's steps, independent of the account inside.
   support::Random random(3);
   for (int run = 0; run < (support::long_form() ? 2000 : 200); ++run) {
     ProxyFilter anchor;
@@ -423,7 +423,7 @@ TriangleMesh grooved(double deep) {
 }
 
 // Presses a hand (150 g, 300 N/m, 3 N s/m, tremor of 0.2 N) into the groove, over encoders of 0.03
-// mm and a tick of delay; gives the oscillation of the force across the groove, N, after 5 s.
+// mm and a delay of one tick. Returns the oscillation of the force across the groove, N, after 5 s.
 template <class Contact>
 double oscillation_in_groove(Contact contact, double deep) {
   ContactForceLaw touch(std::move(contact), SpringDamper{500, 0});
@@ -448,7 +448,7 @@ double oscillation_in_groove(Contact contact, double deep) {
   return high - low;
 }
 
-TEST(PathBounded, DoesNotPushATipToAndFroAcrossAGroove) {
+TEST(PathBounded, TipDoesNotOscillateAcrossAGroove) {
   for (const double deep : {0.008, 0.017, 0.03}) {
     const TriangleMesh mesh = grooved(deep);
     const double bare = oscillation_in_groove(edge_planes(mesh), deep);
@@ -459,13 +459,13 @@ TEST(PathBounded, DoesNotPushATipToAndFroAcrossAGroove) {
         "  groove of %.0f mm: %.3f N, without the bound %.3f N, one face at a time %.3f N\n",
         1e3 * deep, bounded, bare, one_face);
     EXPECT_GT(one_face, 0.5);
-    // Counts of the encoders and the tremor alone are 0.045 to 0.06 N on a plane.
+    // Encoder steps and tremor by themselves cause 0.045 to 0.06 N on a plane.
     EXPECT_LT(bare, 0.1);
     EXPECT_LT(bounded, 0.1);
   }
 }
 
-// A contact that counts what it is asked, the copies and itself together.
+// A contact that counts its queries, including those of its copies.
 struct CountedContact {
   static constexpr bool kCopiesCheaply = true;
   std::vector<Vector3d>* asked;
@@ -478,7 +478,7 @@ struct CountedContact {
   const ContactState& state() const noexcept { return state_; }
 };
 
-TEST(PathBounded, AsksACopyOfItsStageWhereTheTipIsExpected) {
+TEST(PathBounded, PreparesACopyAtTheExpectedTip) {
   std::vector<Vector3d> asked;
   const PathBounded contact(CountedContact{&asked, {}});
   driver::DeviceState expected;
@@ -489,14 +489,14 @@ TEST(PathBounded, AsksACopyOfItsStageWhereTheTipIsExpected) {
   EXPECT_EQ(contact.state().hops, 0);
 }
 
-TEST(PathBounded, PreparesEachContactOnAMeshThatStandsStill) {
+TEST(PathBounded, PreparesEveryContactOnAStaticMesh) {
   with_each_contact(support::icosphere(1, 0.05), [](int, auto contact) {
     const PathBounded bounded(std::move(contact));
     static_assert(requires(const driver::DeviceState& state) { bounded.prepare(state); });
   });
 }
 
-TEST(PathBounded, AsksNothingOfTheHeap) {
+TEST(PathBounded, DoesNotAllocate) {
   const TriangleMesh shape = support::box({0.05, 0.05, 0.05});
   const ContactMesh mesh = ContactMesh::build(shape).value();
   PathBounded contact(edge_planes(shape));

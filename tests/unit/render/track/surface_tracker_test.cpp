@@ -27,7 +27,7 @@ const ContactState& slide(MeshContact& contact, const Vector3d& p_WT) {
   return contact.update(state);
 }
 
-// Walks below a surface along a wandering path and counts contacts lost while the tip is inside.
+// Walks below a surface along a wandering path and counts lost contacts while the tip is inside.
 struct Walk {
   int crossings = 0;
   int lost = 0;
@@ -52,7 +52,7 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
   for (int i = 0; walk.crossings < crossings_wanted && i < 20 * crossings_wanted; ++i) {
     const ContactState& state = contact.state();
     if (!state.touching) {
-      // Only a tip outside may be free; the walk goes on from the first triangle.
+      // Only a tip outside may be free; the walk continues from the first triangle.
       ++walk.lost;
       p = support::corner(mesh, 0, 0) * 1.5;
       slide(contact, p);
@@ -62,7 +62,7 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
     }
     heading = (heading + 0.2 * any()).normalized();
     heading -= heading.dot(state.n_W) * state.n_W;
-    // Back to the wanted depth along the normal, on along the surface.
+    // Back to the desired depth along the normal, and on along the surface.
     const Vector3d next = p + step * heading.normalized() + (state.depth - depth) * state.n_W * 0.5;
     const std::int32_t before = state.triangle;
     slide(contact, next);
@@ -70,7 +70,7 @@ Walk wander(const TriangleMesh& mesh, double depth, double step, int crossings_w
       if (support::is_inside(mesh, next)) {
         ++walk.lost;
       } else {
-        // Left over an edge: the wanted path goes round it, a little deeper.
+        // The walk left over an edge: the desired path goes around it, slightly deeper.
         slide(contact, p);
         if (!contact.state().touching) ++walk.lost;
         heading = any();
@@ -120,7 +120,7 @@ TEST(SurfaceTracker, KeepsDepthWhenCrossingAnEdge) {
   for (std::int32_t t = 0; t < contact.triangle_count(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t other = contact.cell(t).neighbours[k];
-      // Anywhere below the edge, then onto the plane that the tracker crosses there.
+      // Anywhere below the edge, then onto the plane where the tracker changes over.
       const double along = uniform(random);
       Vector3d p = (1 - along) * contact.position(t, k) + along * contact.position(t, (k + 1) % 3) -
                    0.004 * uniform(random) * contact.cell(t).face.n;
@@ -179,7 +179,7 @@ TEST(SurfaceTracker, SettlesAtANeedleAndInAnAcuteWedge) {
       const Vector3d p =
           now.middle + now.size * Vector3d(normal(random), normal(random), normal(random));
       const ContactState& state = slide(contact, p);
-      ASSERT_LT(state.hops, kHopsMax);  // that many end a walk that has not settled
+      ASSERT_LT(state.hops, kHopsMax);  // that many end a walk that has not converged
       if (support::is_inside(now.mesh, p)) {
         ASSERT_TRUE(state.touching);
       }
@@ -190,7 +190,7 @@ TEST(SurfaceTracker, SettlesAtANeedleAndInAnAcuteWedge) {
   }
 }
 
-// Two shapes beside each other, `apart` m along x.
+// Two shapes next to each other, `apart` m along x.
 TriangleMesh pair_of(const TriangleMesh& shape, double apart) {
   TriangleMesh pair = shape;
   const auto shift = static_cast<std::int32_t>(shape.vertices.size());
@@ -201,9 +201,9 @@ TriangleMesh pair_of(const TriangleMesh& shape, double apart) {
   return pair;
 }
 
-// A tip that leaps far away inside, where neither a walk nor the patch around can follow: the
-// surface nearest to it is touched, and the tip is below the triangle that is named.
-TEST(SurfaceTracker, FindsTheNearestSurfaceAfterALeap) {
+// A tip that jumps far away inside, where neither a walk nor the patch around can follow: the
+// nearest surface is touched, and the tip is below the reported triangle.
+TEST(SurfaceTracker, FindsTheNearestSurfaceAfterAJump) {
   for (const TriangleMesh& shape : {pair_of(support::torus(0.035, 0.015, 60, 30), 0.12),
                                     pair_of(support::bumpy_sphere(4, 0.05, 0.3, 6), 0.15)}) {
     const ContactMesh mesh = ContactMesh::build(shape).value();
@@ -242,7 +242,7 @@ TEST(SurfaceTracker, NeverPopsThroughAThinPlate) {
     std::normal_distribution<double> tremor(0, 0.0001);
     slide(contact, {0.003, 0.002, side * 0.01});
     for (int i = 0; i < 2000; ++i) {
-      // Down to 8.5 mm, as deep as 8.5 N at 1 N/mm, and back to the surface.
+      // Down to 8.5 mm, as for 8.5 N at 1 N/mm, and back to the surface.
       const double press = 0.0085 * std::sin(std::numbers::pi * (i + 0.5) / 2000);
       const Vector3d p(0.003 + tremor(random), 0.002 + tremor(random), side * (0.0001 - press));
       const ContactState& state = slide(contact, p);
@@ -254,7 +254,7 @@ TEST(SurfaceTracker, NeverPopsThroughAThinPlate) {
   }
 }
 
-TEST(SurfaceTracker, FollowsToTheBitWhereTheMeshKeepsNoPlanes) {
+TEST(SurfaceTracker, IsBitIdenticalWithoutStoredPlanes) {
   for (const TriangleMesh& mesh :
        {support::bumpy_sphere(4, 0.05, 0.3, 9), support::torus(0.04, 0.015, 30, 12)}) {
     const ContactMesh kept = ContactMesh::build(mesh).value();
@@ -276,7 +276,7 @@ TEST(SurfaceTracker, FollowsToTheBitWhereTheMeshKeepsNoPlanes) {
       ASSERT_EQ(one.held().triangle, other.held().triangle);
       hops += a.hops;
       held += one.held().triangle >= 0 ? 1 : 0;
-      // Back to 1 mm below the surface, and on: anew where it has left.
+      // Back to 1 mm below the surface, and on; again from the start if contact was lost.
       if (a.touching) {
         p += (a.depth - 1e-3) * one.normal() + 2e-3 * random.direction();
       } else {

@@ -29,7 +29,7 @@ using Eigen::Vector3d;
 constexpr double kStiffness = 1000;  // N/m
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-// Errors of a replay, against the analytic surface: forces as shares of the force wanted.
+// Errors of a replay, relative to the analytic surface: forces as fractions of the desired force.
 struct Errors {
   double edge_length = 0;
   double force_rms = 0;
@@ -39,9 +39,9 @@ struct Errors {
   int lost = 0;
 };
 
-// Replays an analytic in-trajectory [PHYSICS 3]: chooses a way s(t) on the surface and a force
-// f(t) along its normal, sends the tip where an arm would be that yields by f / k, and compares
-// what the renderer answers with f.
+// Replays an analytic in-trajectory [PHYSICS 3]: chooses a path s(t) on the surface and a force
+// f(t) along its normal, moves the tip to the place of an arm that yields by f / k, and compares
+// the renderer's force with f.
 template <class Contact, class Surface>
 Errors replay(Contact contact, const Surface& surface, Vector3d s, double reach) {
   ContactForceLaw touch(std::move(contact), SpringDamper{kStiffness, 0});
@@ -99,7 +99,7 @@ void print(const char* name, const Errors& e) {
             << kDegrees * e.direction_p99 << " deg\n";
 }
 
-// Notes the figures of hard case 21, shares and degrees.
+// Records the results of hard case 21, fractions and degrees.
 void record(const std::string& words, const Errors& e) {
   support::record_hard_case(21, words, "<= force RMS", 100 * e.force_rms, 3.5, "%");
   support::record_hard_case(21, words, "<= direction, 99th percentile", kDegrees * e.direction_p99,
@@ -130,7 +130,8 @@ TEST(TouchAccuracy, FlatFacesFollowTheTessellationLaw) {
                                kOnSphere, kAnywhere);
     print("flat", flat);
     EXPECT_EQ(flat.lost, 0);
-    // L / (sqrt 3 R) at the corners, the worst place [PHYSICS 3]; edges differ by some 15 %.
+    // L / (sqrt 3 R) at the corners, the worst place [PHYSICS 3]; edge lengths differ by about 15
+    // %.
     const double law = flat.edge_length / (std::sqrt(3.0) * 0.03);
     EXPECT_NEAR(flat.direction_p99, law, 0.15 * law);
   }
@@ -160,7 +161,7 @@ TEST(HardCaseCurvedSurface, SphereMeetsTheLimitsOfFeel) {
     EXPECT_LE(curved.force_rms, level > 2 ? 0.0035 : 0.07);
     EXPECT_LE(curved.direction_p99, 0.5 / kDegrees);
     if (level > 2) {
-      // Better than the square.
+      // Better than quadratic.
       EXPECT_GT(slope(before.magnitude_mean, curved.magnitude_mean, before, curved), 2);
     }
     if (level == 3) record("sphere, L / R = 0.15", curved);
@@ -172,7 +173,7 @@ TEST(HardCaseCurvedSurface, SphereMeetsTheLimitsOfFeel) {
   }
 }
 
-TEST(TouchAccuracy, OfRoundWeightsOnASphereIsFourthOrder) {
+TEST(TouchAccuracy, RoundWeightsOnASphereAreFourthOrder) {
   Errors before;
   for (const int level : {3, 4, 5}) {
     const ContactMesh mesh = ContactMesh::build(support::icosphere(level, 0.03)).value();
@@ -269,7 +270,7 @@ TEST(TouchAccuracy, AngleWeightedNormalsAreFirstOrder) {
               0.2);
 }
 
-TEST(TouchAccuracy, RisesFromFlatOverBandsToPhongToCurvedDepth) {
+TEST(TouchAccuracy, ImprovesFromFlatToBandsToPhongToCurved) {
   const support::TorusSurface surface{0.05, 0.02};
   const Vector3d start(0.06, 0.01, 0.005);
   const ContactMesh mesh = ContactMesh::build(support::torus(0.05, 0.02, 64, 32)).value();
@@ -292,7 +293,7 @@ TEST(TouchAccuracy, RisesFromFlatOverBandsToPhongToCurvedDepth) {
   EXPECT_LT(sized.direction_mean, 0.5 * fixed.direction_mean);
   EXPECT_LT(phong_4b.direction_mean, 0.5 * sized.direction_mean);
   EXPECT_LT(phong.direction_mean, phong_4b.direction_mean);
-  // Direction alone does not mend the magnitude; curved depth does.
+  // The direction by itself does not improve the magnitude; curved depth does.
   EXPECT_GT(phong.magnitude_mean, 0.9 * flat.magnitude_mean);
   EXPECT_LT(curved.magnitude_mean, 0.05 * phong.magnitude_mean);
 }

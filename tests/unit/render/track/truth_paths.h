@@ -15,14 +15,14 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
-/// A path and what is true along it.
+/// A path and the reference results along it.
 struct Path {
-  std::vector<Vector3d> tips;     // NaN: the tip is taken away
-  std::vector<double> distances;  // of the nearest point of the mesh, m; below 0 outside
+  std::vector<Vector3d> tips;     // NaN: the tip is removed
+  std::vector<double> distances;  // to the closest point of the mesh, m; below 0 outside
   std::vector<Vector3d> outs;     // unit directions to it
 };
 
-/// Where a path begins: from just above the middle of a random triangle to just below it.
+/// Start of a path: from just above the middle of a random triangle to just below it.
 struct PathBegin {
   Vector3d above, below, n;
   bool free = false;  // no other sheet of the mesh is in between
@@ -39,8 +39,8 @@ inline PathBegin random_begin(const ContactMesh& mesh, const ContactSearch& sear
   return entry;
 }
 
-/// Walks 0.2 to 1 mm below the surface, on a path that no tracker decides: by the nearest point of
-/// all triangles. Begun anew at a random triangle every 500 ticks.
+/// Returns a path 0.2 to 1 mm below the surface that is independent of any tracker: it uses the
+/// closest point of all triangles. Restarts at a random triangle every 500 ticks.
 inline Path skin_path(const ContactMesh& mesh, const ContactSearch& search, int ticks, double step,
                       std::uint64_t seed) {
   support::Random random(seed);
@@ -82,7 +82,7 @@ inline Path skin_path(const ContactMesh& mesh, const ContactSearch& search, int 
     }
     const Vector3d moved = next - p;
     p += std::min(1.0, step / moved.norm()) * moved;
-    // Never outside: who is outside has no contact to lose.
+    // Never outside: a tip outside has no contact to lose.
     if (!search.inside(p)) {
       begun = false;
       continue;
@@ -92,7 +92,7 @@ inline Path skin_path(const ContactMesh& mesh, const ContactSearch& search, int 
   return path;
 }
 
-/// Goes from the surface to places all over the body and back.
+/// Returns a path from the surface to places all over the body and back.
 inline Path deep_path(const ContactMesh& mesh, const ContactSearch& search, int ticks,
                       std::uint64_t seed) {
   support::Random random(seed);

@@ -32,13 +32,13 @@ class THIMBLE_EXPORT MapSettings final : public SettingsReader {
     }
     // Written so that NaN is rejected.
     if (!(given->second >= limits.least && given->second <= limits.most)) {
-      reject(key, "is out of its limits");
+      reject(key, "is outside its limits");
       return;
     }
     value = given->second;
   }
   void vector(std::string_view key, Eigen::Vector3d&, const NumberLimits&) override {
-    reject(key, "cannot be given here");
+    reject(key, "cannot be set through MapSettings");
   }
   void choice(std::string_view key, std::size_t& value,
               const std::vector<std::string_view>& names) override {
@@ -50,13 +50,13 @@ class THIMBLE_EXPORT MapSettings final : public SettingsReader {
         return;
       }
     }
-    reject(key, "is not known");
+    reject(key, "is not an allowed value");
   }
   void file(std::string_view key, std::filesystem::path&) override {
-    reject(key, "cannot be given here");
+    reject(key, "cannot be set through MapSettings");
   }
   void list(std::string_view key, const std::function<void(SettingsReader&)>&) override {
-    reject(key, "cannot be given here");
+    reject(key, "cannot be set through MapSettings");
   }
   void reject(std::string_view key, const std::string& sentence) override {
     mistakes_.push_back(std::string(key) + ": " + sentence);

@@ -27,8 +27,8 @@ concept SurfaceStage = requires(Stage stage, const driver::DeviceState& state,
   noexcept->std::same_as<void>;
 };
 
-/// Closest point of the surface ("foot") to a tip, and its derivative: the position to which a
-/// texture is fixed.
+/// Closest point of the surface to a tip, and its derivative: the position to which a texture is
+/// fixed.
 ///
 /// M is the material: the surface as given, in the frame of the mesh. On an undeformed surface a
 /// position in M equals that in W. All functions are Real-time: safe.

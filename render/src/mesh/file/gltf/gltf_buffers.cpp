@@ -77,7 +77,7 @@ driver::Result<std::string> base64_decoded(std::string_view text) {
   int count = 0;
   for (const char c : text) {
     const int digit = digit_of(c);
-    if (digit < 0) return Error{"a data URI is no base64"};
+    if (digit < 0) return Error{"a data URI is not valid base64"};
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
     count += 6;
     if (count < 8) continue;
@@ -108,13 +108,13 @@ driver::Result<std::string> bytes_of_file(const std::filesystem::path& folder,
   const bool leaves =
       std::any_of(relative.begin(), relative.end(), [](const auto& step) { return step == ".."; });
   if (relative.empty() || relative.is_absolute() || leaves) {
-    return Error{"it names a file outside of its folder, " + shown(name)};
+    return Error{"it refers to a file outside its folder, " + shown(name)};
   }
   auto bytes = driver::read_file(folder / relative, kFileMax);
   if (!bytes) {
     std::string reason = bytes.error().message;
     if (reason.ends_with('.')) reason.pop_back();
-    return Error{"it names " + shown(name) + ": " + reason};
+    return Error{"it refers to " + shown(name) + ": " + reason};
   }
   return bytes;
 }
@@ -167,10 +167,10 @@ driver::Result<std::string_view> GltfBuffers::buffer(std::size_t index) {
   const Json* const buffer = gltf_element(gltf_, "buffers", index);
   if (buffer == nullptr) return Error{"buffer " + std::to_string(index) + " does not exist"};
   const auto length = json_index(*buffer, "byteLength");
-  if (!length) return Error{"buffer " + std::to_string(index) + " names no length"};
+  if (!length) return Error{"buffer " + std::to_string(index) + " has no length"};
   const auto cut = [&](std::string_view bytes) -> driver::Result<std::string_view> {
     if (bytes.size() >= *length) return bytes.substr(0, *length);
-    return Error{"buffer " + std::to_string(index) + " promises " + std::to_string(*length) +
+    return Error{"buffer " + std::to_string(index) + " declares " + std::to_string(*length) +
                  " bytes but has " + std::to_string(bytes.size()) + ": it is truncated"};
   };
   const Json* const uri = json_member(*buffer, "uri");
@@ -188,7 +188,8 @@ driver::Result<std::string_view> GltfBuffers::buffer(std::size_t index) {
     }
     return cut(buffers_.at(index));
   }
-  if (has_scheme(name)) return Error{"it names " + shown(name) + "; only files beside it are read"};
+  if (has_scheme(name))
+    return Error{"it refers to " + shown(name) + "; only files in its folder are read"};
   const std::string file = percent_decoded(name);
   if (!files_.contains(file)) {
     auto bytes = bytes_of_file(folder_, file);
@@ -209,13 +210,14 @@ driver::Result<GltfBuffers::View> GltfBuffers::view(std::size_t index) {
   const Json* const extensions = json_member(*view, "extensions");
   for (const char* packed : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     if (extensions != nullptr && json_member(*extensions, packed) != nullptr) {
-      return Error{name + " is packed by " + packed + ", which is not read: export it without"};
+      return Error{name + " is compressed with " + packed +
+                   ", which is not supported; export the mesh without it"};
     }
   }
   const auto number = json_index(*view, "buffer");
   const auto length = json_index(*view, "byteLength");
   const std::size_t offset = json_index(*view, "byteOffset").value_or(0);
-  if (!number || !length) return Error{name + " names no buffer or length"};
+  if (!number || !length) return Error{name + " has no buffer or length"};
   const auto bytes = buffer(*number);
   if (!bytes) return bytes.error();
   if (offset > bytes->size() || *length > bytes->size() - offset) {
@@ -228,7 +230,7 @@ driver::Result<void> GltfBuffers::read_view(const Json& part, std::size_t type, 
                                             std::size_t columns, bool may_stride, bool normalized,
                                             std::vector<double>& values) {
   const auto index = json_index(part, "bufferView");
-  if (!index) return Error{"an accessor names no buffer view"};
+  if (!index) return Error{"an accessor has no buffer view"};
   const auto found = view(*index);
   if (!found) return found.error();
   const std::size_t offset = json_index(part, "byteOffset").value_or(0);
@@ -273,7 +275,7 @@ driver::Result<void> GltfBuffers::put_sparse(const Json& sparse, std::size_t typ
   for (std::size_t i = 0; i < *count; ++i) {
     const auto place = static_cast<std::size_t>(std::max(places[i], 0.0));
     if (place >= values.size() / columns) {
-      return Error{"a sparse accessor names an element that does not exist"};
+      return Error{"a sparse accessor refers to an element that does not exist"};
     }
     std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns,
                 values.begin() + static_cast<std::ptrdiff_t>(place * columns));
@@ -296,7 +298,7 @@ driver::Result<GltfNumbers> GltfBuffers::read(std::size_t accessor, std::size_t 
   const std::size_t component = json_index(*found, "componentType").value_or(0);
   const auto count = json_index(*found, "count");
   if (!fits || size_of(component) == 0 || !count) {
-    return Error{name + " is not of a type that is wanted there"};
+    return Error{name + " has an unexpected type"};
   }
   const Json* const normalized = json_member(*found, "normalized");
   const bool scaled = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();

@@ -67,7 +67,7 @@ driver::Result<std::pair<std::string_view, std::string_view>> chunks_of(std::str
     }
     at += kChunkHead + length;
   }
-  if (chunks.first.empty()) return unreadable("glb", "it has no JSON");
+  if (chunks.first.empty()) return unreadable("glb", "it has no JSON chunk");
   return chunks;
 }
 
@@ -154,7 +154,7 @@ driver::Result<Affine3d> GltfReader::place_of(const Json& node) const {
   const auto t = numbers_of<3>(node, "translation", {0, 0, 0});
   const auto r = numbers_of<4>(node, "rotation", {0, 0, 0, 1});
   const auto s = numbers_of<3>(node, "scale", {1, 1, 1});
-  if (!t || !r || !s) return damaged("a node has a pose that is not numbers");
+  if (!t || !r || !s) return damaged("a node has a pose that does not consist of numbers");
   const auto place = composed(*t, *r, *s);
   if (!place) return damaged("a node has a rotation of length 0");
   return *place;
@@ -172,7 +172,7 @@ std::optional<Error> GltfReader::check_extensions() const {
         std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
     if (!known) {
       return Error{"it requires the glTF extension " + shown_word(name) +
-                   ", which is not read. Export it without."};
+                   ", which is not supported. Export the mesh without it."};
     }
   }
   return std::nullopt;
@@ -202,7 +202,7 @@ driver::Result<std::vector<std::size_t>> GltfReader::roots() const {
   if (scene == nullptr) return damaged("its scene does not exist");
   const Json* const named = json_member(*scene, "nodes");
   for (const Json& number : elements_of(named)) {
-    if (!number.is_number_unsigned()) return damaged("its scene names no node");
+    if (!number.is_number_unsigned()) return damaged("its scene lists an invalid node");
     roots.push_back(number.get<std::size_t>());
   }
   return roots;
@@ -233,7 +233,7 @@ driver::Result<TriangleMesh> GltfReader::read(std::vector<std::string>& notes) {
     if (children == nullptr || !children->is_array()) continue;
     // The first child on top: parts stay in the file's order.
     for (std::size_t i = children->size(); i-- > 0;) {
-      if (!(*children)[i].is_number_unsigned()) return damaged("a node names no child");
+      if (!(*children)[i].is_number_unsigned()) return damaged("a node lists an invalid child");
       stops.push_back({(*children)[i].get<std::size_t>(), place});
     }
   }
@@ -241,10 +241,10 @@ driver::Result<TriangleMesh> GltfReader::read(std::vector<std::string>& notes) {
   if (!mesh) return mesh;
   const Json* const animations = json_member(gltf_, "animations");
   if (moves_ || (animations != nullptr && !animations->empty())) {
-    notes.push_back("Bones and animations were left out: the mesh stands as at rest.");
+    notes.push_back("Bones and animations were ignored: the mesh is in its rest pose.");
   }
   if (morphed_) notes.push_back("Morph targets were applied with the weights of the file.");
-  if (lines_) notes.push_back("Lines and points were left out: they cannot be touched.");
+  if (lines_) notes.push_back("Lines and points were ignored: only faces can be touched.");
   return mesh;
 }
 
@@ -264,12 +264,12 @@ driver::Result<std::vector<Affine3d>> GltfReader::instances(const Json& node,
     const auto& [name, columns] = kNames[i];
     if (json_member(*attributes, name) == nullptr) continue;
     const auto accessor = json_index(*attributes, name);
-    if (!accessor) return damaged(std::string("its instances name no accessor for ") + name);
+    if (!accessor) return damaged(std::string("its instances have no accessor for ") + name);
     auto numbers = buffers_.read(*accessor, columns);
     if (!numbers) return damaged(numbers.error().message);
     values[i] = std::move(numbers->values);
     const std::size_t own = values[i].size() / columns;
-    if (count && *count != own) return damaged("its instances differ in number");
+    if (count && *count != own) return damaged("its instance attributes differ in length");
     count = own;
   }
   if (!count) return damaged("its instances have no pose");
@@ -295,7 +295,7 @@ std::optional<Error> GltfReader::add_node(const Json& node, const Affine3d& plac
   if (json_member(node, "mesh") == nullptr) return std::nullopt;
   const auto number = json_index(node, "mesh");
   const Json* const mesh = number ? gltf_element(gltf_, "meshes", *number) : nullptr;
-  if (mesh == nullptr) return damaged("a node names a mesh that does not exist");
+  if (mesh == nullptr) return damaged("a node refers to a mesh that does not exist");
   moves_ = moves_ || json_member(node, "skin") != nullptr;
   const Json* weights = json_member(node, "weights");
   if (weights == nullptr) weights = json_member(*mesh, "weights");
@@ -316,7 +316,7 @@ std::optional<Error> GltfReader::add_primitive(const Json& primitive, const Json
     lines_ = true;
     return std::nullopt;
   }
-  if (mode > kFan) return damaged("a primitive is of an unknown mode");
+  if (mode > kFan) return damaged("a primitive has an unknown mode");
   const Json* const attributes = json_member(primitive, "attributes");
   const auto accessor = attributes != nullptr ? json_index(*attributes, "POSITION") : std::nullopt;
   if (!accessor) return damaged("a primitive has no positions");
@@ -324,8 +324,8 @@ std::optional<Error> GltfReader::add_primitive(const Json& primitive, const Json
   const Json* const positions = gltf_element(gltf_, "accessors", *accessor);
   if (extensions != nullptr && json_member(*extensions, kDraco) != nullptr &&
       (positions == nullptr || json_member(*positions, "bufferView") == nullptr)) {
-    return Error{std::string("it is packed by the glTF extension ") + kDraco +
-                 ", which is not read. Export it without."};
+    return Error{std::string("it is compressed with the glTF extension ") + kDraco +
+                 ", which is not supported. Export the mesh without it."};
   }
   const auto numbers = buffers_.read(*accessor, 3);
   if (!numbers) return damaged(numbers.error().message);
@@ -355,15 +355,15 @@ std::optional<Error> GltfReader::add_targets(const Json& primitive, const Json& 
   if (targets == nullptr || !targets->is_array()) return std::nullopt;
   for (std::size_t i = 0; i < targets->size(); ++i) {
     if (!weights.is_array() || i >= weights.size()) break;
-    if (!weights[i].is_number()) return damaged("a weight of a morph target is no number");
+    if (!weights[i].is_number()) return damaged("a weight of a morph target is not a number");
     const double weight = weights[i].get<double>();
     if (weight == 0 || json_member((*targets)[i], "POSITION") == nullptr) continue;
     const auto accessor = json_index((*targets)[i], "POSITION");
-    if (!accessor) return damaged("a morph target names no accessor");
+    if (!accessor) return damaged("a morph target has no accessor");
     const auto moved = buffers_.read(*accessor, 3);
     if (!moved) return damaged(moved.error().message);
     if (moved->values.size() != 3 * part.mesh.vertices.size()) {
-      return damaged("a morph target has another number of vertices than its mesh");
+      return damaged("a morph target and its mesh differ in the number of vertices");
     }
     for (std::size_t v = 0; v < part.mesh.vertices.size(); ++v) {
       part.mesh.vertices[v] += weight * Eigen::Vector3d::Map(moved->values.data() + 3 * v);
@@ -379,13 +379,13 @@ std::optional<Error> GltfReader::read_triangles(const Json& primitive, std::size
   const std::size_t vertices = part.mesh.vertices.size();
   if (json_member(primitive, "indices") != nullptr) {
     const auto accessor = json_index(primitive, "indices");
-    if (!accessor) return damaged("a primitive names no accessor for its corners");
+    if (!accessor) return damaged("a primitive has no accessor for its corners");
     const auto numbers = buffers_.read(*accessor, 1);
     if (!numbers) return damaged(numbers.error().message);
     corners.reserve(numbers->values.size());
     for (const double number : numbers->values) {
       if (!(number >= 0 && number < static_cast<double>(vertices))) {
-        return damaged("a triangle names a vertex that does not exist");
+        return damaged("a triangle refers to a vertex that does not exist");
       }
       corners.push_back(static_cast<std::int32_t>(number));
     }
@@ -395,7 +395,7 @@ std::optional<Error> GltfReader::read_triangles(const Json& primitive, std::size
   }
   auto& triangles = part.mesh.triangles;
   if (mode == kTriangles) {
-    if (corners.size() % 3 != 0) return damaged("its last triangle lacks a corner");
+    if (corners.size() % 3 != 0) return damaged("its last triangle is incomplete");
     for (std::size_t i = 0; i < corners.size(); i += 3) {
       triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     }
@@ -437,7 +437,7 @@ driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::stri
     chunk = chunks->second;
   }
   const Json gltf = Json::parse(text, nullptr, false);
-  if (!gltf.is_object()) return unreadable(kind, "it is no JSON");
+  if (!gltf.is_object()) return unreadable(kind, "it is not JSON");
   if (is_version_1(gltf)) return import_by_assimp(bytes, kind, folder, info.notes);
   return GltfReader(gltf, chunk, folder, kind).read(info.notes);
 }

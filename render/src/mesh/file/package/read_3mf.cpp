@@ -94,7 +94,7 @@ std::string_view ModelReader::space_of(std::string_view prefix) const {
 
 driver::Result<Model> ModelReader::read() {
   if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
-    return Error{"its model is a text of two bytes per letter (UTF-16). Save it as UTF-8."};
+    return Error{"its model is encoded as UTF-16. Save it as UTF-8."};
   }
   XmlTags tags(text_);
   XmlTag tag;
@@ -106,7 +106,7 @@ driver::Result<Model> ModelReader::read() {
     if (auto wrong = read_tag(tag)) return *wrong;
   }
   if (!closed_) {
-    return error(tags.damaged() ? "it is not XML" : "it does not reach </model>: it is truncated");
+    return error(tags.damaged() ? "it is not XML" : "it has no </model>: it is truncated");
   }
   return std::move(model_);
 }
@@ -139,17 +139,17 @@ std::optional<Error> ModelReader::read_tag(const XmlTag& tag) {
 }
 
 std::optional<Error> ModelReader::open_model(const XmlTag& tag) {
-  if (opened_) return error("it has a model in a model");
+  if (opened_) return error("a model contains another model");
   opened_ = true;
   const auto unit = unit_of_word(tag.find("unit").value_or("millimeter"));
-  if (!unit) return Error{"it counts in a unit that its format does not know."};
+  if (!unit) return Error{"it uses an unknown length unit."};
   model_.unit = *unit;
   TextWords required(tag.find("requiredextensions").value_or(""), part_);
   for (std::string_view word = required.next(); !word.empty(); word = required.next()) {
     const std::string_view space = space_of(word);
     if (std::find(kKnown.begin(), kKnown.end(), space) == kKnown.end()) {
       return Error{"it requires the extension " + shown_word(word) + " of 3MF (" +
-                   std::string(space) + "), which is not read. Export it without."};
+                   std::string(space) + "), which is not supported. Export the mesh without it."};
     }
   }
   return std::nullopt;
@@ -160,7 +160,7 @@ std::optional<Error> ModelReader::read_vertex(const XmlTag& tag) {
   constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto number = real_number(tag.find(kAxes[i]).value_or(""));
-    if (!number) return error("a vertex has no number " + std::string(kAxes[i]));
+    if (!number) return error("a vertex has no valid coordinate " + std::string(kAxes[i]));
     vertex[static_cast<Eigen::Index>(i)] = *number;
   }
   if (object_->mesh.vertices.size() >= std::numeric_limits<std::int32_t>::max()) {
@@ -178,7 +178,7 @@ std::optional<Error> ModelReader::read_triangle(const XmlTag& tag) {
     if (!vertex || *vertex < 0 ||
         static_cast<std::size_t>(*vertex) >= object_->mesh.vertices.size()) {
       return error("triangle " + std::to_string(object_->mesh.triangles.size()) +
-                   " names a vertex that does not exist");
+                   " refers to a vertex that does not exist");
     }
     triangle[i] = static_cast<std::int32_t>(*vertex);
   }
@@ -190,7 +190,7 @@ std::optional<Error> ModelReader::read_component(const XmlTag& tag,
                                                  std::vector<Component>& components) {
   Component component;
   const auto object = whole_number(tag.find("objectid").value_or(""));
-  if (!object) return error("a component names no object");
+  if (!object) return error("a component has no object");
   component.object = *object;
   for (const auto& [key, value] : tag.attributes) {
     const std::size_t colon = key.find(':');
@@ -258,19 +258,20 @@ driver::Result<const Model*> PackageReader::model(const std::string& path) {
 std::optional<Error> PackageReader::place(const std::string& path, const Component& component,
                                           const Affine3d& where, int depth) {
   const std::string& own = component.path.empty() ? path : component.path;
-  if (depth > kDepthMax) return damaged("its components are nested in each other without an end");
-  if (++placed_ > kPlacedMax) return damaged("it puts more than a million objects in place");
+  if (depth > kDepthMax) return damaged("its components are nested too deeply");
+  if (++placed_ > kPlacedMax) return damaged("it places more than a million objects");
   const auto here = model(own);
   if (!here) return here.error();
   const auto object = (*here)->objects.find(component.object);
   if (object == (*here)->objects.end()) {
-    return damaged("it names object " + std::to_string(component.object) + " of " + own +
+    return damaged("it refers to object " + std::to_string(component.object) + " of " + own +
                    ", which does not exist");
   }
   const Affine3d placed = where * component.place;
   if (!object->second.mesh.triangles.empty()) {
     if ((*here)->unit != *info_.unit) {
-      return Error{"its models count in different units, which is not read. Export it in one."};
+      return Error{
+          "its models use different units, which is not supported. Export it in one unit."};
     }
     if (auto added = parts_.add(object->second.mesh, placed, false); !added) return added.error();
   }
@@ -285,14 +286,14 @@ driver::Result<TriangleMesh> PackageReader::read() {
   const auto root = model(first);
   if (!root) return root.error();
   info_.unit = (*root)->unit;
-  if ((*root)->build.empty()) return Error{"its build has no item: nothing of it is to be made."};
+  if ((*root)->build.empty()) return Error{"its build has no item, so there is nothing to read."};
   for (const Component& item : (*root)->build) {
     if (auto wrong = place(first, item, Affine3d::Identity(), 0)) return *wrong;
   }
   auto mesh = parts_.take(info_.notes);
   for (const auto& model : models_) {
     if (!model.second.beams) continue;
-    info_.notes.push_back("Beam lattices were left out.");
+    info_.notes.push_back("Beam lattices were ignored.");
     break;
   }
   return mesh;

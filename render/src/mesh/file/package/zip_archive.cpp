@@ -36,7 +36,7 @@ bool same_name(std::string_view a, std::string_view b) {
 driver::Result<std::string> inflated(std::string_view packed, std::uint64_t size) {
   if (packed.size() > std::numeric_limits<uInt>::max() || size > std::numeric_limits<uInt>::max() ||
       size > kGrowthMax * packed.size() + kGrowthMax) {
-    return Error{"is damaged: a file of it cannot have the size that it names"};
+    return Error{"is damaged: a file in it cannot have the declared size"};
   }
   std::string bytes(size, '\0');
   z_stream stream{};
@@ -48,7 +48,7 @@ driver::Result<std::string> inflated(std::string_view packed, std::uint64_t size
   const int status = inflate(&stream, Z_FINISH);
   const bool whole = status == Z_STREAM_END && stream.total_out == size;
   inflateEnd(&stream);
-  if (!whole) return Error{"is damaged: a file of it cannot be unpacked"};
+  if (!whole) return Error{"is damaged: a file in it cannot be unpacked"};
   return bytes;
 }
 
@@ -117,7 +117,7 @@ driver::Result<std::string> ZipArchive::read(std::string_view name) const {
   if (entry == nullptr) return Error{"has no file " + std::string(name)};
   if ((entry->flags & 1) != 0) return Error{"is encrypted"};
   if (entry->place >= bytes_.size() || bytes_.substr(entry->place, 4) != "PK\3\4") {
-    return Error{"is damaged: a file of it is not where its directory says"};
+    return Error{"is damaged: a file in it is not at the offset given in the directory"};
   }
   const std::uint64_t data = entry->place + 30 + number_at(bytes_, entry->place + 26, 2) +
                              number_at(bytes_, entry->place + 28, 2);
@@ -127,8 +127,7 @@ driver::Result<std::string> ZipArchive::read(std::string_view name) const {
   const std::string_view packed = bytes_.substr(data, entry->packed);
   if (entry->method == 0) return std::string(packed);
   if (entry->method != Z_DEFLATED) {
-    return Error{"is packed in a way that is not read (method " + std::to_string(entry->method) +
-                 ")"};
+    return Error{"uses an unsupported compression (method " + std::to_string(entry->method) + ")"};
   }
   return inflated(packed, entry->size);
 }
