@@ -203,7 +203,7 @@ TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
 TEST(Trouble, LightBodyInTheGripOfAFrictionRests) {
   std::vector<std::string> warnings;
   EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
-  EXPECT_TRUE(any_has(warnings, "so light"));
+  EXPECT_TRUE(any_has(warnings, "such a light body"));
 }
 
 TEST(RestWarnings, FindCurvatureAndVelocityGrain) {
