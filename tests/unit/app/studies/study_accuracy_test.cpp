@@ -62,7 +62,7 @@ TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
       }
     }
     EXPECT_LE(defaults, 1) << axis.name;
-    // The page says why where the default is not the best bargain, or that there is no default.
+    // The page says why where the default is not on the Pareto front, or that there is no default.
     const bool simulator = axis.name.rfind("simulator", 0) == 0;
     EXPECT_TRUE(simulator || !axis.default_words.empty()) << axis.name;
   }
@@ -231,7 +231,7 @@ TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
   for (const MeasuredPoint& point : measured.lines[0].points) EXPECT_FALSE(point.on_front);
   AccuracyAxis product = axis_named("encoder");
   const MeasuredAxis whole = measure_axis(std::move(product), {.rounds = 0, .count = false});
-  EXPECT_EQ(default_sentence(whole).rfind("No choice of a program: the step comes with", 0), 0U);
+  EXPECT_EQ(default_sentence(whole).rfind("The arm determines this value: the encoders", 0), 0U);
   for (const session::Figure& figure : figures_of(whole)) {
     EXPECT_EQ(figure.name.find("default"), std::string::npos) << figure.name;
   }

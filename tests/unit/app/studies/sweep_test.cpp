@@ -148,7 +148,7 @@ TEST(Sweep, TakesNoCellWithoutNumbersAndOutlivesAnException) {
   sweep.measure = [](std::size_t) { return std::vector<double>{}; };
   const auto empty = run_sweep(sweep, {.folder = scratch.path(), .jobs = 1}, kNoStop);
   ASSERT_FALSE(empty);
-  EXPECT_NE(empty.error().message.find("plain, cell 0: it gave no numbers"), std::string::npos)
+  EXPECT_NE(empty.error().message.find("plain, cell 0: no result"), std::string::npos)
       << empty.error().message;
   sweep.measure = [](std::size_t) -> std::vector<double> { throw std::bad_alloc(); };
   const auto thrown = run_sweep(sweep, {.folder = scratch.path(), .jobs = 1}, kNoStop);
