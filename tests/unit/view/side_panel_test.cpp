@@ -150,9 +150,10 @@ std::string help_text(bool closing_ends) {
 TEST_F(SidePanel, SaysInItsHelpWhetherClosingEndsTheRun) {
   const std::string watching = help_text(false), leading = help_text(true);
   EXPECT_NE(watching.find("Q close"), std::string::npos) << watching;
-  EXPECT_NE(watching.find("Closing leaves the run on."), std::string::npos) << watching;
-  EXPECT_EQ(leading.find("leaves the run on"), std::string::npos) << leading;
-  EXPECT_NE(leading.find("Closing ends the run: its hand is in this window."), std::string::npos)
+  EXPECT_NE(watching.find("The run continues when the window closes."), std::string::npos)
+      << watching;
+  EXPECT_EQ(leading.find("The run continues"), std::string::npos) << leading;
+  EXPECT_NE(leading.find("Closing ends the run: this window moves its hand."), std::string::npos)
       << leading;
 }
 

@@ -43,12 +43,12 @@ TEST_F(SpaceMouseTest, SaysWhatToDoWhereThereIsNoneOrItMayNotBeRead) {
   hid_.listed_product = 0xc650;  // a mouse of the same maker
   SpaceMouse none;
   EXPECT_FALSE(none.read());
-  EXPECT_EQ(none.trouble(), "No SpaceMouse: plug one in, it is found by itself.");
+  EXPECT_EQ(none.trouble(), "No SpaceMouse. Plug one in; it is detected automatically.");
   hid_.listed_product = 0xc635;
   hid_.refused = true;
   SpaceMouse refused;
   EXPECT_FALSE(refused.read());
-  EXPECT_NE(refused.trouble().find("/dev/hidraw7 may not be read: install udev/70-thimble.rules"),
+  EXPECT_NE(refused.trouble().find("/dev/hidraw7 is not readable. Install udev/70-thimble.rules"),
             std::string::npos);
 }
 
@@ -59,7 +59,7 @@ TEST_F(SpaceMouseTest, TellsNothingMoreWhenItIsPulledOut) {
   ASSERT_TRUE(mouse.read());
   hid_.gone = true;
   EXPECT_FALSE(mouse.read());
-  EXPECT_EQ(mouse.trouble(), "The SpaceMouse is gone: plug it in again.");
+  EXPECT_EQ(mouse.trouble(), "The SpaceMouse was disconnected. Plug it in again.");
   EXPECT_EQ(hid_.open, 0);
 }
 

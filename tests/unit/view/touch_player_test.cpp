@@ -170,7 +170,7 @@ TEST(Rumble, SaysWhatToDoWhereNoGamepadCan) {
   const auto opened = open_rumble(support::scratch_folder());
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message,
-            "No rumble: no gamepad that can is plugged in; plug one in and begin again.");
+            "No rumble: no gamepad with rumble is plugged in. Plug one in and start again.");
 }
 
 }  // namespace
