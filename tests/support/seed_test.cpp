@@ -15,15 +15,15 @@
 namespace thimble {
 namespace {
 
-/// What a test program in an environment of its own did: seeds that it took, and its output.
+/// Result of a test program in a separate environment: the seeds that it used, and its output.
 struct Child {
   std::array<std::uint64_t, 3> seeds{};
   std::string said;
   int exit_code = -1;
 };
 
-/// Takes the seeds of the cases 7, 8 and 7 in a process of its own, which sets these variables
-/// (null: unset) before.
+/// Returns the seeds of the cases 7, 8 and 7 in a separate process with these variables (null:
+/// unset).
 Child child(const char* long_form, const char* asked) {
   Child result;
   std::FILE* const seeds = std::tmpfile();
