@@ -76,7 +76,7 @@ TEST(SeedOf, IsTheFixedSeedInTheShortForm) {
   EXPECT_EQ(found.said, "");
 }
 
-TEST(SeedOf, IsFreshInEachRunOfTheLongForm) {
+TEST(SeedOf, DiffersInEachRunOfTheLongForm) {
   const Child first = child("1", nullptr), second = child("1", nullptr);
   EXPECT_NE(first.seeds[0], 7u);
   EXPECT_NE(first.seeds[0], second.seeds[0]);
@@ -95,7 +95,7 @@ TEST(SeedOf, PrintsTheNumberThatRepeatsARun) {
   }
 }
 
-TEST(SeedOf, EndsTheProgramWhereTheNumberIsNone) {
+TEST(SeedOf, InvalidNumberEndsTheProgram) {
   for (const char* wrong : {"seven", "7 ", "-1", "0x7", "99999999999999999999"}) {
     const Child found = child("1", wrong);
     EXPECT_EQ(found.exit_code, 2) << wrong;
@@ -104,7 +104,7 @@ TEST(SeedOf, EndsTheProgramWhereTheNumberIsNone) {
   }
 }
 
-TEST(Random, TakesFreshCasesForANumberAndKeepsASeed) {
+TEST(Random, CaseNumberDrawsNewCasesAndSeedIsFixed) {
   EXPECT_EQ(support::Random(7).bits(), support::Random(support::seed_of(7)).bits());
   EXPECT_EQ(support::Random(std::uint64_t{7}).bits(), std::mt19937_64(7)());
 }

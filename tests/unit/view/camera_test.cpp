@@ -22,7 +22,7 @@ Camera any_camera(support::Random& random) {
   return camera;
 }
 
-TEST(Camera, PutsEveryPointWhereTheRayThroughItsPixelPasses) {
+TEST(Camera, ProjectionAndRaysAgree) {
   support::Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const Camera camera = any_camera(random);

@@ -18,7 +18,7 @@ driver::TickRecord tick_at(double seconds, double x, double force) {
   return tick;
 }
 
-TEST(TipTrail, KeepsTheLastSecondsAndTheStrongestBlow) {
+TEST(TipTrail, KeepsLastSecondsAndStrongestForce) {
   TipTrail trail;
   std::vector<TrailPoint> points;
   for (int i = 0; i <= 10'000; ++i) {
@@ -44,7 +44,7 @@ TEST(TipTrail, KeepsTheLastSecondsAndTheStrongestBlow) {
   EXPECT_EQ(points.size(), 1U);
 }
 
-TEST(ForceMarks, ScaleEndsAtARoundForceAboveAll) {
+TEST(ForceMarks, ScaleEndsAtRoundForceAboveTheMaximum) {
   DrawnScene scene;
   DrawnMoment moment;
   EXPECT_EQ(strongest_force(scene, moment), 0);
@@ -58,7 +58,7 @@ TEST(ForceMarks, ScaleEndsAtARoundForceAboveAll) {
   EXPECT_TRUE(std::isfinite(strongest_force(scene, moment)));
 }
 
-TEST(ForceMarks, PointAsTheFieldPushesAndLeaveWeakPlacesOut) {
+TEST(ForceMarks, PointAlongTheFieldAndSkipWeakPlaces) {
   DrawnScene scene;
   scene.field = {{{0, 0, 0}, {0, 0, 1}}, {{0.01, 0, 0}, {0, 0.5, 0}}, {{0.02, 0, 0}, {1e-3, 0, 0}}};
   ColouredMesh mesh, one;
@@ -76,7 +76,7 @@ TEST(ForceMarks, PointAsTheFieldPushesAndLeaveWeakPlacesOut) {
   for (const ColouredVertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.n.norm(), 1, 1e-5);
 }
 
-TEST(ForceMarks, SayWhyAViscousFieldHasNoArrows) {
+TEST(ForceMarks, LegendExplainsMissingArrowsOfViscousField) {
   DrawnScene scene;
   scene.objects.resize(2);
   scene.objects[1].name = "honey";

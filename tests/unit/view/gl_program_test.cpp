@@ -10,7 +10,7 @@ namespace {
 
 using support::refuses;
 
-TEST(GlProgram, TellsTheDriversWordsOfAShaderThatItRefuses) {
+TEST(GlProgram, ErrorContainsTheDriversMessage) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const auto broken = GlProgram::make("#version 330 core\nvoid main() { no_such_thing(); }\n",
@@ -24,7 +24,7 @@ TEST(GlProgram, TellsTheDriversWordsOfAShaderThatItRefuses) {
   EXPECT_TRUE(refuses(apart, "rejects two shaders"));
 }
 
-TEST(ScenePrograms, AreAllTakenByADriver) {
+TEST(ScenePrograms, CompileWithTheDriver) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const auto programs = ScenePrograms::make();

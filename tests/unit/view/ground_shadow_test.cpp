@@ -54,7 +54,7 @@ Count count(const Camera& camera) {
   return result;
 }
 
-TEST(GroundShadow, HoldsEveryPixelOfGroundBelowWhatCastsShadows) {
+TEST(GroundShadow, BoxContainsEveryShadowedGroundPixel) {
   for (const double yaw : {0.0, 0.7, 2.0, 3.9, 5.5}) {
     for (const double distance : {0.15, 0.3, 0.8}) {
       const Count all = count(camera_at(yaw, 0.1, distance));

@@ -35,7 +35,7 @@ Picture painted(ScenePainter& painter, const DrawnMoment& moment, bool shadows =
   return canvas.read();
 }
 
-TEST(KeptShadows, AreThoseThatAreDrawnAnewWhateverMoved) {
+TEST(KeptShadows, EqualRedrawnShadowsAfterAnyMotion) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   ScenePainter painter(two_balls(), ScenePrograms::make().value());
@@ -54,7 +54,7 @@ TEST(KeptShadows, AreThoseThatAreDrawnAnewWhateverMoved) {
   EXPECT_NE(larger.rgb, painted(painter, shaped, false).rgb);
 }
 
-TEST(ClosedSurfaces, AreSeenFromWithinAsFromWithout) {
+TEST(ClosedSurfaces, LookAlikeFromInsideAndOutside) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const auto differs = [](double distance) {

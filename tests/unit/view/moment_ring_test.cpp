@@ -54,7 +54,7 @@ TEST(MomentRing, ShowsTheNewestMomentThatIsNoLater) {
   EXPECT_EQ(shown->tick.p_WT[0], 0);
 }
 
-TEST(MomentRing, ForgetsADentThatIsOver) {
+TEST(MomentRing, ForgetsAFinishedDent) {
   const auto moment = std::make_unique<DrawnMoment>();
   MomentRing ring;
   make(0, *moment);
@@ -69,7 +69,7 @@ TEST(MomentRing, ForgetsADentThatIsOver) {
   EXPECT_EQ(shown->patch.triangle_count, 0);
 }
 
-TEST(MomentRing, KeepsAMinuteAndBeginsAnewWithAnotherRun) {
+TEST(MomentRing, KeepsAMinuteAndIsClearedByAnotherRun) {
   const auto moment = std::make_unique<DrawnMoment>();
   MomentRing ring;
   for (int i = 0; i < 150 * 60; ++i) {
@@ -85,7 +85,7 @@ TEST(MomentRing, KeepsAMinuteAndBeginsAnewWithAnotherRun) {
   EXPECT_EQ(ring.oldest(), 0.5);
 }
 
-TEST(MomentRing, KeepsFewerSecondsWhereMomentsAreLarge) {
+TEST(MomentRing, KeepsFewerSecondsOfLargeMoments) {
   const auto moment = std::make_unique<DrawnMoment>();
   MomentRing ring;
   std::vector<std::weak_ptr<const render::TriangleMesh>> meshes;

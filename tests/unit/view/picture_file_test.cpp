@@ -118,7 +118,7 @@ TEST(PictureFile, ReadsBackEveryByteWritten) {
   }
 }
 
-TEST(PictureFile, FewColoursAreHardlySeenAndTakeLessRoom) {
+TEST(PictureFile, FewColoursLookAlikeAndSaveSpace) {
   support::Random random(6);
   const Picture picture = any_picture(random, 320, 240);
   const auto all = support::scratch_folder() / "all.png";
@@ -131,7 +131,7 @@ TEST(PictureFile, FewColoursAreHardlySeenAndTakeLessRoom) {
   EXPECT_LT(std::filesystem::file_size(few), std::filesystem::file_size(all));
 }
 
-TEST(PictureFile, FewColoursAreThoseOfTheTableInEveryPixel) {
+TEST(PictureFile, FewColoursUseOnlyTheTable) {
   support::Random random(9);
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {131, 77}}) {
     const Picture picture = any_picture(random, width, height);
@@ -144,7 +144,7 @@ TEST(PictureFile, FewColoursAreThoseOfTheTableInEveryPixel) {
   }
 }
 
-TEST(PictureFile, AnimationShowsEachPictureInTheColoursOfTheTable) {
+TEST(PictureFile, AnimationShowsEachPictureWithTableColours) {
   support::Random random(10);
   std::vector<Picture> pictures;
   for (int i = 0; i < 3; ++i) pictures.push_back(any_picture(random, 31, 20));
@@ -172,7 +172,7 @@ TEST(PictureFile, StillReadersShowTheFirstPicture) {
   EXPECT_LT(mean_difference(*read, pictures[0]), 3);
 }
 
-TEST(PictureFile, TellsWhereNothingCanBeWrittenOrRead) {
+TEST(PictureFile, ErrorsNameTheFile) {
   support::Random random(8);
   const auto nowhere = support::scratch_folder() / "no_such_folder" / "a.png";
   const auto written = write_png(any_picture(random, 4, 4), nowhere);

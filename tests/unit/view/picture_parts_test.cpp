@@ -49,7 +49,7 @@ Picture painted(const Box& within) {
   return canvas.read();
 }
 
-TEST(PaintApart, PaintsEveryPixelOnceAndThoseOfTheBoxWithin) {
+TEST(PaintApart, PaintsEachPixelOnceInsideOrOutsideTheBox) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   constexpr int kHigh = kHeight - kStrip;

@@ -5,7 +5,7 @@
 namespace thimble::view {
 namespace {
 
-TEST(PlayHead, OfARecordingPlaysAtItsSpeedAndStandsStillAtTheEnd) {
+TEST(PlayHead, RecordingPlaysAtSetSpeedAndStopsAtTheEnd) {
   PlayHead head = PlayHead::of_recording();
   head.set_span(3, 5);
   EXPECT_TRUE(head.plays());
@@ -26,7 +26,7 @@ TEST(PlayHead, OfARecordingPlaysAtItsSpeedAndStandsStillAtTheEnd) {
   EXPECT_TRUE(head.plays());
 }
 
-TEST(PlayHead, StandsWhereItIsPutWithinWhatThereIs) {
+TEST(PlayHead, PositionIsClampedToTheSpan) {
   PlayHead head = PlayHead::of_recording();
   head.set_span(0, 2);
   head.stand_at(1.25);
@@ -38,7 +38,7 @@ TEST(PlayHead, StandsWhereItIsPutWithinWhatThereIs) {
   EXPECT_EQ(head.time(), 2);
 }
 
-TEST(PlayHead, OfARunFollowsItUntilOneLooksBack) {
+TEST(PlayHead, FollowsRunUntilMovedBack) {
   PlayHead head = PlayHead::of_run();
   for (int i = 1; i < 5; ++i) {
     head.set_span(0, i);
@@ -61,7 +61,7 @@ TEST(PlayHead, OfARunFollowsItUntilOneLooksBack) {
   EXPECT_EQ(head.time(), 11);
 }
 
-TEST(PlayHead, OfARunIsLiveAgainWhenItHasCaughtUp) {
+TEST(PlayHead, RunIsLiveAgainAfterCatchingUp) {
   PlayHead head = PlayHead::of_run();
   head.set_span(0, 4);
   head.toggle();  // holds this moment

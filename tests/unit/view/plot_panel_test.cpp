@@ -82,7 +82,7 @@ TEST_F(PlotPanelUsed, AsksForTheMomentOfAClick) {
   EXPECT_FALSE(panel.is_zoomed());
 }
 
-TEST_F(PlotPanelUsed, LeavesAZoomWhoseTimeIsOver) {
+TEST_F(PlotPanelUsed, EndsZoomOfForgottenTime) {
   rest(at(2));
   look(at(2), false, 5);
   EXPECT_TRUE(panel.is_zoomed());
@@ -94,7 +94,7 @@ TEST_F(PlotPanelUsed, LeavesAZoomWhoseTimeIsOver) {
   EXPECT_FALSE(panel.is_zoomed());
 }
 
-TEST_F(PlotPanelUsed, FollowsARunUnlessOneLooksBack) {
+TEST_F(PlotPanelUsed, FollowsRunUnlessLookingBack) {
   time = {.looked = std::nullopt, .recorded = false};
   EXPECT_NEAR(range().begin, 10 - Plots::kShownSeconds, 1e-9);
   time.looked = 1.5;

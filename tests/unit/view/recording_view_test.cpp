@@ -151,7 +151,7 @@ TEST(RecordingView, ShowsSeveralArms) {
   expect_as_seen("two_hands", {0.2, 0.7, 1.2}, 1e-4);  // as far as it moves in a tick
 }
 
-TEST(RecordingView, ShowsWhatWasShapedForGood) {
+TEST(RecordingView, ShowsPermanentShapes) {
   const Seen seen = see("clay", {0.1, 3.0});
   ASSERT_EQ(seen.moments.size(), 2U);
   ASSERT_NE(seen.recorded, nullptr);
@@ -219,7 +219,7 @@ TEST(RecordingView, StepsFromTickToTick) {
   EXPECT_EQ(recorded.beside(time, 100'000), recorded.time().end);
 }
 
-TEST(RecordingView, SaysWhatAFileIsNot) {
+TEST(RecordingView, ErrorNamesWrongFile) {
   const auto opened = RecordingView::open({fs::path(THIMBLE_SOURCE_DIR) / "README.md"});
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("README.md"), std::string::npos);

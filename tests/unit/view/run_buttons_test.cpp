@@ -47,7 +47,7 @@ TEST(SceneMenu, ListsShippedUserAndNeighbouringScenes) {
   unsetenv("XDG_DATA_HOME");
 }
 
-TEST(RunButtons, TellTicksOfAPauseApart) {
+TEST(RunButtons, CountPausedTicksSeparately) {
   session::SharedReader::Counters counters;
   counters.ticks = 1200;
   counters.missed = 3;
@@ -56,7 +56,7 @@ TEST(RunButtons, TellTicksOfAPauseApart) {
   EXPECT_EQ(counted(counters), "1200 ticks, 3 periods missed, 40 paused");
 }
 
-TEST(RunButtons, AreDrawnForAnyRunAndTellWhyAPhysicalArmRefuses) {
+TEST(RunButtons, AreDrawnForAnyRunAndExplainWhyPhysicalArmRefuses) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {400, 300};

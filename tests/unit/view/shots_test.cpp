@@ -79,7 +79,7 @@ std::vector<fs::path> shipped_scenes() {
   return scenes;
 }
 
-TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
+TEST(Shots, EveryShippedSceneMatchesStoredShot) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const fs::path stored_folder = fs::path(THIMBLE_TEST_DATA) / "shots";
@@ -151,7 +151,7 @@ struct MarkedShot {
   void (*choose)(PaintChoice& paint);
 };
 
-TEST(Shots, OfFieldsTrailNormalAndTexturesLookAsTheyDid) {
+TEST(Shots, FieldsTrailNormalAndTexturesMatchStoredShots) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const MarkedShot shots[] = {
@@ -189,7 +189,7 @@ TEST(Shots, OfFieldsTrailNormalAndTexturesLookAsTheyDid) {
   }
 }
 
-TEST(Shots, AreTheSameEachTime) {
+TEST(Shots, AreDeterministic) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   std::vector<Picture> pictures;

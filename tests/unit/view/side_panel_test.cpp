@@ -51,7 +51,7 @@ session::SharedScene::Knob knob(double least, double most) {
   return made;
 }
 
-TEST_F(SidePanel, TurnsAKnobOfAnySizeByItsLogarithm) {
+TEST_F(SidePanel, WideKnobIsLogarithmic) {
   for (const double least : {1e-2, 1e-5, 2e-7, 1e-9}) {
     const auto wide = knob(least, 1000 * least);
     for (const float share : {0.25F, 0.5F, 0.75F}) {
@@ -60,13 +60,13 @@ TEST_F(SidePanel, TurnsAKnobOfAnySizeByItsLogarithm) {
   }
 }
 
-TEST_F(SidePanel, TurnsANarrowKnobInProportion) {
+TEST_F(SidePanel, NarrowKnobIsLinear) {
   EXPECT_NEAR(pressed(knob(0, 2000), 0.25F), 500, 20);
   EXPECT_NEAR(pressed(knob(100, 300), 0.5F), 200, 4);
   EXPECT_EQ(pressed(knob(100, 300), 0.999F), 300);
 }
 
-TEST_F(SidePanel, WritesAKnobInTheUnitThatIsReadBest) {
+TEST_F(SidePanel, KnobHasAReadableUnit) {
   auto rough = knob(1e-6, 1e-4);
   EXPECT_EQ(knob_text(rough, 2e-5), "20 um");
   rough.unit = "N/m";
@@ -147,7 +147,7 @@ std::string help_text(bool closing_ends) {
   return taken;
 }
 
-TEST_F(SidePanel, SaysInItsHelpWhetherClosingEndsTheRun) {
+TEST_F(SidePanel, HelpStatesWhetherClosingEndsTheRun) {
   const std::string watching = help_text(false), leading = help_text(true);
   EXPECT_NE(watching.find("Q close"), std::string::npos) << watching;
   EXPECT_NE(watching.find("The run continues when the window closes."), std::string::npos)
@@ -157,7 +157,7 @@ TEST_F(SidePanel, SaysInItsHelpWhetherClosingEndsTheRun) {
       << leading;
 }
 
-TEST_F(SidePanel, CutsNothingOffInWindowsOfAnyUsualSize) {
+TEST_F(SidePanel, ShowsEverythingInUsualWindowSizes) {
   for (const auto& [width, height] :
        {std::pair{700.0F, 420.0F}, {1280.0F, 800.0F}, {2560.0F, 1440.0F}}) {
     for (const float scale : {0.75F, 1.0F, 1.5F}) {

@@ -18,7 +18,7 @@ class SpaceMouseTest : public ::testing::Test {
   support::FakeHidapi& hid_ = support::fake_hidapi();
 };
 
-TEST_F(SpaceMouseTest, IsReadToItsNewestReportAndNeverWrittenTo) {
+TEST_F(SpaceMouseTest, ReadsToNewestReportAndNeverWrites) {
   constexpr std::array<unsigned char, 25> kScript{7, 1, 0x5e, 1, 0, 0, 0, 0,  // pushed to the right
                                                   7, 1, 0,    0, 9, 0, 0, 0,  // and towards
                                                   2, 3, 1,                    // the left button
@@ -39,7 +39,7 @@ TEST_F(SpaceMouseTest, IsReadToItsNewestReportAndNeverWrittenTo) {
   EXPECT_EQ(hid_.open, 0) << "it is closed";
 }
 
-TEST_F(SpaceMouseTest, SaysWhatToDoWhereThereIsNoneOrItMayNotBeRead) {
+TEST_F(SpaceMouseTest, ErrorNamesTheRemedyIfAbsentOrUnreadable) {
   hid_.listed_product = 0xc650;  // a mouse of the same maker
   SpaceMouse none;
   EXPECT_FALSE(none.read());
@@ -52,7 +52,7 @@ TEST_F(SpaceMouseTest, SaysWhatToDoWhereThereIsNoneOrItMayNotBeRead) {
             std::string::npos);
 }
 
-TEST_F(SpaceMouseTest, TellsNothingMoreWhenItIsPulledOut) {
+TEST_F(SpaceMouseTest, IsAtRestAfterUnplugging) {
   constexpr std::array<unsigned char, 8> kScript{7, 1, 0x5e, 1, 0, 0, 0, 0};
   hid_.script = kScript;
   SpaceMouse mouse;

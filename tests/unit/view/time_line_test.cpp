@@ -19,7 +19,7 @@ class TimeLineUsed : public Screenless {
   }
 };
 
-TEST_F(TimeLineUsed, IsDraggedToAnyMomentOfARunAndBackToNow) {
+TEST_F(TimeLineUsed, DragsToAnyMomentAndBackToNow) {
   Clockwork run(PlayHead::of_run());
   run.head().set_span(10, 70);
   EXPECT_EQ(words_of(run.head()), "now");
@@ -39,7 +39,7 @@ TEST_F(TimeLineUsed, IsDraggedToAnyMomentOfARunAndBackToNow) {
   EXPECT_TRUE(run.head().live());
 }
 
-TEST_F(TimeLineUsed, TakesItsKeysAndNoOthers) {
+TEST_F(TimeLineUsed, HandlesOnlyItsKeys) {
   Clockwork recording(PlayHead::of_recording());
   PlayHead& head = recording.head();
   head.set_span(0, 2);

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::difference;
 
-TEST(TimeShots, OfARecordingAreThoseOfItsRun) {
+TEST(TimeShots, RecordingLooksLikeItsRun) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   session::SessionOptions options;
@@ -63,7 +63,7 @@ TEST(TimeShots, OfARecordingAreThoseOfItsRun) {
   }
 }
 
-TEST(TimeShots, OfPlotsLookAsTheyDid) {
+TEST(TimeShots, PlotsMatchStoredShot) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   Plots plots = Plots::of_recording();

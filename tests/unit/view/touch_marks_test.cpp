@@ -37,7 +37,7 @@ Vector3d end_of_stylus(const DrawnMoment& moment) {
   return end;
 }
 
-TEST(TouchMarks, ShowAStylusThatPointsAsTheArmTells) {
+TEST(TouchMarks, StylusFollowsReportedOrientation) {
   const Vector3d tip(0.01, 0.02, 0.03);
   for (const double angle : {0.0, 0.7, -2.1}) {
     const Eigen::Matrix3d R_WT =
@@ -47,7 +47,7 @@ TEST(TouchMarks, ShowAStylusThatPointsAsTheArmTells) {
   }
 }
 
-TEST(TouchMarks, ShowNoStylusOfAnArmThatTellsNoOrientation) {
+TEST(TouchMarks, ShowNoStylusWithoutOrientation) {
   DrawnMoment moment;
   const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
   EXPECT_TRUE(mark_touch({}, moment, 1, only_arm).solids.empty());
@@ -59,7 +59,7 @@ TEST(TouchMarks, ShowNoStylusOfAnArmThatTellsNoOrientation) {
   EXPECT_GT((rolled(0) - rolled(1)).norm(), 1e-3);
 }
 
-TEST(TouchMarks, ShowTheNormalAndWhatOfTheForceLiesAlongTheSurface) {
+TEST(TouchMarks, ShowNormalAndTangentialForce) {
   DrawnMoment moment;
   moment.tick.in_contact = true;
   moment.tick.n_W = {0, 0, 1};

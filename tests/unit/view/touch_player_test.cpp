@@ -33,7 +33,7 @@ TEST(RumbleOf, IsTheForceOfTheTouchWithinItsBounds) {
   EXPECT_EQ(rumble_of(hard, 4), (RumbleLevel{1, 1}));
 }
 
-TEST(RumbleOf, IsNothingWhereNothingTouchesOrNothingIsANumber) {
+TEST(RumbleOf, IsZeroWithoutContactOrForNaN) {
   std::vector<driver::TickRecord> ticks{touching(3), touching(1)};
   for (driver::TickRecord& tick : ticks) tick.in_contact = false;
   EXPECT_EQ(rumble_of(ticks, 4), RumbleLevel{});
@@ -91,7 +91,7 @@ class TouchPlayerTest : public ::testing::Test {
   std::int64_t now_ns_ = 5'000'000'000;
 };
 
-TEST_F(TouchPlayerTest, PlaysWhatIsFeltFromItsBeginningOn) {
+TEST_F(TouchPlayerTest, PlaysOnlyTicksAfterItsStart) {
   join(true);
   for (int i = 0; i < 50; ++i) run_->store_tick(touching(2, tick_++));
   player_->begin(*reader_);
@@ -104,7 +104,7 @@ TEST_F(TouchPlayerTest, PlaysWhatIsFeltFromItsBeginningOn) {
   EXPECT_EQ(felt_[0].strong, 0.5);
 }
 
-TEST_F(TouchPlayerTest, TellsTheGamepadInTimeAndNotTooOften) {
+TEST_F(TouchPlayerTest, UpdatesGamepadEvery50To100ms) {
   join(true);
   player_->begin(*reader_);
   for (int i = 0; i < 100; ++i) go_on(10, 2);
@@ -145,7 +145,7 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenNothingTouches) {
   EXPECT_EQ(felt_.back(), RumbleLevel{});
 }
 
-TEST_F(TouchPlayerTest, PlaysAPacedRunWhereItsPaceIsThatOfRealTime) {
+TEST_F(TouchPlayerTest, PlaysPacedRunOnlyAtRealTimeSpeed) {
   join(false, true);
   player_->begin(*reader_);
   go_on(20, 2);
@@ -158,7 +158,7 @@ TEST_F(TouchPlayerTest, PlaysAPacedRunWhereItsPaceIsThatOfRealTime) {
   EXPECT_GT(felt_.size(), 1U) << "a gamepad is told what is felt at any pace";
 }
 
-TEST_F(TouchPlayerTest, LeavesARunInVirtualTimeAlone) {
+TEST_F(TouchPlayerTest, DoesNotPlayRunsInVirtualTime) {
   join(false);
   player_->begin(*reader_);
   go_on(100, 2);
@@ -166,7 +166,7 @@ TEST_F(TouchPlayerTest, LeavesARunInVirtualTimeAlone) {
   EXPECT_TRUE(felt_.empty());
 }
 
-TEST(Rumble, SaysWhatToDoWhereNoGamepadCan) {
+TEST(Rumble, ErrorNamesTheRemedyWithoutGamepad) {
   const auto opened = open_rumble(support::scratch_folder());
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message,

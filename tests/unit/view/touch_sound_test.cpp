@@ -95,7 +95,7 @@ TEST(TouchSound, IsSilentAtRestAndForSlowForces) {
   EXPECT_LT(loudest(slow, slow.size() / 2), 0.01);
 }
 
-TEST(TouchSound, IsExactlySilentWhereNothingTouches) {
+TEST(TouchSound, IsExactlySilentWithoutContact) {
   auto ticks = ticks_of(
       1000, 1, [](double t) { return Eigen::Vector3d(0, 0, 1 + std::sin(2 * kPi * 200 * t)); });
   for (std::size_t i = 500; i < ticks.size(); ++i) ticks[i].in_contact = false;
@@ -106,7 +106,7 @@ TEST(TouchSound, IsExactlySilentWhereNothingTouches) {
   EXPECT_EQ(loudest(sound_at(1000, ticks)), 0) << "a force that no touch makes is not heard";
 }
 
-TEST(TouchSound, NeverGetsLouderThanItMay) {
+TEST(TouchSound, NeverExceedsItsLimit) {
   const auto ticks = ticks_of(
       1000, 0.5,
       [](double t) { return Eigen::Vector3d(0, 0, std::fmod(t, 0.004) < 0.002 ? 1e4 : -1e4); },
@@ -116,7 +116,7 @@ TEST(TouchSound, NeverGetsLouderThanItMay) {
   EXPECT_GT(loudest(sound), 0.9 * TouchSound::kLoudest);
 }
 
-TEST(TouchSound, ClicksAsLoudAsATouchIsFast) {
+TEST(TouchSound, ClickLoudnessFollowsSpeed) {
   double before = 0;
   for (const double speed : {0.02, 0.05, 0.1, 0.2}) {
     auto ticks = ticks_of(1000, 0.2, [](double) { return Eigen::Vector3d::Zero(); });
@@ -129,7 +129,7 @@ TEST(TouchSound, ClicksAsLoudAsATouchIsFast) {
   }
 }
 
-TEST(TouchSound, HissesWhereFrictionSlidesAndNotWhereItRests) {
+TEST(TouchSound, HissesOnlyWhileFrictionSlides) {
   const auto rubbed = [](double speed) {
     const auto sound =
         sound_at(1000, ticks_of(
@@ -154,7 +154,7 @@ TEST(TouchSound, MissingTicksKeepTheTime) {
   for (const float x : sound_at(1000, ticks)) ASSERT_LE(std::abs(x), 0.5F);
 }
 
-TEST(TouchSound, IsTheSameWhetherTakenAtOnceOrInParts) {
+TEST(TouchSound, IsEqualInOneOrSeveralParts) {
   const auto ticks = ticks_of(
       1000, 0.2, [](double t) { return Eigen::Vector3d(0.1, 0, std::sin(700 * t)); }, 0.1);
   TouchSound sound(1'000'000);
@@ -167,7 +167,7 @@ TEST(TouchSound, IsTheSameWhetherTakenAtOnceOrInParts) {
   EXPECT_EQ(parts, sound_at(1000, ticks));
 }
 
-TEST(WavFile, IsWhatOthersRead) {
+TEST(WavFile, HasStandardFormat) {
   const std::string file = (support::scratch_folder() / "out.wav").string();
   const std::vector<float> samples{0, 0.5F, -1, 2, std::nanf("")};
   ASSERT_TRUE(write_wav(samples, 48000, file));

@@ -85,7 +85,7 @@ TEST(RingPages, FormAClosedSurface) {
   }
 }
 
-TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
+TEST(RingPages, EqualPagesOfTheSameMesh) {
   const auto file = ring_of(20'000);
   const auto pages = render::PageFile::open(file);
   ASSERT_TRUE(pages.ok());
@@ -152,7 +152,7 @@ TEST(RingPages, NormalIsThatOfTheSurface) {
   }
 }
 
-TEST(RingPages, AreWrittenInAMemoryThatDoesNotGrowWithTheMesh) {
+TEST(RingPages, WritingNeedsConstantMemory) {
   if (!support::long_form()) GTEST_SKIP() << "writes 640 MB: only with THIMBLE_LONG=1";
   ring_of(1'000'000);
   const std::size_t before = resident_memory().most;

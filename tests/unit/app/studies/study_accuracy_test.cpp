@@ -38,7 +38,7 @@ bool is_costly(const AccuracyAxis& axis) {
          axis.name == "tracking";
 }
 
-TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
+TEST(AccuracyAxes, HaveAllTextsOfThePage) {
   std::set<std::string> names, titles;
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
@@ -68,7 +68,7 @@ TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
   }
 }
 
-TEST(AccuracyAxes, ShowTheOrderOfEachMethodAndExactOnesAtRounding) {
+TEST(AccuracyAxes, ShowOrderOfEachMethodAndRoundingOfExactOnes) {
   int orders = 0;
   int exact = 0;
   for (const AxisMaker& maker : accuracy_axes()) {
@@ -123,7 +123,7 @@ TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
   EXPECT_GE(looked_at, 55);
 }
 
-TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
+TEST(AccuracyAxes, ErrorsAreBitIdenticalAndPreparedStrokesRun) {
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
     if (is_costly(axis)) continue;
@@ -135,7 +135,7 @@ TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
   }
 }
 
-TEST(StiffestWall, IsThatOfTheTableForDampersWithLowPasses) {
+TEST(StiffestWall, EqualsTableForDampersWithLowPass) {
   // [PHYSICS 1.1]: B = 2 N s/m in front of the PHANTOM-like arm, checked there by a simulation.
   struct Row {
     double corner, stiffness;
@@ -179,7 +179,7 @@ AccuracyAxis axis_named(std::string_view name) {
       ->make();
 }
 
-TEST(AccuracyAxes, MeasureTheCompactTrackerWhereverTrackersDiffer) {
+TEST(AccuracyAxes, IncludeCompactTrackerWhereverTrackersDiffer) {
   for (const char* name :
        {"tessellation", "tessellation_direction", "tessellation_jump", "tracking", "float"}) {
     const AccuracyAxis axis = axis_named(name);
@@ -192,7 +192,7 @@ TEST(AccuracyAxes, MeasureTheCompactTrackerWhereverTrackersDiffer) {
   EXPECT_LT(error("compact"), 1.5);
 }
 
-TEST(AccuracyAxes, ShadeDiagramsOfOneMeasureAtOneLimit) {
+TEST(AccuracyAxes, DiagramsOfOneMetricHaveOneThreshold) {
   std::map<std::string, double> limits;
   int shared = 0;
   for (const AxisMaker& maker : accuracy_axes()) {
@@ -205,7 +205,7 @@ TEST(AccuracyAxes, ShadeDiagramsOfOneMeasureAtOneLimit) {
   EXPECT_GE(shared, 5);
 }
 
-TEST(AccuracyAxes, DentsAreRightDownToAThousandthOfARadian) {
+TEST(AccuracyAxes, DentErrorsFollowTheClosedForm) {
   const AccuracyAxis axis = axis_named("dent_speed");
   for (const char* name : {"implicit", "implicit_20k"}) {
     const AccuracyPoint& slowest = line_named(axis, name).points.back();
@@ -218,7 +218,7 @@ TEST(AccuracyAxes, DentsAreRightDownToAThousandthOfARadian) {
   }
 }
 
-TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
+TEST(AccuracyAxes, ParametersOfSceneOrArmAreMarkedAsGiven) {
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
     const bool given = axis.name.starts_with("encoder") || axis.name.starts_with("latency") ||
@@ -237,7 +237,7 @@ TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
   }
 }
 
-TEST(AccuracyAxes, TakeTheTwentiethBounceForTheSafetyStages) {
+TEST(AccuracyAxes, SafetyStagesAreComparedAtTheTwentiethBounce) {
   const AccuracyAxis axis = axis_named("safety");
   for (std::size_t i = 1; i < 4; ++i) {  // 500 to 2,000 N/m
     // Limits alone give speed for ever; the observer gives some in the first bounces only.
@@ -248,7 +248,7 @@ TEST(AccuracyAxes, TakeTheTwentiethBounceForTheSafetyStages) {
   }
 }
 
-TEST(AccuracyAxes, OnlyTheSmoothProfileTurnsContinuously) {
+TEST(AccuracyAxes, OnlySmoothProfileHasContinuousTurningRate) {
   const AccuracyAxis axis = axis_named("profile_rate");
   const auto at = [&](const char* line, std::size_t i) {
     return line_named(axis, line).points[i].error();
@@ -259,7 +259,7 @@ TEST(AccuracyAxes, OnlyTheSmoothProfileTurnsContinuously) {
   EXPECT_LT(at("smooth", 0), at("smooth", 3) / 20);
 }
 
-TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
+TEST(StraightWalk, RoundABlockReturnsToItsStart) {
   const auto mesh = render::ContactMesh::build(support::box({0.005, 0.005, 0.005})).value();
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     const Eigen::Vector3d& n = mesh.cell(t).face.n;
@@ -285,7 +285,7 @@ TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
   }
 }
 
-TEST(VirtualCoupling, GivesNoSpeedUpToItsSizedLimit) {
+TEST(VirtualCoupling, AddsNoSpeedUpToItsDesignLimit) {
   for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
     // The law asks for no more than the arm has, and wastes less than half.
     const double counted_on = least_counted_on(stiffness);
@@ -294,7 +294,7 @@ TEST(VirtualCoupling, GivesNoSpeedUpToItsSizedLimit) {
   }
 }
 
-TEST(Tracking, SearchesInEachTickAreRightAndEdgePlanesNearlyAlways) {
+TEST(Tracking, SearchesAreExactAndEdgePlanesAlmostAlways) {
   for (const AxisMaker& maker : accuracy_axes()) {
     if (maker.name != "tracking") continue;
     const AccuracyAxis axis = maker.make();
@@ -313,7 +313,7 @@ TEST(Tracking, SearchesInEachTickAreRightAndEdgePlanesNearlyAlways) {
   }
 }
 
-TEST(FreeSpin, SolvesEulersEquationsOnBothSidesOfTheMiddleAxis) {
+TEST(FreeSpin, SolvesEulerEquationsNearIntermediateAxis) {
   for (const Eigen::Vector3d& start : {Eigen::Vector3d(0.2, 12, 0.5), Eigen::Vector3d(3, 5, -1),
                                        Eigen::Vector3d(-2, -7, 1), Eigen::Vector3d(0.3, 1, -4)}) {
     FreeSpin spin;
@@ -350,7 +350,7 @@ MeasuredAxis measured_by_hand() {
   return measure_axis(axis, {.rounds = 0, .count = false});
 }
 
-TEST(MeasuredAxis, IsTheSameFromItsNumbers) {
+TEST(MeasuredAxis, IsRestoredFromItsNumbers) {
   const MeasuredAxis measured = measured_by_hand();
   const MeasuredAxis again = with_numbers(measured.axis, numbers_of(measured));
   EXPECT_TRUE(again.complete);
@@ -362,7 +362,7 @@ TEST(MeasuredAxis, IsTheSameFromItsNumbers) {
   }
 }
 
-TEST(MeasuredAxis, OfTooFewNumbersIsNotComplete) {
+TEST(MeasuredAxis, TooFewNumbersAreIncomplete) {
   const MeasuredAxis measured = measured_by_hand();
   std::vector<double> numbers = numbers_of(measured);
   numbers.pop_back();
@@ -387,7 +387,7 @@ TEST(MeasuredAxis, IsStoppedBetweenTwoPoints) {
   EXPECT_EQ(steps, 2);
 }
 
-TEST(MeasuredAxis, ReportsAsManyStepsAsItAnnounces) {
+TEST(MeasuredAxis, ReportsTheAnnouncedNumberOfSteps) {
   AccuracyAxis axis = measured_by_hand().axis;
   int steps = 0;
   MeasureOptions options{.rounds = 5, .count = false, .advance = [&](int done) { steps += done; }};
@@ -410,7 +410,7 @@ TEST(MeasuredAxis, FindsSlopeDefaultAndFeltLimit) {
   EXPECT_NE(felt_sentence(axis).find("method a at 1"), std::string::npos);
 }
 
-TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
+TEST(MeasuredAxis, RunsSubtractedWorkAsOftenAsThePoint) {
   AccuracyAxis axis;
   axis.name = "by_hand";
   int with = 0, beside = 0;
@@ -426,7 +426,7 @@ TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
   EXPECT_EQ(beside, 8);
 }
 
-TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
+TEST(RateBench, VerdictUsesLateTicksAndJitter) {
   RateBench bench;
   bench.rate = 1000;
   bench.priority = true;

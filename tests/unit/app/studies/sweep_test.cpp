@@ -79,7 +79,7 @@ TEST(Sweep, ResumesAfterATornJournal) {
   EXPECT_EQ(journal_after(scratch.path(), 2, true), whole);
 }
 
-TEST(Sweep, MeasuresNoCellAgainThatItsJournalHolds) {
+TEST(Sweep, DoesNotRepeatCellsOfItsJournal) {
   const Folder scratch;
   journal_after(scratch.path(), 2, false);
   Sweep sweep = plain_sweep();
@@ -99,7 +99,7 @@ TEST(Sweep, KeepsAnOlderJournalBesideANewOne) {
   EXPECT_EQ(scene::text_of(scratch.path() / "plain.journal.old"), first);
 }
 
-TEST(Sweep, RefusesAFolderThatIsBeingWrittenAndSaysByWhom) {
+TEST(Sweep, RefusesFolderInUseAndNamesTheProcess) {
   const Folder scratch;
   CellNumbers numbers;
   auto first = SweepJournal::open(scratch.path() / "a.journal", "key", 3, false, numbers);
@@ -142,7 +142,7 @@ TEST(Sweep, NamesTheCellThatFailed) {
   EXPECT_EQ(done.error().message, "plain, cell 17: no such wall");
 }
 
-TEST(Sweep, TakesNoCellWithoutNumbersAndOutlivesAnException) {
+TEST(Sweep, EmptyResultsAndExceptionsAreErrors) {
   const Folder scratch;
   Sweep sweep = plain_sweep();
   sweep.measure = [](std::size_t) { return std::vector<double>{}; };
@@ -156,7 +156,7 @@ TEST(Sweep, TakesNoCellWithoutNumbersAndOutlivesAnException) {
   EXPECT_NE(thrown.error().message.find("bad_alloc"), std::string::npos) << thrown.error().message;
 }
 
-TEST(Sweep, StopsWhenAskedAndLaterGoesOn) {
+TEST(Sweep, StopsOnRequestAndResumes) {
   const Folder scratch, other;
   std::atomic<bool> stop{false};
   Sweep sweep = plain_sweep();
@@ -170,7 +170,7 @@ TEST(Sweep, StopsWhenAskedAndLaterGoesOn) {
   EXPECT_EQ(journal_after(scratch.path(), 2, true), journal_after(other.path(), 1, false));
 }
 
-TEST(Sweep, SaysWhatToDoAboutAFolderThatIsNotThere) {
+TEST(Sweep, ErrorNamesMissingFolder) {
   const auto done = run_sweep(plain_sweep(), {.folder = "/nowhere/at/all", .jobs = 1}, kNoStop);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("Cannot write /nowhere/at/all"), std::string::npos);

@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> worst_scenes() {
   return files;
 }
 
-TEST(Trouble, DoesNotComeBackInTheWorstScenesOfALongSearch) {
+TEST(Trouble, WorstScenesOfALongSearchStayFixed) {
   const auto files = worst_scenes();
   ASSERT_EQ(files.size(), 10U);
   for (const auto& file : files) {
@@ -56,7 +56,7 @@ TEST(Trouble, DoesNotComeBackInTheWorstScenesOfALongSearch) {
   }
 }
 
-TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
+TEST(Trouble, TooStiffWallIsDetected) {
   const auto file = support::scratch_folder() / "too_stiff.yaml";
   ASSERT_TRUE(report::write_text(
       "name: too_stiff\narm: " + kArm.string() +
@@ -75,7 +75,7 @@ TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
 
 // What damping and friction took before is no credit: the hand rubs over rubber for two seconds,
 // then leans on a wall that is too stiff for it.
-TEST(Trouble, IsSeenThoughMoreWasTakenBefore) {
+TEST(Trouble, TooStiffWallIsDetectedAfterDissipation) {
   const auto file = support::scratch_folder() / "rubbed_before.yaml";
   ASSERT_TRUE(report::write_text(
       "name: rubbed_before\narm: " + kArm.string() +
@@ -118,7 +118,7 @@ TEST(EnergyGiven, CountsOnlyWhatSpringsHeld) {
   EXPECT_NEAR(active.most(), 6e-3, 1e-15);
 }
 
-TEST(EnergyGiven, MayBeWhatTheStageLetsGo) {
+TEST(EnergyGiven, IsBoundedByTheStagesAllowance) {
   driver::EnergyGuardSettings stage;
   EXPECT_EQ(energy_let_go(stage), kLetGoWithoutStage);
   stage = {.stage = driver::EnergyStage::kPassivity,
@@ -158,7 +158,7 @@ bool any_has(const std::vector<std::string>& warnings, const std::string& word) 
 // Seeds of a search through 100,000 scenes, of which 552 oscillated; by cause. What each one showed
 // before stands behind it.
 
-TEST(Trouble, RestsWhereTheEnergyStageOscillatedByItself) {
+TEST(Trouble, EnergyStageDoesNotOscillate) {
   for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade as a spring
                                    0x0ba1cf68047f62f8u,     // 1.2 N: a deep soft wall let go
                                    0x9d31e7a72db18a0cu,     // 1.7 N
@@ -170,7 +170,7 @@ TEST(Trouble, RestsWhereTheEnergyStageOscillatedByItself) {
   }
 }
 
-TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
+TEST(Trouble, PullOfADentDoesNotOscillate) {
   for (const std::uint64_t seed : {0x397910a12f34a399u,     // 0.31 N
                                    0x8caa046a37ca9eeeu,     // 0.34 N
                                    0x4ef4be767faa6f60u}) {  // 0.14 N
@@ -192,7 +192,7 @@ TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
   EXPECT_TRUE(any_has(warnings, "facets"));
 }
 
-TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
+TEST(Trouble, WarningNamesTooShortTexture) {
   std::vector<std::string> warnings;
   EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).limit_cycle, kLimitCycleMost);
   EXPECT_TRUE(any_has(warnings, "texture"));
@@ -200,13 +200,13 @@ TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
 
 // It had a limit cycle before tips and bodies were coupled by the whole implicit step; the warning
 // is on the safe side.
-TEST(Trouble, LightBodyInTheGripOfAFrictionRests) {
+TEST(Trouble, LightBodyWithFrictionRests) {
   std::vector<std::string> warnings;
   EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
   EXPECT_TRUE(any_has(warnings, "such a light body"));
 }
 
-TEST(RestWarnings, FindCurvatureAndVelocityGrain) {
+TEST(RestWarnings, FindCurvatureAndQuantisationNoise) {
   // Hollows of a cube: none; its texture and friction as a scene names them.
   EXPECT_NEAR(stability::quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3),
               2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
@@ -227,12 +227,12 @@ TEST(RestWarnings, FindCurvatureAndVelocityGrain) {
   EXPECT_NEAR(stability::hold_of(scene->objects[0].effects[1]), 700, 1);
 }
 
-TEST(RandomScene, IsDrawnAgainByItsSeedAndByNoOther) {
+TEST(RandomScene, DependsOnItsSeedOnly) {
   EXPECT_EQ(random_scene(7, limits()).text, random_scene(7, limits()).text);
   EXPECT_NE(random_scene(7, limits()).text, random_scene(8, limits()).text);
 }
 
-TEST(RandomScene, StaysWithinWhatTheLawsAllow) {
+TEST(RandomScene, StaysWithinTheStabilityLaws) {
   RandomSceneLimits none = limits();
   none.arm.declared.stiffness = 60;  // what an arm declares binds too
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -244,7 +244,7 @@ TEST(RandomScene, StaysWithinWhatTheLawsAllow) {
   }
 }
 
-TEST(TroubleFound, SurvivesItsWayThroughASweep) {
+TEST(TroubleFound, RoundTripsThroughASweep) {
   const TroubleFound found{.not_finite = 2,
                            .fault = 3,
                            .force_share = 0.5,
@@ -258,7 +258,7 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
   EXPECT_TRUE(found.bad());
 }
 
-TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
+TEST(WallMeasures, EdgeEqualsExactMapOfATick) {
   const auto arm = scene::load_arm(kArm);
   for (const double delay : {0.0, 0.001}) {
     stability::WallCase wall;
@@ -271,7 +271,7 @@ TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
   }
 }
 
-TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
+TEST(WallMeasures, RestNeedsDryFrictionOfHalfAStep) {
   const auto arm = scene::load_arm(kArm);
   stability::WallCase wall;
   wall.direction = *stability::worst_direction_at_home(*arm);
@@ -288,7 +288,7 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
   }
 }
 
-TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
+TEST(WallMeasures, RestitutionFollowsTheLaw) {
   const auto arm = scene::load_arm(kArm);
   stability::WallCase wall;
   wall.direction = *stability::worst_direction_at_home(*arm);
