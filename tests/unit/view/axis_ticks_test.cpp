@@ -46,7 +46,7 @@ TEST(AxisTicks, FillTheRangeWithoutOverlap) {
     ASSERT_LE(within.count, room);
     EXPECT_GE(within.first, least - rim);
     EXPECT_LE(within.last(), most + rim);
-    // No more of them would have fitted in, but by the next round step.
+    // With the next smaller round step they would overlap.
     EXPECT_GT(static_cast<double>(within.count) * 2.5 * within.step, width - 2 * within.step);
     const AxisTicks around = ticks_around(least, most, room);
     ASSERT_GE(around.count, 2U);

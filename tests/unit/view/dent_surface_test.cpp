@@ -49,8 +49,7 @@ Vector3d any_weights(support::Random& random) {
   return w / w.sum();
 }
 
-// The mesh's own normal at a place that a bent corner came from, as Phong's shading interpolates
-// it.
+// Returns the mesh's own normal at the origin of a bent corner, interpolated as in Phong shading.
 Vector3f whole_normal(const DentVertex& v) {
   return v.weights[0] * v.n_a + v.weights[1] * v.n_b + v.weights[2] * v.n_c;
 }

@@ -17,7 +17,7 @@ TEST(GlProgram, ErrorContainsTheDriversMessage) {
                                       shaders::plain_fragment());
   EXPECT_TRUE(refuses(broken, "rejects a shader"));
   EXPECT_TRUE(refuses(broken, "no_such_thing"));
-  // Two shaders that compile alone and do not agree on what one hands to the other.
+  // Two shaders that compile separately, but whose interfaces differ.
   const auto apart = GlProgram::make(
       "#version 330 core\nout float shade;\nvoid main() { shade = 1; gl_Position = vec4(0); }\n",
       "#version 330 core\nin vec3 shade;\nout vec4 c;\nvoid main() { c = vec4(shade, 1); }\n");

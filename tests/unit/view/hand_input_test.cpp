@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A report of numbers of 16 bits behind its own.
+/// A report of 16-bit numbers after its own number.
 std::vector<std::byte> report(int id, const std::vector<int>& counts) {
   std::vector<std::byte> bytes{static_cast<std::byte>(id)};
   for (const int count : counts) {
@@ -71,7 +71,7 @@ TEST(SpaceMouseReport, KeepsStateForIncompleteOrUnknownReports) {
 TEST(SpaceMouse, IsIdentifiedByIdsAndUsage) {
   EXPECT_TRUE(is_space_mouse(0x046d, 0xc62b, 1, 8));
   EXPECT_TRUE(is_space_mouse(0x256f, 0xc635, 1, 8));
-  EXPECT_TRUE(is_space_mouse(0x256f, 0xc635, 0, 0)) << "a system that tells no use";
+  EXPECT_TRUE(is_space_mouse(0x256f, 0xc635, 0, 0)) << "a system that reports no usage";
   EXPECT_FALSE(is_space_mouse(0x256f, 0xc652, 1, 2)) << "the mouse of a receiver";
   EXPECT_FALSE(is_space_mouse(0x046d, 0xc52b, 1, 8)) << "another receiver of Logitech";
 }
@@ -96,7 +96,7 @@ TEST(HandPush, StickStartsAtZeroAtDeadZone) {
     EXPECT_NEAR((full - Vector3d(way.x(), -way.y(), 0)).norm(), 0, 1e-12);
   }
   EXPECT_NEAR(push_of(GamepadState{.left = {1, 1}}).share.norm(), 1, 1e-12)
-      << "a corner is no more";
+      << "a corner is not larger";
 }
 
 TEST(HandPush, TriggersPushAwayAndNear) {
@@ -143,7 +143,7 @@ TEST_F(HandInputTest, HoldsTheHandAtTheTip) {
   const double way = 0.01 * input_.speed();
   EXPECT_NEAR((input_.hand().p_WH - (p_WT_ + Vector3d(0, way, 0))).norm(), 0, 1e-12);
   push({0, 0, 0});
-  EXPECT_TRUE(input_.holds()) << "it stays where it was pushed to";
+  EXPECT_TRUE(input_.holds()) << "it keeps its position";
   push({0, -1, 1});
   EXPECT_NEAR((input_.hand().p_WH - (p_WT_ + Vector3d(way, way, -way))).norm(), 0, 1e-12);
 }

@@ -8,7 +8,7 @@
 namespace thimble::view {
 namespace {
 
-// A moment whose every part tells its time.
+// A moment in which each part encodes its time.
 void make(double time, DrawnMoment& moment) {
   moment.tick = {};
   moment.tick.time_ns = std::llround(1e9 * time);
@@ -98,7 +98,7 @@ TEST(MomentRing, KeepsFewerSecondsOfLargeMoments) {
     ring.keep(*moment);
   }
   moment->shapes.clear();
-  // What is in memory by the count of those who hold it, not by the ring's own.
+  // Memory, by the reference counts and not by the ring's own count.
   std::size_t alive = 0;
   for (const auto& mesh : meshes) alive += mesh.expired() ? 0 : 1;
   const std::size_t bytes = alive * 40'000 * sizeof(Eigen::Vector3d);

@@ -17,7 +17,7 @@
 namespace thimble::view {
 namespace {
 
-/// Makes a picture with slopes and a few spots, as a shaded scene has.
+/// Makes a picture with gradients and a few spots, similar to a shaded scene.
 Picture any_picture(support::Random& random, int width, int height) {
   Picture picture{width, height, {}};
   const double turn = random.uniform(0, 6);
@@ -51,8 +51,8 @@ std::size_t number_at(const std::string& bytes, std::size_t at) {
   return number;
 }
 
-/// Returns what an animated PNG shows after each of its pictures, as numbers of colours; fails the
-/// test where a chunk is not whole.
+/// Returns the picture after each frame of an animated PNG, as indices of colours. Fails the test
+/// if a chunk is invalid.
 std::vector<std::vector<std::uint8_t>> frames_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -164,7 +164,7 @@ TEST(PictureFile, StillReadersShowTheFirstPicture) {
   support::Random random(7);
   std::vector<Picture> pictures;
   for (int i = 0; i < 4; ++i) pictures.push_back(any_picture(random, 90, 60));
-  pictures.push_back(pictures.back());  // and one in which nothing changes
+  pictures.push_back(pictures.back());  // and one without a change
   const auto file = support::scratch_folder() / "animated.png";
   ASSERT_TRUE(write_animated_png(pictures, 0.04, file));
   const auto read = read_png(file);
@@ -181,10 +181,10 @@ TEST(PictureFile, ErrorsNameTheFile) {
   const auto animated = write_animated_png({any_picture(random, 4, 4)}, 0.04, nowhere);
   ASSERT_FALSE(animated);
   EXPECT_NE(animated.error().message.find("a.png"), std::string::npos);
-  if (std::filesystem::is_character_file("/dev/full")) {  // a disk without room
+  if (std::filesystem::is_character_file("/dev/full")) {  // a disk without space
     EXPECT_FALSE(write_png(any_picture(random, 200, 200), "/dev/full"));
     EXPECT_FALSE(write_animated_png({any_picture(random, 200, 200)}, 0.04, "/dev/full"));
-    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));  // and nothing was deleted
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));  // and it was not deleted
   }
   EXPECT_FALSE(read_png(nowhere));
 }

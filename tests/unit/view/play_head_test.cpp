@@ -21,7 +21,7 @@ TEST(PlayHead, RecordingPlaysAtSetSpeedAndStopsAtTheEnd) {
   EXPECT_EQ(head.time(), 5);
   EXPECT_FALSE(head.plays());
   EXPECT_FALSE(head.live());
-  head.toggle();  // anew
+  head.toggle();  // again from the start
   EXPECT_EQ(head.time(), 3);
   EXPECT_TRUE(head.plays());
 }
@@ -48,12 +48,12 @@ TEST(PlayHead, FollowsRunUntilMovedBack) {
     EXPECT_EQ(head.behind(), 0);
   }
   head.go(1.5);
-  head.set_span(0, 8);  // the run goes on meanwhile
+  head.set_span(0, 8);  // the run continues
   head.step(0.1);
   EXPECT_FALSE(head.live());
   EXPECT_EQ(head.time(), 1.5);
   EXPECT_EQ(head.behind(), 6.5);
-  head.set_span(2, 10);  // what was looked at is no longer kept
+  head.set_span(2, 10);  // the displayed moment is no longer stored
   EXPECT_EQ(head.time(), 2);
   head.to_end();
   EXPECT_TRUE(head.live());

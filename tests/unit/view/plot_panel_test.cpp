@@ -31,7 +31,7 @@ class PlotPanelUsed : public Screenless {
       ImGui::End();
     });
   }
-  // Over the first plot, where that time is if all is shown.
+  // Over the first plot, at that time if everything is shown.
   ImVec2 at(double seconds) const {
     return {inner.x + inner.width * static_cast<float>(seconds / 10), 90};
   }

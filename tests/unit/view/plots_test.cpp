@@ -26,7 +26,7 @@ TEST(Plots, FindMinAndMaxOfAnyRange) {
   std::mt19937_64 random(support::seed_of(3));
   std::uniform_real_distribution<double> any(0, 4);
   std::vector<double> forces;
-  // More than a minute, so that the first ticks are forgotten and blocks begin anywhere.
+  // More than a minute, so that the first ticks are forgotten and blocks start anywhere.
   constexpr int kTicks = 70'037;
   for (int i = 0; i < kTicks; ++i) {
     forces.push_back(any(random));

@@ -41,9 +41,9 @@ TEST(SceneMenu, ListsShippedUserAndNeighbouringScenes) {
   ASSERT_EQ(found.own.size(), 1u);
   EXPECT_TRUE(lists(found.own, own));
   EXPECT_EQ(found.own[0].about, "Mine.");
-  ASSERT_EQ(found.beside.size(), 1u) << "arm files and hidden ones are no scenes";
+  ASSERT_EQ(found.beside.size(), 1u) << "arm files and hidden files are not scenes";
   EXPECT_EQ(found.beside[0].name, "beside");
-  EXPECT_TRUE(find_scenes(shipped).beside.empty()) << "they are listed above";
+  EXPECT_TRUE(find_scenes(shipped).beside.empty()) << "shipped scenes are listed separately";
   unsetenv("XDG_DATA_HOME");
 }
 

@@ -22,7 +22,8 @@ class SidePanel : public Screenless {
  protected:
   SidePanel() : Screenless(600, 100) {}
 
-  /// Presses the mouse on the slider, a share of its length from the left, and returns the value.
+  /// Presses the mouse on the slider, at a share of its length from the left, and returns the
+  /// value.
   static double pressed(const session::SharedScene::Knob& knob, float share) {
     double value = knob.initial;
     for (int i = 0; i < 4; ++i) {
@@ -75,7 +76,7 @@ TEST_F(SidePanel, KnobHasAReadableUnit) {
   EXPECT_EQ(knob_text(rough, 0.25), "0.25");
 }
 
-/// Draws the panel of a run with knobs and a field, and returns what of it is cut off.
+/// Draws the panel of a run with knobs and a field, and returns the parts that are cut off.
 std::vector<std::string> cut_off(float width, float height, float scale) {
   set_text_style(scale, Theme::kDark);
   ImGuiIO& io = ImGui::GetIO();
@@ -112,7 +113,7 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   }
   std::vector<std::string> cut;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
-    // The panel itself is scrolled only where its text is too large for the window.
+    // The panel itself scrolls only if its text is too large for the window.
     const bool scrolls = (window->Flags & ImGuiWindowFlags_NoScrollbar) == 0 &&
                          (std::string(window->Name) != "panel" || height < 420 * scale);
     if (!window->WasActive || window->Hidden) continue;
@@ -126,7 +127,7 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   return cut;
 }
 
-/// Returns the help as it is read, line by line.
+/// Returns the text of the help, line by line.
 std::string help_text(bool closing_ends) {
   ViewNotes notes;
   notes.closing_ends = closing_ends;
@@ -137,10 +138,10 @@ std::string help_text(bool closing_ends) {
   io.SetClipboardTextFn = [](void*, const char* text) { taken = text; };
   ViewChoice choice;
   choice.help = true;
-  for (int frame = 0; frame < 3; ++frame) {  // a window that finds its size is hidden at first
+  for (int frame = 0; frame < 3; ++frame) {  // a window of automatic size is hidden at first
     io.DeltaTime = 0.02F;
     ImGui::NewFrame();
-    if (frame == 2) ImGui::LogToClipboard();  // until the window ends
+    if (frame == 2) ImGui::LogToClipboard();  // until the end of the window
     draw_notices({0, 0, 1280, 800}, notes, choice);
     ImGui::Render();
   }

@@ -9,7 +9,7 @@
 namespace thimble::view {
 namespace {
 
-/// A program that has no other HID device.
+/// A process without any other HID device.
 class SpaceMouseTest : public ::testing::Test {
  protected:
   SpaceMouseTest() { hid_ = {.listed_vendor = 0x256f, .listed_product = 0xc635}; }
@@ -19,11 +19,12 @@ class SpaceMouseTest : public ::testing::Test {
 };
 
 TEST_F(SpaceMouseTest, ReadsToNewestReportAndNeverWrites) {
-  constexpr std::array<unsigned char, 25> kScript{7, 1, 0x5e, 1, 0, 0, 0, 0,  // pushed to the right
-                                                  7, 1, 0,    0, 9, 0, 0, 0,  // and towards
-                                                  2, 3, 1,                    // the left button
-                                                  2, 9, 9,                    // what nobody knows
-                                                  2, 2, 5};                   // torn
+  constexpr std::array<unsigned char, 25> kScript{
+      7, 1, 0x5e, 1, 0, 0, 0, 0,  // pushed to the right
+      7, 1, 0,    0, 9, 0, 0, 0,  // and towards the user
+      2, 3, 1,                    // the left button
+      2, 9, 9,                    // an unknown report
+      2, 2, 5};                   // incomplete
   hid_.script = kScript;
   {
     SpaceMouse mouse;
@@ -32,15 +33,15 @@ TEST_F(SpaceMouseTest, ReadsToNewestReportAndNeverWrites) {
     EXPECT_EQ(state->translation, (std::array<std::int16_t, 3>{0, 9, 0}));
     EXPECT_EQ(state->buttons, 1U);
     EXPECT_EQ(mouse.trouble(), "");
-    EXPECT_EQ(mouse.read(), state) << "it stands as it was told last";
-    EXPECT_EQ(hid_.last_timeout_ms, 0) << "a picture does not wait for it";
+    EXPECT_EQ(mouse.read(), state) << "it keeps the last state";
+    EXPECT_EQ(hid_.last_timeout_ms, 0) << "drawing does not wait for it";
   }
   EXPECT_EQ(hid_.messages, 0U);
   EXPECT_EQ(hid_.open, 0) << "it is closed";
 }
 
 TEST_F(SpaceMouseTest, ErrorNamesTheRemedyIfAbsentOrUnreadable) {
-  hid_.listed_product = 0xc650;  // a mouse of the same maker
+  hid_.listed_product = 0xc650;  // a mouse by the same maker
   SpaceMouse none;
   EXPECT_FALSE(none.read());
   EXPECT_EQ(none.trouble(), "No SpaceMouse. Plug one in; it is detected automatically.");

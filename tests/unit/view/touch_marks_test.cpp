@@ -20,7 +20,7 @@ DrawnMoment moment_with(const Eigen::Matrix3d& R_WT) {
   return moment;
 }
 
-/// Finds the end of the stylus: where the far end of its longest rod is drawn.
+/// Returns the end of the stylus: the far end of its longest drawn rod.
 Vector3d end_of_stylus(const DrawnMoment& moment) {
   const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
   Vector3d end(0, 0, 0);
@@ -51,7 +51,7 @@ TEST(TouchMarks, ShowNoStylusWithoutOrientation) {
   DrawnMoment moment;
   const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
   EXPECT_TRUE(mark_touch({}, moment, 1, only_arm).solids.empty());
-  // A roll about its own axis is seen: something on it moves.
+  // A roll about its own axis is visible, because a part of it moves.
   const auto rolled = [&](double angle) {
     const Eigen::Matrix3d R_WT = Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix();
     return mark_touch({}, moment_with(R_WT), 1, only_arm).solids.back().model;

@@ -42,7 +42,7 @@ TEST(RumbleOf, IsZeroWithoutContactOrForNaN) {
   EXPECT_EQ(rumble_of(nonsense, 4), RumbleLevel{});
 }
 
-/// What a player did, and the run that it plays.
+/// The output of a player, and the run that it plays.
 class TouchPlayerTest : public ::testing::Test {
  protected:
   struct Sound final : SoundOutput {
@@ -72,7 +72,7 @@ class TouchPlayerTest : public ::testing::Test {
     player_ = std::make_unique<TouchPlayer>(std::make_unique<Sound>(heard_),
                                             std::make_unique<Rumble>(felt_));
   }
-  /// Lets the run go on for `ms` with a force, and the player look afterwards.
+  /// Runs for `ms` with a force, then updates the player.
   void go_on(int ms, double force) {
     for (int i = 0; i < ms; ++i) run_->store_tick(touching(force, tick_++));
     look(ms);
@@ -96,7 +96,7 @@ TEST_F(TouchPlayerTest, PlaysOnlyTicksAfterItsStart) {
   for (int i = 0; i < 50; ++i) run_->store_tick(touching(2, tick_++));
   player_->begin(*reader_);
   look(10);
-  EXPECT_TRUE(heard_.empty()) << "what was before is not played";
+  EXPECT_TRUE(heard_.empty()) << "earlier ticks are not played";
   EXPECT_TRUE(felt_.empty());
   go_on(20, 2);
   EXPECT_EQ(heard_.size(), 20U * 48U);
@@ -108,7 +108,7 @@ TEST_F(TouchPlayerTest, UpdatesGamepadEvery50To100ms) {
   join(true);
   player_->begin(*reader_);
   for (int i = 0; i < 100; ++i) go_on(10, 2);
-  // A second: at least every 100 ms, at most every 50.
+  // One second: at least every 100 ms, at most every 50 ms.
   EXPECT_GE(felt_.size(), 10U);
   EXPECT_LE(felt_.size(), 21U);
 }
@@ -118,12 +118,12 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenTheRunStallsPausesOrEnds) {
   player_->begin(*reader_);
   go_on(10, 2);
   look(190);
-  EXPECT_NE(felt_.back(), RumbleLevel{}) << "it has told something less than 0.2 s ago";
+  EXPECT_NE(felt_.back(), RumbleLevel{}) << "the last update is less than 0.2 s old";
   look(20);
   EXPECT_EQ(felt_.back(), RumbleLevel{});
   const std::size_t told = felt_.size();
   look(500);
-  EXPECT_EQ(felt_.size(), told) << "it is told once";
+  EXPECT_EQ(felt_.size(), told) << "updated once";
   for (const session::RunState state : {session::RunState::kPaused, session::RunState::kEnded}) {
     run_->set_state(session::RunState::kRunning);
     go_on(60, 2);
@@ -155,7 +155,7 @@ TEST_F(TouchPlayerTest, PlaysPacedRunOnlyAtRealTimeSpeed) {
   heard_.clear();
   for (int i = 0; i < 10; ++i) go_on(20, 2);
   EXPECT_TRUE(heard_.empty()) << "half as many samples as the card plays";
-  EXPECT_GT(felt_.size(), 1U) << "a gamepad is told what is felt at any pace";
+  EXPECT_GT(felt_.size(), 1U) << "a gamepad is updated at any pace";
 }
 
 TEST_F(TouchPlayerTest, DoesNotPlayRunsInVirtualTime) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Ticks of a touch whose force is `force(t)` (N); it slides at `speed` along x.
+/// Returns the ticks of a touch whose force is `force(t)` (N) and which slides at `speed` along x.
 template <class Force>
 std::vector<driver::TickRecord> ticks_of(double rate, double seconds, Force force,
                                          double speed = 0) {
@@ -40,7 +40,7 @@ std::vector<float> sound_at(double rate, const std::vector<driver::TickRecord>& 
   return sound_of(ticks, std::llround(1e9 / rate));
 }
 
-/// Returns how loud a frequency is in the second half of a sound.
+/// Returns the loudness of a frequency in the second half of a sound.
 double loudness(const std::vector<float>& sound, double hertz) {
   std::complex<double> sum = 0;
   const std::size_t half = sound.size() / 2;
@@ -68,7 +68,8 @@ TEST(TouchSound, GivesTheFrequencyOfATexture) {
     EXPECT_EQ(sound.size(), 48000U);
     const double at_250 = loudness(sound, 250);
     EXPECT_NEAR(at_250, 0.4 * 0.3, 0.01) << rate;
-    // What a plain staircase of ticks would add: at 1 kHz 750 and 1250 Hz, a third and a fifth.
+    // Frequencies that a step function of ticks would add: at 1 kHz 750 and 1250 Hz, with a third
+    // and a fifth of the loudness.
     for (const double other : {125.0, 500.0, 750.0, 1000.0, 1250.0, 1750.0}) {
       EXPECT_LT(loudness(sound, other), 0.02 * at_250) << rate << ": " << other;
     }
@@ -103,7 +104,7 @@ TEST(TouchSound, IsExactlySilentWithoutContact) {
   EXPECT_GT(loudest(sound), 0.2);
   EXPECT_EQ(loudest(sound, 600 * 48), 0);
   for (driver::TickRecord& tick : ticks) tick.in_contact = false;
-  EXPECT_EQ(loudest(sound_at(1000, ticks)), 0) << "a force that no touch makes is not heard";
+  EXPECT_EQ(loudest(sound_at(1000, ticks)), 0) << "a force without contact is silent";
 }
 
 TEST(TouchSound, NeverExceedsItsLimit) {

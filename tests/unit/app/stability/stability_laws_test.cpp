@@ -8,7 +8,7 @@
 
 #include "support/wall_laws.h"
 
-// The figures are those of [PHYSICS 1 and 2.3], which independent simulations have confirmed.
+// The values are those of [PHYSICS 1 and 2.3], which independent simulations have confirmed.
 
 namespace thimble::stability {
 namespace {
@@ -25,9 +25,9 @@ TEST(StabilityLaws, SumOfTheLatencyBudget) {
   EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001}), 0.0005);
   EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001, .delay = 0.002, .amplifier_lag = 0.0003}),
                    0.0028);
-  // Exponential periods have a spread as large as their mean: half the stiffness.
+  // Exponential periods have a standard deviation equal to their mean: half the stiffness.
   EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001, .period_spread = 0.001}), 0.001);
-  // Of 1000 ticks, 10 take 10 ms: 396 -> 221 N/m, 44 % lost (b = 0.2 gives the 396).
+  // 10 of 1000 ticks take 10 ms: 396 -> 221 N/m, 44 % lost (b = 0.2 gives the 396).
   const double mean = 0.99e-3 + 0.01 * 10e-3, square = 0.99e-6 + 0.01 * 100e-6;
   const double spread = std::sqrt(square - mean * mean);
   const double jittered = scene::latency_of({.period = mean, .period_spread = spread});
@@ -48,7 +48,7 @@ TEST(StabilityLaws, PassiveDampingFollowsColgateAndSchenkel) {
   EXPECT_NEAR(passive_damping(1000, 0.3, 0.001), 0.8, 1e-9);
   EXPECT_NEAR(passive_damping(1000, 0, 0.001, 0.001), 1.5, 1e-9);
   EXPECT_NEAR(passive_damping(1000, 0, 0.001, 0.002), 2.5, 1e-9);
-  EXPECT_NEAR(passive_damping(1000, 0.5, 0.001, 0.001), 1.25, 1e-6);  // the sum would say 2
+  EXPECT_NEAR(passive_damping(1000, 0.5, 0.001, 0.001), 1.25, 1e-6);  // a sum would give 2
 }
 
 TEST(StabilityLaws, PassiveStiffnessOfAFriction) {
@@ -93,7 +93,8 @@ TEST(StabilityLaws, RestitutionOfAnImpact) {
 }
 
 TEST(StabilityLaws, LengthOfABristle) {
-  // 0.5 N, hand of 3 N s/m: the law without its factor is 0.083 mm without delay, 0.582 at 3 ms.
+  // 0.5 N, hand of 3 N s/m: the law without its factor gives 0.083 mm without delay, 0.582 mm at 3
+  // ms.
   EXPECT_NEAR(bristle_length(0.5, 0.0005, 3.005, 0, 0), 1.5 * 0.083e-3, 0.5e-6);
   EXPECT_NEAR(bristle_length(0.5, 0.0035, 3.005, 0, 0), 1.5 * 0.582e-3, 1e-6);
   EXPECT_NEAR(bristle_length(0.5, 0.0005, 3.005, kStep, kCoulomb), 0.1875e-3, 1e-9);
@@ -137,7 +138,7 @@ TEST(SampledWall, EqualsRigidArmWithStiffCable) {
 }
 
 TEST(SampledWall, CableShiftsEdgeByTwoMassLaw) {
-  // The same two masses by steps of 2 us, in place of the exact map.
+  // The same two masses with steps of 2 us instead of the exact map.
   const auto grows = [](const SampledWall& wall, double stiffness) {
     double x = 0, v = 0.01, rotor = 0, rate = 0.01, force = 0, early = 0, late = 0;
     const double h = 2e-6;

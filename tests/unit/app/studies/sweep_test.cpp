@@ -18,7 +18,7 @@
 namespace thimble::studies {
 namespace {
 
-/// A folder of its own in that of this process.
+/// A subfolder in the folder of this process.
 class Folder {
  public:
   Folder() {
@@ -34,7 +34,7 @@ class Folder {
 
 const std::atomic<bool> kNoStop{false};
 
-/// A sweep whose cells give what they alone know, some of it no ordinary number.
+/// A sweep whose results depend on the cell only; some are NaN or infinite.
 Sweep plain_sweep(std::size_t cells = 50) {
   return {.name = "plain", .key = "plain 1", .cells = cells, .measure = [](std::size_t cell) {
             const double x = static_cast<double>(cell);
@@ -104,7 +104,7 @@ TEST(Sweep, RefusesFolderInUseAndNamesTheProcess) {
   CellNumbers numbers;
   auto first = SweepJournal::open(scratch.path() / "a.journal", "key", 3, false, numbers);
   ASSERT_TRUE(first);
-  // Outputs of one process share its lock of a folder; those of another are refused.
+  // Outputs of one process share its lock of a folder; those of another process are rejected.
   const std::string holder = "is being written by process " + std::to_string(getpid());
   const pid_t child = fork();
   if (child == 0) {
@@ -114,8 +114,8 @@ TEST(Sweep, RefusesFolderInUseAndNamesTheProcess) {
   }
   int status = -1;
   ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0) << "another process was let in, or the holder was not named";
-  first.value().reset();  // whatever ends it
+  EXPECT_EQ(status, 0) << "another process got the folder, or the error did not name the holder";
+  first.value().reset();  // ends it in any way
   EXPECT_TRUE(SweepJournal::open(scratch.path() / "b.journal", "key", 3, true, numbers));
 }
 

@@ -1,4 +1,4 @@
-// The random search for trouble, and what it measures by.
+// The random search for trouble, and its measures.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(Trouble, WorstScenesOfALongSearchStayFixed) {
   const auto files = worst_scenes();
   ASSERT_EQ(files.size(), 10U);
   for (const auto& file : files) {
-    // Nothing in these scenes has energy of its own: no weights, no fields.
+    // Nothing in these scenes has its own energy: no weights, no fields.
     const TroubleFound found = run_for_trouble(file, {.text = "", .own_energy = 0});
     EXPECT_FALSE(found.refused) << file;
     EXPECT_EQ(found.not_finite, 0) << file;
@@ -73,8 +73,8 @@ TEST(Trouble, TooStiffWallIsDetected) {
   EXPECT_GT(found.limit_cycle, 0.1);
 }
 
-// What damping and friction took before is no credit: the hand rubs over rubber for two seconds,
-// then leans on a wall that is too stiff for it.
+// Energy dissipated earlier by damping and friction is no credit: the hand rubs over rubber for two
+// seconds, then presses on a wall that is too stiff for it.
 TEST(Trouble, TooStiffWallIsDetectedAfterDissipation) {
   const auto file = support::scratch_folder() / "rubbed_before.yaml";
   ASSERT_TRUE(report::write_text(
@@ -106,14 +106,14 @@ TEST(EnergyGiven, CountsOnlyWhatSpringsHeld) {
   EXPECT_EQ(passive.most(), 0);
   EnergyGiven active = passive;
   active.book(-5e-3, 4e-3);
-  active.book(6e-3, 0);  // 2 mJ more than it held
+  active.book(6e-3, 0);  // 2 mJ more than the spring stored
   EXPECT_NEAR(active.most(), 2e-3, 1e-15);
-  for (int i = 0; i < 4; ++i) {  // and again before anything is taken
+  for (int i = 0; i < 4; ++i) {  // and again before energy returns
     active.book(-4e-3, 4e-3);
     active.book(5e-3, 0);
   }
   EXPECT_NEAR(active.most(), 6e-3, 1e-15);
-  active.book(-6e-3, 0);  // damping pays
+  active.book(-6e-3, 0);  // damping dissipates
   active.book(1e-3, 0);
   EXPECT_NEAR(active.most(), 6e-3, 1e-15);
 }
@@ -155,12 +155,12 @@ bool any_has(const std::vector<std::string>& warnings, const std::string& word) 
   });
 }
 
-// Seeds of a search through 100,000 scenes, of which 552 oscillated; by cause. What each one showed
-// before stands behind it.
+// Seeds of a search of 100,000 scenes, of which 552 oscillated, by cause. Each comment is the limit
+// cycle before the fix.
 
 TEST(Trouble, EnergyStageDoesNotOscillate) {
-  for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade as a spring
-                                   0x0ba1cf68047f62f8u,     // 1.2 N: a deep soft wall let go
+  for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade acted as a spring
+                                   0x0ba1cf68047f62f8u,     // 1.2 N: release of a deep soft wall
                                    0x9d31e7a72db18a0cu,     // 1.7 N
                                    0xe8e7f42db1d78623u}) {  // 0.11 N: jolts of single counts
     const TroubleFound found = run_seed(seed);
@@ -181,9 +181,9 @@ TEST(Trouble, PullOfADentDoesNotOscillate) {
 }
 
 TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
-  constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring, nothing on it
+  constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring without effects
   std::vector<std::string> warnings;
-  // Above 20 mN before both facets of a hollow edge held the tip at once.
+  // Above 20 mN before both facets of a concave edge held the tip at once.
   EXPECT_LE(run_seed(kSeed, "", "", &warnings).limit_cycle, 1e-3);
   EXPECT_FALSE(any_has(warnings, "facets"));
   const std::string plain = "    size: 0.0425869\n";
@@ -198,8 +198,8 @@ TEST(Trouble, WarningNamesTooShortTexture) {
   EXPECT_TRUE(any_has(warnings, "texture"));
 }
 
-// It had a limit cycle before tips and bodies were coupled by the whole implicit step; the warning
-// is on the safe side.
+// It had a limit cycle before the implicit step coupled tips and bodies completely; the warning is
+// conservative.
 TEST(Trouble, LightBodyWithFrictionRests) {
   std::vector<std::string> warnings;
   EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
@@ -207,7 +207,8 @@ TEST(Trouble, LightBodyWithFrictionRests) {
 }
 
 TEST(RestWarnings, FindCurvatureAndQuantisationNoise) {
-  // Hollows of a cube: none; its texture and friction as a scene names them.
+  // Concave edges of a cube: none; curvature of its texture and stiffness of its friction as the
+  // scene sets them.
   EXPECT_NEAR(stability::quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3),
               2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
   EXPECT_EQ(stability::quantisation_noise_of(2, 0, 3e-3, 0, 1e-3), 0);
@@ -234,7 +235,7 @@ TEST(RandomScene, DependsOnItsSeedOnly) {
 
 TEST(RandomScene, StaysWithinTheStabilityLaws) {
   RandomSceneLimits none = limits();
-  none.arm.declared.stiffness = 60;  // what an arm declares binds too
+  none.arm.declared.stiffness = 60;  // a declared limit of the arm also applies
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const std::string text = random_scene(support::seed_of(seed), none).text;
     for (std::size_t at = text.find("\n    stiffness: "); at != std::string::npos;
