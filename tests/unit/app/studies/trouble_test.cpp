@@ -207,8 +207,8 @@ TEST(Trouble, LightBodyWithFrictionRests) {
 }
 
 TEST(RestWarnings, FindCurvatureAndQuantisationNoise) {
-  // Concave edges of a cube: none; curvature of its texture and stiffness of its friction as the
-  // scene sets them.
+  // Quantisation noise in closed form; curvature of the texture and stiffness of the friction as
+  // set in the scene.
   EXPECT_NEAR(stability::quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3),
               2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
   EXPECT_EQ(stability::quantisation_noise_of(2, 0, 3e-3, 0, 1e-3), 0);
