@@ -35,7 +35,7 @@ class Work {
   Work(std::vector<std::size_t> cells, const std::atomic<bool>& stop)
       : cells_(std::move(cells)), stop_(stop) {}
 
-  /// Returns the next cells, at most `most`; none if all are assigned, or the sweep is to end.
+  /// Returns up to `most` of the next cells; none if all are assigned, or the sweep is to end.
   std::vector<std::size_t> take(std::size_t most) {
     const std::scoped_lock lock(mutex_);
     if (trouble_ || stop_.load(std::memory_order_relaxed)) return {};

@@ -19,7 +19,7 @@ namespace thimble::support {
 /// virtual clock. It replaces the sockets of usb_host_transport.h in tests of many runs. It treats
 /// its device as the kernel does:
 /// - a HID report longer than requested is babble, and is dropped;
-/// - a HID write waits until the arm accepts or rejects it, at most 5 s;
+/// - a HID write waits until the arm accepts or rejects it, for up to 5 s;
 /// - an endpoint that stalled rejects everything until it is cleared;
 /// - a port or converter that cannot accept data rejects it at once;
 /// - a device that left the bus is lost permanently;

@@ -119,7 +119,7 @@ double wrong_faces(const FollowerChoice& choice, double speed) {
   return 100.0 * wrong / (kTicks - 1);
 }
 
-/// The most expensive tick of a stroke: the follower before it, and the new position.
+/// The tick of a stroke with the highest cost: the follower before it, and the new position.
 struct WorstTick {
   std::shared_ptr<const Follower> before;
   Vector3d p_WT{0, 0, 0};

@@ -405,7 +405,7 @@ TEST(MeasuredAxis, FindsSlopeDefaultAndFeltLimit) {
   ASSERT_NE(axis.enough(), nullptr);
   EXPECT_EQ(axis.enough()->error, 10);
   ASSERT_NE(axis.default_point(), nullptr);
-  // All have the same cost, so only the most accurate is on the front.
+  // All have the same cost, so only the one with the smallest error is on the front.
   EXPECT_TRUE(axis.lines[0].points[0].on_front);
   EXPECT_FALSE(axis.default_point()->on_front);
   EXPECT_NE(default_sentence(axis).find("because."), std::string::npos);
