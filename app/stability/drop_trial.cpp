@@ -29,12 +29,12 @@ driver::Result<Bounce> bounce_of(const WallRun& run, double offset, double pull_
   while (begin < run.x.size() && run.time[begin] < pull_start) ++begin;
   const std::size_t in = first(run, begin, offset, false);
   if (in >= run.x.size() || in == 0) {
-    return driver::Error{"The tip does not fall: its dry friction holds the pull."};
+    return driver::Error{"The tip does not fall: dry friction balances the pull."};
   }
   const std::size_t out = first(run, in, offset, true);
   const std::size_t back = first(run, out, offset, false);
   if (back >= run.x.size()) {
-    return driver::Error{"The tip does not leave the wall again, or does not come back to it."};
+    return driver::Error{"The tip does not leave the wall, or does not return to it."};
   }
   // A delayed force still acts outside: its energy belongs to the bounce.
   const double after = *std::max_element(run.v.begin() + static_cast<std::ptrdiff_t>(out - 1),
@@ -67,7 +67,7 @@ driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& 
                 .pull_start = arm.limits.soft_start + 0.02};
   const double deepest = 3 * trial.height;
   if (!scene::joint_angles_at(arm, direction->p_WT - deepest * direction->n_W)) {
-    return driver::Error{"The wall stands out of the arm's reach."};
+    return driver::Error{"The wall is outside the arm's workspace."};
   }
   const double mass = moved_mass(arm, direction->n_W);
   Bounce mean;
@@ -83,7 +83,7 @@ driver::Result<Bounce> drop_on_wall(const scene::ArmFile& arm, const DropTrial& 
     wall.duration = wall.pull_start + 6 * fall + 4 * std::sqrt(mass / trial.stiffness) + 0.05;
     const auto run = run_wall(arm, wall);
     if (!run) return run.error();
-    if (run->fault) return driver::Error{"The arm made a fault while the tip fell."};
+    if (run->fault) return driver::Error{"The arm reported a fault while the tip fell."};
     const auto bounce = bounce_of(*run, wall.offset, wall.pull_start);
     if (!bounce) return bounce.error();
     mean.restitution += bounce->restitution / trial.falls;

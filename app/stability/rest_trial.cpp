@@ -87,9 +87,10 @@ class Run {
       if (session.step()) break;
     }
     if (session.stride() != 1) {
-      return driver::Error{scene.name +
-                           " lasts too long for its rests to be watched: give it a "
-                           "duration of fewer than a million ticks."};
+      return driver::Error{
+          scene.name +
+          ": the run is too long to check for limit cycles at rest. Reduce duration to "
+          "less than a million ticks."};
     }
     Run run(scene);
     run.fault_ = session.device().fault();

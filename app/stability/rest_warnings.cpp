@@ -68,9 +68,9 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
   const bool flat = is_flat(object);
   if (bends(object) && (flat || god_object)) {
     warnings.push_back(
-        fmt::format("{} is felt by flat facets and gives way, so there are hollows where it is "
-                    "pressed; a tip that rests on an edge in one jumps from facet to facet: set "
-                    "contact: {{blending: phong}}, or tracker: compact.",
+        fmt::format("{} is deformable and has flat shading, so pressing it makes concave edges. A "
+                    "tip that rests on such an edge jumps between facets. Set contact: {{blending: "
+                    "phong}}, or tracker: compact.",
                     object.name));
     return;
   }
@@ -85,11 +85,11 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
   const double smooth_up_to = object.contact.crease_angle.value_or(render::kCreaseAngle);
   const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
   if (!(hollow > 0)) return;
-  warnings.push_back(fmt::format(
-      "{} has hollows with edges of up to {:.0f} degrees and is felt by flat facets there: a tip "
-      "that rests on such an edge jumps sideways by {:.2g} N for each newton pressed, at every "
-      "count of an encoder: take another tracker.",
-      object.name, hollow / kDegree, 2 * math::sin(hollow / 2)));
+  warnings.push_back(
+      fmt::format("{} has concave edges of up to {:.0f} degrees and flat shading there. On such "
+                  "an edge, each encoder count makes the force jump sideways by {:.2g} N per "
+                  "newton pressed. Choose another tracker.",
+                  object.name, hollow / kDegree, 2 * math::sin(hollow / 2)));
 }
 
 /// Limits of a loop with the hand of the scene.
@@ -111,9 +111,9 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
       const double from = bare_edge / curvature;
       if (!(from < force)) continue;
       warnings.push_back(fmt::format(
-          "{} has a texture whose waves add {:.0f} N/m along the surface for each newton pressed; "
-          "from {:.2g} N on that is more than the {:.0f} N/m that arm, loop and hand carry, and "
-          "the tip buzzes in its grooves: make them lower or longer (amplitude / wavelength^2).",
+          "{}: its texture adds {:.0f} N/m along the surface per newton pressed. Above "
+          "{:.2g} N that exceeds the {:.0f} N/m that are stable with this arm, loop and "
+          "hand, and the tip oscillates in the grooves. Reduce amplitude / wavelength^2.",
           object.name, curvature, from, bare_edge));
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
@@ -124,8 +124,9 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
           carried.latency);
       if (!(hold > bare_edge && held_speed < kStroke)) continue;
       warnings.push_back(fmt::format(
-          "{} has a friction that holds with {:.0f} N/m, but with this hand ({:.3g} N s/m) the "
-          "loop carries {:.0f} N/m: set its stiffness to {:.0f} N/m or less.",
+          "{}: its friction has a stiffness of {:.0f} N/m, but with this hand ({:.3g} N "
+          "s/m) the loop is stable up to {:.0f} N/m. Set the friction's stiffness to "
+          "{:.0f} N/m or less.",
           object.name, hold, loop.scene.arms.front().arm.simulated.hand.damping, bare_edge,
           0.7 * bare_edge));
     }
@@ -152,11 +153,11 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
   const double damping =
       carried.damping * share * share + motion.damping * (1 - share) * (1 - share);
   if (!(hold * carried.latency > damping)) return;
-  warnings.push_back(fmt::format(
-      "{} weighs {:.3g} kg and has a friction that holds with {:.0f} N/m: the hand "
-      "hardly damps how so light a body oscillates on it, and the loop carries {:.0f} N/m: "
-      "give it more mass or damping, or set the friction's stiffness lower.",
-      object.name, motion.mass, hold, damping / carried.latency));
+  warnings.push_back(
+      fmt::format("{} has a mass of {:.3g} kg and a friction of {:.0f} N/m. The hand hardly "
+                  "damps the oscillation of such a light body, and the loop is stable up to "
+                  "{:.0f} N/m. Increase its mass or damping, or reduce the friction's stiffness.",
+                  object.name, motion.mass, hold, damping / carried.latency));
 }
 
 /// Warns of springs that add up where a tip touches all of them, although each of them is stable by
@@ -171,11 +172,11 @@ void warn_of_sum(const Loop& loop, std::vector<std::string>& warnings) {
     ++count;
   }
   if (count < 2 || !(sum > loop.edge(damping))) return;
-  warnings.push_back(fmt::format(
-      "Together the {} surfaces are as stiff as {:.0f} N/m, more than the {:.0f} N/m "
-      "that arm, loop and hand carry: a tip that is within all of them comes into a limit cycle. "
-      "Keep them apart, or lower their stiffness.",
-      count, sum, loop.edge(damping)));
+  warnings.push_back(
+      fmt::format("The stiffness of the {} surfaces sums to {:.0f} N/m, more than the {:.0f} N/m "
+                  "that are stable with this arm, loop and hand. A tip inside all of them enters "
+                  "a limit cycle. Keep them apart, or reduce their stiffness.",
+                  count, sum, loop.edge(damping)));
 }
 
 void warn_of_quantisation_noise(const Loop& loop, std::vector<std::string>& warnings) {
@@ -196,11 +197,12 @@ void warn_of_quantisation_noise(const Loop& loop, std::vector<std::string>& warn
   const double noise = quantisation_noise_of(fields + surfaces, step, speed,
                                              arm.velocity_corner_frequency, loop.times.period);
   if (!(noise > kFelt)) return;
-  warnings.push_back(fmt::format(
-      "The damping of this scene, up to {:.2g} N s/m, acts on encoder steps of {:.0f} um: at "
-      "{:.1f} mm/s, as the hand's tremor moves the tip or a hand comes to rest, that is {:.0f} mN "
-      "of quantisation noise. Lower the damping, or the arm's velocity_corner_frequency.",
-      fields + surfaces, 1e6 * step, 1e3 * speed, 1e3 * noise));
+  warnings.push_back(
+      fmt::format("The damping of this scene (up to {:.2g} N s/m) acts on encoder steps of "
+                  "{:.0f} um. At {:.1f} mm/s (tremor, or a hand that comes to rest) that gives "
+                  "{:.0f} mN of quantisation noise. Reduce the damping, or the arm's "
+                  "velocity_corner_frequency.",
+                  fields + surfaces, 1e6 * step, 1e3 * speed, 1e3 * noise));
 }
 
 }  // namespace
@@ -278,19 +280,18 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
   constexpr double kPushFelt = 0.02;  // N [PHYSICS 6]
   const auto warn = [&warnings](const std::string& what, double push) {
     if (!(push > kPushFelt)) return;
-    warnings.push_back(fmt::format(
-        "{} (up to {:.2g} N) without the hand pressing, which the gate's energy bound does not let "
-        "through: it lets a force rise only as the hand presses. Set gate: {{energy: passivity}} "
-        "in "
-        "the scene.",
-        what, push));
+    warnings.push_back(
+        fmt::format("{} (up to {:.2g} N) although the hand does not press. The gate's energy bound "
+                    "blocks that: it lets a force rise only while the hand presses. Set gate: "
+                    "{{energy: passivity}} in the scene.",
+                    what, push));
   };
-  warn("The motors carry the arm", scene.arms.front().arm.carried_most);
+  warn("The motors support the arm's weight", scene.arms.front().arm.carried_most);
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field) {
-      warn(object.name + " pushes a hand", try_field(object, scene.arms.front().arm).push);
+      warn(object.name + " pushes the hand", try_field(object, scene.arms.front().arm).push);
     } else if (object.body.motion && object.body.motion->grip) {  // on the floor it does not pull
-      warn(object.name + " pulls by its weight",
+      warn(object.name + " pulls the hand down by its weight",
            object.body.motion->mass * object.body.motion->gravity_W.norm());
     }
   }
@@ -318,18 +319,18 @@ std::vector<std::string> rest_warnings(const scene::Scene& scene, const RestTria
   for (const Rest& rest : trial.rests) {
     if (rest.oscillation <= kRestFelt) continue;
     std::string warning = fmt::format(
-        "At rest{} ({:.2f} s) the force oscillates by {:.3f} N RMS at {:.0f} Hz, of {:.2g} N; from "
-        "{:.2f} N on that is felt.",
+        "At rest{} ({:.2f} s) the force oscillates by {:.3f} N RMS at {:.0f} Hz, of "
+        "{:.2g} N; {:.2f} N or more can be felt.",
         rest.on.empty() ? "" : " on " + rest.on, rest.time, rest.oscillation, rest.frequency,
         rest.force, kRestFelt);
     const std::vector<std::string> causes = rest_causes(scene, rest.on);
     for (const std::string& cause : causes) warning += " " + cause;
-    if (causes.empty()) warning += " Lower the stiffness there, or give it damping.";
+    if (causes.empty()) warning += " Reduce the stiffness there, or add damping.";
     warnings.push_back(std::move(warning));
   }
   if (trial.fault != driver::Fault::kNone) {
     warnings.push_back(
-        fmt::format("The simulated run ends with a fault: {}.", driver::describe(trial.fault)));
+        fmt::format("The simulated run ended with a fault: {}.", driver::describe(trial.fault)));
   }
   return warnings;
 }

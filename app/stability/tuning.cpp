@@ -131,15 +131,15 @@ std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObj
                                 const Carried& carried) {
   const std::optional<double> damping = damping_that_carries(scene, object, carried.times);
   std::string text = fmt::format(
-      "{} asks for a damping of {:.3g} N s/m, but over a latency of {:.2f} ms that is unstable at "
-      "any stiffness: ",
+      "{}: a damping of {:.3g} N s/m is unstable at any stiffness with a latency of "
+      "{:.2f} ms. ",
       object.name, object.damping, 1e3 * carried.latency);
-  if (damping) return text + fmt::format("set it to {:.2g} N s/m or less.", rounded_down(*damping));
+  if (damping) return text + fmt::format("Set it to {:.2g} N s/m or less.", rounded_down(*damping));
   // At most the value without the surface's damping.
   const double safe =
       carried_by(scene.arms.front().arm, carried.times, object.stiffness, 0).stiffness_safe;
   return text +
-         fmt::format("set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
+         fmt::format("Set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
 }
 
 /// Returns advice for a wall that is too stiff.
@@ -147,8 +147,9 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
                    const Carried& carried) {
   if (!(carried.stiffness_exact > 0)) return advice_to_damp_less(scene, object, carried);
   std::string text = fmt::format(
-      "{} asks for {:.0f} N/m, but arm, loop and hand carry {:.0f} N/m (damping of {:.3g} N s/m "
-      "over a latency of {:.2f} ms): set its stiffness to {:.0f} N/m or less",
+      "{}: a stiffness of {:.0f} N/m is unstable; with this arm, loop and hand the "
+      "limit is {:.0f} N/m (damping {:.3g} N s/m, latency {:.2f} ms). Set its "
+      "stiffness to {:.0f} N/m or less",
       object.name, object.stiffness, carried.stiffness_exact, carried.damping + object.damping,
       1e3 * carried.latency, carried.stiffness_safe);
   const std::optional<double> damping =
@@ -159,12 +160,11 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
   if (const auto rate = rate_that_carries(scene, object)) {
     return text + fmt::format(", or run at {:.0f} Hz.", *rate);
   }
-  return text +
-         fmt::format(
-             ". A faster loop is not enough, for the arm's reports come every {:.3g} ms and its "
-             "wire takes {:.3g} ms.",
-             report_period_ms(scene.arms.front().arm, scene.rate),
-             1e3 * scene::loop_delay(scene.arms.front().arm));
+  return text + fmt::format(
+                    ". A faster loop does not suffice: the arm reports every {:.3g} ms, and its "
+                    "wire adds {:.3g} ms.",
+                    report_period_ms(scene.arms.front().arm, scene.rate),
+                    1e3 * scene::loop_delay(scene.arms.front().arm));
 }
 
 /// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
@@ -192,7 +192,7 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
     hand->damping *= times;
   }
   others.emplace_back("a third of the hand's mass, stiffness and damping", low);
-  others.emplace_back("three times", high);
+  others.emplace_back("three times these constants", high);
   double stiffest = 0;
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > stiffest)) continue;
@@ -202,7 +202,7 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
                    object.stiffness, object.damping);
     safe = carried.stiffness_safe;
     if (others.size() > 2) others.pop_back();
-    others.emplace_back("the worst of those", carried.worst_hand);
+    others.emplace_back("worst hand in this range", carried.worst_hand);
   }
   for (const auto& [words, hand] : others) {
     const auto found = try_rests(scene, hand, meshes);
@@ -213,7 +213,7 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
         "Hands     {} ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m): oscillates by up to {:.2f} mN RMS{}\n",
         words, hand.mass, hand.stiffness, hand.damping, 1e3 * most->oscillation,
         most->oscillation > kRestFelt
-            ? fmt::format(", which is felt; up to {:.0f} N/m is safe for any of them", safe)
+            ? fmt::format(", which can be felt; up to {:.0f} N/m is safe for all of them", safe)
             : std::string());
   }
 }
@@ -226,9 +226,10 @@ void tell_topics(const scene::Scene& scene, const scene::LoopTimes& times, const
   const Carried here = carried_by(scene.arms.front().arm, times, 1000, 0);
   const Carried there = carried_by(scene.arms.front().arm, late, 1000, 0);
   result.text += fmt::format(
-      "ROS 2     forces answer positions that are {:.2f} ms old (median), {:.2f} ms (99 %): a wall "
-      "without damping that is computed at the other end of the topics carries {:.0f} N/m by the "
-      "law, {:.0f} N/m are safe; computed here {:.0f} N/m, {:.0f} N/m.\n",
+      "ROS 2     forces are based on positions that are {:.2f} ms old (median), "
+      "{:.2f} ms (99 %). Limit of a wall without damping that the other program "
+      "computes: {:.0f} N/m by the law, {:.0f} N/m safe; computed here: {:.0f} N/m, "
+      "{:.0f} N/m.\n",
       1e3 * ages.median, 1e3 * ages.most, there.stiffness_exact, there.stiffness_safe,
       here.stiffness_exact, here.stiffness_safe);
   result.figures.push_back({"topics.age_median", 1e3 * ages.median, "ms", ""});
@@ -343,18 +344,20 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
       1e3 * bare.latency, times.period > 1.001 / scene.rate ? "of the arm's reports " : "",
       0.5e3 * times.period, 1e3 * (bare.latency - times.period / 2 - times.delay),
       1e3 * scene::loop_delay(arm),
-      waited > 0 ? fmt::format(", reports that wait for a tick {:.3f}", 1e3 * waited)
+      waited > 0 ? fmt::format(", wait of reports for a tick {:.3f}", 1e3 * waited)
                  : std::string());
   result.text += fmt::format(
-      "Tip       {:.3g} kg, {:.3g} N s/m, {:.3g} N of dry friction; one step of the encoders is up "
+      "Tip       {:.3g} kg, {:.3g} N s/m, {:.3g} N of dry friction; encoder step up "
       "to {:.0f} um.\n",
       bare.tip.mass, bare.tip.damping, arm.simulated.plant.coulomb, 1e6 * bare.tip.encoder_step);
   result.text += fmt::format(
-      "Passive   for any hand up to {:.3g} N/m (no arm of this kind is used there); without a hand "
-      "dry friction holds 1000 N/m up to oscillations of {:.3f} m/s.\n",
+      "Passive   with any hand up to {:.3g} N/m (much less than such arms are used "
+      "with); without a hand, dry friction keeps a wall of 1000 N/m stable for "
+      "oscillations up to {:.3f} m/s.\n",
       bare.passive, bare.held_speed);
   result.text += fmt::format(
-      "Friction  a bristle of up to {:.0f} N/m is quiet: z_max >= {:.3g} mm for each newton.\n",
+      "Friction  a bristle of up to {:.0f} N/m does not oscillate: z_max >= {:.3g} "
+      "mm per newton of friction.\n",
       bare.bristle_stiffness, 1e3 / bare.bristle_stiffness);
   result.figures = {{"latency", 1e3 * bare.latency, "ms", ""},
                     {"encoder_step", 1e6 * bare.tip.encoder_step, "um", ""},
@@ -365,7 +368,7 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const Carried carried = carried_by(arm, times, object.stiffness, object.damping);
-    result.text += fmt::format("{}: {:.0f} N/m and {:.3g} N s/m are asked for.\n", object.name,
+    result.text += fmt::format("{}: the scene sets {:.0f} N/m and {:.3g} N s/m.\n", object.name,
                                object.stiffness, object.damping);
     result.text +=
         fmt::format("  law       (b + B) / L = {:.0f} N/m; the exact linear loop {:.0f} N/m\n",
@@ -376,17 +379,17 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
     result.figures.push_back({name + ".exact", carried.stiffness_exact, "N/m", ""});
     double edge = carried.stiffness_exact;
     if (!(carried.stiffness_exact > 0)) {
-      result.text += "  simulated not: its damping makes it unstable at any stiffness\n";
+      result.text += "  simulated no: its damping makes it unstable at any stiffness\n";
     } else if (arm.is<driver::DeltaArm>()) {
-      result.text += "  simulated not: a Falcon's simulation is for whole scenes only\n";
+      result.text += "  simulated no: the simulation of a Falcon supports whole scenes only\n";
     } else {
       const Edges edges =
           try_walls(arm, scene.rate, object.damping, carried, options.places_per_side);
       if (edges.walls > 0) {
         edge = std::min(edge, edges.as_is);
         result.text += fmt::format(
-            "  simulated {:.0f} N/m without dry friction and steps, {:.0f} N/m as the arm is; the "
-            "worst of {} walls all over the workspace, through wire and gate\n",
+            "  simulated {:.0f} N/m without dry friction and steps, {:.0f} N/m with both; "
+            "the worst of {} walls across the workspace, through wire and gate\n",
             edges.linear, edges.as_is, edges.walls);
         result.figures.push_back({name + ".simulated_linear", edges.linear, "N/m", ""});
         result.figures.push_back({name + ".simulated", edges.as_is, "N/m", ""});
@@ -396,8 +399,8 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
     }
     const device_sim::HandSettings& hand = carried.worst_hand;
     result.text += fmt::format(
-        "  hands     of a third to three times these constants: {:.0f} N/m; the worst has {:.3g} "
-        "kg, {:.3g} N/m, {:.3g} N s/m\n",
+        "  hands     of a third to three times these constants: {:.0f} "
+        "N/m; the worst has {:.3g} kg, {:.3g} N/m, {:.3g} N s/m\n",
         carried.stiffness_any_hand, hand.mass, hand.stiffness, hand.damping);
     result.figures.push_back({name + ".any_hand", carried.stiffness_any_hand, "N/m", ""});
     result.figures.push_back(
@@ -405,8 +408,8 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
     const double safe = std::min(kShare * edge, carried.stiffness_safe);
     const double margin = edge / object.stiffness;
     result.figures.push_back({name + ".margin", margin, "1", fmt::format(">= {:g}", 1 / kShare)});
-    result.text += fmt::format("  margin    {:.2f}; up to {:.0f} N/m is safe to ask for here{}\n",
-                               margin, safe, object.stiffness <= safe ? "." : ", so ask for less.");
+    result.text += fmt::format("  margin    {:.2f}; up to {:.0f} N/m is safe here{}\n", margin,
+                               safe, object.stiffness <= safe ? "." : "; reduce the stiffness.");
   }
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";

@@ -38,9 +38,10 @@ driver::Result<HomeSteps> home_steps(const scene::ArmFile& arm) {
   Vector3d p_BT;
   Matrix3d J_BT;
   if (arm.is<driver::DeltaArm>()) {
-    return driver::Error{arm.name +
-                         ": the study needs an arm whose board reports by itself, which this one "
-                         "does not; vintage_phantom.yaml is one."};
+    return driver::Error{
+        arm.name +
+        ": the study needs an arm whose board sends reports on its own. Use another "
+        "arm file, for example vintage_phantom.yaml."};
   }
   std::visit([&](const auto& build) { build.forward(q, p_BT, J_BT); }, arm.model.geometry);
   HomeSteps steps{.p_WT = arm.p_WB + arm.R_WB * p_BT,
@@ -139,7 +140,7 @@ driver::Result<ArmDirection> diagonal_direction_at_home(const scene::ArmFile& ar
 }
 
 driver::Result<ArmDirection> direction_at_home(const scene::ArmFile& arm, const Vector3d& way_W) {
-  if (!(way_W.norm() > 0)) return driver::Error{"A direction needs a length above 0."};
+  if (!(way_W.norm() > 0)) return driver::Error{"The direction must not be the zero vector."};
   const auto home = home_steps(arm);
   if (!home) return home.error();
   return along(way_W, *home);
@@ -168,9 +169,10 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
   if (!simulation) return simulation.error();
   const device_sim::SimulatedArm* const board = (*simulation)->board_arm();
   if (board == nullptr) {
-    return driver::Error{arm.name +
-                         ": its board does not report by itself, so no wall can be measured with "
-                         "it; take another arm file (vintage_phantom.yaml is one)."};
+    return driver::Error{
+        arm.name +
+        ": walls can only be measured with an arm whose board sends reports on its "
+        "own. Use another arm file, for example vintage_phantom.yaml."};
   }
   driver::VirtualClock clock;
   auto opened = driver::Device::open((*simulation)->link(clock),

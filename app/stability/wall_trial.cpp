@@ -48,7 +48,7 @@ driver::Result<WallTouch> press_on_wall(const scene::ArmFile& arm, const WallTri
   const double deep = trial.press / std::max(1.0, arm.simulated.hand.stiffness);
   if (!scene::joint_angles_at(arm, trial.p_W + kAway * trial.n_W) ||
       !scene::joint_angles_at(arm, trial.p_W - deep * trial.n_W)) {
-    return driver::Error{"The wall stands out of the arm's reach."};
+    return driver::Error{"The wall is outside the arm's workspace."};
   }
   const WallCase wall{.direction = {.n_W = trial.n_W, .p_WT = trial.p_W, .step = 0},
                       .tip = arm.simulated.plant,

@@ -30,32 +30,32 @@ std::string sentence_of(const RateBench& bench, const RateVerdict& verdict) {
   if (!bench.trouble.empty()) return "Not enough: " + bench.trouble;
   if (verdict.enough) {
     return fmt::format(
-        "Enough: 999 of 1000 ticks wake up within {:.1f} us and work for {:.1f} us of their {:.0f} "
-        "us; {:.0f} % are left, and uneven ticks cost {:.1f} % of the stiffness.",
+        "Enough: 99.9 % of ticks wake up within {:.1f} us and compute for {:.1f} us of "
+        "{:.0f} us; {:.0f} % is left. Uneven ticks cost {:.1f} % of the stable "
+        "stiffness.",
         verdict.late_us, verdict.work_us, period, 100 * verdict.headroom,
         100 * verdict.stiffness_lost);
   }
   if (verdict.work_us >= period) {
     return fmt::format(
-        "Not enough, because the work alone takes {:.1f} us of {:.0f} us in 1 of 1000 ticks: a "
-        "simpler scene or --quality draft would help.",
+        "Not enough: in 0.1 % of ticks the computation takes {:.1f} us of {:.0f} us. "
+        "Use a simpler scene or --quality draft.",
         verdict.work_us, period);
   }
   if (verdict.headroom < 0) {
     return fmt::format(
-        "Not enough, because 1 of 1000 ticks wakes up {:.0f} us late, with {:.1f} us of work in a "
-        "tick of {:.0f} us: {}.",
+        "Not enough: 0.1 % of ticks wake up {:.0f} us late or later, with {:.1f} us of "
+        "computation in a tick of {:.0f} us: {}.",
         verdict.late_us, verdict.work_us, period,
-        bench.priority ? "other work on this machine, or a kernel that is not real-time, "
-                         "stands in the way"
-                       : "the loop has no real-time priority (thimble doctor)");
+        bench.priority ? "other programs interfere, or the kernel is not a real-time kernel"
+                       : "the loop has no real-time priority; run `thimble doctor`");
   }
   return fmt::format(
-      "Not enough, because uneven ticks (the longest {:.1f} ms) cost {:.0f} % of the stiffness "
-      "that is stable, which can be felt: {}.",
+      "Not enough: uneven ticks (the longest {:.1f} ms) cost {:.0f} % of the stable "
+      "stiffness, which can be felt: {}.",
       1e-6 * static_cast<double>(bench.period.max_ns()), 100 * verdict.stiffness_lost,
-      bench.priority ? "leave this machine to the loop alone"
-                     : "give the loop real-time priority (thimble doctor)");
+      bench.priority ? "close other programs"
+                     : "give the loop real-time priority (see `thimble doctor`)");
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double 
   bench.priority = servo.grant().fifo;
   bench.advice = servo.grant().advice;
   if (end == driver::ServoEnd::kFault) {
-    bench.trouble = "a fault ended the run: ticks came too late for the arm's safety.";
+    bench.trouble = "a fault ended the run, because ticks were too late to be safe for the arm.";
   }
   return bench;
 }

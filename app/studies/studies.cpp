@@ -11,23 +11,23 @@ namespace thimble::studies {
 namespace {
 
 constexpr std::array kStudies{
-    Study{"cost", "what each tracker and each effect costs per tick, and what it buys", study_cost},
-    Study{"friction", "limit cycles of friction on coarse encoders, and what cures them",
-          study_friction},
-    Study{"texture", "whether a stroke over a texture feels the waves that were asked for",
+    Study{"cost", "cost per tick of each tracker and effect, and their effect on the force",
+          study_cost},
+    Study{"friction", "limit cycles of friction models on coarse encoders", study_friction},
+    Study{"texture", "spectrum of a stroke over each texture, compared with the requested waves",
           study_texture},
-    Study{"box", "the paper's Fig. 2: the force over a square, in both forms of the box",
-          study_box},
-    Study{"integrators", "what each integrator of bodies costs per tick, and how wrong it is",
+    Study{"box", "Fig. 2 of the paper: the force over a square, for both kinds of box", study_box},
+    Study{"integrators", "cost per tick and error of each integrator of deformable bodies",
           study_integrators},
-    Study{"accuracy", "what accuracy costs in time: a diagram for every knob, on one page",
-          nullptr},
+    Study{"accuracy", "error and cost of every approximation, on one page", nullptr},
     Study{"gating",
-          "which effects of the simulated arm a scene could do without, and what that saves",
+          "effects of the simulated arm that a scene does not need, and the time saved "
+          "without them",
           nullptr},
-    Study{"stability", "where walls are stable on an arm: the laws, and the simulated loop",
-          nullptr},
-    Study{"trouble", "random scenes and hands by the thousand: nothing may go wrong in any",
+    Study{"stability", "stability limits of walls on an arm, by law and by simulation", nullptr},
+    Study{"trouble",
+          "thousands of random scenes and hands, checked for faults, energy and limit "
+          "cycles",
           nullptr},
 };
 

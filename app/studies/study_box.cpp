@@ -54,7 +54,8 @@ double pops_at(const Contact& contact, double half_thickness) {
 std::string table() {
   const render::Box cube{.half_sides = Vector3d::Constant(kHalf)};
   std::ostringstream text;
-  text << "# x mm, z mm, force N along x and z: came in by the top; by the right; in wedges\n";
+  text << "# x mm, z mm, force N along x and z: entered from the top; from the right; in "
+          "wedges\n";
   for (int i = 0; i < kColumns; ++i) {
     for (int k = 0; k < kRows; ++k) {
       const double x = kHalf * (2.0 * (i + 0.5) / kColumns - 1);
@@ -99,14 +100,14 @@ driver::Result<void> draw(const std::filesystem::path& folder) {
     << report::kContactFill << "' fs solid border lc rgb '" << report::kFaintInk
     << "' behind\nset key at graph 0.5, 1.0 center bottom horizontal textcolor rgb '"
     << report::kInk << "'\nset title offset 0,1.6\n";
-  panel(0.075, "entry_face: it depends on the path (Fig. 2a)",
-        arrows(3, report::kForceInk, "came in from above") + ", " +
-            arrows(5, report::kDepthInk, "came in from the right"));
+  panel(0.075, "entry_face: depends on the path (Fig. 2a)",
+        arrows(3, report::kForceInk, "entered from above") + ", " +
+            arrows(5, report::kDepthInk, "entered from the right"));
   c << "unset label 1\nunset label 2\nset arrow 1 from -15,-15 to 15,15 nohead dt 2 lc rgb '"
     << report::kFaintInk << "'\nset arrow 2 from -15,15 to 15,-15 nohead dt 2 lc rgb '"
     << report::kFaintInk << "'\n";
   panel(0.565, "wedges: the nearest face pushes (Fig. 2b)",
-        arrows(7, report::kForceInk, "whichever way it came"));
+        arrows(7, report::kForceInk, "independent of the path"));
   c << "unset multiplot\n";
   return report::draw_plot({"box", 1600, 900, c.str()}, folder);
 }

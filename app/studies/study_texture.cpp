@@ -231,7 +231,7 @@ std::string panel(const Measured& one, std::size_t index, std::size_t count) {
        << "<" << kFloor << "?" << kFloor << ":$" << column << ") with lines lw 2 lc rgb '"
        << report::kForceInk << "' title " << (index == 0 ? "'ideal positions'" : "''") << ", $asked"
        << index << " using 1:2 with points pt 6 ps 2 lw 2 lc rgb '" << report::kDepthInk
-       << "' title " << (index == 0 ? "'asked for'" : "''") << "\nunset arrow 9\nunset label 9\n";
+       << "' title " << (index == 0 ? "'requested'" : "''") << "\nunset arrow 9\nunset label 9\n";
   return data.str();
 }
 

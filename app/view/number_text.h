@@ -10,8 +10,8 @@ struct ReadUnit {
   double size;       ///< 1e-6
 };
 
-/// Returns the most readable unit for a length (m) or a force (N) with largest value `most`: um
-/// below 1 mm, mm above, mN below 0.1 N, N above. Other units stay unchanged.
+/// Returns a readable unit for a length (m) or a force (N) with largest value `most`: um below 1
+/// mm, mm above, mN below 0.1 N, N above. Other units stay unchanged.
 ReadUnit read_unit(const std::string& unit, double most);
 
 /// Returns a length (m) or a force (N) as text with a fixed number of characters, so that a

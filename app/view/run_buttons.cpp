@@ -76,11 +76,11 @@ void RunButtons::draw(session::SharedReader& reader) {
   const std::string no_restart = reader.why_no_restart();
   const ImGuiIO& io = ImGui::GetIO();
   Flow flow;
-  if (button(flow, "Restart", "Begins the run anew, from its first tick (B)", no_restart)) {
+  if (button(flow, "Restart", "Restarts the run from its first tick (B)", no_restart)) {
     tell(reader.ask_restart());
   }
   if (button(flow, "Step",
-             "Lets a paused run go on by a tick; with shift by 10, with ctrl by 100 (N)",
+             "Advances a paused run by one tick; with shift by 10, with ctrl by 100 (N)",
              why_no_step_now(reader))) {
     step(reader, io.KeyShift, io.KeyCtrl);
   }
@@ -90,7 +90,7 @@ void RunButtons::draw(session::SharedReader& reader) {
   ImGui::BeginDisabled(!no_restart.empty());
   if (ImGui::Checkbox("loop", &loop)) tell(reader.ask_loop(loop));
   ImGui::EndDisabled();
-  explain("Begins the run anew whenever it ends (L)", no_restart);
+  explain("Restarts the run when it ends (L)", no_restart);
   const std::string no_speed = reader.why_no_speed();
   ImGui::BeginDisabled(!no_speed.empty());
   double speed = reader.speed_asked();
@@ -107,12 +107,12 @@ void RunButtons::draw(session::SharedReader& reader) {
     tell(reader.ask_speed(speed));
   }
   ImGui::EndDisabled();
-  explain("Times real time; the ticks stay the same to the bit (, and .)", no_speed);
-  if (button(flow, "Scene...", "Runs another scene in place of this one (O)", no_restart)) {
+  explain("Multiple of real time; the ticks stay bit-identical (, and .)", no_speed);
+  if (button(flow, "Scene...", "Runs another scene instead of this one (O)", no_restart)) {
     scenes_.toggle();
   }
   if (button(flow, "Save knobs",
-             "Writes the scene with its knobs as they are into a new file beside it (K)",
+             "Writes the scene with its current knobs to a new file in the same folder (K)",
              reader.scene().knobs.empty() ? "This run has no knobs." : "")) {
     save(reader);
   }

@@ -14,9 +14,9 @@ struct RunKey {
   const char* does;
 };
 /// Listed in the help.
-inline constexpr std::array kRunKeys = {RunKey{"B", "begin anew, from the first tick"},
+inline constexpr std::array kRunKeys = {RunKey{"B", "restart from the first tick"},
                                         RunKey{"N", "paused: next tick; shift: 10, ctrl: 100"},
-                                        RunKey{"L", "begin anew whenever the run ends"},
+                                        RunKey{"L", "restart when the run ends"},
                                         RunKey{", .", "slower, faster"},
                                         RunKey{"O", "another scene"},
                                         RunKey{"K", "save the knobs as a scene"}};

@@ -38,13 +38,13 @@ bool RunFollower::step(double dt) {
     if (!head_.live()) ring_.show(head_.time(), *then_);
   }
   if (notice_.empty()) notice_ = reader->notice();
-  if (notice_.empty() && reader->pause_asked()) notice_ = "Paused. Space goes on.";
+  if (notice_.empty() && reader->pause_asked()) notice_ = "Paused. Press space to continue.";
   return another;
 }
 
 std::string RunFollower::kept() const {
   if (ring_.empty()) return "";
-  return fmt::format("The window keeps the last {:.0f} s: {} moments, {:.1f} MB.",
+  return fmt::format("The window stores the last {:.0f} s: {} moments, {:.1f} MB.",
                      ring_.newest() - ring_.oldest(), ring_.moments(),
                      1e-6 * static_cast<double>(ring_.bytes()));
 }

@@ -98,7 +98,7 @@ std::string SceneMenu::draw(session::SharedReader& reader) {
   if (!ImGui::BeginPopup("scenes")) return told;
   const SceneChoice* clicked = nullptr;
   for (const auto& [title, scenes] :
-       {std::pair("Beside this scene", &choices_.beside), std::pair("Your own", &choices_.own),
+       {std::pair("In this scene's folder", &choices_.beside), std::pair("Your own", &choices_.own),
         std::pair("With Thimble", &choices_.shipped)}) {
     if (const SceneChoice* one = draw_list(title, *scenes, current)) clicked = one;
   }

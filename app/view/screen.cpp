@@ -21,7 +21,7 @@ namespace {
 std::string glfw_words() {
   const char* words = nullptr;
   glfwGetError(&words);
-  return words == nullptr ? "GLFW gives no reason" : words;
+  return words == nullptr ? "GLFW reports no reason" : words;
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ driver::Result<std::unique_ptr<Screen>> Screen::open() {
   std::unique_ptr<Screen> screen(new Screen);
   if (glfwInit() == GLFW_FALSE) {
     return driver::Error{"No window: " + glfw_words() +
-                         ". Is there a screen? `thimble view --text` needs none."};
+                         ". Check that there is a screen. `thimble view --text` needs none."};
   }
   screen->glfw_ = true;
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);

@@ -27,16 +27,16 @@ struct Key {
   const char* does;
 };
 
-constexpr std::array kKeys = {Key{"left drag", "turn about the scene"},
-                              Key{"right drag", "move along (also shift + left)"},
-                              Key{"wheel", "nearer, farther"},
-                              Key{"ctrl + left drag", "lead the simulated hand; wheel: push"},
+constexpr std::array kKeys = {Key{"left drag", "rotate the view"},
+                              Key{"right drag", "pan (also shift + left drag)"},
+                              Key{"wheel", "zoom"},
+                              Key{"ctrl + left drag", "move the simulated hand; wheel: push"},
                               Key{"H", "swap the two left drags"},
                               Key{"F", "frame the scene"},
-                              Key{"space", "pause, continue; of a recording: play"},
-                              Key{"space held", "forces of a run with --hold-to-run key"},
-                              Key{"left, right", "a moment back, on (shift: a second)"},
-                              Key{"Home, End", "oldest moment; now, or the end"},
+                              Key{"space", "pause or continue; recording: play"},
+                              Key{"space held", "enables forces with --hold-to-run key"},
+                              Key{"left, right", "one moment back or on (shift: 1 s)"},
+                              Key{"Home, End", "oldest moment; now or the end"},
                               Key{", .", "slower, faster"},
                               Key{"R", "record, stop recording"},
                               Key{"S", "screenshot"},
@@ -69,7 +69,7 @@ void draw_tick(const driver::TickRecord& tick, const std::string& words) {
   const double heat = *std::max_element(tick.heat.begin(), tick.heat.end());
   if (heat >= driver::HeatGuard::kWarning) {
     ImGui::TextColored(shown_colour(kForceColour),
-                       "motors %.0f %% of their heat limit, force lowered", 100 * heat);
+                       "motors %.0f %% of their heat limit, force reduced", 100 * heat);
   } else if (heat > 0) {
     ImGui::TextDisabled("motors %.0f %% of their heat limit", 100 * heat);
   }
@@ -78,7 +78,7 @@ void draw_tick(const driver::TickRecord& tick, const std::string& words) {
                        std::string(driver::describe(tick.fault)).c_str());
     // The fault is the first cause; the arm may be unplugged later.
     if (tick.link == driver::LinkState::kLost && tick.fault != driver::Fault::kTransportLost) {
-      ImGui::TextColored(shown_colour(kForceColour), "The arm is gone from the wire.");
+      ImGui::TextColored(shown_colour(kForceColour), "The arm is disconnected.");
     }
   }
   ImGui::PopTextWrapPos();
@@ -113,18 +113,18 @@ void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
     explain(what);
     return pressed;
   };
-  if (button(
-          paused ? "Go on" : "Pause",
-          reader.scene().wall_clock
-              ? "Fades the force out; the arm's time goes on, and its ticks count as paused (space)"
-              : "Lets the simulated time stand still, or go on (space)")) {
+  if (button(paused ? "Continue" : "Pause",
+             reader.scene().wall_clock
+                 ? "Fades the force out; the arm's time continues, and its ticks count as paused "
+                   "(space)"
+                 : "Pauses or continues the simulated time (space)")) {
     reader.ask_pause(!paused);
   }
   if (button(reader.counters().recording ? "Stop recording" : "Record",
-             "Records every tick from now on, into the folder where the run was started (R)")) {
+             "Records every tick from now on, in the folder where the run was started (R)")) {
     toggle_record(reader);
   }
-  if (button("Picture", "Writes a PNG of the scene (S)")) choice.screenshot = true;
+  if (button("Picture", "Writes a PNG file of the scene (S)")) choice.screenshot = true;
   if (button("?", "Lists the keys (F1)")) choice.help = !choice.help;
   choice.run.draw(reader);
   if (reader.counters().recording) {
@@ -329,8 +329,8 @@ void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoi
       ImGui::SameLine(10 * ImGui::GetFontSize());
       ImGui::TextUnformatted(key.does);
     }
-    ImGui::TextUnformatted(notes.closing_ends ? "Closing ends the run: its hand is in this window."
-                                              : "Closing leaves the run on.");
+    ImGui::TextUnformatted(notes.closing_ends ? "Closing ends the run: this window moves its hand."
+                                              : "The run continues when the window closes.");
     ImGui::End();
   }
 }

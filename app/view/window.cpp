@@ -189,9 +189,9 @@ void Content::begin_run(session::SharedReader& run, bool again) {
   const bool by_mouse = hand_.input().source() == HandSource::kMouse;
   if (!again) choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
   hand_.input().let_go();
-  if (scene.hold_by_key) tell("Hold the space bar in this window to have forces.");
+  if (scene.hold_by_key) tell("Hold the space bar in this window to enable forces.");
   if (!by_mouse && !scene.hand_by_mouse) {
-    tell("The hand of this run follows its path: begin it with --hand to lead it.");
+    tell("The hand of this run follows its path. Start the run with --hand to move it.");
   }
   if (!felt_follows_) felt_.follow(run.name());
   felt_follows_ = true;

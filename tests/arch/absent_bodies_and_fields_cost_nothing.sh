@@ -31,7 +31,7 @@ echo "a plain ball: $instructions instructions per tick, in contact in $contact 
 for what in bodies fields; do
   found=$(used "${!what}" plain)
   if [ -n "$found" ]; then
-    echo "  a scene without $what calls in its ticks:"
+    echo "  ticks of a scene without $what call:"
     echo "$found" | sed 's/^/    /'
     bad=1
   fi
@@ -42,8 +42,8 @@ expect() {
   local caller=$1 expected=$2 found
   found=$(callees "$folder/plain.calls" "$caller" | sed -E 's/.*::([A-Za-z]+::)/\1/' | paste -sd' ')
   if [ "$found" != "$expected" ]; then
-    echo "  a tick calls from $caller: $found"
-    echo "  and should call: $expected"
+    echo "  $caller calls in a tick: $found"
+    echo "  expected: $expected"
     bad=1
   fi
 }
@@ -58,7 +58,7 @@ tick_calls "$program" "$source/app/scenes/honey.yaml" "$folder" honey
 splits='PrintRefinement|split_edge|EdgeSplit'
 found=$(used "$splits" clay)
 if [ -n "$found" ]; then
-  echo "  clay without an edge calls in its ticks:"
+  echo "  ticks of clay without an edge call:"
   echo "$found" | sed 's/^/    /'
   bad=1
 fi
@@ -68,7 +68,7 @@ for pair in bodies:clay fields:honey splits:clay_tablet; do
   count=$(used "${!what}" "${pair#*:}" | wc -l)
   echo "${pair#*:}: ticks call $count functions of $what"
   if [ "$count" -eq 0 ]; then
-    echo "  none: this test could not fail"
+    echo "  none, so this test cannot fail"
     bad=1
   fi
 done

@@ -20,11 +20,11 @@ comments() {
   find README.md CONTRIBUTING.md app device_sim driver render tests -type f -name '*.md' -not -name references.md -print0 |
     xargs -0 awk '/^ *```/ { inside = !inside; next } !inside && !/^    / { gsub(/`[^`]*`/, ""); print FILENAME ":" FNR ":" $0 }'
 }
-# A citation: no index, argument of a function, link, or option of a usage line.
+# A citation is not an index, an argument of a function, a link, or an option of a usage line.
 cited=$(comments | grep -P '(?<![A-Za-z0-9_`\]):])\[[A-Z][A-Za-z]*[ \],:]' |
   perl -ne 'my ($at, $text) = /^([^:]*:[0-9]*):(.*)/;
     while ($text =~ /(?<![A-Za-z0-9_`\])])\[([A-Z][A-Za-z]*)((?:[ ,:][^\]`(]*)?)\](?![(\[])/g) { print "$at\t$1\t$2\n" }')
-[ "$(wc -l <<<"$cited")" -ge 100 ] || { echo "FAILED: hardly a citation was found" >&2 && exit 1; }
+[ "$(wc -l <<<"$cited")" -ge 100 ] || { echo "FAILED: fewer than 100 citations were found" >&2 && exit 1; }
 
 failed=0
 while IFS=$'\t' read -r at key rest; do
@@ -41,7 +41,7 @@ while IFS=$'\t' read -r at key rest; do
   esac
   sections=$(grep -oP '(?<![A-Za-z0-9.])[0-9](\.[0-9])?(?![0-9A-Za-z])' <<<"${rest%%, *}" || true)
   if [ -z "$sections" ]; then
-    echo "$at: [$key$rest] names no section"
+    echo "$at: [$key$rest] has no section number"
     failed=1
   fi
   for section in $sections; do
@@ -59,18 +59,18 @@ for name in $(grep -hoP '`\K[A-Z]\w+\.[A-Z]\w+(?=`)' $pages/*.md | sort -u); do
     failed=1
   }
 done
-# Names of tests. Two suites are planted: one with too long a name, one without a case.
+# Names of tests. Two wrong names are planted: one that is too long, and a suite without a case.
 tests_named=$(find tests -name '*.cpp' -print0 | xargs -0 perl -0777 -ne '
   while (/^(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+)\s*,\s*(\w+)\s*\)/mg) { print "$ARGV:$1.$2\n" }')
 wrong_names() { # reads file:Suite.Name
   awk -F: -v suites=" $(sed -n 's/^[0-9]*|.*|\(HardCase[A-Za-z]*\)$/\1/p' tests/acceptance/hard_cases.list | tr '\n' ' ')" '
     length($2) > 60 { print $1 ": the test " $2 " has " length($2) " characters; 60 are allowed" }
     { split($2, parts, ".") }
-    parts[1] ~ /^HardCase/ && !index(suites, " " parts[1] " ") { print $1 ": the suite " parts[1] " is no case of tests/acceptance/hard_cases.list" }'
+    parts[1] ~ /^HardCase/ && !index(suites, " " parts[1] " ") { print $1 ": the suite " parts[1] " is not in tests/acceptance/hard_cases.list" }'
 }
 [ "$(wc -l <<<"$tests_named")" -ge 2000 ] || { echo "FAILED: only $(wc -l <<<"$tests_named") tests were found" && failed=1; }
 wrong_names <<<"$tests_named" | grep . && failed=1
 planted=$(printf 'a.cpp:%s\n' "ASuite.$(printf 'x%.0s' {1..54})" HardCase99.Test ASuite.Test | wrong_names | wc -l)
-[ "$planted" = 2 ] || { echo "FAILED: of two wrong names $planted were found" && failed=1; }
+[ "$planted" = 2 ] || { echo "FAILED: $planted of 2 wrong names were found" && failed=1; }
 [ $failed = 0 ] && echo "$(wc -l <<<"$cited") citations, all in the references."
 exit $failed

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Fails if clang refuses or warns about a source of driver, device_sim or render that GCC built. It reads the sources and
+# Fails if clang rejects or warns about a source of driver, device_sim or render that GCC built. It reads the sources and
 # builds nothing. `tests/run.sh --long` builds the whole project with clang.
 #   clang_accepts.sh BUILD_DIR
 # Exits with 77 if clang is missing.
 set -euo pipefail
 command -v clang++ >/dev/null || {
-  echo "SKIPPED: nothing was read by clang, which is not installed (tests/fuzz/setup.sh)" >&2
+  echo "SKIPPED: clang is not installed (tests/fuzz/setup.sh)" >&2
   exit 77
 }
 cd "$1"
@@ -37,7 +37,7 @@ while IFS=$'\t' read -r source options; do
     eval "clang++ $options -w -x c++-header '$headers.h' -o '$headers'"
   fi
   eval "clang++ $options -Wno-psabi -Wno-unknown-warning-option -include-pch '$headers' -fsyntax-only '$source'" >"$folder/said" 2>&1 || {
-    echo "clang refuses $source:"
+    echo "clang does not accept $source:"
     grep -E "error" -A 3 "$folder/said" | head -n 20
     bad=1
   }

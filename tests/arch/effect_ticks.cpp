@@ -11,11 +11,11 @@
 
 namespace {
 
-// Bytes that were asked of operator new and not given back. What the allocator holds would differ
-// by the pieces it happens to have at hand.
+// Bytes requested from operator new and not freed. The size of the allocator's own memory would
+// depend on its free blocks.
 std::size_t held = 0;
 
-// The number of bytes asked for stands before each piece, as far before as keeps it aligned.
+// The requested size is stored in front of each block, at a distance that keeps it aligned.
 std::size_t room_before(std::size_t alignment) {
   return std::max<std::size_t>(alignment, alignof(std::max_align_t));
 }
@@ -60,7 +60,7 @@ void operator delete(void* piece, std::size_t, std::align_val_t alignment) noexc
   give_back(piece, static_cast<std::size_t>(alignment));
 }
 
-// Touches one cost subject for some strokes, so that somebody else can count what a tick executes:
+// Touches one cost subject for some strokes, so that callgrind can count the instructions of a tick:
 //   effect_ticks SUBJECT STROKES      prints the bytes that the object holds
 // Linked with all effects and with fewer (effect_table.cpp): the counts must be the same.
 int main(int argc, char** argv) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Reads the guide's page of additions (app/guide/pages/extending.md): its blocks are what is tested.
+"""Reads the guide's page of additions (app/guide/pages/extending.md): its blocks are tested.
 
-    extending.py SOURCE                      prints the words by which sections are chosen: the last of each heading
+    extending.py SOURCE                      prints the words that select sections: the last of each heading
     extending.py SOURCE --copy TREE          makes TREE the same but for builds; a file that is the same already is not written
     extending.py SOURCE --apply WORD TREE    does a section in a copy of the tree
     extending.py SOURCE --test WORD          prints the commands of its block "Test:", a line each
@@ -32,7 +32,7 @@ PLACE = re.compile(r"^(?:New file `(?P<new>[^`]+)`|In `(?P<path>[^`]+)`, (?P<whe
 
 
 class Wrong(Exception):
-    """A section does not fit the tree, or not its own list."""
+    """A section does not fit the tree or its own list."""
 
 
 class Section:
@@ -49,7 +49,7 @@ class Section:
         return {block["path"] for block in self.blocks} | set(self.written)
 
     def apply(self, tree):
-        """Does the addition in a tree."""
+        """Applies the addition to a tree."""
         for block in self.blocks:
             file = tree / block["path"]
             if block["where"] == "new":
@@ -121,7 +121,7 @@ def choose(sections, word):
 
 
 def copy_tree(source, tree):
-    """Makes a tree the same as the sources, and leaves what is the same already as old as it is."""
+    """Makes a tree equal to the sources; unchanged files keep their times."""
     def files_of(folder):
         for root, folders, names in os.walk(folder):
             folders[:] = [name for name in folders if name not in (".git", "__pycache__", "build")]
@@ -138,7 +138,7 @@ def copy_tree(source, tree):
 
 
 def compile_commands(build):
-    """Returns folder of the sources -> words of a compiler call there."""
+    """Returns, for each folder of sources, the words of a compiler call there."""
     calls = {}
     for one in json.loads((build / "compile_commands.json").read_text()):
         words = shlex.split(one["command"])
@@ -148,7 +148,7 @@ def compile_commands(build):
 
 
 def user_of(source, path):
-    """Returns the smallest source that includes a header of a library's src; None if there is none, or it is another file."""
+    """Returns the smallest source that includes a header of a library's src; None if there is none, or for another file."""
     library, found, name = path.partition("/src/")
     if not found or not path.endswith(".h") or not (source / path).exists():
         return None
@@ -157,7 +157,7 @@ def user_of(source, path):
 
 
 def compiles(calls, build, tree, path):
-    """Compiles a source of `tree`, which has only what differs, without writing anything; returns the compiler's complaint."""
+    """Compiles a source of `tree`, which has only changed files, without output files; returns the compiler's errors."""
     home = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", (build / "CMakeCache.txt").read_text(), re.M)[1]
     folders = [folder for folder in calls if path.startswith(folder + "/")]
     if not folders:
@@ -177,7 +177,7 @@ def compiles(calls, build, tree, path):
 
 
 def check_list(source, section, faults):
-    """Compares a section's table, and its row at the top, with what it changes."""
+    """Compares a section's table, and its row in the table at the top, with the files that it changes."""
     listed, changed = set(section.files), section.changed()
     if listed != changed:
         faults.append(f"{PAGE}: {section.title}: the table must not list {' '.join(sorted(listed - changed)) or '-'}, "
@@ -193,7 +193,7 @@ def check_list(source, section, faults):
 
 
 def check(source, build, only):
-    """Prints what is wrong; returns how much. `only`: compiles the sources of the section of this word; all if empty."""
+    """Prints the faults and returns their number. `only`: compiles the sources of the section of this word; all if empty."""
     faults, compiled, sections = [], [], read_page(source)
     if len(sections) < 7:
         faults.append(f"{PAGE}: {len(sections)} sections; expected 7")

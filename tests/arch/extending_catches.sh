@@ -14,7 +14,7 @@ finds() {  # finds PATTERN FILE SED [BUILD]: extending.py finds the fault that S
   local status=0
   cp "$2" "$scratch/kept"
   sed -i "$3" "$2"
-  ! cmp -s "$2" "$scratch/kept" || { echo "FAILED: nothing was changed by $3" && exit 1; }
+  ! cmp -s "$2" "$scratch/kept" || { echo "FAILED: $3 changed nothing" && exit 1; }
   python3 "$source/tests/arch/extending.py" . --check ${4:+"$4" law} >"$scratch/said" 2>&1 || status=$?
   if [ $status != 1 ] || ! grep -q "$1" "$scratch/said"; then
     echo "FAILED: not found ($1) after $3 in $2: $(head -c 500 "$scratch/said")"

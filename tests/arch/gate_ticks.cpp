@@ -12,7 +12,7 @@ namespace {
 
 using namespace thimble;
 
-/// Answers each read with a report in which the tip goes to and fro by some counts.
+/// Answers each read with a report in which the tip moves back and forth by some counts.
 class OscillatingWire final : public driver::Transport {
  public:
   driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
@@ -33,8 +33,8 @@ class OscillatingWire final : public driver::Transport {
 
 }  // namespace
 
-// Runs ticks of a device whose gate has one energy stage, a heat guard or neither, so that somebody
-// else can count what they execute:
+// Runs ticks of a device whose gate has one energy stage, a heat guard or neither, so that
+// callgrind can count their instructions:
 //   gate_ticks none|passivity|bounding|heat TICKS
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   } else if (std::strcmp(argv[1], "bounding") == 0) {
     settings.energy = {.stage = driver::EnergyStage::kBounding, .slope = 1e4};
   }
-  // The watch over motors is always on.
+  // The motion watch is always on.
   settings.motion = {.mass = 0.075, .delay_ticks = 1};
   if (std::strcmp(argv[1], "heat") == 0) {
     settings.heat = {.continuous_current = {1, 1, 1}, .time_constant = {60, 60, 60}};

@@ -11,7 +11,7 @@ bad=0
 forbid() {
   local found
   if found=$(grep -rnE "^[[:space:]]*#[[:space:]]*include[[:space:]]*[<\"]($2)" "$1"); then
-    echo "$1 must not know $3:"
+    echo "$1 must not include $3:"
     echo "$found" | sed 's/^/  /'
     bad=1
   fi
@@ -24,21 +24,21 @@ forbid driver/include 'libusb|hidapi|termios|boost/|nlohmann/|dlfcn' "a library 
 forbid device_sim "thimble/(render|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "render, app, graphics, logging or files"
 forbid device_sim 'thimble/driver/(device|safety_gate|servo_loop|velocity_estimator|real_time)\.h' \
-  "the host's side of the driver: it meets it at the wire only"
+  "the host side of the driver: both meet at the wire only"
 forbid device_sim 'gate/|transports/(stream_transport|node_lock|ftdi_line)\.h"|vendors/' \
-  "the host's side of the driver: it meets it at the wire only"
+  "the host side of the driver: both meet at the wire only"
 beside=$(find driver/src device_sim/src -mindepth 1 -maxdepth 1 -type d -printf '%f|')
 for module in driver device_sim; do
-  forbid $module/include "[a-z_]*\.h\"|(${beside%|})/" "a header beside the sources: it is not installed"
+  forbid $module/include "[a-z_]*\.h\"|(${beside%|})/" "a private header, which is not installed"
 done
 forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
 forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\.h|(thimble/driver/)?arms/' \
-  "the wire or the arm: a force law knows state and force only"
+  "the wire or the arm: a force law uses only state and force"
 forbid render/include '(mesh|compact_mesh|search|track|body|disk_paging|multirate|field|surface|effect)/|[a-z_]*\.h"' \
-  "a header beside the sources: it is not installed"
+  "a private header, which is not installed"
 
-# The layers of render: LAYER: what it may include. Some headers do not belong to the layer of their folder:
+# The layers of render: LAYER: the layers that it may include. Some headers do not belong to the layer of their folder:
 # types that all layers pass on (state), settings of effects (settings), the law of a scene (touch),
 # and the code that builds it from all layers (build).
 layers='
@@ -82,24 +82,24 @@ upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk
     if (header ~ /^thimble\// && header !~ /^thimble\/render\//) next
     if (header ~ /^(math|system)\//) next  # below all layers
     from = layer(file); to = layer(header)
-    if (from != to && from != "build" && !((from, to) in may)) print file ": " from " must not know " to " (" header ")"
+    if (from != to && from != "build" && !((from, to) in may)) print file ": " from " must not include " to " (" header ")"
   }')
 if [ -n "$upward" ]; then
-  echo "An include of render runs upwards or to the side:"
+  echo "A source of render includes a layer above or next to its own:"
   echo "$upward" | sed 's/^/  /'
   bad=1
 fi
 
-# The installed headers of app include no private headers, and no library that a user need not know.
-forbid app/scene/include '(yaml|arm_policy)/|[a-z_]*\.h"|yaml-cpp/' "a header beside the sources, or yaml-cpp"
-forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a header beside the sources, or HDF5"
+# The installed headers of app include no private headers, and no library that users do not need.
+forbid app/scene/include '(yaml|arm_policy)/|[a-z_]*\.h"|yaml-cpp/' "a private header, or yaml-cpp"
+forbid app/session/include '(recording|share|observers)/|[a-z_]*\.h"|hdf5|H5' "a private header, or HDF5"
 # Python binds the same headers as C++ programs; in addition it uses the warnings only.
 forbid app/python '(yaml|arm_policy|recording|share|observers|report|studies|view|bringup|hil|cli)/|stability/(draw|rest|stability|wall)' \
-  "what a C++ program that links thimble::session cannot reach"
+  "headers that a C++ program with thimble::session cannot use"
 
-# The libraries of app, the lowest first: FOLDER: what it must not include.
+# The libraries of app, the lowest first: FOLDER PATTERN: the includes that it must not have.
 forbid_app() {
-  forbid "app/$1" "$2" "a library above it or beside it"
+  forbid "app/$1" "$2" "a library above it or at its level"
 }
 forbid_app bag 'thimble/(device_sim|render|scene|session)/|(yaml|files|hand|recording|share|events|report|stability|studies|view|bringup|compat|ros2|hil|web|cli)/'
 # Code that writes files does not depend on their content.
@@ -110,14 +110,14 @@ forbid_app session '(report|stability|studies|view|bringup|compat|ros2|hil|web|c
 # Headers for users' programs need no private headers. Observers of a run's ticks do not include each
 # other; only the code that registers them includes them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
-  "a header beside the sources, or a library behind it"
+  "a private header, or a library that only sources use"
 for observer in observers/black_box observers/dent_record observers/latest_tick observers/page_server \
     observers/pose_record observers/trace recording/recording_switch share/live_control share/run_sharing; do
   found=$(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"(observers/|recording/recording_switch|share/(live_control|run_sharing))' \
     app/session/src/"$observer".h app/session/src/"$observer".cpp 2>/dev/null |
     grep -v "\"$observer\.h\"" || true)
   if [ -n "$found" ]; then
-    echo "An observer must not know another:"
+    echo "An observer must not include another:"
     echo "$found" | sed 's/^/  /'
     bad=1
   fi
@@ -137,16 +137,16 @@ forbid_app ros2 '(report|stability|studies|view|bringup|hil|compat|web|cli)/'
 for part in core haply hd hdphantom dhd; do
   [ -d "app/compat/$part" ] || continue
   forbid "app/compat/$part" 'compat/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
-    "what is in the process of thimble exec"
+    "a library that must not be in the process of thimble exec"
 done
 for part in core server; do
   forbid "app/compat/$part" 'compat/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "one API"
 done
 for folder in bag scene session report web stability studies bringup identified hil twin compat ros2 cli python; do
-  forbid "app/$folder" "$graphics" "graphics: they are app/view's"
+  forbid "app/$folder" "$graphics" "graphics, which only app/view uses"
 done
 for folder in bag scene session report web stability studies bringup identified hil twin view compat ros2 python; do
-  forbid "app/$folder" 'CLI/' "arguments: they are app/cli's"
+  forbid "app/$folder" 'CLI/' "the parser of arguments, which only app/cli uses"
 done
 
 # Eigen declares the cross product and the inverse in one header and defines them in another. A source that relies on a joined
@@ -156,7 +156,7 @@ needs() {  # needs CALL HEADERS: a source with CALL, or its own header, includes
   for source in $(grep -rlF ".$1" driver device_sim render app tests --include='*.h' --include='*.cpp'); do
     own=$(basename "${source%.*}").h
     if ! grep -qE "<Eigen/($2)>" "$source" $(find driver device_sim render app tests -name "$own"); then
-      echo "$source calls ${1%%(*}() and includes <Eigen/${2%%|*}> neither itself nor by its own header"
+      echo "$source calls ${1%%(*}() and does not include <Eigen/${2%%|*}>, nor does its own header"
       bad=1
     fi
   done

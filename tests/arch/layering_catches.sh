@@ -34,7 +34,7 @@ plant device_sim/src/hand/hand.cpp '"vendors/force_box.h"'
 plant render/include/thimble/render/touch.h '"thimble/driver/transport.h"'
 plant render/include/thimble/render/touch.h '"thimble/driver/arms/hfab/hfab_arm.h"'
 plant render/include/thimble/render/touch.h '"thimble/device_sim/settings.h"'
-# A header that is not installed, in one that is.
+# A private header in an installed one.
 plant driver/include/thimble/driver/device.h '"little_endian.h"'
 plant device_sim/include/thimble/device_sim/usb/usb_arm.h '"usb/usb_description.h"'
 plant render/include/thimble/render/build_object_touch.h '"build_surface_touch.h"'
@@ -86,20 +86,20 @@ plant app/report/report.h '<epoxy/gl.h>'
 plant app/bringup/doctor.h '<CLI/CLI.hpp>'
 # Each must be reported with its file.
 if bash "$here/layering.sh" "$copy" >"$said"; then
-  echo "layering.sh noticed nothing of what was planted"
+  echo "layering.sh did not report any planted include"
   exit 1
 fi
 missed=0
 while IFS=$'\t' read -r file line header; do
   grep -qF -- "$file:$line:#include $header" "$said" && continue
   grep -F -- "  $file: " "$said" | grep -qF -- "(${header//\"/})" && continue # a layer of render
-  echo "layering.sh did not notice #include $header in $file"
+  echo "layering.sh did not report #include $header in $file"
   missed=1
 done <"$planted"
 [ $missed = 0 ]
-echo "$(wc -l <"$planted") forbidden includes, each named"
+echo "$(wc -l <"$planted") forbidden includes, each reported"
 
-# A source that relies on the includes of joined sources; folders with too many sources.
+# A source that relies on the includes of joined sources, and folders with too many sources.
 make_copy
 sed -i '/Eigen.Geometry/d' "$copy/app/stability/rest_warnings.cpp" "$copy/tests/unit/render/search/built_in_halves_test.cpp"
 sed -i '/Eigen.LU/d' "$copy/app/twin/drive_train_twin.cpp"
@@ -112,7 +112,7 @@ for line in '  app/report/figure_output.cpp:' 'app/stability/rest_warnings.cpp c
   'tests/unit/render/search/built_in_halves_test.cpp calls cross()' \
   'driver/src: ' 'device_sim/src/plant: ' 'render/search: ' 'app/view: ' 'tests/support: '; do
   grep -qF -- "$line" "$said" || {
-    echo "layering.sh did not notice: $line"
+    echo "layering.sh did not report: $line"
     exit 1
   }
 done

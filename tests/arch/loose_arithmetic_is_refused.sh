@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Fails if a build accepts an option that changes results of arithmetic, or refuses a usual one.
+# Fails if a build accepts an option that changes results of arithmetic, or rejects a common one.
 #   tests/arch/loose_arithmetic_is_refused.sh SOURCE_DIR
 set -euo pipefail
 source=$1 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 bad=0
 
-# look VARIABLE=VALUE: the answer to an option, by the file that the project includes before it declares targets.
+# look VARIABLE=VALUE: the message about an option, from the file that the project includes before it declares targets.
 look() { cmake -DCMAKE_SYSTEM_PROCESSOR=x86_64 -DCMAKE_BUILD_TYPE=Release "-D$1" -P "$source/driver/src/math/refuse_loose_arithmetic.cmake" 2>&1 || true; }
 
 for option in -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only \
@@ -27,11 +27,11 @@ for options in '-O2 -g' '-march=x86-64 -mtune=native -O2' '-O3 -DNDEBUG'; do
 done
 # The project must include that file.
 if ! { cmake -S "$source" -B "$folder/build" -DCMAKE_CXX_FLAGS=-ffast-math 2>&1 || true; } | grep -q 'forces would'; then
-  echo "the project was configured with -ffast-math"
+  echo "the project accepts -ffast-math"
   bad=1
 fi
 
-# Options outside of CMake's variables are refused by the compiler.
+# Options outside of CMake's variables are rejected by the compiler.
 for option in -ffast-math -Ofast -ffinite-math-only -march=haswell -mfma -mavx -msse4; do
   said=$(echo '#include "math/double_double.h"' | c++ -std=c++20 -O2 $option -I"$1/driver/src" -fsyntax-only -x c++ - 2>&1 || true)
   if ! grep -q 'forces would have other bits' <<<"$said"; then

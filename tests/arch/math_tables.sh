@@ -4,6 +4,6 @@
 set -euo pipefail
 folder=$1/driver/src/math
 python3 "$folder/make_tables.py" | diff - "$folder/tables.h" || {
-  echo "FAILED: driver/src/math/tables.h is not what make_tables.py writes" >&2
+  echo "FAILED: driver/src/math/tables.h differs from the output of make_tables.py" >&2
   exit 1
 }

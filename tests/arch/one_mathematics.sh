@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Fails if code that moves an arm, a hand or an object, or decides about it, calls a sine, an exponential or the like of
-# the C library, whose last bit depends on the processor, or computes in long double, whose size depends on it.
+# Fails if code that moves an arm, a hand or an object, or decides about it, calls a sine, an exponential or a similar
+# function of the C library, whose last bit depends on the processor, or uses long double, whose size depends on it.
 # math/elementary.h has all of these functions. Pictures, reports, studies and windows may call any function.
 #   one_mathematics.sh SOURCE_DIR
 set -euo pipefail

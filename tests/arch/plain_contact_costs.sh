@@ -15,7 +15,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 bad=0
 
-# bound WHAT COUNT MOST
+# bound NAME COUNT MAX
 bound() {
   local said=""
   if [ "$2" -gt "$3" ]; then
@@ -40,13 +40,13 @@ count() {
   bound "simulated arm, reading" "$arm_read" 1969
   bound "simulated arm, writing" "$arm_write" 134
   bound "decode, kinematics, Jacobian" $((link_read - arm_read)) 548
-  bound "what a report must pass, velocity" $((read - link_read)) 292
+  bound "checks of a report, velocity" $((read - link_read)) 292
   bound "force law" "$law" "$3"
   bound "gate, currents, guards, books" $((write - arm_write)) 1190
   bound "observers of the run" "$observers" 702
   bound "loop" $((whole - read - law - write - observers)) 354
   if awk -v share="$contact" 'BEGIN { exit share > 0.95 }'; then
-    echo "  in contact in $contact of the ticks only: this counts something else"
+    echo "  in contact in only $contact of the ticks: this is not a tick in contact"
     bad=1
   fi
 }

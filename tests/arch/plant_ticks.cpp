@@ -13,7 +13,7 @@ using namespace thimble;
 
 constexpr double kTick = 1e-3;  // s
 
-/// Moves the tip to and fro by motors. What runs in here is counted, and nothing else.
+/// Moves the tip back and forth by motors. Only the instructions of this function are counted.
 [[gnu::noinline]] bool counted_ticks(bringup::BenchArm& bench, long ticks) {
   const std::atomic<bool> never{false};
   const auto push = [&bench](const driver::DeviceState&) -> Eigen::Vector3d {
@@ -25,9 +25,9 @@ constexpr double kTick = 1e-3;  // s
 
 }  // namespace
 
-// Lets an arm be simulated for some ticks, driver and gate in front of it, so that somebody else
-// can count what they execute:
-//   plant_ticks ARM_FILE TICKS      prints how far the tip ended from where it began, um
+// Simulates an arm for some ticks, with driver and gate, so that callgrind can count their
+// instructions:
+//   plant_ticks ARM_FILE TICKS      prints the distance of the tip from its start at the end, um
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const auto file = scene::load_arm(argv[1]);

@@ -10,7 +10,7 @@ source=$1
 prints() {
   (
     cd "$1"
-    # An opened file (std::fprintf(file_, ...)) is no terminal.
+    # An opened file (std::fprintf(file_, ...)) is not a terminal.
     grep -rnE '\b(printf|vprintf|puts|putchar|perror|psignal)\(|\bfprintf\((stdout|stderr)|\b(fputs|fputc|fwrite|putc|vfprintf)\(.*\bstd(out|err)\b|\bstd::(cout|cerr|clog)\b|\bfmt::print\(|\bwrite\((1|2|STDOUT_FILENO|STDERR_FILENO),|\bdprintf\(' \
       app driver render device_sim --include='*.h' --include='*.cpp' |
       grep -vE '^app/examples/|^app/scene/src/log/(console|printed_text)\.(h|cpp):|gnu::format\(printf|//.*printf' |
@@ -28,14 +28,14 @@ planted=('std::printf("%s", name);' 'std::puts(name);' 'std::fprintf(stderr, "%s
 printf '%s\n' "${planted[@]}" >"$copy/app/cli/planted.cpp"
 found=$(prints "$copy" | wc -l)
 if [ "$found" -ne "${#planted[@]}" ]; then
-  echo "FAILED: of ${#planted[@]} planted prints $found were found:"
+  echo "FAILED: $found of ${#planted[@]} planted prints were found:"
   prints "$copy"
   exit 1
 fi
 
 found=$(prints "$source")
 if [ -n "$found" ]; then
-  echo "Print by scene::print_format, session::print, the loggers or scene::console (app/scene/src/log):"
+  echo "Print with scene::print_format, session::print, the loggers or scene::console (app/scene/src/log):"
   echo "$found"
   exit 1
 fi

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Writes the guide's page of guarantees from one table, and checks the breadth of each sentence.
+"""Writes the guide's page of guarantees from one table, and checks the coverage of each sentence.
 
     promises.py SOURCE BUILD           fails if a test covers less than its row promises, or the page is not current
     promises.py SOURCE BUILD --write   checks the same, and writes app/guide/pages/guarantees.md
     promises.py SOURCE BUILD --page    writes it without running tests; needs the program only
 
-The table is app/guide/guarantees.list. Of each row that has `covers`, what its tests noted by `support::Covered` is compared with all there is: scenes and arms in app/, trackers in `thimble help scene tracker`. A
-sentence that says "every", "each", "all" or "any" of these must have `covers`.
+The table is app/guide/guarantees.list. For each row with `covers`, the items that its tests recorded with
+`support::Covered` are compared with all items: scenes and arms in app/, trackers in `thimble help scene tracker`. A sentence with
+"every", "each", "all" or "any" of these must have `covers`.
 """
 
 import json
@@ -47,7 +48,7 @@ def read_table(path):
         elif line.startswith("  covers: ") and row:
             row["covers"] = [one.strip() for one in line[10:].split(",")]
         elif line.strip():
-            sys.exit(f"{path}:{number}: neither a section, a row (- ), tests: nor covers:")
+            sys.exit(f"{path}:{number}: expected a section, a row (- ), tests: or covers:")
     for _, rows in sections:
         for one in rows:
             if not one["tests"]:
@@ -56,7 +57,7 @@ def read_table(path):
 
 
 def all_there_is(source, build):
-    """Returns kind -> set of names."""
+    """Returns, for each kind, the set of all names."""
     arms = {file.stem: re.search(r"^protocol: *(\w+)", file.read_text(), re.M)[1]
             for file in (source / "app/arms").glob("*.yaml")}
     said = subprocess.run([build / "app/thimble", "help", "scene", "tracker"], capture_output=True, text=True,
@@ -83,7 +84,7 @@ def commands(build):
 
 
 def covered(row, build, tests):
-    """Returns kind -> set of names that the tests of a row noted; runs those that ran before their program was built."""
+    """Returns, for each kind, the names that the tests of a row recorded; runs tests whose records are older than their program."""
     found, again = {}, {}
     for name in re.findall(r"`(\w+\.[\w*]+)`", row["tests"]):
         pattern = re.compile(r"(?:\w+/)?" + re.escape(name).replace(r"\*", r"\w+") + r"(?:/\w+)?")
@@ -108,7 +109,7 @@ def covered(row, build, tests):
 
 
 def notes_of(build, tests):
-    """Returns the files in which tests noted what they covered."""
+    """Returns the files in which tests recorded the items that they cover."""
     names = {name.replace("/", "-") for name, _ in tests}
     return [file for file in (build / "covered").glob("*") if file.stem in names]
 
@@ -125,7 +126,7 @@ def check(row, build, there, tests):
     for tag in row["covers"]:
         parts = re.fullmatch(r"all ([\w ]+?)(?: but ([\w ]+))?", tag)
         if not parts or parts[1] not in there:
-            fail(f"{TABLE}:{row['line']}: {tag} is no breadth: all {', all '.join(there)}")
+            fail(f"{TABLE}:{row['line']}: {tag} is not a valid value; expected all {', all '.join(there)}")
             continue
         kind, left_out = parts[1], set((parts[2] or "").split())
         wanted = there[kind] - left_out
@@ -153,9 +154,9 @@ def main():
     if "--write" in sys.argv or "--page" in sys.argv:
         page.write_text(text)
     elif page.read_text() != text:
-        fail(f"{PAGE} is not what {TABLE} says: tests/acceptance/promises.sh")
+        fail(f"{PAGE} differs from {TABLE}; run tests/acceptance/promises.sh")
     rows = [row for _, rows in sections for row in rows]
-    print(f"{len(rows)} guarantees, {sum(bool(row['covers']) for row in rows)} with a breadth that was checked.")
+    print(f"{len(rows)} guarantees, {sum(bool(row['covers']) for row in rows)} whose coverage was checked.")
     sys.exit(1 if fail.count else 0)
 
 

@@ -3,10 +3,11 @@
 
    prose.py SOURCE_DIR [--list]
 
-A pattern of two or more plain words counts; names of commands, options, keys, scenes and arms, values, rows and files do not, and
-one key word is allowed. The number may only fall: it must equal CEILING, which holds notes of parts that this build or machine
-lacks, states of a viewed run, and how an arm or program went off, none of which has a file. A test expects exit codes, report.json and structured output, and of a
-sentence only the names that a user needs (tests/program/expect.sh: expect_report, expect_json, expect_words)."""
+A pattern of two or more plain words counts. Names of commands, options, keys, scenes and arms, values, rows and files do
+not count, and one key word is allowed. The number may only fall: it must equal CEILING. The remaining ones are notes about
+missing parts of a build or machine, states of a viewed run, and the end of an arm or program, which are in no file. A test
+should expect exit codes, report.json and structured output, and of a sentence only the names that a user needs
+(tests/program/expect.sh: expect_report, expect_json, expect_words)."""
 import pathlib
 import re
 import sys
@@ -15,7 +16,7 @@ CEILING = 14
 # Files whose patterns are the text of other programs: compilers, doxygen, lintian, QEMU, dpkg.
 OTHER_PROGRAMS = {"tests/tidy.sh", "tests/program/symbols_test.sh", "tests/program/headers_test.sh", "tests/program/reference_test.sh",
                   "tests/usb/virtual_machine.sh", "tests/program/package_test.sh", "tests/core.sh"}
-# Terms that messages need, and that the guide uses for nothing else.
+# Terms that messages need, and that the guide uses with one meaning only.
 TERMS = {"empty", "missing", "folder", "recording", "terminal", "damaged", "tab", "simulated", "window", "screen", "unit", "scene"}
 # Values of options, states, levels of the log, and commands of the system, which messages name.
 VALUES = {"virtual", "paced", "draft", "normal", "reference", "auto", "quick", "full", "apt", "install", "sudo", "modprobe", "usbhid",
@@ -27,7 +28,7 @@ STRUCTURED = (".json", ".csv", ".yaml", ".xml", ".svg", ".db3", ".jsonl", ".png"
 
 
 def words(text, at):
-    """The words of the shell command that begins at text[at], and whether each was quoted by '' alone."""
+    """Returns the words of the shell command that begins at text[at], and whether each was quoted by '' only."""
     found, word, inside = [], None, None
     while at < len(text):
         c = text[at]
@@ -61,7 +62,7 @@ def words(text, at):
 
 
 def interface(source):
-    """Words that are names: of commands, keys, values, arms, scenes."""
+    """Returns the words that are names of commands, keys, values, arms and scenes."""
     names = TERMS | VALUES | {one.stem for folder in ("scenes", "arms") for one in (source / "app" / folder).glob("*.yaml")}
     for page in ("keys.md", "commands.md", "viewer.md"):
         text = (source / "app/guide/pages" / page).read_text()
@@ -123,7 +124,7 @@ def main():
     names = interface(source)
     for pattern, wanted in PLANTED:
         if prose(pattern, names) != wanted:
-            sys.exit(f"FAILED: this check takes {pattern!r} for {'no ' if wanted else ''}wording")
+            sys.exit(f"FAILED: this check counts {pattern!r} as {'no ' if wanted else ''}wording")
     total, files = 0, {}
     for path in sorted((source / "tests").rglob("*.sh")):
         name = str(path.relative_to(source))

@@ -65,14 +65,14 @@ def has(path, name):
 
 
 def faults_of(readme):
-    """Returns what is wrong with the lists of a page, a sentence each, and how many files each has."""
+    """Returns the faults of the lists of a page, one sentence each, and the number of files in each list."""
     faults, counts = [], []
     for title in SECTIONS:
         section = readme.partition(f'\n## {title}\n')[2].partition('\n## ')[0]
         count, earlier = 0, []
         for line in section.splitlines():
             if not re.match(r'\d', line):
-                # Files that the page names between the lines are read on the way as well.
+                # Files that the page names between the lines also belong to the list.
                 earlier += [path for path in re.findall(r'`([\w/]+\.(?:h|cpp))`', line) if os.path.exists(path)]
                 continue
             count += 1
@@ -116,7 +116,7 @@ def main():
     }
     for what, (before, after) in planted.items():
         if readme.count(before) == 0 or not set(faults_of(readme.replace(before, after))[0]) - set(faults):
-            print(f'This test does not find {what}.')
+            print(f'This test does not detect {what}.')
             faults.append(what)
     return 1 if faults else 0
 

@@ -4,9 +4,9 @@
 
 #include "thimble/session/session.h"
 
-// Opens a scene on its simulated arm and runs its first ticks in virtual time, so that somebody
-// else can count what they execute:
-//   scene_ticks SCENE TICKS      prints how many of them were in contact
+// Opens a scene on its simulated arm and runs its first ticks in virtual time, so that callgrind
+// can count their instructions:
+//   scene_ticks SCENE TICKS      prints the number of ticks in contact
 int main(int argc, char** argv) {
   using namespace thimble;
   if (argc != 3) return 2;

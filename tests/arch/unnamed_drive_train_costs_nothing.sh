@@ -59,20 +59,20 @@ for name in $names; do
   printf '%-16s %8d instructions per tick, %+d\n' "$name" $((whole / ticks)) $(((whole - plain) / ticks))
 done
 if [ "$(($(cat "$folder/zeros.count") / ticks))" != "$(($(cat "$folder/none.count") / ticks))" ]; then
-  echo "Terms that are named as zero cost something."
+  echo "Terms with a value of zero cost instructions."
   bad=1
 fi
 for name in none zeros; do
   if ran "$name" "$train_functions"; then
-    echo "$name: the drive train runs though it is not there"
+    echo "$name: functions of the drive train run without a drive train"
     bad=1
   fi
 done
 for name in weight current_lag cogging ripple cables cables_and_play; do
-  ran "$name" "$train_functions" || { echo "$name: no function of the drive train ran: this test could not fail"; bad=1; }
+  ran "$name" "$train_functions" || { echo "$name: no function of the drive train ran, so this test cannot fail"; bad=1; }
 done
 for name in jitter loss missed_edges; do
   # Random draws are inlined into their caller, so only their cost shows them.
-  [ "$(cat "$folder/$name.count")" -gt "$(cat "$folder/none.count")" ] || { echo "$name: nothing was drawn: this test could not fail"; bad=1; }
+  [ "$(cat "$folder/$name.count")" -gt "$(cat "$folder/none.count")" ] || { echo "$name: no random number was drawn, so this test cannot fail"; bad=1; }
 done
 exit $bad

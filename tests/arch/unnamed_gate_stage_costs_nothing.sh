@@ -27,19 +27,19 @@ for stage in none passivity bounding heat; do
   calls=$(grep -cE "^c?fn=.*($stages)" "$folder/$stage.out" || true)
   warm=$(grep -cE "^c?fn=.*$heat" "$folder/$stage.out" || true)
   if [ "$stage" != heat ] && [ "$warm" -ne 0 ]; then
-    echo "  the heat guard ran though nobody named it"
+    echo "  the heat guard ran although no file names it"
     bad=1
   fi
   if [ "$stage" = heat ] && [ "$warm" -eq 0 ]; then
-    echo "  the heat guard did not run: this test could not fail"
+    echo "  the heat guard did not run, so this test cannot fail"
     bad=1
   fi
   if [ "$stage" = none ] && [ "$calls" -ne 0 ]; then
-    echo "  a stage that was not named ran"
+    echo "  a stage ran that no file names"
     bad=1
   fi
   if [ "$stage" != none ] && [ "$calls" -eq 0 ]; then
-    echo "  the stage did not run: this test could not fail"
+    echo "  the stage did not run, so this test cannot fail"
     bad=1
   fi
 done

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Shows that an effect that a scene does not name costs nothing: the same scene executes the same
-# instructions per tick and holds the same bytes in a program with all effects and in one that was
+# instructions per tick and allocates the same bytes in a program with all effects and in one that was
 # built without them.
 #   unused_effects_cost_nothing.sh ALL NONE ONLY_BRISTLE SOURCE_DIR
 # The first three are effect_ticks, linked with all effects, with none, and with friction: bristle only.
-# Without valgrind only bytes are compared, and that only the table includes the effects.
+# Without valgrind, only the bytes are compared, and the includes are checked.
 set -euo pipefail
 all=$1 none=$2 only_bristle=$3 source=$4
 bad=0
@@ -13,7 +13,7 @@ bad=0
 known=$(grep -rlE '#include "(thimble/render/)?surface/(friction|texture)/' "$source/render" |
   grep -vE '/surface/(friction|texture)/|/effect/effect_table.cpp$' || true)
 if [ -n "$known" ]; then
-  echo "These know an effect by name; only render/src/effect/effect_table.cpp may:"
+  echo "These sources include an effect; only render/src/effect/effect_table.cpp may:"
   echo "$known" | sed 's/^/  /'
   bad=1
 fi
@@ -41,7 +41,7 @@ compare() {
     count_lean=$(instructions "$lean" "$subject")
     echo "$subject: $count_full instructions per tick with all effects, $count_lean without"
     if [ "$count_lean" -lt 50 ]; then
-      echo "  too few to be a tick: nothing was touched"
+      echo "  too few for a tick in contact"
       bad=1
     fi
     # Within 0.5 %.

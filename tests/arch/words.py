@@ -5,7 +5,7 @@
 
 Fails if a document, a comment or a string uses a banned word, or if the sentences of a document have 20 words or more on average.
 Checks the files that words.list names; a line "allow" there is an exception with its reason. --count prints the number of banned
-words of every folder instead, of all files, and fails never."""
+words per folder, for all files, and never fails."""
 import collections
 import fnmatch
 import pathlib
@@ -15,7 +15,7 @@ import sys
 
 WORDS_MAX = 20     # average words of a sentence, exclusive
 ALLOWED_MAX = 40   # lines of exceptions
-# What is banned, and what the glossary has instead.
+# Banned words, and the words of the glossary.
 BANNED = [
     (r"told|untold", "reported, printed, logged, detected"),
     (r"tells?|telling", "report, print, return, log, distinguish"),
@@ -47,7 +47,7 @@ TOKEN = re.compile(r'R"([^ ()\\\n]*)\((?:.|\n)*?\)\1"|//[^\n]*|/\*(?:.|\n)*?\*/|
 
 
 def tracked(source):
-    """Returns the files of the project: those that git knows, or all where it is no clone."""
+    """Returns the files of the project: those in git, or all files if the folder is no clone."""
     listed = subprocess.run(["git", "-C", source, "ls-files"], capture_output=True, text=True)
     if listed.returncode == 0 and listed.stdout:
         return listed.stdout.split("\n")[:-1]
@@ -56,12 +56,12 @@ def tracked(source):
 
 
 def blank(text):
-    """Returns as many line ends as a text has, so that line numbers stay."""
+    """Returns the line ends of a text only, so that line numbers do not change."""
     return "\n" * text.count("\n")
 
 
 def prose(name, text):
-    """Returns the text of a file that people read, on its lines: comments and strings of a source, a document without code."""
+    """Returns the readable text of a file, on its original lines: comments and strings of a source, a document without code."""
     if name.endswith(".md"):
         text = re.sub(r"^( *)```.*?^ *```", lambda m: blank(m[0]), text, flags=re.MULTILINE | re.DOTALL)
         return re.sub(r"`[^`\n]*`", "CODE", text)
@@ -113,7 +113,7 @@ def read_list(source):
         elif len(fields) == 1:
             checked.append(fields[0])
         else:
-            sys.exit(f"tests/arch/words.list:{number}: neither a pattern nor 'allow | FILE | WORD | REASON'")
+            sys.exit(f"tests/arch/words.list:{number}: expected a pattern or 'allow | FILE | WORD | REASON'")
     if len(allowed) > ALLOWED_MAX:
         sys.exit(f"tests/arch/words.list: {len(allowed)} exceptions; at most {ALLOWED_MAX}: rewrite the sentences")
     return checked, allowed
@@ -158,14 +158,14 @@ def main():
     for exception in allowed:
         if exception not in used:
             bad += 1
-            print(f"tests/arch/words.list:{exception[2]}: the exception is used nowhere; remove it")
+            print(f"tests/arch/words.list:{exception[2]}: the exception is unused; remove it")
     for pattern in checked:
         if pattern not in matched:
             bad += 1
             print(f"tests/arch/words.list: no file matches {pattern}")
     if bad:
         sys.exit(1)
-    print(f"{len(matched)} patterns of files use the words of the glossary; {len(allowed)} exceptions.")
+    print(f"{len(matched)} patterns of files pass; {len(allowed)} exceptions.")
 
 
 if __name__ == "__main__":

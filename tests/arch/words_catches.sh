@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Shows that words.py fails where it must, on a made-up tree.
+# Tests words.py with each kind of fault in a generated tree.
 #   words_catches.sh
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -10,10 +10,10 @@ cd "$tree"
 
 list() { printf '%s\n' "$@" >tests/arch/words.list; }
 check() { python3 "$here/words.py" "$tree" >"$tree/log" 2>&1; }
-must_pass() { check || { echo "words.py refused $1:" >&2; cat log >&2; exit 1; }; }
+must_pass() { check || { echo "words.py reported a fault in $1:" >&2; cat log >&2; exit 1; }; }
 must_fail() {
-  ! check || { echo "words.py did not notice $1" >&2; exit 1; }
-  grep -qF -- "$2" log || { echo "words.py did not name $1 ($2):" >&2; cat log >&2; exit 1; }
+  ! check || { echo "words.py did not report $1" >&2; exit 1; }
+  grep -qF -- "$2" log || { echo "words.py reported $1 without \"$2\":" >&2; cat log >&2; exit 1; }
 }
 
 list '*.md' 'src/*'
@@ -29,7 +29,7 @@ printf '/* One.\n   Mended by the caller. */\n' >src/a.cpp && must_fail "a banne
 printf '# Nobody reads it.\n' >src/b.sh && printf 'int x;\n' >src/a.cpp && must_fail "a banned word of a script" "src/b.sh:1: 'Nobody'"
 list '*.md' 'src/*' 'allow | src/b.sh | nobody | the name of a system user'
 must_pass "an exception with its reason"
-printf 'true\n' >src/b.sh && must_fail "an exception that is used nowhere" "used nowhere"
+printf 'true\n' >src/b.sh && must_fail "an unused exception" "unused"
 list '*.md' 'gone/*' && must_fail "a pattern that matches no file" "no file matches gone/*"
 list '*.md' 'allow | src/b.sh | nobody' && must_fail "an exception without a reason" "words.list:2"
 list '*.md'
@@ -37,4 +37,4 @@ printf 'One two three four five six seven eight nine ten one two three four five
 must_fail "long sentences" "20.0 words a sentence"
 { echo '*.md'; for i in $(seq 41); do echo "allow | a | w$i | reason"; done; } >tests/arch/words.list
 must_fail "too many exceptions" "41 exceptions"
-echo "words.py catches what it must."
+echo "words.py reports all faults."

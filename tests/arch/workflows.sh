@@ -20,7 +20,7 @@ def fail(place, what):
 
 
 def variants(text, matrix):
-    """The text with each combination of the matrix put in; other expressions become a word."""
+    """Yields the text for each combination of the matrix; other expressions become a word."""
     names = [name for name in matrix if isinstance(matrix[name], list)]
     for values in itertools.product(*(matrix[name] for name in names)):
         now = text
@@ -37,9 +37,9 @@ for file in sys.argv[1:]:
         continue
     own = file.startswith(".github/")
     if not workflow.get(True):  # YAML 1.1 reads the key "on" as true
-        fail(file, "it says not when it runs (on)")
+        fail(file, "no trigger (on)")
     if own and workflow.get("permissions") != {"contents": "read"}:
-        fail(file, "permissions: expected contents: read; a job that needs more asks for it")
+        fail(file, "permissions: expected contents: read; a job that needs more must request it")
     jobs = workflow.get("jobs", {})
     for name, job in jobs.items():
         place = f"{file}: {name}"
@@ -49,7 +49,7 @@ for file in sys.argv[1:]:
         needs = job.get("needs", [])
         for other in [needs] if isinstance(needs, str) else needs:
             if other not in jobs:
-                fail(place, f"it needs {other}, which is no job")
+                fail(place, f"it needs {other}, which is not a job")
         container = job.get("container")
         image = container.get("image") if isinstance(container, dict) else container
         runs = [step["run"] for step in job["steps"] if "run" in step]
@@ -57,7 +57,7 @@ for file in sys.argv[1:]:
             fail(place, f"its steps run on {image}; expected the container debian:12")
         for step in job["steps"]:
             if ("run" in step) == ("uses" in step):
-                fail(place, f"a step needs run or uses: {step}")
+                fail(place, f"a step needs either run or uses: {step}")
             if "uses" in step:
                 actions += 1
                 if not re.fullmatch(r"[\w-]+/[\w/-]+@v\d+", step["uses"]):
@@ -70,10 +70,10 @@ for file in sys.argv[1:]:
                 for program in re.findall(r"(?<![\w./-])(?:app|tests)/[\w./-]+\.sh\b", text) if own else []:
                     programs += 1
                     if not os.access(program, os.X_OK):
-                        fail(place, f"{program} is no program")
+                        fail(place, f"{program} is not an executable file")
 
 print("\n".join(failures) or f"{len(sys.argv) - 1} workflows, {actions} actions, {programs} programs")
 if not failures and (actions < 10 or programs < 10):
-    failures.append("hardly anything was found")
+    failures.append("fewer than 10 actions or programs were found")
 sys.exit(1 if failures else 0)
 END

@@ -12,7 +12,7 @@ ROUNDS = 8  # of removing mutants that do not compile
 
 
 class BuiltTree:
-    """The copy and what is built of it; sources that stay the same keep their times."""
+    """The copy and its build. Unchanged sources keep their times."""
 
     def __init__(self, root, copy, plan):
         self.root, self.copy, self.plan = root, copy, plan
@@ -22,7 +22,7 @@ class BuiltTree:
         self.lines = {}  # per mutated file: line -> ids
 
     def write(self, chosen: dict[int, Mutant]):
-        """Makes the copy the same as the project, but for the mutants."""
+        """Makes the copy equal to the project, except for the mutants."""
         names = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "."], cwd=self.root, check=True,
                                capture_output=True, text=True).stdout.splitlines()
         by_file = {}
@@ -60,7 +60,7 @@ class BuiltTree:
             sys.exit(f"{done.stdout[-6000:]}\nThe copy in {self.copy} could not be {what}.")
 
     def build_without(self, chosen):
-        """Builds the copy, leaves out of `chosen` what does not compile, and returns how many those were."""
+        """Builds the copy, removes mutants that do not compile from `chosen`, and returns their number."""
         chosen_first = len(chosen)
         for ident in [ident for ident, mutant in chosen.items() if mutant.title() in self.dropped]:
             del chosen[ident]
@@ -77,7 +77,7 @@ class BuiltTree:
                 return chosen_first - len(chosen)
             guilty = self.guilty(done.stdout) & set(chosen)
             if not guilty:
-                sys.exit(f"{done.stdout[-6000:]}\nThe copy in {self.copy} cannot be built, and not for its mutants.")
+                sys.exit(f"{done.stdout[-6000:]}\nThe copy in {self.copy} cannot be built, for another reason than its mutants.")
             print(f"{len(guilty)} mutants do not compile", flush=True)
             for ident in guilty:
                 self.dropped.add(chosen.pop(ident).title())
@@ -85,7 +85,7 @@ class BuiltTree:
         sys.exit(f"After {ROUNDS} rounds there are still mutants that do not compile.")
 
     def guilty(self, log):
-        """Returns the ids that the compiler's errors speak against: those of the line in error, or else of the
+        """Returns the ids of the mutants that cause the compiler's errors: those of the line in error, or else of the
         lines that led to it."""
         found = set()
         for error in re.split(r"\n(?=In file included from |[^\n:]+: In |FAILED)", log):

@@ -1,7 +1,7 @@
-"""Finds the statements and conditions of C++ code, by its tokens alone.
+"""Finds the statements and conditions of C++ code from its tokens only.
 
-As much of the language as this project's style needs: what it takes for something else becomes a mutant that
-does not compile, and such are dropped.
+It covers the part of the language that this project uses. Code that it misinterprets becomes a mutant that does
+not compile, and those are dropped.
 """
 import dataclasses
 import re
@@ -31,7 +31,7 @@ class Token:
 
 @dataclasses.dataclass(frozen=True)
 class Region:
-    """Tokens that can be had in two ways: a whole statement, a condition, or an initialiser and its type."""
+    """Tokens that can have an original and a mutated form: a whole statement, a condition, or an initialiser and its type."""
 
     kind: str
     first: int
@@ -75,7 +75,7 @@ class Code:
         return i
 
     def opens_code(self, i):
-        """Tells whether a brace opens statements: not a class, a namespace or an initialiser."""
+        """Returns whether a brace opens statements, and not a class, a namespace or an initialiser."""
         words = [self.at(k) for k in range(self.head(i), i)]
         while len(words) > 2 and words[0] == "template":
             words = words[1:]

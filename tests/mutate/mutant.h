@@ -1,7 +1,6 @@
-// What a mutated source asks: is this mutant the one to be tried? Included in front of every source
-// by tests/mutate.sh. THIMBLE_MUTANT in the environment names it; THIMBLE_MUTANTS_REACHED names a
-// file of one byte per mutant, in which is noted which of them a run has come by, also by its child
-// processes.
+// Selects a mutant at run time. tests/mutate.sh includes this file in front of every source.
+// THIMBLE_MUTANT in the environment is the number of the mutant. THIMBLE_MUTANTS_REACHED is a file
+// of one byte per mutant, in which a run and its child processes mark the mutants that they reach.
 #pragma once
 
 #include <fcntl.h>
@@ -39,7 +38,7 @@ inline bool is_chosen(int id) noexcept {
   return id == chosen.one;
 }
 
-// What the compiler works out itself is as it was.
+// Constants that the compiler evaluates are not mutated.
 constexpr bool mutated(int id) noexcept {
   return std::is_constant_evaluated() ? false : is_chosen(id);
 }

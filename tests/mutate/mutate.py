@@ -1,6 +1,6 @@
-"""Mutants of the project's libraries: made, built all at once, tried against the tests, and told in a table.
+"""Makes mutants of the project's libraries, builds all at once, tries them with the tests, and writes a table.
 
-Called by tests/mutate.sh, which says how. A plan (plan.json) names libraries, targets and test programs.
+Called by tests/mutate.sh, which describes the options. A plan (plan.json) names libraries, targets and test programs.
 """
 import argparse
 import json
@@ -18,13 +18,13 @@ LEAST = 0.9  # share that must be killed
 
 
 def draw(root, plan, options):
-    """Returns the mutants to be tried by their ids."""
+    """Returns the mutants to try, by their ids."""
     chosen = {}
     for library, folders in plan["libraries"].items():
         if options.library and library not in options.library:
             continue
         everyone = mutants_of(root, folders)
-        print(f"{library}: {len(everyone)} mutants can be made", flush=True)
+        print(f"{library}: {len(everyone)} mutants are possible", flush=True)
         if options.again:
             drawn = [m for m in everyone if f"{m.file}:{m.line}" in options.again]
         else:
@@ -38,7 +38,7 @@ def draw(root, plan, options):
 
 
 def known_results(file, options, chosen):
-    """Returns what an earlier run has found of mutants that this one need not try again: {id: (how, where)}."""
+    """Returns the results of an earlier run for mutants that need not be tried again: {id: (how, where)}."""
     if not options.survivors or not file.exists():
         return {}
     known = json.loads(file.read_text())
@@ -63,7 +63,7 @@ def main():
 
     chosen = draw(options.root, plan, options)
     if not chosen:
-        sys.exit("There is nothing to break there.")
+        sys.exit("No mutant is possible there.")
     tree = BuiltTree(options.root, options.work / "source", plan)
     uncompilable = tree.build_without(chosen)
     print(f"{len(chosen)} mutants built, {uncompilable} do not compile", flush=True)

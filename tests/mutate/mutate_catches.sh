@@ -2,7 +2,7 @@
 # Tests the mutation tool on a small project (sample): which mutants are killed, which survive, which hang
 # or do not compile, and that its exit code shows whether enough are killed.
 set -euo pipefail
-[ -n "${THIMBLE_LONG:-}" ] || { echo "SKIPPED: the mutants' tool is tried in the long form, which runs it." && exit 77; }
+[ -n "${THIMBLE_LONG:-}" ] || { echo "SKIPPED: the mutation tool is tested in the long form only." && exit 77; }
 for tool in python3 git ninja; do command -v "$tool" >/dev/null || exit 77; done
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
@@ -23,33 +23,33 @@ fail() {
   cat "$scratch/log" >&2
   exit 1
 }
-has() { grep -qF -- "$1" "$2" || fail "Not told: $1"; }
-ends() { grep -A2 -F "$1" "$scratch/log" | grep -qF -- "+ $2" || fail "Not told: $1 + $2"; }
+has() { grep -qF -- "$1" "$2" || fail "Not printed: $1"; }
+ends() { grep -A2 -F "$1" "$scratch/log" | grep -qF -- "+ $2" || fail "Not printed: $1 + $2"; }
 
 run
-[ $code = 1 ] || fail "Survivors end with $code in place of 1."
-ends "negated: fails (Counting.StaysBelowTheMost)" 'if (!(x > most)) return most;'
+[ $code = 1 ] || fail "With survivors the exit code is $code instead of 1."
+ends "negated: fails (Counting.StaysWithinTheBound)" 'if (!(x > most)) return most;'
 ends "removed: hangs" 'while (i < n) ;'
 ends "operator: SURVIVED (survived)" 'return x - x;'
 ends "operator: SURVIVED (unreached)" 'return x - 2;'
 has "1 do not compile" "$scratch/log"
-has '`return x + x;` -> `return x - x;` | operator | not looked at yet |' "$scratch/table.md"
-grep -qE '\| counting \| [1-9][0-9]* \| 4 \| 0 \|' "$scratch/table.md" || fail "Wrongly counted."
-[ "$(cat counting/* | cksum)" = "$sources" ] || fail "The sources are changed."
+has '`return x + x;` -> `return x - x;` | operator | not analysed yet |' "$scratch/table.md"
+grep -qE '\| counting \| [1-9][0-9]* \| 4 \| 0 \|' "$scratch/table.md" || fail "The counts of the table are wrong."
+[ "$(cat counting/* | cksum)" = "$sources" ] || fail "The sources were changed."
 
 # An equivalent mutant does not count and its reason is kept; with a new test enough mutants are killed.
-sed -i '/x >= most/s/not looked at yet/equivalent: both are the most/' "$scratch/table.md"
+sed -i '/x >= most/s/not analysed yet/equivalent: both are equal/' "$scratch/table.md"
 sed -i 's/^  doubled(2);/  EXPECT_EQ(doubled(2) + tripled(5), 11);/' counting_test.cpp
 run --survivors
-[ $code = 0 ] || fail "Where all are killed it ends with $code."
+[ $code = 0 ] || fail "With all killed the exit code is $code."
 has "0 survived, 1 equivalent: 100.0 %" "$scratch/log"
-has "equivalent: both are the most" "$scratch/table.md"
+has "equivalent: both are equal" "$scratch/table.md"
 
 # Without a mutant every test must pass; a single line can be tested.
 run --again counting/counting.cpp:5
-[ $code = 0 ] || fail "One line alone ends with $code."
+[ $code = 0 ] || fail "For a single line the exit code is $code."
 sed -i 's/at_most(3, 5), 3/at_most(3, 5), 4/' counting_test.cpp
 run
-[ $code = 1 ] || fail "A test that fails without mutants ends with $code."
-has "fails in Counting.StaysBelowTheMost without any mutant" "$scratch/log"
-echo "The mutants' tool tells what it must."
+[ $code = 1 ] || fail "For a test that fails without mutants the exit code is $code."
+has "fails in Counting.StaysWithinTheBound without any mutant" "$scratch/log"
+echo "The mutation tool passes."

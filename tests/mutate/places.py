@@ -1,4 +1,4 @@
-"""Lists what can be broken in a source."""
+"""Lists the possible mutants of a source."""
 import dataclasses
 import hashlib
 import re
@@ -26,8 +26,8 @@ class Mutant:
         return f"{self.file}: `{self.old}` -> `{self.new}`{again}"
 
     def rank(self, seed):
-        """Returns what a sample is drawn by: it hangs on nothing but the mutant itself, so a change elsewhere
-        leaves the sample as it is."""
+        """Returns the rank by which a sample is drawn. It depends only on the mutant itself, so a change elsewhere
+        does not change the sample."""
         return hashlib.sha256(f"{seed} {self.title()}".encode()).hexdigest()
 
 
@@ -44,7 +44,7 @@ TRUTHS = {"true": "false", "false": "true"}
 
 
 def other_number(text):
-    """Returns another constant than this, or none."""
+    """Returns a different constant, or None."""
     m = re.fullmatch(r"(0[xX][\da-fA-F']+|\d[\d']*)([uUlLzZ]*)", text)
     if m:
         return str(int(m.group(1).replace("'", ""), 0 if m.group(1)[:2] in ("0x", "0X") else 10) + 1) + m.group(2)

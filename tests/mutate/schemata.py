@@ -1,10 +1,10 @@
-"""Writes many mutants into one source, of which the environment chooses one when the program runs."""
+"""Writes many mutants into one source. The environment selects one of them at run time."""
 from cpp_code import Code
 
 
 def with_mutants(text, chosen):
-    """Returns a source with mutants in it, given as (id, Mutant), and for each line of it the ids that a
-    compiler's error there speaks against."""
+    """Returns a source with the given mutants, (id, Mutant), and for each of its lines the ids of the mutants that
+    a compiler's error there can come from."""
     code = Code(text)
     regions = {}
     for ident, mutant in chosen:
@@ -28,7 +28,7 @@ def with_mutants(text, chosen):
 
 
 def pieces_of(code, region, here):
-    """Yields the texts, each on lines of its own, that take the place of a region."""
+    """Yields the texts that replace a region, each on separate lines."""
     whole = code.flat(region.first, region.last)
     everyone = {ident for ident, _ in here}
     if region.kind == "statement":
@@ -51,7 +51,7 @@ def pieces_of(code, region, here):
 
 
 def mutated(code, region, mutant):
-    """Returns a region with its mutant in it, on one line."""
+    """Returns a region with its mutant, on one line."""
     before = [i for i in range(region.first, region.last) if code.tokens[i].end <= mutant.begin]
     behind = [i for i in range(region.first, region.last) if code.tokens[i].begin >= mutant.end]
     left = code.flat(before[0], before[-1] + 1) if before else ""

@@ -1,13 +1,13 @@
-"""The table of what became of the mutants, tests/MUTANTS.md."""
+"""The table of the results of the mutants, tests/MUTANTS.md."""
 import re
 
 EQUIVALENT = "equivalent"  # a reason with this prefix means that no test can detect the mutant
 HEAD = """# Mutants
 
-Made by `tests/mutate.sh`: single places of driver, render, scene and session are broken, one at a time (a relation, an operator, a
-constant, a sign, a negated condition, swapped arguments, a removed statement), and the unit tests that come by the
-place run until one fails. The reasons are written by hand and kept by the script; one that begins with *equivalent*
-says that no test could fail, and the mutant does not count. At least 90 % of the others must be killed.
+Written by `tests/mutate.sh`. It breaks single places of driver, render, scene and session, one at a time: a relation, an operator, a
+constant, a sign, a negated condition, swapped arguments or a removed statement. The unit tests that reach the place
+run until one fails. The reasons are written by hand, and the script keeps them. A reason that begins with
+*equivalent* means that no test can fail; the mutant does not count. At least 90 % of the others must be killed.
 """
 
 
@@ -16,7 +16,7 @@ def cell(text):
 
 
 def reasons_in(table):
-    """Returns the reasons that a table gives for survivors, by their titles."""
+    """Returns the reasons for survivors in a table, by their titles."""
     reasons = {}
     for line in table.read_text().splitlines() if table.exists() else []:
         m = re.match(r"\| (.+: `.+` -> `.*`(?: \(\d+\))?) \| (\w+) \| (.*) \|$", line)
@@ -26,7 +26,7 @@ def reasons_in(table):
 
 
 class Count:
-    """How many of some mutants came to which end."""
+    """Counts of the results of some mutants."""
 
     def __init__(self):
         self.killed = self.survived = self.equivalent = 0
@@ -39,7 +39,7 @@ class Count:
 
 
 def summary(results, reasons):
-    """Counts by library and by file, and all; `results` are (mutant, how)."""
+    """Returns the counts by library, by file and in all; `results` are (mutant, how)."""
     counts = {}
     for mutant, how in results:
         library = mutant.file.split("/")[0]
@@ -55,19 +55,19 @@ def summary(results, reasons):
 
 
 def write_table(table, results, uncompilable, seed):
-    """Writes what became of all, and returns the counts."""
+    """Writes the results of all mutants, and returns the counts."""
     reasons = reasons_in(table)
     counts = summary(results, reasons)
     files = sorted(name for name in counts if "/" in name)
     rows = sorted(name for name in counts if "/" not in name and name != "all") + ["all"]
-    header = " | killed | survived | equivalent | killed of what could be |\n|---|---|---|---|---|"
+    header = " | killed | survived | equivalent | killed share |\n|---|---|---|---|---|"
     lines = [HEAD, f"{len(results)} mutants of seed {seed} in {len(files)} files; {uncompilable} more did not compile.",
              "", "| library" + header, *(counts[name].row(name) for name in rows if name in counts),
              "", "## Survivors", "", "| place | kind | why no test fails |", "|---|---|---|"]
     for mutant, how in results:
         if not how:
             title = cell(mutant.title())
-            lines.append(f"| {title} | {mutant.kind} | {reasons.get(title, 'not looked at yet')} |")
+            lines.append(f"| {title} | {mutant.kind} | {reasons.get(title, 'not analysed yet')} |")
     lines += ["", "## By file", "", "| file" + header, *(counts[name].row(name) for name in files)]
     table.write_text("\n".join(lines) + "\n")
     return counts

@@ -1,4 +1,4 @@
-"""Runs tests: which mutants each reaches, and which mutants they notice."""
+"""Runs tests, to find which mutants each test reaches and which mutants it detects."""
 import concurrent.futures
 import dataclasses
 import hashlib
@@ -36,8 +36,8 @@ class Trials:
         self.tests = []
 
     def run(self, program, tests, variables, limit):
-        """Runs some tests of a program; returns its exit code, or none if it was ended for its time, and its
-        output and seconds of processor time."""
+        """Runs some tests of a program. Returns its exit code (None if it was ended at the time limit), its output
+        and its seconds of processor time."""
         def bounds():
             resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 2))
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -80,12 +80,12 @@ class Trials:
                 suite = line
 
     def measure(self):
-        """Runs every test without a mutant and notes what it reaches; ends if one fails."""
+        """Runs every test without a mutant and records the mutants that it reaches; exits if one fails."""
         every = [(program, name) for program in self.programs for name in self.names_of(program)]
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             self.tests = list(pool.map(lambda one: self.measure_one(*one), every))
         if None in self.tests:
-            sys.exit("Tests fail without any mutant: mend them first.")
+            sys.exit("Tests fail without any mutant. Fix them first.")
         return self.tests
 
     def measure_one(self, program, name):
@@ -100,7 +100,7 @@ class Trials:
         return None
 
     def killer_of(self, ident):
-        """Returns how a mutant was noticed and in which run; empty if no test did, or if none reaches it."""
+        """Returns how a mutant was detected and in which run; an empty text if no test detects or reaches it."""
         own = sorted((test for test in self.tests if ident in test.reached), key=lambda test: test.seconds)
         if not own:
             return "", "unreached"
@@ -122,7 +122,7 @@ class Trials:
         return "", "survived"
 
     def try_all(self, idents):
-        """Yields (id, how, where) as each mutant comes to its end."""
+        """Yields (id, how, where) for each mutant when its result is known."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             futures = {pool.submit(self.killer_of, ident): ident for ident in idents}
             for future in concurrent.futures.as_completed(futures):
@@ -130,5 +130,5 @@ class Trials:
 
 
 def number_of(title):
-    """Returns a number below MOST for a mutant, which a change elsewhere leaves as it is."""
+    """Returns a number below MOST for a mutant that does not depend on changes elsewhere."""
     return int(hashlib.sha256(title.encode()).hexdigest()[:8], 16) % MOST

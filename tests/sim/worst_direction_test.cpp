@@ -177,7 +177,7 @@ TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
   EXPECT_TRUE(stability_warnings(scene).empty());
   scene.objects[0].stiffness = 8000;
   ASSERT_EQ(stability_warnings(scene).size(), 1u);
-  EXPECT_NE(stability_warnings(scene)[0].find("set its stiffness to"), std::string::npos);
+  EXPECT_NE(stability_warnings(scene)[0].find("Set its stiffness to"), std::string::npos);
 }
 
 }  // namespace

@@ -9,11 +9,11 @@
 
 namespace thimble::test {
 
-/// Makes bags as `ros2 bag record` lays them out, by SQLite alone, so that they may be wrong as
-/// well.
+/// Writes bags with the layout of `ros2 bag record`, by SQLite only, so that tests can also write
+/// invalid ones.
 class BagMaker {
  public:
-  /// Begins a file; pages of 512 bytes keep it small.
+  /// Creates a file. Pages of 512 bytes keep it small.
   explicit BagMaker(const std::filesystem::path& file) {
     std::filesystem::remove(file);
     sqlite3_open(file.c_str(), &file_);
@@ -27,7 +27,7 @@ class BagMaker {
   BagMaker(const BagMaker&) = delete;
   BagMaker& operator=(const BagMaker&) = delete;
 
-  /// Carries out SQL.
+  /// Executes SQL.
   void run(const std::string& orders) {
     sqlite3_exec(file_, orders.c_str(), nullptr, nullptr, nullptr);
   }

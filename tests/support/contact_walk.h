@@ -17,9 +17,9 @@ const render::ContactState& move_tip(Contact& contact, const Eigen::Vector3d& p_
   return contact.update(state);
 }
 
-/// Strolls below a surface along a wandering path, at about one depth, from the middle of the
-/// mesh's first triangle on. Where the tip comes out it stays at the point before and turns
-/// elsewhere.
+/// Walks below a surface along a random path, at about a constant depth. Starts in the middle of
+/// the mesh's first triangle. If the tip leaves the surface, it returns to the previous point and
+/// turns.
 template <class Contact>
 class Stroll {
  public:
@@ -37,8 +37,8 @@ class Stroll {
     heading_ = random_.direction();
   }
 
-  /// Makes one step. Afterwards `before`, `after` and `moved` tell of it.
-  /// False if the step led out of the surface: the tip is then set back to where it was.
+  /// Makes one step, and sets `before`, `after` and `moved`. Returns false if the step left the
+  /// surface; the tip is then back at its previous position.
   bool step() {
     before = contact_.state();
     from = p_;
@@ -53,7 +53,7 @@ class Stroll {
       p_ = next;
       return true;
     }
-    // Round and in again where it went in before.
+    // Leaves the surface and enters again at the previous point.
     move_tip(contact_, p_ + 2 * before.depth * before.n_W + step_ * before.n_W);
     move_tip(contact_, p_);
     heading_ = random_.direction();

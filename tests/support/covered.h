@@ -11,12 +11,12 @@
 
 namespace thimble::support {
 
-/// Notes what of a kind (arms, scenes, trackers) a test covered: the guide's page of guarantees
-/// promises no more (tests/arch/promises.py). Add a name only where the test has checked it. The
-/// notes of a test are a file of its name in the folder `covered` of its build.
+/// Records the items of a kind (arms, scenes, trackers) that a test has covered. The guide's page
+/// of guarantees promises only these (tests/arch/promises.py). Add a name only after the test has
+/// checked it. The notes of a test are a file with its name in the folder `covered` of its build.
 class Covered {
  public:
-  /// Takes the kind, in the plural.
+  /// Takes the name of the kind, in the plural.
   explicit Covered(std::string kind) : kind_(std::move(kind)) {}
 
   void add(std::string_view name) {
@@ -26,7 +26,7 @@ class Covered {
     fs::path build = fs::read_symlink("/proc/self/exe").parent_path();
     while (build.has_relative_path() && !fs::exists(build / "CMakeCache.txt"))
       build = build.parent_path();
-    if (!build.has_relative_path()) return;  // a test that was copied out of its build
+    if (!build.has_relative_path()) return;  // The test was copied out of its build.
     const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
     std::string file = std::string(test->test_suite_name()) + '.' + test->name();
     std::replace(file.begin(), file.end(), '/', '-');

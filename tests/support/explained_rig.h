@@ -11,8 +11,8 @@
 
 namespace thimble::support {
 
-/// A gate with its account of work, as Device joins them, around an arm that holds its force and is
-/// led along any path: a tick of 1 ms, a wire that is some ticks late.
+/// A gate with its energy account, connected as in Device, around an arm that holds its force and
+/// moves along a given path. The tick is 1 ms; the wire delays by some ticks.
 class ExplainedRig {
  public:
   static constexpr double kTick = 1e-3;  // s
@@ -20,8 +20,8 @@ class ExplainedRig {
   ExplainedRig(const driver::GateLimits& limits, const driver::EnergyGuardSettings& energy)
       : settings_(energy), gate_(limits, energy), account_(energy.delay_ticks) {}
 
-  /// Lets the tip be at `p_W` (m) for a tick in which a law asks for `command`; returns what is
-  /// sent, N.
+  /// Runs a tick with the tip at `p_W` (m) and the requested force `command`. Returns the sent
+  /// force, N.
   Eigen::Vector3d tick(const Eigen::Vector3d& p_W, driver::ForceCommand command) {
     const Eigen::Vector3d move = begun_ ? Eigen::Vector3d(p_W - p_W_) : Eigen::Vector3d(0, 0, 0);
     const double dt = begun_ ? kTick : 0;
@@ -46,18 +46,18 @@ class ExplainedRig {
     return sent_W_;
   }
 
-  /// Lets the soft start end at a place.
+  /// Runs at a fixed position until the soft start has ended.
   void open(const Eigen::Vector3d& p_W) {
     for (double t = 0; t <= gate_.limits().soft_start + 2 * kTick; t += kTick) tick(p_W, {});
   }
 
   const driver::SafetyGate& gate() const { return gate_; }
-  double work() const { return work_; }            ///< Done on the hand by the late force, J.
-  double most_work() const { return most_work_; }  ///< The most of it so far, J.
-  double dissipated() const {                      ///< By the damping that is counted on, J.
+  double work() const { return work_; }            ///< Work of the delayed force on the hand, J.
+  double most_work() const { return most_work_; }  ///< Largest value of `work` so far, J.
+  double dissipated() const {                      ///< Energy dissipated by the assumed damping, J.
     return settings_.dissipation * way_squared_ / kTick;
   }
-  /// Returns the force that acts on the tip now, N: as many ticks late as the wire is.
+  /// Returns the force that acts on the tip now, N. It is delayed by the wire.
   const Eigen::Vector3d& felt_W() const {
     return felt_[static_cast<std::size_t>(settings_.delay_ticks)];
   }
@@ -76,7 +76,7 @@ class ExplainedRig {
   bool begun_ = false;
 };
 
-/// The limits of the rig: 5 N, and the power of the shipped arms.
+/// Returns the limits of the rig: 5 N, and the power of the shipped arms.
 inline driver::GateLimits explained_limits() {
   return {.force_max = 5,
           .speed_max = 50,
@@ -88,7 +88,7 @@ inline driver::GateLimits explained_limits() {
           .power_time = 2};
 }
 
-/// The energy stage of a shipped arm at 1 kHz with a wire of 1 ms.
+/// Returns the energy stage of a shipped arm at 1 kHz with a wire of 1 ms.
 inline driver::EnergyGuardSettings explained_stage() {
   return {.stage = driver::EnergyStage::kPassivity,
           .mass = 0.075,

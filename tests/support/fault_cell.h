@@ -6,12 +6,12 @@
 
 namespace thimble::support {
 
-/// Notes what became of one fault in one phase of one arm: appends a line
+/// Records the result of one fault in one phase of one arm. Appends a line
 ///
 ///     FAULT|fault|arm|phase|promise|measured|limit
 ///
-/// to the file that the environment variable THIMBLE_FAULTS names, if it does. The
-/// table of all faults (tests/acceptance/FAULTS.md) is made of these lines. No text may hold a bar.
+/// to the file in the environment variable THIMBLE_FAULTS, if it is set. The table of all faults
+/// (tests/acceptance/FAULTS.md) is made from these lines. No text may contain a bar.
 inline void record_fault(const std::string& fault, const std::string& arm, const std::string& phase,
                          const std::string& promise, const std::string& measured,
                          const std::string& limit) {

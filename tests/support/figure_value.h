@@ -8,7 +8,7 @@
 
 namespace thimble::support {
 
-/// Returns the value of the figure of that name; -1 if there is none.
+/// Returns the value of the figure with this name; -1 if there is none.
 inline double figure_value(const std::vector<session::Figure>& figures, const std::string& name) {
   const auto found = std::find_if(figures.begin(), figures.end(),
                                   [&](const session::Figure& one) { return one.name == name; });

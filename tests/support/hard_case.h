@@ -9,18 +9,18 @@
 
 namespace thimble::support {
 
-/// Notes what a test of a hard case has measured: prints one line
+/// Records the measurement of a hard case. Prints one line
 ///
 ///     HARD_CASE|number|case in words|criterion|measured|limit|unit|Suite.Test|file
 ///
-/// and puts it into the file of the test's name in the folder that the environment variable
-/// THIMBLE_HARD_CASES names, if it does; a test's first line replaces those of an earlier run.
-/// `criterion` is a sentence that begins with the comparison that must hold between `measured` and
-/// `limit`: "<=", ">=", "<", ">" or "==". The table tests/acceptance/HARD_CASES.md is made of these
-/// lines, so a test whose case has several figures notes each. `words` begin with "guard: " where
-/// what is measured is that something bad shows. No text may hold a bar. The test must be in the
-/// suite that tests/acceptance/hard_cases.list gives the number, in a program marked HARD_CASES.
-/// The number is also the test's property `hard_case` in a report of GoogleTest.
+/// and writes it to the file with the test's name in the folder in the environment variable
+/// THIMBLE_HARD_CASES, if it is set. A test's first line replaces those of an earlier run.
+/// `criterion` is a sentence that begins with the comparison between `measured` and `limit`: "<=",
+/// ">=", "<", ">" or "==". The table tests/acceptance/HARD_CASES.md is made from these lines, so a
+/// test with several figures records each. `words` begin with "guard: " if the test measures that a
+/// deliberate error is visible. No text may contain a bar. The test must be in the suite that
+/// tests/acceptance/hard_cases.list names for the number, in a program marked HARD_CASES. The
+/// number is also the test's property `hard_case` in GoogleTest's report.
 inline void record_hard_case(int number, const std::string& words, const std::string& criterion,
                              double measured, double limit, const std::string& unit) {
   const ::testing::TestInfo* const test = ::testing::UnitTest::GetInstance()->current_test_info();
@@ -38,7 +38,7 @@ inline void record_hard_case(int number, const std::string& words, const std::st
   static std::string last_test;
   const bool first = last_test != name;
   last_test = name;
-  std::error_code there;  // if not, the file cannot be opened, and the table misses the line
+  std::error_code there;  // On failure the file cannot be opened, and the table lacks the line.
   std::filesystem::create_directories(folder, there);
   const std::filesystem::path lines = std::filesystem::path(folder) / name;
   if (std::FILE* const out = std::fopen(lines.c_str(), first ? "w" : "a"); out != nullptr) {

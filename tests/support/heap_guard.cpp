@@ -37,7 +37,7 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void* operator new[](std::size_t size, std::align_val_t alignment) {
   return taken(size, static_cast<std::size_t>(alignment));
 }
-// Sorting asks this way for its scratch memory, and gives it back to the ordinary delete.
+// std::stable_sort requests its scratch memory in this form, and frees it with the ordinary delete.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return taken(size, kDefault);
 }

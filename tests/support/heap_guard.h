@@ -4,12 +4,12 @@
 
 namespace thimble::support {
 
-/// Starts and ends counting of what this thread asks of the heap. A program that links
-/// thimble_heap_guard has operator new and delete replaced by ones that count.
+/// Starts and ends counting of this thread's heap operations. In a program that links
+/// thimble_heap_guard, operator new and delete are replaced by counting ones.
 void begin_heap_guard();
 int end_heap_guard();
 
-/// Counts how often `work` asked the heap for memory or gave some back, on this thread.
+/// Returns the number of heap allocations and deallocations of `work` on this thread.
 template <class Work>
 int heap_calls_of(Work&& work) {
   begin_heap_guard();

@@ -11,9 +11,9 @@
 
 namespace thimble::support {
 
-/// Draws an arm of two rods and rotors that its driver does not know, each 1/3 to 3 times as heavy
-/// as those of a PHANTOM's size [chosen: links of 60 and 50 g, rotors that weigh 15 g at the tip],
-/// beside a light tip. Counterweights leave little weight, so that the tip stays where it is put.
+/// Draws an arm of two rods and rotors that its driver does not know. Each has 1/3 to 3 times the
+/// mass for a PHANTOM's size [chosen: links of 60 and 50 g, rotors of 15 g at the tip]; the tip is
+/// light. Counterweights leave little weight, so that the tip stays in place.
 inline HiddenArm linked_arm(std::uint64_t seed) {
   HiddenArm arm = hidden_arm(seed);
   Random random(seed + 300);
@@ -31,7 +31,7 @@ inline HiddenArm linked_arm(std::uint64_t seed) {
   links.inertia[1] += links.yaw_b;
   links.inertia[2] += links.yaw_c;
   links.coupling = mass_c * lb * lc / 2;
-  // A tenth of the friction, that at the end of either link.
+  // A tenth of the friction, at the end of either link.
   const double moment = 0.1 * arm.file.simulated.plant.coulomb / 9.80665;
   links.moment_b = random.uniform(-moment, moment) * lb;
   links.moment_c = random.uniform(-moment, moment) * lc;
@@ -41,8 +41,8 @@ inline HiddenArm linked_arm(std::uint64_t seed) {
   return arm;
 }
 
-/// Returns the tip's mass matrix of a simulated serial arm at joint angles q, kg, by the sums that
-/// device_sim::LinkSettings names.
+/// Returns the mass matrix at the tip of a simulated serial arm at joint angles q, kg, from the
+/// sums in device_sim::LinkSettings.
 inline Eigen::Matrix3d tip_masses(const scene::ArmFile& file, const Eigen::Vector3d& q) {
   const auto& links = file.simulated.links;
   const double sin_b = std::sin(q[1]), sin_c = std::sin(q[2]);

@@ -5,7 +5,7 @@
 
 namespace thimble::support {
 
-/// Returns whether tests shall run at full length (THIMBLE_LONG=1) or in their short form.
+/// Returns whether tests run at full length (THIMBLE_LONG=1) instead of in their short form.
 inline bool long_form() {
   const char* const asked = std::getenv("THIMBLE_LONG");
   return asked != nullptr && std::string_view(asked) == "1";

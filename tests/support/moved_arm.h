@@ -8,15 +8,15 @@
 
 namespace thimble::support {
 
-/// What a MovedArm is seen to do and was asked for, kept outside so that it outlives the device.
+/// State and inputs of a MovedArm, stored outside so that they outlive the device.
 struct Moved {
-  Eigen::Vector3d p_BT{0, 0, 0};  ///< Where its tip is, m.
+  Eigen::Vector3d p_BT{0, 0, 0};  ///< Position of the tip, m.
   std::uint16_t buttons = 0;
-  Eigen::Vector3d f_T_B{0, 0, 0};  ///< Force that it took last, N.
+  Eigen::Vector3d f_T_B{0, 0, 0};  ///< Last force received, N.
   int messages = 0;
 };
 
-/// The link to an arm whose tip is where the test puts it, and which takes every force.
+/// The link to an arm whose tip is where the test places it, and which accepts every force.
 class MovedArm final : public driver::ArmLink {
  public:
   explicit MovedArm(Moved& moved) noexcept : moved_(moved) {}
@@ -25,7 +25,7 @@ class MovedArm final : public driver::ArmLink {
   driver::LinkRead read(driver::ArmSample& sample, std::int64_t) noexcept override {
     sample.pose.p_BT = moved_.p_BT;
     sample.buttons = moved_.buttons;
-    // A count for each micrometre, and the tremor of a hand.
+    // One count per micrometre, and the tremor of a hand.
     tremor_ = (tremor_ + 1) % 7;
     for (std::size_t i = 0; i < 3; ++i) {
       sample.counts[i] =
@@ -47,7 +47,7 @@ class MovedArm final : public driver::ArmLink {
   std::int32_t tremor_ = 0;
 };
 
-/// Returns settings of an arm of 5 N and 3 m/s at the world's origin.
+/// Returns settings of an arm with 5 N and 3 m/s at the world's origin.
 inline driver::DeviceSettings moved_settings() {
   driver::DeviceSettings settings;
   settings.limits = {.force_max = 5,

@@ -20,8 +20,8 @@ inline std::vector<std::byte> any_bytes(Random& random, std::size_t size) {
   return bytes;
 }
 
-/// Damages bytes as a bad cable would: one to four times a flipped bit, a byte lost, doubled,
-/// changed, or the end cut off.
+/// Damages bytes like a bad cable: one to four times, a bit is flipped, a byte is lost, doubled or
+/// changed, or the end is cut off.
 inline std::vector<std::byte> damaged(Random& random, std::vector<std::byte> bytes) {
   for (std::uint64_t k = 0; k <= (random.bits() >> 62); ++k) {
     if (bytes.empty()) {

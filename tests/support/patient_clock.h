@@ -9,9 +9,9 @@
 
 namespace thimble::support {
 
-/// Time that passes only while the loop sleeps, `pace` times as long in the time of the world: a
-/// busy machine makes no tick late, and what lives in other threads still gets its turn. Any thread
-/// may read it, one sleeps by it.
+/// Time that passes only while the loop sleeps, `pace` times as long in real time. A busy machine
+/// delays no tick, and other threads still get their turn. Any thread may read it; one thread
+/// sleeps by it.
 class PatientClock final : public driver::Clock {
  public:
   explicit PatientClock(double pace = 1) noexcept : pace_(pace) {}

@@ -10,26 +10,26 @@
 
 namespace thimble::support {
 
-/// A physical value that the program is compared with, as a row of tests/acceptance/PHYSICS.md.
+/// A physical value to compare with the program, as a row of tests/acceptance/PHYSICS.md.
 struct PhysicalValue {
   std::string component;  ///< Such as "rigid body".
-  std::string quantity;   ///< What was measured, in which situation.
+  std::string quantity;   ///< The measured quantity and the situation.
   std::string law;        ///< The closed form.
-  std::string unit;       ///< Of the value; "1" if it has none.
-  double truth = 0;       ///< By the closed form.
-  double bound = 0;       ///< Largest error, as a share of `scale`.
-  double scale = 0;       ///< What the error is a share of; 0: the size of `truth`.
+  std::string unit;       ///< Unit of the value; "1" if it has none.
+  double truth = 0;       ///< Value of the closed form.
+  double bound = 0;       ///< Largest allowed error, relative to `scale`.
+  double scale = 0;       ///< Scale of the error; 0: the magnitude of `truth`.
 };
 
-/// Compares a measured value with its closed form, and notes both for the table of physical values:
-/// prints one line
+/// Compares a measured value with its closed form, and records both for the table of physical
+/// values. Prints one line
 ///
 ///     PHYSICS|component|quantity|law|unit|truth|measured|error|bound|Suite.Test|file
 ///
-/// and appends it to the file of the test's name in the folder that the environment variable
-/// THIMBLE_PHYSICS names, if it does; a test's first line replaces those of an earlier run. The
-/// test fails where the error is above the bound. No text may contain a bar. The test must be in a
-/// suite Physics* of a program marked PHYSICS, or the table does not contain it.
+/// and appends it to the file with the test's name in the folder in the environment variable
+/// THIMBLE_PHYSICS, if it is set. A test's first line replaces those of an earlier run. The test
+/// fails if the error is above the bound. No text may contain a bar. The test must be in a suite
+/// Physics* of a program marked PHYSICS, or the table does not contain it.
 inline void expect_physics(const PhysicalValue& value, double measured) {
   const double scale = value.scale > 0 ? value.scale : std::abs(value.truth);
   const double error = std::abs(measured - value.truth) / scale;
@@ -50,7 +50,7 @@ inline void expect_physics(const PhysicalValue& value, double measured) {
   static std::string last_test;
   const bool first = last_test != name;
   last_test = name;
-  std::error_code failed;  // then the file cannot be opened, and the table misses the line
+  std::error_code failed;  // On failure the file cannot be opened, and the table lacks the line.
   std::filesystem::create_directories(folder, failed);
   const std::filesystem::path lines = std::filesystem::path(folder) / name;
   if (std::FILE* const out = std::fopen(lines.c_str(), first ? "w" : "a"); out != nullptr) {

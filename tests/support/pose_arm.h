@@ -10,24 +10,24 @@
 
 namespace thimble::support {
 
-/// An arm that gives poses and takes forces, as one behind a vendor's library does: a mass on a
-/// hand that wants to be somewhere. It measures its own velocity, its stylus is turned, and it has
-/// a gripper; of joints and motors nobody knows. Frame B: its base.
+/// An arm that reports poses and accepts forces, like one behind a vendor's library: a mass on a
+/// hand with a target. It measures its own velocity, its stylus is turned, and it has a gripper.
+/// Joints and motors are unknown. Frame B: its base.
 struct PoseArm {
   double mass = 0.1, stiffness = 300, damping = 3;  ///< kg, N/m, N s/m
   Eigen::Vector3d p_BT{0, 0, 0}, v_BT{0, 0, 0};     ///< m, m/s
-  Eigen::Vector3d p_BH{0, 0, 0};                    ///< Where the hand wants to be, m.
-  Eigen::Vector3d f_T_B{0, 0, 0};                   ///< Force of the arm that stands, N.
+  Eigen::Vector3d p_BH{0, 0, 0};                    ///< Target of the hand, m.
+  Eigen::Vector3d f_T_B{0, 0, 0};                   ///< Current force of the arm, N.
   Eigen::Matrix3d R_BT = Eigen::Matrix3d::Identity();
   double gripper = 0.012;  ///< m
-  double strongest = 3;    ///< What the arm can do by itself, N.
+  double strongest = 3;    ///< Largest force of the arm, N.
   std::uint16_t buttons = 0;
   bool lost = false, silent = false, refuses = false, stuck = false;
-  bool says_still = false;               ///< Tells a velocity of zero whatever it does.
-  std::vector<Eigen::Vector3d> taken_B;  ///< Every force that it took, N.
+  bool says_still = false;               ///< Always reports a velocity of zero.
+  std::vector<Eigen::Vector3d> taken_B;  ///< Every force received, N.
   std::int64_t time_ns = 0;
 
-  /// Lets time pass.
+  /// Advances the time.
   void advance_to(std::int64_t now_ns) {
     constexpr std::int64_t kStep_ns = 50'000;
     for (; time_ns + kStep_ns <= now_ns; time_ns += kStep_ns) {

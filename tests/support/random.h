@@ -8,18 +8,19 @@
 
 namespace thimble::support {
 
-/// Draws numbers that are the same with every standard library: raw bits of the Mersenne twister,
+/// Draws numbers that are equal with every standard library: raw bits of the Mersenne twister,
 /// scaled here.
 class Random {
  public:
-  /// The random cases of a test, which have a number: fresh ones in the long form (seed_of).
+  /// Takes the number of a test's random cases. In the long form the cases are new in each run
+  /// (seed_of).
   explicit Random(int cases) : Random(seed_of(static_cast<std::uint64_t>(cases))) {}
-  /// Numbers that follow from this seed in every form.
+  /// Takes a seed; the numbers are the same in both forms.
   explicit Random(std::uint64_t seed) : bits_(seed) {}
 
   std::uint64_t bits() { return bits_(); }
 
-  /// Draws from [low, high).
+  /// Draws a number from [low, high).
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53;
   }

@@ -7,7 +7,8 @@
 
 namespace thimble::support {
 
-/// Mixes bits into one number, so that a test can store what a run felt [FNV-1a, 64 bit].
+/// Combines the bits of a run in one number, so that a test can store the result of a run [FNV-1a,
+/// 64 bit].
 class RunHash {
  public:
   template <class T>
@@ -17,7 +18,7 @@ class RunHash {
     for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3u;
   }
 
-  /// Adds everything a tick did but its timing on the wall clock.
+  /// Adds everything of a tick except its timing on the wall clock.
   void add(const driver::TickRecord& row) {
     add(row.tick);
     add(row.time_ns);

@@ -9,8 +9,8 @@
 
 namespace thimble::support {
 
-/// Returns a folder of this process alone, empty at first and gone at its end: tests run side by
-/// side.
+/// Returns a folder of this process only, because tests run in parallel. It is empty at first, and
+/// is removed at exit.
 inline const std::filesystem::path& scratch_folder() {
   struct Folder {
     std::filesystem::path path =

@@ -8,8 +8,8 @@
 
 namespace thimble::support {
 
-/// Returns the ticks of a run of 1 kHz as a test writes them: free, then in contact from tick
-/// `down` up to but not including `up`, deepest half-way, with a force as deep as it is.
+/// Returns the ticks of a scripted run at 1 kHz: free, then in contact from tick `down` up to but
+/// not including `up`. Depth and force are largest half-way.
 inline std::vector<driver::TickRecord> scripted_run(std::uint64_t ticks, std::uint64_t down,
                                                     std::uint64_t up) {
   std::vector<driver::TickRecord> run(ticks);
@@ -28,7 +28,7 @@ inline std::vector<driver::TickRecord> scripted_run(std::uint64_t ticks, std::ui
   return run;
 }
 
-/// Feeds a run to an observer, as a session does.
+/// Passes a run to an observer, as a session does.
 inline void feed(session::TickObserver& observer, const std::vector<driver::TickRecord>& run) {
   for (const driver::TickRecord& tick : run) observer.take(tick);
 }

@@ -15,15 +15,15 @@
 namespace thimble {
 namespace {
 
-/// What a test program in an environment of its own did: seeds that it took, and its output.
+/// Result of a test program in a separate environment: the seeds that it used, and its output.
 struct Child {
   std::array<std::uint64_t, 3> seeds{};
   std::string said;
   int exit_code = -1;
 };
 
-/// Takes the seeds of the cases 7, 8 and 7 in a process of its own, which sets these variables
-/// (null: unset) before.
+/// Returns the seeds of the cases 7, 8 and 7 in a separate process with these variables (null:
+/// unset).
 Child child(const char* long_form, const char* asked) {
   Child result;
   std::FILE* const seeds = std::tmpfile();
@@ -76,7 +76,7 @@ TEST(SeedOf, IsTheFixedSeedInTheShortForm) {
   EXPECT_EQ(found.said, "");
 }
 
-TEST(SeedOf, IsFreshInEachRunOfTheLongForm) {
+TEST(SeedOf, DiffersInEachRunOfTheLongForm) {
   const Child first = child("1", nullptr), second = child("1", nullptr);
   EXPECT_NE(first.seeds[0], 7u);
   EXPECT_NE(first.seeds[0], second.seeds[0]);
@@ -95,7 +95,7 @@ TEST(SeedOf, PrintsTheNumberThatRepeatsARun) {
   }
 }
 
-TEST(SeedOf, EndsTheProgramWhereTheNumberIsNone) {
+TEST(SeedOf, InvalidNumberEndsTheProgram) {
   for (const char* wrong : {"seven", "7 ", "-1", "0x7", "99999999999999999999"}) {
     const Child found = child("1", wrong);
     EXPECT_EQ(found.exit_code, 2) << wrong;
@@ -104,7 +104,7 @@ TEST(SeedOf, EndsTheProgramWhereTheNumberIsNone) {
   }
 }
 
-TEST(Random, TakesFreshCasesForANumberAndKeepsASeed) {
+TEST(Random, CaseNumberDrawsNewCasesAndSeedIsFixed) {
   EXPECT_EQ(support::Random(7).bits(), support::Random(support::seed_of(7)).bits());
   EXPECT_EQ(support::Random(std::uint64_t{7}).bits(), std::mt19937_64(7)());
 }

@@ -11,8 +11,7 @@
 
 namespace thimble::support {
 
-/// Opens a scene that comes with the program, on the virtual clock; fails the test if that cannot
-/// be done.
+/// Opens a shipped scene on the virtual clock; fails the test on error.
 inline std::unique_ptr<session::Session> open_shipped(const std::string& name,
                                                       const session::SessionOptions& options = {}) {
   auto opened = session::Session::open(

@@ -7,13 +7,13 @@
 
 namespace thimble::support {
 
-/// Returns the file of a scene that comes with the program.
+/// Returns the file of a shipped scene.
 inline std::filesystem::path scene_file(const std::string& name) {
   return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml");
 }
 
-/// Returns the names of all scenes that come with the program, sorted, but for `two_hands`, which
-/// needs several arms and a run of its own. `elephant` needs its scanned mesh.
+/// Returns the names of all shipped scenes, sorted, except `two_hands`, which needs several arms
+/// and a separate run. `elephant` needs its scanned mesh.
 inline std::vector<std::string> scenes_of_one_arm() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(

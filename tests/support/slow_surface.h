@@ -12,20 +12,20 @@
 
 namespace thimble::support {
 
-/// A surface in closed form that stands in for a slow simulation: a plane, ball or bowl whose
-/// force is k d, or grows more or less than with the depth d.
+/// A surface in closed form that replaces a slow simulation: a plane, ball or bowl. Its force is k
+/// d, or grows faster or slower than the depth d.
 struct SlowSurface {
   enum class Shape { kPlane, kBall, kBowl };
   enum class Feel { kEven, kStiffening, kSoftening };
   Shape shape = Shape::kPlane;
   Feel feel = Feel::kEven;
-  double stiffness = 800;  ///< N/m, the largest that is met (up to 3 mm deep).
-  double radius = 0.03;    ///< m, of ball and bowl
+  double stiffness = 800;  ///< Largest stiffness up to a depth of 3 mm, N/m.
+  double radius = 0.03;    ///< Of ball and bowl, m.
   double damping = 0;      ///< N s/m
-  /// Its topmost point, or the bowl's lowest; the free side is +z there.
+  /// Its highest point, or the bowl's lowest; the free side is +z there.
   Eigen::Vector3d p_WS{0, 0, 0};
 
-  /// Finds depth (below 0 outside) and normal.
+  /// Computes depth (below 0 outside) and normal.
   double depth(const Eigen::Vector3d& p_WT, Eigen::Vector3d& n_W) const {
     n_W = Eigen::Vector3d::UnitZ();
     if (shape == Shape::kPlane) return p_WS.z() - p_WT.z();
@@ -60,18 +60,19 @@ struct SlowSurface {
     return 0;
   }
 
-  /// Finds what the tip feels near where it is, as a slow side would publish it.
+  /// Computes the local model near the tip, as a slow simulation would publish it.
   render::LocalModel model_at(const driver::DeviceState& state) const {
     render::LocalModel model;
     const double d = depth(state.p_WT, model.n_W);
     model.time_ns = state.time_ns;
     model.damping = damping;
     const double f = force(d);
-    // While the tip is free: the nearest point of the surface.
+    // While the tip is free: the closest point of the surface.
     model.p_WR = d > 0 ? state.p_WT : Eigen::Vector3d(state.p_WT + d * model.n_W);
     model.f_T_W = f * model.n_W;
     model.stiffness = slope(d) * model.n_W * model.n_W.transpose();
-    if (shape == Shape::kBowl) {  // the normal turns against the way; over a ball it turns with it
+    if (shape ==
+        Shape::kBowl) {  // The normal turns against the motion; over a ball it turns with it.
       model.stiffness += f / (radius - std::max(d, 0.0)) *
                          (Eigen::Matrix3d::Identity() - model.n_W * model.n_W.transpose());
     }
@@ -80,8 +81,8 @@ struct SlowSurface {
   }
 };
 
-/// A thread of 60 Hz in simulated time: looks at the tip, computes for a whole period,
-/// publishes, looks again. It may fall silent for a while.
+/// A thread of 60 Hz in simulated time: reads the tip, computes for a whole period, publishes,
+/// repeats. It can stop for a while.
 class SlowSide {
  public:
   explicit SlowSide(const SlowSurface& felt, double phase = 0) : surface(felt) {
@@ -107,7 +108,7 @@ class SlowSide {
   std::int64_t silent_from_ns = 0, silent_to_ns = 0;
   std::optional<render::LocalModel> published;
   int refused = 0;
-  bool fresh = false;  ///< Set when a model is published; for whoever counts.
+  bool fresh = false;  ///< Set when a model is published, for counting.
 
  private:
   std::int64_t next_ns_;

@@ -8,8 +8,8 @@
 
 namespace thimble::support {
 
-/// A free point mass in simulated time that touches one object, with a hand's spring and damper
-/// or none: positions are ideal, forces are held over a tick.
+/// A free point mass in simulated time that touches one object, with or without the spring and
+/// damper of a hand. Positions are ideal; forces are held for a tick.
 struct Stylus {
   double mass = 0.1;  ///< kg
   double step = 1e-3;
@@ -28,7 +28,7 @@ struct Stylus {
     return now;
   }
 
-  /// Moves on by one tick against `object` and gives what it felt.
+  /// Advances by one tick against `object`; returns its force.
   driver::ForceCommand follow(render::ObjectTouch& object) {
     const driver::ForceCommand command = object.update(state());
     ++tick;

@@ -10,7 +10,7 @@
 
 namespace thimble::support {
 
-/// Answers an effect's questions from a map in the test, and gathers what it refuses.
+/// Returns settings of an effect from a map in the test, and collects its errors.
 class VariantSettings final : public render::SettingsReader {
  public:
   using Value = std::variant<double, Eigen::Vector3d, std::string>;

@@ -8,8 +8,8 @@
 
 namespace thimble::support {
 
-/// The vintage PHANTOM refit in code (app/arms/vintage_phantom.yaml holds the same with its
-/// sources), so that tests of the lower rooms need no file.
+/// The refitted vintage PHANTOM in code, so that tests of the lower layers need no file. The file
+/// app/arms/vintage_phantom.yaml has the same values with their sources.
 inline driver::JointModel<driver::SerialArm> vintage_model() {
   driver::JointModel<driver::SerialArm> model;
   model.geometry = {.height = 0, .length_b = 0.138, .length_c = 0.112};
@@ -24,7 +24,7 @@ inline driver::JointModel<driver::SerialArm> vintage_model() {
   return model;
 }
 
-/// The arm's home pose: upper link level, lower link hanging.
+/// Returns the arm's home pose: upper link level, lower link hanging.
 inline Eigen::Vector3d vintage_home() {
   return {0, std::numbers::pi / 2, 0};
 }

@@ -8,10 +8,10 @@
 
 namespace thimble::support {
 
-// Laws of [PHYSICS 1.2, 1.4 and 1.5] that simulated walls are compared with; letters as in
+// Laws of [PHYSICS 1.2, 1.4 and 1.5] for comparison with simulated walls; symbols as in
 // stability/stability_laws.h.
 
-/// Returns the least viscous friction of a device, N s/m, with which a wall is passive to any
+/// Returns the smallest viscous friction of a device, N s/m, with which a wall is passive for any
 /// passive hand: max over angles of (K T / 2) sin((d + 1/2) a) / sin(a / 2) - B cos((1 + d) a)
 /// [PHYSICS 1.2].
 inline double passive_damping(double stiffness, double damping, double period, double delay = 0) {
@@ -26,7 +26,7 @@ inline double passive_damping(double stiffness, double damping, double period, d
   return most;
 }
 
-/// What a wall does after a start from anywhere [PHYSICS 1.4, Diolaiti et al.].
+/// Response of a wall after any start [PHYSICS 1.4, Diolaiti et al.].
 enum class WallRegion {
   kComesToRest,             ///< From every start.
   kFlickers,                ///< Ends in a limit cycle of a few encoder counts.
@@ -35,14 +35,14 @@ enum class WallRegion {
   kGrows,                   ///< Flickers, then grows.
 };
 
-/// The place of a wall in the map of [PHYSICS 1.4]: beta = b / (K T), sigma = c / (K d).
+/// Position of a wall in the map of [PHYSICS 1.4]: beta = b / (K T), sigma = c / (K d).
 struct WallPlace {
   double beta = 0;
   double sigma = 0;
   double delay_periods = 0;
 };
 
-/// Returns where a wall lies. Without encoder steps sigma is infinite.
+/// Returns the position of a wall in the map. Without encoder steps sigma is infinite.
 inline WallPlace place_of_wall(double stiffness, double viscous, double coulomb,
                                double encoder_step, double period, double delay = 0) {
   return {.beta = viscous / (stiffness * period),
@@ -51,7 +51,8 @@ inline WallPlace place_of_wall(double stiffness, double viscous, double coulomb,
           .delay_periods = delay / period};
 }
 
-/// Returns what a wall at this place does; the corners lie at beta = 1/2 + d and sigma = 1/2.
+/// Returns the response of a wall at this position; the corners are at beta = 1/2 + d and sigma =
+/// 1/2.
 inline WallRegion region_of(const WallPlace& place) {
   const bool damped = place.beta > 0.5 + place.delay_periods;
   if (place.sigma > 0.5)
@@ -59,9 +60,9 @@ inline WallRegion region_of(const WallPlace& place) {
   return damped ? WallRegion::kFlickers : WallRegion::kGrows;
 }
 
-/// Returns the mean restitution of an impact of a free mass from the slowest root s of
-/// m s^2 + b s + K e^{-s L} = 0, as exp(pi Re s / Im s): what lateness does to the period of the
-/// oscillation is in it. For K L^2 / m up to 0.5; stability::restitution is 1 % off at 0.08.
+/// Returns the mean restitution of an impact of a free mass as exp(pi Re s / Im s), from the
+/// slowest root s of m s^2 + b s + K e^{-s L} = 0. It includes the effect of the latency on the
+/// period of the oscillation. For K L^2 / m up to 0.5; stability::restitution is 1 % off at 0.08.
 inline double late_restitution(double stiffness, double damping, double mass, double latency) {
   std::complex<double> s(0, std::sqrt(stiffness / mass));
   for (int i = 0; i < 50; ++i) {

@@ -10,23 +10,23 @@
 
 namespace thimble::support {
 
-/// A sampled wall in one dimension: the plant's exact map, an encoder, a late and held force.
+/// A sampled wall in one dimension: the plant's exact map, an encoder, a delayed and held force.
 /// Free space is x > 0, and the wall's force is positive.
 struct Wall {
   device_sim::PlantSettings plant{.mass = 0.075, .viscous = 0.005, .coulomb = 0};
   device_sim::HandSettings hand{};
   double stiffness = 1000;     ///< N/m
-  double damping = 0;          ///< N s/m; of the wall, never pulls
+  double damping = 0;          ///< Of the wall, N s/m; never pulls.
   double encoder_step = 0;     ///< m; 0: none
   double velocity_corner = 0;  ///< Pole of the velocity estimate, Hz; 0: none.
   std::int64_t period_ns = 1'000'000;
   std::int64_t delay_ns = 0;
-  bool two_sided = false;  ///< Pulls on its far side as well, and sticks to the tip.
+  bool two_sided = false;  ///< Also pulls on its far side, and sticks to the tip.
   double pull = 0;         ///< Constant force of the hand, N.
 };
 
 /// Runs one wall tick by tick. A Gate is called as `double gate(requested, x_read, v, dt)` and
-/// answers with the force that goes to the motor.
+/// returns the force that goes to the motor.
 class WallRig {
  public:
   explicit WallRig(const Wall& wall)
@@ -41,12 +41,12 @@ class WallRig {
   }
 
   device_sim::AxisState state;
-  double anchor = 0;  ///< Where the hand wants to be, m.
+  double anchor = 0;  ///< Target of the hand, m.
 
-  /// Lets time pass without a tick.
+  /// Advances the time without a tick.
   void drift(std::int64_t ns) { move(0, ns); }
 
-  /// Reads, asks the wall, lets a period pass. Returns the force that was sent.
+  /// Reads, computes the wall, advances by one period. Returns the sent force.
   double tick() {
     return tick([](double requested, double, double, double) { return requested; });
   }
@@ -77,9 +77,9 @@ class WallRig {
     return sent;
   }
 
-  /// Returns the way since the tick before, as read.
+  /// Returns the motion since the previous tick, as read.
   double way() const { return x_read_ - x_before_; }
-  /// Returns the work that the motor truly did on the tip, J.
+  /// Returns the true work of the motor on the tip, J.
   double work() const { return work_; }
   double velocity() const { return velocity_; }
 

@@ -34,13 +34,13 @@ th:first-child,td:first-child{text-align:left}tr.default td{font-weight:700}
 summary{cursor:pointer;margin:.6rem 0}nav a{margin-right:.9rem;white-space:nowrap}a{color:#005a8c}
 </style></head><body>
 <h1>What accuracy costs in time</h1>
-<p>Each diagram turns one knob: how wrong the result is, and what it costs. The truth is named below each diagram: a
-closed form, a computation that shares no code with the product, or the product itself without the error of the knob. Lower is truer, farther left is cheaper. Where a diagram is shaded, below the dashed line, nobody can feel the difference.
-The ring marks what Thimble does unless told otherwise, or, where the arm brings the knob's value and nobody chooses it,
-where a PHANTOM-like arm stands.</p>
-<p class="small">Times are medians of this machine, in turn with each other, of the processor time of the work alone,
-with half the distance between the quartiles. Instructions are counted by callgrind and are the same on every machine
-that runs the same binary; they decide what is cheaper. Errors are the same bits in every run.</p>
+<p>Each diagram varies one parameter and shows the error of the result and its cost. The text below each diagram names the
+reference: a closed form, a computation that shares no code with the product, or the product without that error. Lower is
+more accurate, farther left is cheaper. In the shaded area below the dashed line the error cannot be felt. The ring marks the
+default of Thimble. If the arm determines the parameter, the ring marks a PHANTOM-like arm.</p>
+<p class="small">Times are medians of processor time on this machine, measured in turn, with half the distance between the
+quartiles. Instructions are counted by callgrind. They are the same on every machine that runs the same binary, and decide
+which point is cheaper. Errors are bit-identical in every run.</p>
 )";
 
 std::string cell(const std::string& text) {
@@ -67,7 +67,7 @@ void add_table(const MeasuredAxis& axis, std::ostringstream& page) {
        << report::html_text(a.knob_unit) << "</th><th>" << report::html_text(a.unit)
        << "</th><th>ns " << (a.cost_is_added ? "more " : "") << "per " << a.per
        << "</th><th>&plusmn;</th><th>instructions</th>"
-       << "<th>best bargain</th></tr>\n";
+       << "<th>Pareto front</th></tr>\n";
   for (const MeasuredLine& line : axis.lines) {
     for (const MeasuredPoint& point : line.points) {
       page << "<tr" << (point.point->is_default ? " class=\"default\"" : "") << '>'
@@ -88,8 +88,8 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
                                          const std::filesystem::path& folder) {
   std::ostringstream page;
   page << kHead;
-  add_contents(sections, false, "What can be chosen:", page);
-  add_contents(sections, true, "What the arm brings:", page);
+  add_contents(sections, false, "Parameters to choose:", page);
+  add_contents(sections, true, "Parameters of the arm:", page);
   for (const AxisSection& section : sections) {
     const MeasuredAxis& axis = *section.axis;
     const AccuracyAxis& a = axis.axis;
@@ -103,13 +103,13 @@ driver::Result<void> write_accuracy_page(const std::vector<AxisSection>& section
     if (const std::string orders = order_sentence(axis); !orders.empty()) {
       page << "<p>" << report::html_text(orders) << "</p>\n";
     }
-    page << "<p class=\"small\">Truth: " << report::html_text(a.truth)
-         << " Left out: " << report::html_text(a.left_out) << "</p>\n";
+    page << "<p class=\"small\">Reference: " << report::html_text(a.truth)
+         << " Not shown: " << report::html_text(a.left_out) << "</p>\n";
     add_table(axis, page);
   }
   const scene::BuildInfo build = scene::build_info();
-  page << "<p><a href=\"runs/index.html\">One touch at each quality</a>: what the knobs come to "
-          "together, to be looked at.</p>\n";
+  page << "<p><a href=\"runs/index.html\">One touch at each quality</a>: a recorded run "
+          "for each, in which all parameters act together.</p>\n";
   page << "<p class=\"small\">thimble " << build.version << ", " << build.type << ", "
        << build.compiler << ".</p>\n</body></html>\n";
   return report::write_text(page.str(), folder / "index.html");

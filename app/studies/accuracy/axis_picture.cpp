@@ -28,11 +28,11 @@ const char* words_for(View view) {
     case View::kErrorOverCost:
       return "error over cost";
     case View::kErrorOverKnob:
-      return "error over the setting";
+      return "error over the parameter";
     case View::kCostOverKnob:
       break;
   }
-  return "cost over the setting";
+  return "cost over the parameter";
 }
 
 // Returns a unit as written on pictures.
@@ -234,7 +234,7 @@ report::Plot plot_of(const MeasuredAxis& axis, View view) {
           << mark << " title " << title;
     if (laws) {
       law_plots << ", " << data << " using 1:3 with lines lw 4 dt '.' lc rgb '" << report::kInk
-                << (law_named ? "' notitle" : "' title 'what the published law tells'");
+                << (law_named ? "' notitle" : "' title 'published law'");
       law_named = true;
     }
   }
@@ -286,12 +286,11 @@ report::Plot plot_of(const MeasuredAxis& axis, View view) {
          << "' fillstyle solid noborder\n";
     plots << ", " << report::number(*a.threshold) << " with lines dt '-' lw 1.5 lc rgb '"
           << report::kFaintInk << "' title "
-          << report::quote("not felt below: " + a.threshold_words);
+          << report::quote("not noticeable below: " + a.threshold_words);
   }
   if (floored) {
-    text << "set label 2 'none and rounding are drawn at the lower edge' at graph 0.99, graph 0.03 "
-            "right font "
-            "',12' tc rgb '"
+    text << "set label 2 'errors of zero and of rounding are drawn at the lower edge' at "
+            "graph 0.99, graph 0.03 right font ',12' tc rgb '"
          << report::kFaintInk << "'\n";
   }
   text << "plot " << plots.str().substr(2) << '\n';

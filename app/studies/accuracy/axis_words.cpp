@@ -44,9 +44,8 @@ std::string coarsest_sentence(const MeasuredAxis& axis) {
     text.append(text.empty() ? "" : "; ").append(name_of(axis, *coarsest));
   }
   const std::string threshold = with_unit(*axis.axis.threshold, axis.axis.unit);
-  if (text.empty()) return "No point here is below what can be felt (" + threshold + ").";
-  return "More accuracy can no longer be felt beyond these, the coarsest below " + threshold +
-         ": " + text + ".";
+  if (text.empty()) return "Every point can be felt (threshold: " + threshold + ").";
+  return "More accuracy cannot be felt. Coarsest points below " + threshold + ": " + text + ".";
 }
 
 }  // namespace
@@ -75,13 +74,13 @@ std::string felt_sentence(const MeasuredAxis& axis) {
   if (!axis.axis.over_cost) return coarsest_sentence(axis);
   const MeasuredPoint* enough = axis.enough();
   if (enough == nullptr) {
-    return "No point here is below what can be felt (" + threshold + ").";
+    return "Every point can be felt (threshold: " + threshold + ").";
   }
-  std::string text = "More accuracy can no longer be felt beyond ";
+  std::string text = "More accuracy cannot be felt beyond ";
   text.append(name_of(axis, *enough)).append(": ");
   text.append(with_unit(enough->error, axis.axis.unit)).append(" for ");
   text.append(cost_words(axis, *enough))
-      .append(", the cheapest below ")
+      .append(", the cheapest point below ")
       .append(threshold)
       .append(".");
   return text;
@@ -91,17 +90,20 @@ std::string default_sentence(const MeasuredAxis& axis) {
   const MeasuredPoint* point = axis.default_point();
   if (point == nullptr) return "The product has no default here. " + axis.axis.default_words;
   if (axis.axis.given) {
-    return "No choice of a program: " + axis.axis.default_words + " A PHANTOM-like arm stands at " +
-           name_of(axis, *point) + ": " + with_unit(point->error, axis.axis.unit) + ".";
+    return "The arm determines this value: " + axis.axis.default_words +
+           " A PHANTOM-like arm is at " + name_of(axis, *point) + ": " +
+           with_unit(point->error, axis.axis.unit) + ".";
   }
   std::string text = "The default is ";
   text.append(name_of(axis, *point)).append(": ");
   text.append(point->diverged ? std::string("diverged") : with_unit(point->error, axis.axis.unit));
   text.append(" for ").append(cost_words(axis, *point)).append(". ");
   if (point->on_front) {
-    text.append("No other point is both cheaper and better.");
+    text.append("No other point is both cheaper and more accurate.");
   } else {
-    text.append("Other points are cheaper or better. Why it is the default all the same: ");
+    text.append(
+        "Another point is cheaper or more accurate without a disadvantage. Reason for "
+        "the default: ");
     text.append(axis.axis.default_words);
   }
   return text;
@@ -111,15 +113,15 @@ std::string order_sentence(const MeasuredAxis& axis) {
   std::string text;
   for (const MeasuredLine& line : axis.lines) {
     if (line.line->exact) {
-      text.append(text.empty() ? "" : "; ").append(line.line->title).append(" no more than ");
-      text.append(with_unit(largest_error(line), axis.axis.unit)).append(" off, which is rounding");
+      text.append(text.empty() ? "" : "; ").append(line.line->title).append(" at most ");
+      text.append(with_unit(largest_error(line), axis.axis.unit)).append(" off (rounding)");
     }
     if (!line.line->order || !line.slope) continue;
     const std::string numbers =
         fmt::format(" {:.2f} (theory {:g})", *line.slope, *line.line->order);
     text.append(text.empty() ? "" : "; ").append(line.line->title).append(numbers);
   }
-  return text.empty() ? text : "Slopes of error over the knob: " + text + ".";
+  return text.empty() ? text : "Slopes of error over the parameter: " + text + ".";
 }
 
 std::vector<session::Figure> figures_of(const MeasuredAxis& axis) {

@@ -35,7 +35,7 @@ driver::Result<std::vector<const AxisMaker*>> named_axes(const std::vector<std::
       if (std::count(names.begin(), names.end(), name) == 1) continue;
       return driver::Error{"--axis: " + name + " is named twice; name each axis once."};
     }
-    std::string message = "--axis: " + name + " is no axis";
+    std::string message = "--axis: " + name + " is not an axis";
     if (const auto near = scene::nearest_word(name, known)) {
       message += "; did you mean " + *near + "?";
     }
@@ -94,7 +94,8 @@ class AxisSweep {
         if (!(*journal)->add(i, numbers[i])) return unwritable();
       }
       if (options.count && !axis->lines.front().points.front().instructions) {
-        scene::logger().warn("Instructions are not counted: valgrind is not installed, or failed.");
+        scene::logger().warn(
+            "Instructions are not counted: valgrind is not installed, or it failed.");
         options.count = false;
       }
       measured.push_back(std::move(axis));
@@ -106,11 +107,11 @@ class AxisSweep {
  private:
   driver::Error damaged() const {
     return {(choice_.folder / "accuracy.journal").string() +
-            " does not fit to the axes; leave out --resume to begin again."};
+            " belongs to other axes. Remove --resume to start again."};
   }
   driver::Error unwritable() const {
     return {"The journal " + (choice_.folder / "accuracy.journal").string() +
-            " cannot be written: check that the disk has room."};
+            " cannot be written. Check that the disk has room."};
   }
 
   const AccuracyChoice& choice_;
@@ -124,12 +125,12 @@ driver::Result<void> write_runs(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, status);
   RunPages pages(folder, "One touch at each quality",
                  "The first three seconds of the scene rubber, as `thimble run rubber --quality "
-                 "...` runs it: each quality is a point on every diagram of the study.");
+                 "...` runs it. Each quality is a point on every diagram of the study.");
   const auto scene = scene::find_scene("rubber");
   const std::array<std::pair<scene::Quality, const char*>, 3> qualities{
-      {{scene::Quality::kDraft, "the cheapest that still behaves"},
+      {{scene::Quality::kDraft, "the cheapest settings that stay stable"},
        {scene::Quality::kNormal, "as the scene says"},
-       {scene::Quality::kReference, "beyond what can be felt"}}};
+       {scene::Quality::kReference, "more accurate than can be felt"}}};
   for (const auto& [quality, words] : qualities) {
     if (!scene) break;  // a separate build without the shipped scenes: the list is empty
     session::SessionOptions options;

@@ -160,7 +160,7 @@ driver::Result<void> draw(const std::vector<Cost>& costs, const Cost& bare,
     const double ns = cost.median_ns();
     if (cost.subject->kind == CostSubject::Kind::kContact) {
       ways.push_back({cost.subject->name, ns,
-                      rounded(ns, 0).append(" ns,  force wrong by ") +
+                      rounded(ns, 0).append(" ns,  force error ") +
                           rounded(100 * cost.error, cost.error < 0.02 ? 2 : 1).append(" %")});
     } else {
       const double added = ns - bare.median_ns();
@@ -171,10 +171,10 @@ driver::Result<void> draw(const std::vector<Cost>& costs, const Cost& bare,
   }
   const report::Plot plots[] = {
       bar_plot("cost_of_contact",
-               "What a tick on a ring of 4,096 triangles costs, and how wrong its force is (RMS)",
+               "Cost of a tick on a ring of 4,096 triangles, and its force error (RMS)",
                "ns per tick", ways),
       bar_plot("cost_of_effects",
-               "What each effect adds to a tick, and the force that is missing without it (RMS)",
+               "Cost that each effect adds to a tick, and the force missing without it (RMS)",
                "ns added per tick", effects)};
   for (const report::Plot& plot : plots) {
     if (auto drawn = report::draw_plot(plot, folder); !drawn) return drawn.error();
@@ -219,7 +219,7 @@ void count_all(std::vector<Cost>& costs) {
     bar.show(done++);
     cost.instructions = instructions_per_tick(cost.subject->name);
     if (cost.instructions) continue;
-    scene::logger().warn("Instructions are not counted: valgrind is not installed, or failed.");
+    scene::logger().warn("Instructions are not counted: valgrind is not installed, or it failed.");
     return;
   }
 }

@@ -17,8 +17,9 @@ namespace {
 /// Returns a short text about the state at rest.
 std::string verdict(const FrictionMeasures& found) {
   if (found.rest_force < 0.001) {
-    return found.rest_held >= 0.01 ? fmt::format("at rest: silent, holds {:.2f} N", found.rest_held)
-                                   : "at rest: silent, but holds nothing";
+    return found.rest_held >= 0.01
+               ? fmt::format("at rest: no oscillation, holds {:.2f} N", found.rest_held)
+               : "at rest: no oscillation, but no force either";
   }
   return fmt::format("at rest: limit cycle of {:.2f} N and {:.1f} µm RMS at {:.0f} Hz",
                      found.rest_force, 1e6 * found.rest_way, found.rest_frequency);
@@ -78,20 +79,20 @@ driver::Result<void> draw_friction(const FrictionCase& which, const FrictionMeas
     << panel(0.075, 0.56, 0.53, 0.86)
     << "set xrange [-0.2:0.4]\nset yrange [-1:12]\nset ytics 5\nset xtics 0.1\nset format x ''\n"
     << "set key bottom right samplen 2 textcolor rgb " << ink << "\n"
-    << "set ylabel 'place [mm]' textcolor rgb " << ink << "\n"
+    << "set ylabel 'position [mm]' textcolor rgb " << ink << "\n"
     << "plot '" << stop << "' using 1:2 with lines lw 2 lc rgb '" << report::kFaintInk
-    << "' title 'where the hand wants the tip', '' using 1:3 with lines lw 2 lc rgb '"
-    << report::kDepthInk << "' title 'the tip'\n"
+    << "' title 'target of the hand', '' using 1:3 with lines lw 2 lc rgb '" << report::kDepthInk
+    << "' title 'tip'\n"
     << "unset label 1\nunset label 2\nunset label 3\nunset key\n"
     << panel(0.075, 0.56, 0.11, 0.48) << "set yrange [-0.7:0.7]\nset ytics 0.5\nset format x '%g'\n"
-    << "set xlabel 'time from the hand''s stop [s]' textcolor rgb " << ink << "\n"
+    << "set xlabel 'time after the stop [s]' textcolor rgb " << ink << "\n"
     << "set ylabel 'force on the hand [N]'\n"
     << "plot '" << stop << "' using 1:4 with lines lw 1.5 lc rgb '" << report::kForceInk
     << "' notitle\n"
     << "unset arrow 1\n"
     << panel(0.645, 0.975, 0.53, 0.86)
     << "set xrange [1:1.2]\nset yrange [-60:60]\nset ytics 20\nset xtics 0.05\n"
-    << "set xlabel 'time from the hand''s stop [s]'\nset ylabel 'tip above 50 Hz [µm]'\n"
+    << "set xlabel 'time after the stop [s]'\nset ylabel 'tip above 50 Hz [µm]'\n"
     << "plot '" << stop << "' using 1:5 with lines lw 1.5 lc rgb '" << report::kDepthInk
     << "' notitle\n"
     << panel(0.645, 0.975, 0.11, 0.40)
@@ -99,8 +100,7 @@ driver::Result<void> draw_friction(const FrictionCase& which, const FrictionMeas
     << "set xlabel 'frequency [Hz]'\n"
     << "set ylabel 'force at rest [N]'\n";
   if (found.rest_force < 0.001) {
-    c << "set label 4 'nothing: the force is at rest' at graph 0.5, graph 0.5 center textcolor "
-         "rgb '"
+    c << "set label 4 'no oscillation' at graph 0.5, graph 0.5 center textcolor rgb '"
       << report::kFaintInk << "'\n";
   }
   c << "plot '" << lines << "' using 1:2 with impulses lw 1.5 lc rgb '" << report::kForceInk
@@ -115,7 +115,8 @@ driver::Result<void> draw_friction_overview(const std::vector<FrictionMeasures>&
   constexpr int kRows = 3;
   std::ostringstream c;
   c << report::quiet_style() << "set multiplot\n"
-    << "set label 1 'Friction after the hand has stopped: 0.5 N, encoder of 0.03 mm, 1 kHz'"
+    << "set label 1 'Friction after the hand stops: 0.5 N, encoder step 0.03 mm, 1 "
+       "kHz'"
     << " at screen 0.065, screen 0.96 font ',22' textcolor rgb '" << report::kInk << "'\n"
     << "set xrange [-0.1:0.3]\nset yrange [-0.7:0.7]\nset ytics 0.5\nset xtics 0, 0.1\n"
     << "set arrow 1 from 0, graph 0 to 0, graph 1 nohead lc rgb '" << report::kFaintInk
@@ -130,17 +131,17 @@ driver::Result<void> draw_friction_overview(const std::vector<FrictionMeasures>&
     const char* const color = oscillates ? report::kDepthInk
                               : holds    ? report::kForceInk
                                          : report::kFaintInk;
-    std::string text = "silent at last, but holds nothing";
+    std::string text = "comes to rest, but holds no force";
     if (oscillates) {
       text = fmt::format("limit cycle: {:.2f} N, {:.1f} µm", found[i].rest_force,
                          1e6 * found[i].rest_way);
     } else if (holds) {
-      text = fmt::format("silent, holds {:.2f} N", found[i].rest_held);
+      text = fmt::format("no oscillation, holds {:.2f} N", found[i].rest_held);
     }
     c << panel(left, left + 0.2, top - 0.19, top) << "set format x "
       << (row == kRows - 1 ? "'%g'" : "''") << "\nset format y " << (column == 0 ? "'%g'" : "''")
       << "\n"
-      << (row == kRows - 1 ? "set xlabel 'time from the stop [s]' offset 0,0.3 textcolor rgb '" +
+      << (row == kRows - 1 ? "set xlabel 'time after the stop [s]' offset 0,0.3 textcolor rgb '" +
                                  std::string(report::kInk) + "'\n"
                            : "unset xlabel\n")
       << (column == 0 ? "set ylabel 'force [N]' offset 1,0 textcolor rgb '" +

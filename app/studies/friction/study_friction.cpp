@@ -113,13 +113,12 @@ driver::Result<std::vector<session::Figure>> study_friction(const std::filesyste
       "friction,delay_ticks,rest_force_N,rest_way_m,rest_frequency_Hz,rest_held_N,creep_force_N,"
       "creep_mean_N,slow_mean_N,tremor_force_N\n";
   scene::print_format(
-      "Friction of 0.5 N under 1 N from the wire up: vintage arm, encoder cut to 0.03 mm, 1 kHz, "
-      "pinch grip.\nForces N and ways um are RMS above 50 Hz; stop from 50 mm/s, creep at 1 mm/s, "
-      "slow at 5 mm/s,\ntremor of 300 um.\n\n"
-      "                                    after a stop                  creep    mean   slow    "
-      "tremor\n"
-      "    friction                          force    path    Hz   held     force   mean   mean    "
-      " force\n");
+      "Friction of 0.5 N under a load of 1 N, through the wire: vintage arm, encoder "
+      "step 0.03 mm, 1 kHz, pinch grip.\nForces (N) and paths (um) are RMS above 50 "
+      "Hz; stop from 50 mm/s, creep at 1 mm/s, slow at 5 mm/s,\ntremor of 300 "
+      "um.\n\n                                    after a stop                  "
+      "creep    mean   slow    tremor\n    friction                          force   "
+      " path    Hz   held     force   mean   mean     force\n");
   for (const FrictionCase& which : friction_cases()) {
     for (int delay = 0; delay < kDelays; ++delay) {
       stability::FrictionRigSettings rig;
@@ -151,8 +150,8 @@ driver::Result<std::vector<session::Figure>> study_friction(const std::filesyste
   if (auto done = report::write_text(csv, folder / "friction.csv"); !done) return done.error();
   if (!report::has_gnuplot()) {
     scene::logger().warn(
-        "NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Table, CSV and figures "
-        "are complete.");
+        "NO PICTURES: gnuplot is not installed (apt install gnuplot-nox). Table, CSV "
+        "file and figures are complete.");
     return figures;
   }
   for (std::size_t i = 0; i < undelayed.size(); ++i) {

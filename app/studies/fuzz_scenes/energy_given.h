@@ -32,7 +32,7 @@ class EnergyGiven {
 inline constexpr double kLetGoWithoutStage = 2e-3;
 
 /// Returns the maximum energy (J) that motors behind a gate with this energy stage may add in any
-/// window. The stage's account starts at its reservoir at most (plus the energy of springs). It
+/// window. The stage's account starts no higher than its reservoir plus the energy of springs. It
 /// damps below -allowance, and at -(allowance + 2 onset) no force is left that could add more.
 inline double energy_let_go(const driver::EnergyGuardSettings& stage) {
   if (stage.stage != driver::EnergyStage::kPassivity) return kLetGoWithoutStage;

@@ -105,15 +105,15 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
   if (auto done = write_small_meshes(folder / "meshes"); !done) return done;
   order.resize(std::min(order.size(), kWorst));
   RunPages pages(folder, "The worst of the random scenes",
-                 "Each is a scene file to run by itself (thimble run FILE --view).");
+                 "Each is a scene file (thimble run FILE --view).");
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     const std::size_t cell = order[rank];
     const TroubleFound f = trouble_of(cells[cell]);
     const std::uint64_t drawn = try_seed(seed, cell, static_cast<int>(cells[cell].back()));
     const RandomScene scene = random_scene(drawn, limits);
     const std::string showed = fmt::format(
-        "showed a limit cycle of {:.3g} N, fault {:.0f}, {:.3g} of the arm's force; {:.3g} J given "
-        "in one window, {:.3g} allowed.",
+        "limit cycle {:.3g} N, fault {:.0f}, {:.3g} times the arm's maximum force; "
+        "{:.3g} J generated in one window, {:.3g} J allowed.",
         f.limit_cycle, f.fault, f.force_share, f.given, f.given_bound);
     const std::string heading =
         fmt::format("# own_energy: {:.9g} J; {}\n", scene.own_energy, showed);
@@ -122,7 +122,7 @@ driver::Result<void> keep_worst(const CellNumbers& cells, std::uint64_t seed,
     if (auto done = report::write_text(heading + scene.text, file); !done) return done;
     pages.list(name + ".yaml", showed);
     if (rank >= kShown) continue;
-    if (auto done = pages.add(file, name, "its run, to be looked at."); !done) return done;
+    if (auto done = pages.add(file, name, "its recorded run."); !done) return done;
   }
   return pages.write();
 }
@@ -135,9 +135,10 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
   const auto arm = scene::load_arm(options.arm_file);
   if (!arm) return arm.error();
   if (!arm->can_simulate || arm->is<driver::DeltaArm>()) {
-    return driver::Error{arm->name +
-                         ": the search needs a simulated arm whose board reports by "
-                         "itself; vintage_phantom.yaml is one."};
+    return driver::Error{
+        arm->name +
+        ": the study needs a simulated arm whose board sends reports on its own. Use "
+        "another arm file, for example vintage_phantom.yaml."};
   }
   const SceneFolder scratch;
   if (auto done = write_small_meshes(scratch.path() / "meshes"); !done) return done.error();

@@ -191,7 +191,7 @@ report::Plot work_precision(const Diagram& diagram) {
        << "set key outside right center Left reverse samplen 2\n"
        << "set arrow 1 from graph 0, first " << report::number(100 * kFelt) << " to graph 1, first "
        << report::number(100 * kFelt) << " nohead dt '-' lc rgb '" << report::kFaintInk << "'\n"
-       << "set label 1 'below: not felt' at graph 0.01, first " << report::number(100 * kFelt)
+       << "set label 1 'below: not noticeable' at graph 0.01, first " << report::number(100 * kFelt)
        << " left offset 0,-0.8 tc rgb '" << report::kFaintInk << "'\n"
        << "set label 2 'a tick' at first 1000, graph 0.03 rotate left offset 0.8,0 tc rgb '"
        << report::kFaintInk
@@ -261,12 +261,12 @@ driver::Result<std::vector<session::Figure>> study_integrators(
         measure_all(*scan, false,
                     {"integrators_scan",
                      "A scanned elephant of " + std::to_string(scan->network.node_count()) +
-                         " vertices, poked for 50 ms, against a far finer step",
+                         " vertices, poked for 50 ms, against a much finer step",
                      {}});
     if (!measured) return measured.error();
     diagrams.push_back(*std::move(measured));
   } else {
-    scene::print_format("The scanned mesh is left out: %s\n", scan.error().message.c_str());
+    scene::print_format("The scanned mesh was skipped: %s\n", scan.error().message.c_str());
   }
   if (auto written = report::write_text(csv_of(diagrams), folder / "integrators.csv"); !written) {
     return written.error();

@@ -128,7 +128,8 @@ driver::Result<double> drive_train_edge(const StabilitySetup& setup, const Stabi
     train.current_lag = cell.a;
   } else {
     const auto joint = lone_joint(arm);
-    if (!joint) return driver::Error{arm.name + ": no joint moves its tip along a way of its own."};
+    if (!joint)
+      return driver::Error{arm.name + ": no joint moves the tip in a direction of its own."};
     wall.direction = joint->direction;
     for (int i = 0; i < 3; ++i) {
       const double lever2 = joint->J_BT.col(i).squaredNorm();
@@ -196,18 +197,18 @@ driver::Result<void> draw_drive_train_walls(const StabilitySetup& setup,
   constexpr std::array kInks{report::kForceInk, report::kDepthInk, kGreenInk};
   std::ostringstream c;
   c << report::quiet_style() << "set multiplot\n"
-    << heading("What the drive train does to the largest stiffness of a wall",
+    << heading("Largest stable stiffness of a wall with a drive train",
                "free linear arm, b = 1 N s/m; lines: the law; dots: the simulated loop; dashed: "
                "exact map of one tick; " +
                    setup.arm.name)
     << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << report::kInk << "'\n"
-    << panel(0.085, 0.475, 0.14, 0.79) << panel_title("Amplifiers that lag")
-    << axis_labels("time constant of the currents [ms]", "largest stiffness [N/m]")
+    << panel(0.085, 0.475, 0.14, 0.79) << panel_title("Lag of the amplifiers")
+    << axis_labels("time constant of the current [ms]", "largest stiffness [N/m]")
     << "set xrange [-0.1:3.1]\nset yrange [0:*]\nplot " << sweep("by_lag", 0, report::kForceInk, "")
     << "\nunset label 101\nunset label 102\n";
   if (!dampings.empty()) {
     c << panel(0.565, 0.975, 0.14, 0.79)
-      << panel_title("Cables that stretch: 30 % of the mass is the motor's")
+      << panel_title("Cable stiffness: the motor has 30 % of the mass")
       << axis_labels("stiffness of the cable at the tip [N/mm]", "")
       << "set logscale x\nset xrange [0.8:1250]\nset xtics (1, 3, 10, 30, 100, 300, 1000)\nplot ";
     for (std::size_t i = 0; i < dampings.size(); ++i) {

@@ -111,7 +111,7 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
   std::string note;
   std::ostringstream c;
   c << report::quiet_style() << "set multiplot\n"
-    << heading("Where a wall is stable: stiffness against damping", subject(setup, true))
+    << heading("Stable walls: stiffness against damping", subject(setup, true))
     << "unset grid\nset border 15 lw 1 lc rgb '" << report::kFaintInk << "'\n"
     << "set key at screen 0.065, screen 0.195 left top Left reverse samplen 2.2 spacing 1.2 "
        "maxrows 6 font ',15' textcolor rgb '"
@@ -132,13 +132,13 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
     << curve("kb_lines.dat", "1:3", kGreenInk, "with lines lw 3 dt 2", "latency budget (b+B)/L")
     << ", "
     << curve("kb_lines.dat", "1:8", kPurpleInk, "with lines lw 3",
-             "passive to any hand (Colgate, Schenkel)")
+             "passive with any hand (Colgate, Schenkel)")
     << "\n";
   note = fmt::format("L = {:.3g} ms", 1e3 * latency);
   c << "set key at screen 0.55, screen 0.195\nset ylabel ''\n"
     << panel(0.55, 0.905, 0.29, 0.83)
     << panel_title(setup.hand.stiffness > 0 ? "Arm without energy stage, pressed in by the hand"
-                                            : "Arm without energy stage, let go at 0.1 m/s")
+                                            : "Arm without energy stage, released at 0.1 m/s")
     << "set palette defined (-2 '#ffffff', -1 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2 '#8c2d04', "
        "3 '#3b0f00')\n"
     << "set cbrange [-2:3]\nset cbtics ('rest' -2, '0.1' -1, '1' 0, '10' 1, '100' 2, '1000' 3)\n"
@@ -153,10 +153,10 @@ driver::Result<void> draw_kb_map(const StabilitySetup& setup, const std::vector<
              "the same with the arm's energy stage")
     << ", "
     << curve("kb_lines.dat", "1:7", report::kInk, "with lines lw 3 dt 3",
-             "the same where all encoders step at once")
+             "the same if all encoders step at once")
     << ", "
     << curve("kb_lines.dat", "1:6", kGreenInk, "with lines lw 3 dt 2",
-             "law: what damping and dry friction hold")
+             "law: limit by damping and dry friction")
     << ", " << log_of(quantised) << " with lines lw 3 lc rgb '" << kPurpleInk
     << "' title 'passive: min(2b/T, 2c/Δ) (Abbott, Okamura)', " << log_of(2 * tip.coulomb / step)
     << " with lines lw 2 dt 4 lc rgb '" << kGoldInk
@@ -200,10 +200,10 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
   if (auto done = write_data(curves, folder / "data/restitution_law.dat"); !done) return done;
   std::ostringstream c;
   c << report::quiet_style()
-    << heading("How a wall throws back what hits it",
+    << heading("Restitution of a wall",
                setup.arm.name +
-                   " without a hand, ideal encoders, no dry friction; 0.1 m/s; dots: mean over all "
-                   "sampling phases, bars: least and most")
+                   " without a hand, ideal encoders, no dry friction; 0.1 m/s; dots: mean over "
+                   "all sampling phases, bars: minimum and maximum")
     << panel(0.08, 0.73, 0.12, 0.86)
     << "set logscale x\nset xrange [90:35000]\nset yrange [0.5:2]\n"
     << "set logscale y\nset ytics (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 1.8, 2)\n"
@@ -213,9 +213,8 @@ driver::Result<void> draw_restitution(const StabilitySetup& setup,
     << report::kInk << "'\n"
     << "set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead lw 1.5 lc rgb '"
     << report::kFaintInk << "'\n"
-    << "set label 1 'above this line the wall gives energy away, below it takes some' at first "
-       "95, first 0.97 font "
-       "',14' textcolor rgb '"
+    << "set label 1 'above this line the wall generates energy, below it dissipates' "
+       "at first 95, first 0.97 font ',14' textcolor rgb '"
     << report::kFaintInk << "'\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
     std::string title = fmt::format("{:.4g} kHz", 1e-3 / series[i].c);
@@ -243,11 +242,10 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
   const auto cycles = part_of(rows, StabilityPart::kCycle);
   std::ostringstream c;
   c << report::quiet_style() << "set multiplot\n"
-    << heading(
-           "Where coarse encoders and dry friction keep a wall in a limit cycle",
-           "β = b/(K T), σ = c/(K Δ); blue: corners of Diolaiti et al.; green: where dry friction "
-           "just holds the start; " +
-               setup.arm.name + ", no hand")
+    << heading("Limit cycles of a wall with coarse encoders and dry friction",
+               "β = b/(K T), σ = c/(K Δ); blue: corners of Diolaiti et al.; green: limit at "
+               "which dry friction stops the start; " +
+                   setup.arm.name + ", no hand")
     << "unset grid\nset border 15 lw 1 lc rgb '" << report::kFaintInk << "'\n"
     << "set palette defined (-3 '#ffffff', -2 '#f6e3c8', 0 '#f0c08a', 1 '#d55e00', 2.4 '#3b0f00')\n"
     << "set cbrange [-3:2.4]\nset cbtics ('rest' -3, '0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2)\n"
@@ -292,7 +290,7 @@ driver::Result<void> draw_cycles(const StabilitySetup& setup, const std::vector<
       const bool large = start > 10;
       region(1, "comes to rest", 0.66, 0.66, report::kInk);
       region(2, "flickers", 0.16, 0.66, report::kInk);
-      region(3, large ? "too fast for dry friction: grows" : "holds so small an oscillation", 0.66,
+      region(3, large ? "exceeds dry friction: grows" : "stops a small oscillation", 0.66,
              large ? 0.06 : 0.16, large ? "#ffffff" : report::kInk);
       region(4, large ? "grows" : "", 0.16, 0.06, "#ffffff");
       c << (index == 0 ? "set colorbox user origin screen 0.89, screen 0.14 size screen 0.014, "
@@ -344,7 +342,7 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
   const std::string y = "largest stiffness [N/m]";
   std::ostringstream c;
   c << report::quiet_style() << "set multiplot\n"
-    << heading("What the largest stiffness of a wall depends on",
+    << heading("Largest stable stiffness of a wall",
                "lines: the laws; dots: the simulated loop; " + setup.arm.name)
     << "set key top right samplen 2 spacing 1.2 font ',15' textcolor rgb '" << report::kInk << "'\n"
     << panel(0.095, 0.475, 0.57, 0.83) << panel_title("Rate: free linear arm, b = 1 N s/m")
@@ -363,15 +361,15 @@ driver::Result<void> draw_largest(const StabilitySetup& setup,
     << panel(0.095, 0.475, 0.11, 0.40) << panel_title("Jitter: the same arm")
     << axis_labels("late ticks, or spread of the period [%]", y)
     << "unset logscale y\nset xrange [-2:92]\nset ytics 500\nset yrange [0:2800]\nplot "
-    << pair("by_late.dat", report::kDepthInk, "this share of ticks comes 3 periods late", 0) << ", "
-    << pair("by_spread.dat", report::kForceInk, "periods spread evenly by ± this", 0) << "\n"
+    << pair("by_late.dat", report::kDepthInk, "this share of ticks is 3 periods late", 0) << ", "
+    << pair("by_spread.dat", report::kForceInk, "periods spread uniformly by ± this", 0) << "\n"
     << panel(0.575, 0.975, 0.11, 0.40)
     << panel_title("Encoder step: the arm with its dry friction and the hand")
     << axis_labels("encoder step at the tip [µm]", "")
     << "set logscale xy\nset xrange [2.5:360]\nset xtics (3, 10, 30, 100, 300)\n"
     << "set yrange [150:5000]\nset ytics (200, 500, 1000, 2000, 5000)\n"
-    << "set label 1 'what damping and dry friction hold' at graph 0.03, graph 0.62 font ',14' "
-       "textcolor rgb '"
+    << "set label 1 'limit by damping and dry friction' at graph 0.03, graph 0.62 "
+       "font ',14' textcolor rgb '"
     << report::kFaintInk
     << "'\nset label 2 '2 c / Δ' at graph 0.86, graph 0.42 font ',14' textcolor rgb '"
     << report::kFaintInk << "'\nplot " << pair("by_step.dat", report::kForceInk, "", 0)

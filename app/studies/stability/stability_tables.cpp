@@ -189,7 +189,7 @@ std::string place_of(const StabilityCell& c) {
     case StabilityPart::kStepEdge:
       return fmt::format("with encoder steps of {:.3g} um", 1e6 * c.a);
     case StabilityPart::kLagEdge:
-      return fmt::format("with amplifiers that lag by {:.3g} ms", 1e3 * c.a);
+      return fmt::format("with an amplifier lag of {:.3g} ms", 1e3 * c.a);
     case StabilityPart::kCableEdge:
       return fmt::format("with a cable of {:.3g} N/m and {:.3g} N s/m", c.a, c.b);
     default:
@@ -201,7 +201,7 @@ std::string place_of(const StabilityCell& c) {
 struct WorstError {
   double error = kNone;
   bool unjudged = true;
-  std::string note = "no wall of this sweep lies where the law holds: nothing is judged";
+  std::string note = "the law applies to no wall of this sweep, so nothing is compared";
 };
 
 double departure(double found, double law) {
@@ -404,12 +404,12 @@ std::vector<session::Figure> stability_figures(const StabilitySetup& setup,
   const bool lone = setup.direction.is_one_dimensional();
   const std::string bound =
       lone ? ""
-           : "several encoders step along this direction, or several axes rub: the law of one "
-             "dimension is a bound here";
+           : "several encoders or several axes with dry friction act along this direction, "
+             "so the law of one dimension is only a bound";
   const CycleAgreement cycles = cycle_agreement(setup, part_of(rows, StabilityPart::kCycle));
   percent("agreement.limit_cycles_grow_as_predicted", cycles.growing, ">= 95");
   percent("agreement.limit_cycles_rest_as_predicted", cycles.resting, ">= 95",
-          lone ? "" : bound + "; judged is what it says will rest");
+          lone ? "" : bound + "; only walls that it predicts to rest are compared");
   figures.push_back({"limit_cycles.largest_flicker", cycles.flicker, "counts", "<= 2"});
   // A step of the motors' current is some percent of the holding force here.
   const auto steps = part_of(rows, StabilityPart::kStepEdge);

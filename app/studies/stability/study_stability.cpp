@@ -29,8 +29,8 @@ driver::Result<device_sim::HandSettings> hand_of(const StabilityOptions& options
                     std::isfinite(hand.mass + hand.stiffness + hand.damping);
   if (!good) {
     return driver::Error{"--hand \"" + options.hand +
-                         "\" is neither arm nor none nor MASS,STIFFNESS,DAMPING in kg, N/m, N s/m, "
-                         "as in 0.025,300,3."};
+                         "\": expected arm, none, or MASS,STIFFNESS,DAMPING in kg, N/m, N s/m, for "
+                         "example 0.025,300,3."};
   }
   return hand;
 }
@@ -73,7 +73,8 @@ driver::Result<StabilitySetup> stability_setup(const StabilityOptions& options) 
   auto arm = scene::load_arm(options.arm_file);
   if (!arm) return arm.error();
   if (!arm->can_simulate) {
-    return driver::Error{arm->name + ": the file has no section 'simulation'."};
+    return driver::Error{
+        arm->name + ": the arm file has no section 'simulation'. Add it, or use another arm file."};
   }
   auto hand = hand_of(options, *arm);
   if (!hand) return hand.error();

@@ -35,7 +35,7 @@ class Work {
   Work(std::vector<std::size_t> cells, const std::atomic<bool>& stop)
       : cells_(std::move(cells)), stop_(stop) {}
 
-  /// Returns the next cells, at most `most`; none if all are assigned, or the sweep is to end.
+  /// Returns up to `most` of the next cells; none if all are assigned, or the sweep is to end.
   std::vector<std::size_t> take(std::size_t most) {
     const std::scoped_lock lock(mutex_);
     if (trouble_ || stop_.load(std::memory_order_relaxed)) return {};
@@ -80,7 +80,7 @@ void measure_all(const Sweep& sweep, Work& work, const Keep& keep) {
       if (!numbers) {
         fail(numbers.error().message);
       } else if (numbers->empty()) {
-        fail("it gave no numbers; this is a mistake of the program.");
+        fail("no result. This is an internal error; please report it.");
       } else {
         keep(cell[0], std::move(numbers).value());
       }
@@ -182,7 +182,8 @@ class Lead {
 
   void keep(std::size_t cell, std::vector<double> found) {
     const std::scoped_lock lock(mutex_);
-    if (!journal_->add(cell, found)) work_.fail("The journal of the sweep cannot be written.");
+    if (!journal_->add(cell, found))
+      work_.fail("Cannot write the journal of the sweep. Check that the disk has room.");
     numbers_[cell] = std::move(found);
     ++done_;
   }

@@ -94,7 +94,7 @@ bool write_all(int descriptor, std::string_view text) {
 
 driver::Error unwritable(const std::filesystem::path& file) {
   return {"Cannot write " + file.string() +
-          ": check that the folder exists, may be written and has room."};
+          ". Check that the folder exists, is writable and has room."};
 }
 
 }  // namespace
@@ -114,9 +114,10 @@ driver::Result<std::unique_ptr<SweepJournal>> SweepJournal::open(const std::file
     const std::string text = scene::text_of(file);
     const bool begun = text.size() >= heading.size();
     if (begun && text.compare(0, heading.size(), heading) != 0) {
-      return driver::Error{file.string() +
-                           " was begun by another build or with other options: give the same ones, "
-                           "or leave out --resume to begin anew."};
+      return driver::Error{
+          file.string() +
+          " was written by another build or with other options. Use the same build and "
+          "options, or remove --resume to start again."};
     }
     good = begun ? read_lines(text, heading.size(), numbers) : 0;
   } else if (there) {

@@ -82,10 +82,10 @@ driver::Result<std::unique_ptr<SweepTeam>> SweepTeam::join() {
   auto team = std::make_unique<MpiTeam>();
   if (library == nullptr || !team->find(library)) {
     return driver::Error{
-        "This build cannot share a sweep among processes: install libopenmpi-dev, configure and "
-        "build again; or start it without mpirun."};
+        "This build has no MPI support. Install libopenmpi-dev, configure and build "
+        "again, or start the sweep without mpirun."};
   }
-  if (!team->begin()) return driver::Error{"MPI could not begin; see what mpirun says."};
+  if (!team->begin()) return driver::Error{"MPI could not start. See the output of mpirun."};
   return std::unique_ptr<SweepTeam>(std::move(team));
 }
 

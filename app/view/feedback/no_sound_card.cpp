@@ -4,8 +4,8 @@ namespace thimble::view {
 
 driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
   return driver::Error{
-      "No sound: this thimble was built without ALSA. Install libasound2-dev and build it again; "
-      "`thimble export REC.h5 --sound FILE.wav` works without."};
+      "No sound: built without ALSA. Install libasound2-dev and build again. "
+      "`thimble export REC.h5 --sound FILE.wav` works without ALSA."};
 }
 
 }  // namespace thimble::view

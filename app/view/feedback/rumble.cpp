@@ -85,10 +85,11 @@ driver::Result<std::unique_ptr<RumbleOutput>> open_rumble(const std::filesystem:
     }
     close(file);
   }
-  return driver::Error{std::string("No rumble: no gamepad that can is plugged in") +
-                       (refused ? ", or it may not be written (its file in /dev/input belongs to "
-                                  "the person at the screen, or to the group \"input\")."
-                                : "; plug one in and begin again.")};
+  return driver::Error{
+      std::string("No rumble: no gamepad with rumble is plugged in") +
+      (refused ? ", or its file in /dev/input is not writable. The user logged in at the screen "
+                 "and the group \"input\" have access."
+               : ". Plug one in and start again.")};
 }
 
 }  // namespace thimble::view

@@ -63,7 +63,7 @@ driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
   }
   if (status < 0) {
     return driver::Error{std::string("No sound: ALSA's device \"default\" cannot be opened (") +
-                         snd_strerror(status) + "); `speaker-test` (alsa-utils) tries the same."};
+                         snd_strerror(status) + "). Test it with `speaker-test` (alsa-utils)."};
   }
   return std::unique_ptr<SoundOutput>(std::make_unique<AlsaCard>(card));
 }

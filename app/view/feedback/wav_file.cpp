@@ -36,7 +36,7 @@ driver::Result<void> write_wav(std::span<const float> samples, int rate, const s
   constexpr std::size_t kMost = (std::numeric_limits<std::uint32_t>::max() - kHeaderBytes) / 2;
   if (samples.size() > kMost) {
     return driver::Error{file +
-                         " is not written: a WAV file holds 4 GB, which this is longer than."};
+                         " cannot be written: the sound is longer than a WAV file can be (4 GB)."};
   }
   const auto data_bytes = static_cast<std::uint32_t>(2 * samples.size());
   const auto per_second = static_cast<std::uint32_t>(rate);

@@ -191,7 +191,7 @@ driver::Result<void> write_animated_png(const std::vector<Picture>& pictures, do
   const bool written = out != nullptr && PngFile().write(out, pictures[0], table, chunks);
   const bool closed = out != nullptr && std::fclose(out) == 0;
   if (!written || !closed) {
-    return driver::Error{file.string() + " cannot be written: is there room on the disk?"};
+    return driver::Error{file.string() + " cannot be written. Check that the disk has room."};
   }
   return target->commit();
 }

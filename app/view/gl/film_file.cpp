@@ -137,8 +137,8 @@ std::string text_of(std::FILE* file) {
 
 driver::Error missing() {
   return driver::Error{
-      "ffmpeg writes MP4 and GIF but was not found: install it (apt install ffmpeg), or name a "
-      "file that ends in .png: an animated PNG needs nothing else."};
+      "MP4 and GIF files need ffmpeg, which was not found. Install it (apt install "
+      "ffmpeg), or choose a file name that ends in .png (animated PNG)."};
 }
 
 }  // namespace
@@ -164,7 +164,7 @@ driver::Result<void> write_film(const std::vector<Picture>& pictures, double fra
   std::array<int, 2> ends{-1, -1};
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> said(std::tmpfile(), &std::fclose);
   if (said == nullptr || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    return driver::Error{file.string() + " cannot be written: this computer is out of files."};
+    return driver::Error{file.string() + " cannot be written: too many open files."};
   }
   auto target = output::OutputFile::open(file, output::kFilm);
   if (!target) return target.error();

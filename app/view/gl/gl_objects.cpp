@@ -7,8 +7,9 @@ namespace thimble::view {
 namespace {
 
 driver::Error refused(const std::string& what, const char* words) {
-  return {"The graphics driver refuses " + what + " of Thimble: " + words +
-          " Try without it (LIBGL_ALWAYS_SOFTWARE=1), and report these words."};
+  return {"The graphics driver rejects " + what + " of Thimble: " + words +
+          " Set LIBGL_ALWAYS_SOFTWARE=1 to use software rendering, and report this "
+          "message."};
 }
 
 /// Compiles a shader into a program; returns the compiler's message on failure.

@@ -8,7 +8,7 @@ namespace thimble::view {
 namespace {
 
 driver::Error missing(const std::string& what) {
-  return {"No OpenGL 3.3 to draw with: " + what +
+  return {"No OpenGL 3.3: " + what +
           ". Install Mesa: apt-get install libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri."};
 }
 
@@ -25,15 +25,16 @@ EGLDisplay surfaceless_display() {
 
 driver::Result<std::unique_ptr<OffscreenContext>> OffscreenContext::open() {
   // The loader would end the program without EGL, so this is checked first.
-  if (dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) == nullptr) return missing("no libEGL.so.1");
+  if (dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) == nullptr)
+    return missing("libEGL.so.1 was not found");
   EGLDisplay display = surfaceless_display();
-  if (display == EGL_NO_DISPLAY) return missing("EGL cannot do without a screen");
+  if (display == EGL_NO_DISPLAY) return missing("EGL needs a screen here");
   if (eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
-    return missing("EGL does not start");
+    return missing("EGL cannot be initialised");
   }
   std::unique_ptr<OffscreenContext> opened(new OffscreenContext);
   opened->display_ = display;
-  if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return missing("EGL knows no OpenGL");
+  if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return missing("EGL does not support OpenGL");
   const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
                                   EGL_OPENGL_BIT, EGL_NONE};
   EGLConfig config = nullptr;
@@ -49,9 +50,9 @@ driver::Result<std::unique_ptr<OffscreenContext>> OffscreenContext::open() {
                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                            EGL_NONE};
   opened->context_ = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted);
-  if (opened->context_ == EGL_NO_CONTEXT) return missing("EGL makes no such context");
+  if (opened->context_ == EGL_NO_CONTEXT) return missing("EGL cannot create the context");
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, opened->context_) == EGL_FALSE) {
-    return missing("EGL cannot draw without a surface");
+    return missing("EGL does not support contexts without a surface");
   }
   return opened;
 }

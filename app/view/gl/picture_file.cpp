@@ -45,7 +45,7 @@ driver::Result<void> write_png(const Picture& picture, const std::filesystem::pa
   }
   const bool closed = std::fclose(out) == 0;
   if (written == 0 || !closed) {
-    return driver::Error{file.string() + " cannot be written: is there room on the disk?"};
+    return driver::Error{file.string() + " cannot be written. Check that the disk has room."};
   }
   return target->commit();
 }
@@ -70,7 +70,7 @@ driver::Result<Picture> read_png(const std::filesystem::path& file) {
   }
   if (image.width > kMaxSide || image.height > kMaxSide) {
     png_image_free(&image);
-    return driver::Error{file.string() + ": is larger than 16384 by 16384 pixels."};
+    return driver::Error{file.string() + ": the picture is larger than 16384 x 16384 pixels."};
   }
   image.format = PNG_FORMAT_RGB;
   Picture picture{static_cast<int>(image.width), static_cast<int>(image.height),

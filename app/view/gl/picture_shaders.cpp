@@ -44,7 +44,7 @@ void main() {
   vec3 paint = texelFetch(paints, at, 0).rgb;
   vec3 around, direct;
   light(n, p, paint * paint, normal.w, around, direct);
-  // Asked a little off the surface, or it would cast shadows on itself.
+  // Offset from the surface, so that it casts no shadow on itself.
   float open = lit(p + shadow_offset * n);
   pixel = vec4(to_screen(around * (0.82 + 0.18 * open) + direct * open), 1.0);
 }
@@ -58,20 +58,20 @@ const std::string kEdge = R"(
 uniform sampler2D picture;
 uniform int lowest;  // row of the picture
 float bright(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
-float beside(ivec2 at) {
-  ivec2 most_at = textureSize(picture, 0) - 1;
-  return bright(texelFetch(picture, clamp(at, ivec2(0, lowest), most_at), 0).rgb);
+float bright_at(ivec2 at) {
+  ivec2 max_at = textureSize(picture, 0) - 1;
+  return bright(texelFetch(picture, clamp(at, ivec2(0, lowest), max_at), 0).rgb);
 }
-struct Cross { float m, s, n, w, e, most, range; };
+struct Cross { float m, s, n, w, e, brightest, range; };
 Cross cross_at(ivec2 at) {
   Cross c;
-  c.m = beside(at);
-  c.s = beside(at - ivec2(0, 1));
-  c.n = beside(at + ivec2(0, 1));
-  c.w = beside(at - ivec2(1, 0));
-  c.e = beside(at + ivec2(1, 0));
-  c.most = max(c.m, max(max(c.s, c.n), max(c.w, c.e)));
-  c.range = c.most - min(c.m, min(min(c.s, c.n), min(c.w, c.e)));
+  c.m = bright_at(at);
+  c.s = bright_at(at - ivec2(0, 1));
+  c.n = bright_at(at + ivec2(0, 1));
+  c.w = bright_at(at - ivec2(1, 0));
+  c.e = bright_at(at + ivec2(1, 0));
+  c.brightest = max(c.m, max(max(c.s, c.n), max(c.w, c.e)));
+  c.range = c.brightest - min(c.m, min(min(c.s, c.n), min(c.w, c.e)));
   return c;
 }
 )";
@@ -82,7 +82,7 @@ std::string edges_fragment() {
   return "#version 330 core\n" + kEdge + R"(
 void main() {
   Cross c = cross_at(ivec2(gl_FragCoord.xy));
-  if (c.range <= max(0.04, 0.125 * c.most)) discard;
+  if (c.range <= max(0.04, 0.125 * c.brightest)) discard;
 }
 )";
 }
@@ -95,25 +95,25 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   Cross c = cross_at(at);
   float m = c.m, s = c.s, n = c.n, w = c.w, e = c.e;
-  float sw = beside(at + ivec2(-1, -1));
-  float se = beside(at + ivec2(1, -1));
-  float nw = beside(at + ivec2(-1, 1));
-  float ne = beside(at + ivec2(1, 1));
+  float sw = bright_at(at + ivec2(-1, -1));
+  float se = bright_at(at + ivec2(1, -1));
+  float nw = bright_at(at + ivec2(-1, 1));
+  float ne = bright_at(at + ivec2(1, 1));
   float by_y = abs(nw + sw - 2.0 * w) + 2.0 * abs(n + s - 2.0 * m) + abs(ne + se - 2.0 * e);
   float by_x = abs(nw + ne - 2.0 * n) + 2.0 * abs(w + e - 2.0 * m) + abs(sw + se - 2.0 * s);
-  bool lies = by_y >= by_x;  // the edge runs along x
-  float one = lies ? s : w;
-  float other = lies ? n : e;
+  bool horizontal = by_y >= by_x;  // the edge runs along x
+  float one = horizontal ? s : w;
+  float other = horizontal ? n : e;
   bool to_one = abs(one - m) >= abs(other - m);
   float across = to_one ? one : other;
   float level = 0.5 * (across + m);
   float ends = 0.25 * abs(across - m);
   vec2 texel = 1.0 / vec2(textureSize(picture, 0));
   vec2 here = gl_FragCoord.xy * texel;
-  vec2 over = (lies ? vec2(0.0, texel.y) : vec2(texel.x, 0.0)) * (to_one ? -1.0 : 1.0);
-  vec2 along = lies ? vec2(texel.x, 0.0) : vec2(0.0, texel.y);
+  vec2 over = (horizontal ? vec2(0.0, texel.y) : vec2(texel.x, 0.0)) * (to_one ? -1.0 : 1.0);
+  vec2 along = horizontal ? vec2(texel.x, 0.0) : vec2(0.0, texel.y);
   vec2 between = here + 0.5 * over;
-  // Along both sides, until the edge ends: each look is at the mean of its two sides.
+  // Along the edge in both directions until it ends; each sample is the mean of its two sides.
   float back = 1.0, forth = 1.0;
   float back_off = off(between - along, level);
   float forth_off = off(between + along, level);
@@ -129,10 +129,10 @@ void main() {
     going = go_back || go_forth;
   }
   float near_off = back < forth ? back_off : forth_off;
-  // The pixel gives way where its side of the edge ends nearer by.
-  bool gives = (m < level) != (near_off < 0.0);
-  float share = gives ? 0.5 - min(back, forth) / (back + forth) : 0.0;
-  // What is smaller than a pixel is softened as well.
+  // The pixel is blended if its side of the edge ends at the nearer end.
+  bool blends = (m < level) != (near_off < 0.0);
+  float share = blends ? 0.5 - min(back, forth) / (back + forth) : 0.0;
+  // Details smaller than a pixel are also smoothed.
   float around = (2.0 * (n + s + w + e) + nw + ne + sw + se) / 12.0;
   float small = smoothstep(0.0, 1.0, min(abs(around - m) / c.range, 1.0));
   pixel = vec4(textureLod(picture, here + max(share, 0.5 * small * small) * over, 0.0).rgb, 1.0);

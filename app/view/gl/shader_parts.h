@@ -17,11 +17,11 @@ layout(std140) uniform View {
   vec4 ground;
   vec4 grid;
   vec4 ground_place; // centre x, y; height; radius, m
-  vec4 ray_right;    // from the middle of the picture to its right rim, one metre before the eye
-  vec4 ray_up;       // and to its upper rim
-  vec4 ray_ahead;    // from the eye to the middle
+  vec4 ray_right;    // from the centre of the picture to its right edge, 1 m in front of the eye
+  vec4 ray_up;       // and to its upper edge
+  vec4 ray_ahead;    // from the eye to the centre
   vec4 from_depth;   // x, y: the distance ahead is x / (depth + y), depth in -1 to 1
-  vec4 casters;      // what casts shadows, in the light's map: least x, y; most x, y
+  vec4 casters;      // box of the shadow casters in the light's map: min x, y; max x, y
 };
 )";
 
@@ -40,7 +40,7 @@ inline std::string choice(Shading shading) {
 inline const std::string kMarks = R"(
 uniform int marks;  // 1: dots, 2: lines, 3: both
 float unmarked(vec3 p) {
-  // Turned, so that no face of a box lies along the lattice: what cuts it sees dots of all sizes.
+  // Rotated, so that no face of a box is parallel to the lattice: a cut shows dots of all sizes.
   const mat3 turn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
   vec3 q = turn * p / 0.002;
   float away = length(fract(q) - 0.5);
@@ -58,7 +58,7 @@ float unmarked(vec3 p) {
 // Light from a window to the left (key), a pale wall to the right (fill), the sky above and the
 // table below.
 inline const std::string kLight = R"(
-// `colour` linear; `gloss` the share of the key's mirror image; `n` a unit vector.
+// `colour` is linear; `gloss` is the share of the key's mirror image; `n` is a unit vector.
 void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 direct) {
   vec3 to_eye = normalize(eye.xyz - p);
   float up = 0.5 + 0.5 * n.z;
@@ -66,7 +66,7 @@ void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 d
   around = colour * (mix(vec3(0.17, 0.155, 0.15), vec3(0.36, 0.39, 0.43), up) +
                      0.18 * max(dot(n, fill), 0.0));
   float facing = max(dot(n, key.xyz), 0.0);
-  // To the 48th power by multiplying, which software does faster.
+  // 48th power by multiplication, which is faster in software.
   float mirror = max(dot(n, normalize(key.xyz + to_eye)), 0.0);
   mirror *= mirror;
   mirror *= mirror;
@@ -79,21 +79,21 @@ void light(vec3 n, vec3 p, vec3 colour, float gloss, out vec3 around, out vec3 d
 
 inline const std::string kShadow = R"(
 uniform sampler2DShadow shadow_map;
-uniform sampler2DShadow shadow_texels;  // the same map, of which a look takes the nearest texel
+uniform sampler2DShadow shadow_texels;  // the same map, with nearest-texel lookup
 uniform float shadow_strength;
 uniform int shadow_samples;   // along a side: 2 or 4
 float lit(vec3 p) {
   vec3 at = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
-  // Towards the rim of what the light's map holds, shadows fade: beyond nothing is known.
+  // Shadows fade towards the border of the light's map, because there is no data beyond.
   float rim = 2.0 * max(abs(at.x - 0.5), abs(at.y - 0.5));
   float strength = max(rim, 2.0 * abs(at.z - 0.5)) > 1.0 ? 0.0 : shadow_strength;
-  // Beside all that casts shadows there are none.
-  bool beside = any(lessThan(at.xy, casters.xy)) || any(greaterThan(at.xy, casters.zw));
-  // Of a square of samples, each the mean of four texels. Where the texels at its corners and its
-  // middle agree, all would: most of a picture is that. Loops of one look, of which software takes
-  // one where none is needed.
+  // There are no shadows outside of the box of the casters.
+  bool outside = any(lessThan(at.xy, casters.xy)) || any(greaterThan(at.xy, casters.zw));
+  // A square of samples, each the mean of four texels. If the texels at its corners and its centre
+  // agree, all agree, which holds for most of a picture. These are loops with one lookup each,
+  // because software runs the body once even if no lookup is needed.
   vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
-  int looks = strength > 0.0 && !beside ? 5 : 0;
+  int looks = strength > 0.0 && !outside ? 5 : 0;
   float agree = 0.0;
   for (int i = 0; i < looks; ++i) {
     vec2 corner = i == 4 ? vec2(0.0) : vec2(float(i & 1) * 2.0 - 1.0, float(i & 2) - 1.0);
@@ -114,7 +114,7 @@ float lit(vec3 p) {
 )";
 
 inline const std::string kToScreen = R"(
-// The screen's 2.2 taken as 2: colours come in by the same, and software is twice as fast.
+// Uses a gamma of 2 instead of 2.2, as for the input colours: twice as fast in software.
 vec3 to_screen(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
 )";
 

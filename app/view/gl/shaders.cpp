@@ -77,7 +77,7 @@ void main() {
 #ifdef GOURAUD
   around_v = vec3(0.0);
   direct_v = vec3(0.0);
-  // The shade that the whole triangle had here, and what the bending changed.
+  // The shade of the whole triangle at this place, plus the change by bending.
   add(weights.x, n_a, p_a, around_v, direct_v);
   add(weights.y, n_b, p_b, around_v, direct_v);
   add(weights.z, n_c, p_c, around_v, direct_v);
@@ -100,7 +100,7 @@ in vec3 direct_v;
 uniform float shadow_offset;  // m
 out vec4 pixel;
 void main() {
-  // Asked a little off the surface, or it would cast shadows on itself.
+  // Offset from the surface, so that it casts no shadow on itself.
   float open = lit(p_W + shadow_offset * normalize(n_W));
   pixel = vec4(to_screen(around_v * (0.82 + 0.18 * open) + direct_v * open), 1.0);
 }
@@ -118,7 +118,7 @@ void main() {
 #ifdef BENT
   vec3 n = normalize(n_W);
 #else
-  vec3 n = n_W;  // no longer than one: those of the corners are unit vectors
+  vec3 n = n_W;  // at most unit length, because those of the corners are unit vectors
 #endif
   normal = vec4(0.5 * n + 0.5, paint.w);
 #ifdef MARKED
@@ -148,7 +148,7 @@ std::string plain_vertex() {
   return kHead + R"(
 layout(location = 0) in vec3 position;
 uniform mat4 model;
-uniform float nearer;  // share of the distance that it is drawn before its place
+uniform float nearer;  // fraction of the eye distance by which it is drawn closer
 void main() {
   vec4 p_W = model * vec4(position, 1.0);
   p_W.xyz = mix(p_W.xyz, eye.xyz, nearer);
@@ -172,7 +172,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 colour;
 out vec3 shade;
 void main() {
-  // The colours stand for numbers: light changes them little.
+  // The colours represent numbers, so light changes them only slightly.
   shade = colour * colour * (0.72 + 0.28 * max(dot(normal, key.xyz), 0.0));
   gl_Position = view_projection * vec4(position, 1.0);
 }
@@ -206,7 +206,7 @@ in vec3 p_W;
 uniform float grid_strength;
 uniform vec3 colour;   // linear
 out vec4 pixel;
-// How much of the pixel a grid's lines cover, for lines about a pixel wide.
+// Returns the fraction of the pixel that grid lines cover, for lines about a pixel wide.
 float lines(float pitch, vec2 pixel_width) {
   vec2 at = p_W.xy / pitch;
   vec2 width = pixel_width / pitch;
@@ -217,7 +217,7 @@ float lines(float pitch, vec2 pixel_width) {
 void main() {
   float away = length(p_W.xy - ground_place.xy) / ground_place.w;
   float fade = 1.0 - smoothstep(0.15, 0.9, away);
-  // Seen from below the ground is not in the way.
+  // Seen from below, the ground is transparent.
   float cover = fade * smoothstep(0.0, 0.02, eye.z - p_W.z);
   vec2 width = fwidth(p_W.xy);
 #ifdef MARKED

@@ -18,12 +18,12 @@ constexpr float kGhost = 0.45F;  // radius of the target's ring, in heights of a
 
 constexpr std::array kNames = {"mouse", "keyboard", "gamepad", "SpaceMouse"};
 constexpr std::array kHelp = {
-    "drag to lead, wheel to push (H swaps the drags)",
-    "arrows, page up / down: away, near\n+ / -: speed, shift: slow, "
-    "backspace: let go",
-    "left stick; triggers: right away, left near\nshoulders: slow; B: "
-    "let go; up / down: speed",
-    "push the cap; left button: slow\nright button: let go; + / -: speed"};
+    "drag: move, wheel: push (H swaps the drags)",
+    "arrows, page up / down: away, near\n+ / -: speed, shift: slow, backspace: "
+    "release",
+    "left stick; triggers: right away, left near\nshoulders: slow; B: release; up "
+    "/ down: speed",
+    "push the cap; left button: slow\nright button: release; + / -: speed"};
 
 ImU32 packed(const Colour& colour, float alpha) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], alpha});
@@ -70,11 +70,11 @@ HandPush HandPanel::read_gamepad() {
                             button(GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER),
                     .let_go = button(GLFW_GAMEPAD_BUTTON_B)});
   }
-  trouble_ = "No gamepad: plug one in, it is found by itself.";
+  trouble_ = "No gamepad. Plug one in; it is detected automatically.";
   for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; ++id) {
     if (glfwJoystickPresent(id) == GLFW_FALSE) continue;
     trouble_ = std::string(glfwGetJoystickName(id)) +
-               " is no gamepad that GLFW knows: name its axes in SDL_GAMECONTROLLERCONFIG.";
+               " is unknown to GLFW. Set its axes in SDL_GAMECONTROLLERCONFIG.";
   }
   return {};
 }
@@ -154,7 +154,7 @@ bool HandPanel::draw_box(bool held, const ScreenPart& part) {
   if (held) {
     ImGui::TextColored(shown_colour(kDepthColour), "held");
   } else {
-    ImGui::TextDisabled("let go");
+    ImGui::TextDisabled("free");
   }
   if (input_.source() != HandSource::kMouse) {
     ImGui::SameLine();

@@ -66,7 +66,7 @@ void SpaceMouse::look() {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_look_) return;
   next_look_ = now + kBetweenLooks;
-  trouble_ = "No SpaceMouse: plug one in, it is found by itself.";
+  trouble_ = "No SpaceMouse. Plug one in; it is detected automatically.";
   const std::unique_ptr<hid_device_info, void (*)(hid_device_info*)> all(hid_enumerate(0, 0),
                                                                          hid_free_enumeration);
   for (const hid_device_info* found = all.get(); found != nullptr; found = found->next) {
@@ -79,7 +79,8 @@ void SpaceMouse::look() {
       return;
     }
     trouble_ = std::string("The SpaceMouse at ") + found->path +
-               " may not be read: install udev/70-thimble.rules, then unplug it and plug it in.";
+               " is not readable. Install udev/70-thimble.rules, then unplug it and plug it "
+               "in again.";
   }
 }
 
@@ -91,7 +92,7 @@ std::optional<SpaceMouseState> SpaceMouse::read() {
     const int size = hid_read_timeout(device_, report.data(), report.size(), 0);
     if (size < 0) {
       close();
-      trouble_ = "The SpaceMouse is gone: plug it in again.";
+      trouble_ = "The SpaceMouse was disconnected. Plug it in again.";
       return {};
     }
     if (size == 0) break;

@@ -12,7 +12,7 @@ namespace {
 // Rounding error of a number that should be round, as a fraction of a step.
 constexpr double kSlack = 1e-6;
 
-// Returns the smallest round number that is at least `value` > 0.
+// Returns the smallest round number >= `value` > 0.
 double round_step(double value) {
   const double power = std::pow(10, std::floor(std::log10(value)));
   for (const double step : {1.0, 2.0, 5.0}) {

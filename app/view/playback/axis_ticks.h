@@ -19,12 +19,12 @@ struct AxisTicks {
   std::string text(std::size_t i) const;
 };
 
-/// Returns the round numbers from `least` to `most`, as many as possible but at most `most_count`
-/// (>= 2). Empty if there are no numbers between, or a bound is not finite.
+/// Returns the round numbers from `least` to `most`, as many as possible up to `most_count` (>= 2).
+/// Empty if there are no numbers between, or a bound is not finite.
 AxisTicks ticks_within(double least, double most, std::size_t most_count);
 
-/// Returns round numbers from at most `least` to at least `most`, at most `most_count` (>= 3) of
-/// them, for an axis that ends at numbers.
+/// Returns up to `most_count` (>= 3) round numbers whose range includes `least` and `most`, for an
+/// axis that ends at numbers.
 AxisTicks ticks_around(double least, double most, std::size_t most_count);
 
 /// A display unit, and how many of them one SI unit is.
@@ -36,7 +36,7 @@ struct ShownUnit {
 /// Measured quantities and their display units.
 enum class Quantity { kForce, kLength, kTime, kSpeed };
 
-/// Returns the most readable unit for numbers up to `most` (SI): N or mN; mm or um; s, ms or us;
+/// Returns a readable unit for numbers up to `most` (SI): N or mN; mm or um; s, ms or us;
 /// mm/s or um/s.
 ShownUnit unit_for(Quantity quantity, double most);
 

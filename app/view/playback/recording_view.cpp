@@ -53,7 +53,7 @@ driver::Result<std::unique_ptr<RecordingView>> RecordingView::open(
     auto read = session::read_recording(file);
     if (!read) return read.error();
     if (read->ticks.empty()) {
-      return driver::Error{file.string() + ": it holds no tick; there is nothing to show."};
+      return driver::Error{file.string() + ": the recording has no ticks."};
     }
     view->arms_.push_back(std::move(read).value());
   }
@@ -83,29 +83,29 @@ void RecordingView::tell(std::span<const session::Replay> replays) {
   about_.push_back(fmt::format("Recorded on {} ({}), {:g} Hz, {} time; {} ticks.", info.arm,
                                info.device, info.rate, info.clock == "virtual" ? "virtual" : "real",
                                ticks().size()));
-  if (arms() > 1)
-    about_.push_back("The plots are those of the first arm, " + info.arm_in_scene + ".");
+  if (arms() > 1) about_.push_back("The plots show the first arm, " + info.arm_in_scene + ".");
   const bool cut = std::any_of(arms_.begin(), arms_.end(),
                                [](const session::Recording& arm) { return !arm.complete; });
-  if (cut) about_.push_back("It was cut off: what came later is not known.");
+  if (cut) about_.push_back("The recording is incomplete: its end is missing.");
   std::uint64_t differing = 0;
   for (const session::Replay& replay : replays) differing += replay.compared.differing;
   if (differing > 0) {
-    about_.push_back(fmt::format(
-        "The scene answers otherwise than it did in {} ticks: force and tip are the recorded ones, "
-        "objects and dents those of the scene as it is now.",
-        differing));
+    about_.push_back(
+        fmt::format("The scene responds differently from the recording in {} ticks. Force and tip "
+                    "are as recorded; objects and dents are those of the current scene.",
+                    differing));
   }
   if (ticks().front().tick > 0 && (film_.bodies() != nullptr || film_.shapes())) {
     about_.push_back(
-        "It begins after the run did: what had moved or been shaped before is not known.");
+        "The recording starts after the run: earlier motion and shaping of objects is "
+        "missing.");
   }
   if (film_.shapes()) {
     about_.push_back(fmt::format("What is shaped for good is shown every {:g} s.", film_.step()));
   }
   const auto frames = film_.dents() == nullptr ? 0 : film_.dents()->frames().size();
   if (frames > session::DentTrace::kFramesMost / 2) {
-    about_.push_back("Of so many dents only some are kept.");
+    about_.push_back("Only some of the dents are stored.");
   }
 }
 

@@ -75,20 +75,21 @@ bool sign_button(const char* id, Sign sign, const char* about) {
 void draw_buttons(TouchSource& source) {
   PlayHead& head = source.head();
   const bool run = head.of_a_run();
-  if (sign_button("##start", Sign::kStart, run ? "oldest moment kept (Home)" : "begin (Home)")) {
+  if (sign_button("##start", Sign::kStart, run ? "oldest stored moment (Home)" : "start (Home)")) {
     head.to_start();
   }
-  if (sign_button("##back", Sign::kBack, run ? "a picture back (left)" : "a tick back (left)")) {
+  if (sign_button("##back", Sign::kBack, run ? "one frame back (left)" : "one tick back (left)")) {
     head.stand_at(source.beside(-1));
   }
   const Sign sign = head.plays() || head.live() ? Sign::kStop : Sign::kPlay;
-  const char* about = head.live() ? "hold this moment; the run goes on"
+  const char* about = head.live() ? "hold this moment; the run continues"
                       : run       ? "play"
                                   : "play (space)";
-  if (sign_button("##play", sign, sign == Sign::kStop && !head.live() ? "stand still" : about)) {
+  if (sign_button("##play", sign, sign == Sign::kStop && !head.live() ? "stop" : about)) {
     head.toggle();
   }
-  if (sign_button("##on", Sign::kForward, run ? "a picture on (right)" : "a tick on (right)")) {
+  if (sign_button("##on", Sign::kForward,
+                  run ? "one frame forward (right)" : "one tick forward (right)")) {
     head.stand_at(source.beside(1));
   }
   if (sign_button("##end", Sign::kEnd, run ? "now (End)" : "end (End)")) head.to_end();

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-TEST(Counting, StaysBelowTheMost) {
+TEST(Counting, StaysWithinTheBound) {
   EXPECT_EQ(at_most(3, 5), 3);
   EXPECT_EQ(at_most(7, 5), 5);
 }
@@ -12,7 +12,7 @@ TEST(Counting, CountsToN) {
   EXPECT_EQ(counted(0), 0);
 }
 
-TEST(Counting, TellsALength) {
+TEST(Counting, ReturnsTheLength) {
   const char text[] = "four";
   EXPECT_EQ(length(text, text + 4), 4);
 }

@@ -15,28 +15,28 @@
 
 namespace thimble::support {
 
-/// A driver's wire over a full-speed bus in this process, whose frames of a millisecond pass as
-/// the virtual clock does: what usb_host_transport.h does through sockets, without them, for tests
-/// of many runs. It treats its device as the kernel does:
-/// - a HID report longer than asked for is babble, and nothing comes of it;
-/// - a HID write waits as long as the arm neither takes nor refuses it, 5 s at most;
-/// - an endpoint that stalled refuses everything until it is healed;
-/// - a port or converter that takes nothing refuses at once;
-/// - a device that left the bus is lost for good;
-/// - a report that waited in a HID board when it was opened is dropped (the kernel drops what comes
-///   in the first 50 ms, linux/drivers/hid/usbhid/hid-core.c, usbhid_open).
+/// A driver's wire over a full-speed bus in this process. Its frames of a millisecond pass with the
+/// virtual clock. It replaces the sockets of usb_host_transport.h in tests of many runs. It treats
+/// its device as the kernel does:
+/// - a HID report longer than requested is babble, and is dropped;
+/// - a HID write waits until the arm accepts or rejects it, for up to 5 s;
+/// - an endpoint that stalled rejects everything until it is cleared;
+/// - a port or converter that cannot accept data rejects it at once;
+/// - a device that left the bus is lost permanently;
+/// - a report that waits in a HID board when it is opened is dropped (the kernel drops the reports
+///   of the first 50 ms, linux/drivers/hid/usbhid/hid-core.c, usbhid_open).
 class BusWire final : public driver::Transport {
  public:
-  /// How bytes come over.
+  /// Transfer of the bytes.
   struct Way {
     std::uint8_t in = 0x81, out = 0x01;      ///< endpoints
-    std::size_t report_size = 0;             ///< of a HID arm; 0: bytes without borders
-    std::optional<driver::Framing> framing;  ///< of such bytes
-    bool ftdi = false;                       ///< whether a converter adds its status to them
-    std::int64_t begin_ns = 0;               ///< time of the device when the clock began
+    std::size_t report_size = 0;             ///< of a HID arm; 0: a byte stream without boundaries
+    std::optional<driver::Framing> framing;  ///< of such a stream
+    bool ftdi = false;                       ///< whether a converter adds its status
+    std::int64_t begin_ns = 0;               ///< time of the device at the start of the clock
   };
 
-  /// Keeps device and clock by reference.
+  /// Keeps references to device and clock.
   BusWire(device_sim::usb::UsbDevice& device, driver::VirtualClock& clock, const Way& way)
       : device_(device), clock_(clock), way_(way), frame_(clock.now_ns() / kFrame_ns) {
     if (way.framing) finder_.emplace(*way.framing);
@@ -67,7 +67,7 @@ class BusWire final : public driver::Transport {
   }
 
   driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
-    constexpr int kFramesMost = 5000;  // the kernel waits so long for a HID arm
+    constexpr int kFramesMost = 5000;  // the kernel's time limit for a HID arm
     pass_frames();
     std::array<std::byte, device_sim::usb::UsbDevice::kPacketMax> padded{};
     std::copy_n(report.begin(), std::min(report.size(), padded.size()), padded.begin());

@@ -17,14 +17,14 @@
 
 namespace thimble::support {
 
-/// A simulated arm that speaks text lines, on USB serial: the board says nothing by itself and
-/// answers every message with its counters. The answer to a message that it does not understand
-/// repeats the last counters, with the error that the published firmware gives.
+/// A simulated arm that exchanges text lines over USB serial. The board sends nothing on its own
+/// and answers every message with its counters. The answer to an invalid message repeats the last
+/// counters, with the error of the published firmware.
 class LineArm final : public device_sim::usb::UsbArm {
  public:
   static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
 
-  /// Takes an arm whose firmware speaks text lines.
+  /// Takes an arm whose firmware uses text lines.
   explicit LineArm(device_sim::SimulatedArm arm) : arm_(std::move(arm)) {}
 
   const device_sim::usb::UsbDescription& description() const noexcept override {
@@ -83,7 +83,7 @@ class LineArm final : public device_sim::usb::UsbArm {
     }
     std::array<std::byte, driver::hfab::kLineCapacity> bytes{};
     const std::size_t size = driver::hfab::encode_arm_line(answer_, bytes);
-    if (waiting_ + size > said_.size()) return;  // nobody listens
+    if (waiting_ + size > said_.size()) return;  // the host does not read
     std::copy_n(bytes.begin(), size, said_.begin() + static_cast<std::ptrdiff_t>(waiting_));
     waiting_ += size;
   }

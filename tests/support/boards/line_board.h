@@ -14,11 +14,12 @@
 
 namespace thimble::support {
 
-/// A board that speaks text lines, at the far end of a pseudo-terminal: it answers every message
-/// with the same counters. It stands still, so it is for what happens before and after a run.
+/// A board that exchanges text lines, at the far end of a pseudo-terminal. It answers every message
+/// with the same counters. It never moves, so it is for tests of what happens before and after a
+/// run.
 class LineBoard {
  public:
-  /// Begins to answer as `model`, with all counters at zero.
+  /// Starts to answer as `model`, with all counters at zero.
   explicit LineBoard(int model)
       : far_(posix_openpt(O_RDWR | O_NOCTTY)),
         answer_("[" + std::to_string(model) + ",0,0,0,0,0,0,0]\n") {
@@ -34,9 +35,9 @@ class LineBoard {
   LineBoard(const LineBoard&) = delete;
   LineBoard& operator=(const LineBoard&) = delete;
 
-  /// Returns what a program opens; empty if this machine has no pseudo-terminals.
+  /// Returns the device file for a program to open; empty if this machine has no pseudo-terminals.
   const std::string& node() const { return node_; }
-  /// Returns how many messages came.
+  /// Returns the number of received messages.
   int messages() const { return messages_.load(); }
 
  private:
@@ -47,7 +48,7 @@ class LineBoard {
       if (poll(&waiting, 1, kWait_ms) <= 0) continue;
       std::array<char, 256> text{};
       const ssize_t size = ::read(far_, text.data(), text.size());
-      if (size <= 0) {  // nobody has the near end open
+      if (size <= 0) {  // no program has the near end open
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
         continue;
       }

@@ -15,7 +15,7 @@
 
 namespace thimble::support {
 
-/// Counts the forces from one on that are not zero: what still went to an arm after a fault began.
+/// Counts the non-zero forces from index `from` on: those that reached an arm after a fault began.
 inline int forces_since(const std::vector<Eigen::Vector3d>& taken, std::size_t from) {
   return static_cast<int>(
       std::count_if(taken.begin() + static_cast<std::ptrdiff_t>(std::min(from, taken.size())),
@@ -23,10 +23,11 @@ inline int forces_since(const std::vector<Eigen::Vector3d>& taken, std::size_t f
 }
 
 /// One row of the table of faults (tests/acceptance/FAULTS.md) for an arm behind a vendor's library
-/// or service: what is promised, and whether the checks since its beginning have shown it.
+/// or service: the promise, and whether the checks since its construction have passed.
 class LinkFaultRow {
  public:
-  /// `arm`: of which library or service; `more`: how many messages with a force may still go to it.
+  /// `arm`: the library or service; `more`: the number of messages with a force that may still
+  /// reach the arm.
   LinkFaultRow(std::string_view fault, std::string_view arm, driver::Fault cause, int more)
       : fault_(fault), arm_(arm), cause_(cause), more_(more), parts_(parts()) {}
   LinkFaultRow(const LinkFaultRow&) = delete;
@@ -49,7 +50,7 @@ class LinkFaultRow {
   std::string fault_, arm_;
   driver::Fault cause_;
   int more_;
-  int parts_;  // that a test has failed at before
+  int parts_;  // number of failures of the test before
 };
 
 }  // namespace thimble::support

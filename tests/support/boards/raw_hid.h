@@ -4,8 +4,8 @@
 
 namespace thimble::support {
 
-/// Builds the report descriptor of mbed's and Teensy's raw HID examples with reports of so many
-/// bytes [S mbed USBHID.cpp, reportDesc], or of another usage page.
+/// Builds the report descriptor of mbed's and Teensy's raw HID examples with reports of the given
+/// sizes, bytes [S mbed USBHID.cpp, reportDesc], or of another usage page.
 constexpr std::array<unsigned char, 27> raw_hid_descriptor(unsigned char in_bytes,
                                                            unsigned char out_bytes,
                                                            unsigned page = 0xffab) {

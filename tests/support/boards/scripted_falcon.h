@@ -9,20 +9,20 @@
 
 namespace thimble::support {
 
-/// The far side of a Falcon's serial line, as strict as its boot loader: it listens only at the
-/// right rate and with the right control wires. Faults on demand.
+/// The far side of a Falcon's serial line, as strict as its boot loader: it responds only at the
+/// right rate and with the right control lines. Produces faults on demand.
 class ScriptedFalcon final : public driver::SerialLine {
  public:
-  std::vector<std::byte> image;  ///< The firmware that makes it run.
+  std::vector<std::byte> image;  ///< The firmware that starts it.
   bool running = false;          ///< Firmware is loaded.
   bool powered = true;
-  bool gone = false;          ///< The converter takes no request any more.
-  int greetings_unheard = 0;  ///< So many greetings get no answer.
-  int echoes_wrong = 0;       ///< So many uploads get a wrong echo in their second block.
-  int echoes_missing = 0;     ///< So many uploads stop echoing in their third block.
+  bool gone = false;          ///< The converter accepts no requests any more.
+  int greetings_unheard = 0;  ///< Number of greetings without an answer.
+  int echoes_wrong = 0;       ///< Number of uploads with a wrong echo in their second block.
+  int echoes_missing = 0;     ///< Number of uploads whose echo stops in their third block.
   std::uint8_t homed = 0;
-  int stray = 0;   ///< So many bytes of a packet before come ahead of an answer.
-  int split = 64;  ///< Largest number of bytes that one read brings.
+  int stray = 0;   ///< Number of bytes of an earlier packet before an answer.
+  int split = 64;  ///< Largest number of bytes per read.
 
   int resets = 0, host_packets = 0, uploads = 0;
   std::uint8_t latency_ms = 16;

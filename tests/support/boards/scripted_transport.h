@@ -8,16 +8,16 @@
 
 namespace thimble::support {
 
-/// What a ScriptedTransport was asked to send, kept outside so that it outlives the device.
+/// Messages of a ScriptedTransport, stored outside so that they outlive the device.
 struct Wire {
-  std::deque<std::vector<std::byte>> to_host;  ///< Reports not read yet, oldest first.
+  std::deque<std::vector<std::byte>> to_host;  ///< Reports that are not read yet, oldest first.
   std::vector<std::vector<std::byte>> to_arm;  ///< Everything written, oldest first.
   bool lost = false;
-  int refusals = 0;  ///< So many messages from now on are not taken.
-  driver::TransportStatus settled = driver::TransportStatus::kOk;  ///< Of the last message.
+  int refusals = 0;  ///< Number of following messages that are rejected.
+  driver::TransportStatus settled = driver::TransportStatus::kOk;  ///< Result of the last message.
 };
 
-/// A wire whose far side is written by the test.
+/// A wire whose far side is scripted by the test.
 class ScriptedTransport final : public driver::Transport {
  public:
   explicit ScriptedTransport(Wire& wire) : wire_(wire) {}

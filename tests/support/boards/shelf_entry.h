@@ -6,7 +6,7 @@
 
 namespace thimble::device_sim::usb {
 
-/// Names an arm of the shelf in lists of tests, where its bytes would stand.
+/// Prints the name of an arm of the shelf in lists of tests, instead of its bytes.
 inline void PrintTo(const ShelfEntry& entry, std::ostream* out) {
   *out << entry.name;
 }

@@ -18,16 +18,16 @@
 
 namespace thimble::support {
 
-/// A USB host in this process: it talks USB/IP to a server over a socket pair, on one thread and
-/// in simulated time, a frame at a time.
+/// A USB host in this process: a USB/IP client of a server over a socket pair, on one thread and in
+/// simulated time, frame by frame.
 class UsbHost {
  public:
-  /// What a transfer came to.
+  /// Result of a transfer.
   struct Done {
     std::int32_t status = 0;
     std::vector<std::byte> data;  // to the host
     std::uint32_t moved = 0;
-    std::int64_t frame = 0;  // in which it was complete
+    std::int64_t frame = 0;  // in which it completed
   };
 
   explicit UsbHost(device_sim::usb::UsbipServer& server) : server_(server) {
@@ -46,25 +46,25 @@ class UsbHost {
     server_.serve(0);
   }
 
-  /// Sends bytes as they are.
+  /// Sends raw bytes.
   void say(std::span<const std::byte> bytes) {
     (void)!send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     server_.serve(0);
   }
 
-  /// Takes whatever the server said that was not an answer to a transfer.
+  /// Returns the bytes from the server that were not an answer to a transfer.
   std::vector<std::byte> hear() {
     listen();
     return std::exchange(heard_, {});
   }
 
-  /// Returns whether the server hung up.
+  /// Returns whether the server closed the connection.
   bool hung_up() {
     listen();
     return closed_;
   }
 
-  /// Imports the device; true if the server gave it away.
+  /// Imports the device; returns whether the server granted it.
   bool import_device() {
     say(device_sim::usb::encode_request({.kind = device_sim::usb::UsbipRequest::Kind::kImport,
                                          .bus_id = server_.bus_id(),
@@ -74,7 +74,7 @@ class UsbHost {
     return attached_;
   }
 
-  /// Hands a transfer over; the answer comes in some later frame. Tells its sequence number.
+  /// Submits a transfer, whose answer comes in a later frame. Returns its sequence number.
   std::uint32_t submit(bool to_host, std::uint8_t endpoint, std::span<const std::byte> out,
                        std::uint32_t length, std::array<std::byte, 8> setup = {}) {
     device_sim::usb::UsbipCommand command;
@@ -89,15 +89,15 @@ class UsbHost {
     return command.sequence;
   }
 
-  /// Asks for a packet.
+  /// Submits a read of a packet.
   std::uint32_t ask(std::uint8_t endpoint, std::uint32_t length) {
     return submit(true, endpoint, {}, length);
   }
-  /// Sends a packet.
+  /// Submits a write of a packet.
   std::uint32_t tell(std::uint8_t endpoint, std::span<const std::byte> out) {
     return submit(false, endpoint, out, 0);
   }
-  /// Takes a transfer back; the answer has the returned number.
+  /// Cancels a transfer; the answer has the returned number.
   std::uint32_t take_back(std::uint32_t sequence) {
     device_sim::usb::UsbipCommand command;
     command.kind = device_sim::usb::UsbipCommand::Kind::kUnlink;
@@ -107,7 +107,7 @@ class UsbHost {
     return command.sequence;
   }
 
-  /// Lets frames pass.
+  /// Runs frames.
   void frames(int count = 1) {
     for (int i = 0; i < count; ++i) {
       ++frame_;
@@ -117,13 +117,13 @@ class UsbHost {
   }
   std::int64_t frame() const { return frame_; }
 
-  /// Lets bulk data go to the device now, in the middle of a frame (ns).
+  /// Sends pending bulk data to the device now, in the middle of a frame (ns).
   void send_bulk(std::int64_t time_ns) {
     server_.send_bulk(time_ns);
     listen();
   }
 
-  /// Takes the answer to a transfer, if it came.
+  /// Returns the answer to a transfer, if it has arrived.
   std::optional<Done> done(std::uint32_t sequence) {
     listen();
     const auto found = done_.find(sequence);
@@ -133,7 +133,7 @@ class UsbHost {
     return result;
   }
 
-  /// Carries out a control transfer in one frame.
+  /// Runs a control transfer in one frame.
   std::optional<Done> control(const device_sim::usb::SetupPacket& setup,
                               std::span<const std::byte> out = {}) {
     const auto byte = [](unsigned value) { return static_cast<std::byte>(value & 0xffU); };
@@ -147,7 +147,7 @@ class UsbHost {
     return done(sequence);
   }
 
-  /// Chooses configuration 1, as every host does before it talks to an endpoint.
+  /// Selects configuration 1, as every host does before it uses an endpoint.
   void configure() { (void)control({.request_type = 0, .request = 9, .value = 1}); }
 
  private:

@@ -9,12 +9,12 @@
 
 namespace thimble::support {
 
-/// An FTDI line through a host in this process; time is simulated, a millisecond a frame.
+/// An FTDI line through a host in this process, in simulated time with frames of a millisecond.
 class UsbHostLine final : public driver::SerialLine {
  public:
   explicit UsbHostLine(UsbHost& host) : host_(host) {}
   ~UsbHostLine() override {
-    // A read that is left behind would take what is meant for whoever comes next.
+    // A pending read would take data of the next user of the host.
     if (asked_ != 0) host_.take_back(asked_);
   }
 

@@ -13,14 +13,14 @@
 
 namespace thimble::support {
 
-/// A driver's wire through a host in this process: frames of the bus pass as the virtual clock
-/// does, one a millisecond. Two reads are always under way; a stalled endpoint is cleared, as the
-/// kernel does for HID arms.
+/// A driver's wire through a host in this process. Bus frames of a millisecond pass with the
+/// virtual clock. Two reads are always pending. A stalled endpoint is cleared, as the kernel does
+/// for HID arms.
 class UsbHostTransport final : public driver::Transport {
  public:
-  /// Takes a configured host. `size` is a report's length; with a framing the arm is behind an FTDI
-  /// converter. `in` and `out` are the endpoints' numbers. What waits in a HID board is dropped, as
-  /// the kernel does when it opens one. Moves the clock to the bus's time.
+  /// Takes a configured host. `size` is the length of a report; with a framing, the arm is behind
+  /// an FTDI converter. `in` and `out` are the numbers of the endpoints. Drops a report that waits
+  /// in a HID board, as the kernel does when it opens one. Moves the clock to the time of the bus.
   UsbHostTransport(UsbHost& host, driver::VirtualClock& clock, std::size_t size,
                    std::optional<driver::Framing> framing = {}, std::uint8_t in = 1,
                    std::uint8_t out = 1)

@@ -8,8 +8,8 @@
 
 namespace thimble::support {
 
-/// Puts cables that stretch between motors and links: one to ten times the softest (N m/rad),
-/// motors of one to nine times the lightest (kg m^2).
+/// Adds elastic cables between motors and links: one to ten times `softest` (N m/rad), with motors
+/// of one to nine times `lightest` (kg m^2).
 inline void put_cables(HiddenArm& arm, std::uint64_t seed, double softest, double lightest) {
   Random random(seed + 1000);
   auto& train = arm.file.simulated.drive_train;
@@ -20,8 +20,8 @@ inline void put_cables(HiddenArm& arm, std::uint64_t seed, double softest, doubl
   }
 }
 
-/// Draws a hidden arm behind cables that stretch, of one to ten times the softest (N m/rad); motors
-/// of 1e-4 to 9e-4 kg m^2.
+/// Draws a hidden arm with elastic cables of one to ten times `softest` (N m/rad), and motors of
+/// 1e-4 to 9e-4 kg m^2.
 inline HiddenArm cabled_arm(std::uint64_t seed, double softest = 20) {
   HiddenArm arm = hidden_arm(seed);
   put_cables(arm, seed, softest, 1e-4);

@@ -10,16 +10,16 @@
 
 namespace thimble::support {
 
-/// An arm whose simulated side has constants that its driver does not know.
+/// An arm whose simulation has constants that its driver does not know.
 struct HiddenArm {
-  scene::ArmFile file;           ///< What the driver believes, and how the arm is simulated.
-  std::array<double, 3> gain{};  ///< True torque over what the driver asks for.
+  scene::ArmFile file;           ///< Parameters of the driver and of the simulation.
+  std::array<double, 3> gain{};  ///< True torque divided by the torque that the driver requests.
   double weight = 0;             ///< N
-  double delay = 0;              ///< Both ways together, s.
+  double delay = 0;              ///< Sum of both directions, s.
 };
 
-/// Draws one like that of a file: mass and friction 1/3 to 3 times the file's, gains 0.6 to 1.6, or
-/// 1/3 to 3 where they are `wide`, delays up to 4 ms, and no more weight than its friction carries.
+/// Draws an arm similar to that of a file: mass and friction 1/3 to 3 times the file's, gains 0.6
+/// to 1.6, or 1/3 to 3 if `wide`, delays up to 4 ms, and no more weight than its friction supports.
 inline HiddenArm hidden_arm_of(scene::ArmFile file, std::uint64_t seed, bool wide = false) {
   Random random(seed);
   HiddenArm arm{.file = std::move(file)};
@@ -41,19 +41,19 @@ inline HiddenArm hidden_arm_of(scene::ArmFile file, std::uint64_t seed, bool wid
   return arm;
 }
 
-/// Draws one like the vintage PHANTOM.
+/// Draws an arm similar to the vintage PHANTOM.
 inline HiddenArm hidden_arm(std::uint64_t seed) {
   return hidden_arm_of(scene::load_arm("vintage_phantom").value(), seed);
 }
 
-/// Draws one of the serial arms: mass, friction and each gain 1/3 to 3 times the published, delays
-/// up to 4 ms, and no more weight than its friction carries.
+/// Draws one of the serial arms: mass, friction and each gain 1/3 to 3 times the published values,
+/// delays up to 4 ms, and no more weight than its friction supports.
 inline HiddenArm wide_hidden_arm(std::uint64_t seed) {
   constexpr std::array kNames = {"vintage_phantom", "woodenhaptics", "polhem"};
   return hidden_arm_of(scene::load_arm(kNames[seed % kNames.size()]).value(), seed, true);
 }
 
-/// Draws a hand that rests at the tip: from two fingers that barely touch it to a firm grip.
+/// Draws a hand at rest at the tip, from two fingers that barely touch it to a firm grip.
 inline device_sim::HandSettings random_hand(std::uint64_t seed) {
   Random random(seed + 77);
   return {.mass = random.uniform(0, 0.05),

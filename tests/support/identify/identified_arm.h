@@ -19,7 +19,7 @@ namespace thimble::support {
 
 inline constexpr double kKnownMass = 0.025;  // kg
 
-/// Returns constants as they are found behind cables that stretch, for what is written of them.
+/// Returns constants as identified behind elastic cables, for tests of their report.
 inline bringup::ArmConstants constants_behind_cables() {
   bringup::ArmConstants found;
   found.mass = {0.075, 1e-3};
@@ -34,8 +34,8 @@ inline bringup::ArmConstants constants_behind_cables() {
   return found;
 }
 
-/// Identifies one, whose file names no periods of cogging; `hold_it` leaves the hand on it that its
-/// file names.
+/// Identifies an arm whose file names no periods of cogging. `hold_it` keeps the hand of its file
+/// on it.
 inline driver::Result<bringup::Identified> identified(const HiddenArm& arm,
                                                       const bringup::IdentifyOptions& options,
                                                       bool hold_it = false) {
@@ -48,20 +48,20 @@ inline driver::Result<bringup::Identified> identified(const HiddenArm& arm,
   return bringup::identify(open, named, options, never);
 }
 
-/// Returns whether what was not identified names this.
+/// Returns whether the list of unidentified parameters names this one.
 inline bool leaves_open(const bringup::Identified& found, const std::string& what) {
   const auto sentences = bringup::not_identified(found);
   return std::any_of(sentences.begin(), sentences.end(),
                      [&](const std::string& one) { return one.find(what) != std::string::npos; });
 }
 
-/// How far estimates of one constant were off, and how often their intervals held it.
+/// Errors of the estimates of one constant, and how often their intervals contained the truth.
 struct Score {
   const char* name;
-  double most;       // allowed, relative or in s
-  double worst = 0;  // of |estimate - truth|, in the same unit
+  double most;       // allowed error, relative or in s
+  double worst = 0;  // largest abs(estimate - truth), in the same unit
   int held = 0, all = 0;
-  int missed = 0;  // neither within `most` of the truth nor with it in the interval
+  int missed = 0;  // neither within `most` of the truth nor with the truth in the interval
 
   void add(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);
@@ -71,7 +71,7 @@ struct Score {
     missed += off > most && !estimate.holds(truth) ? 1 : 0;
   }
 
-  /// Counts how far it is off only where its interval does not say so.
+  /// Adds the error of an estimate only if its interval does not contain the truth.
   void add_beside_interval(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double before = worst;
     add(estimate, truth, relative);
@@ -84,9 +84,9 @@ struct Score {
   }
 };
 
-/// Tells scores and expects of each that its worst is allowed and, where it has more than `few`,
-/// that nine in ten of its intervals hold; a single one of few may miss by chance, all together may
-/// not.
+/// Prints the scores. Expects that each worst error is allowed and that nine in ten intervals
+/// contain the truth, for each score with more than `few` intervals. A single one of few may miss
+/// by chance, so those are checked together.
 inline void expect_scores(std::initializer_list<const Score*> scores, int few) {
   int held = 0, all = 0;
   for (const Score* score : scores) {

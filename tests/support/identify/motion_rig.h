@@ -23,13 +23,13 @@
 
 namespace thimble::support {
 
-/// An arm that moves as its file says, with its data in code.
+/// An arm that moves as its file describes, with its data in code.
 enum class MotionArm { kVintage, kWoody, kPolhem };
 inline constexpr std::array kMotionArms{MotionArm::kVintage, MotionArm::kWoody, MotionArm::kPolhem};
 inline constexpr std::array<std::string_view, 3> kMotionArmNames{"vintage_phantom", "woodenhaptics",
                                                                  "polhem"};
 
-/// What is touched. Free space is z > 0.
+/// The touched surface. Free space is z > 0.
 struct MotionScene {
   enum class Kind { kWall, kMovingWall, kSnapping, kThin, kInGravity };
   Kind kind = Kind::kWall;
@@ -38,7 +38,7 @@ struct MotionScene {
   double friction = 0.3;   ///< Coefficient.
 };
 
-/// A run of an arm, a hand and a scene, and what becomes of it.
+/// A run of an arm, a hand and a scene, and its result.
 struct MotionRun {
   MotionArm arm = MotionArm::kVintage;
   device_sim::HandSettings hand{.mass = 0.025,
@@ -52,16 +52,16 @@ struct MotionRun {
   bool energy_stage = true;
   double hold_most = 10;  ///< s
   std::uint64_t seed = 1;
-  /// Where the hand wants to be: seconds, and points of the world, m.
+  /// Targets of the hand: times (s) and points of the world (m).
   std::vector<std::pair<double, Eigen::Vector3d>> way;
-  /// Changes the counts that arrive; gets the number of the read.
+  /// Changes the received counts; gets the number of the read.
   std::function<void(int, std::array<std::int16_t, 6>&)> tamper;
 
-  // What became of it.
+  // Results.
   driver::Fault fault = driver::Fault::kNone;
   std::uint64_t ticks = 0;
-  double depth = 0;       ///< of the true tip at the end, m
-  double speed = 0;       ///< at the end, m/s
+  double depth = 0;       ///< Depth of the true tip at the end, m.
+  double speed = 0;       ///< Speed at the end, m/s.
   double force_most = 0;  ///< N
 
   void run(double duration);
@@ -94,7 +94,7 @@ class TamperedWire final : public driver::Transport {
   int reads_ = 0;
 };
 
-/// The force of a scene, with dry friction of a spring that breaks.
+/// The force of a scene, with dry friction as a spring that breaks.
 class Law {
  public:
   explicit Law(const MotionScene& scene) : scene_(scene) {}
@@ -211,8 +211,9 @@ inline void MotionRun::run(double duration) {
   speed = simulated->plant().v_BT().norm();
 }
 
-/// Draws a hand that does anything with any scene: 100 to 1000 N/m, 0.05 to 1.5 m/s, taps, presses,
-/// strokes in and through, in straight lines with corners or as smoothly as a person (60 m/s^2).
+/// Draws random motion of a hand in a random scene: 100 to 1000 N/m, 0.05 to 1.5 m/s, taps,
+/// presses, and strokes into and through a wall. The paths are straight lines with corners, or as
+/// smooth as a person's (60 m/s^2).
 inline MotionRun any_hand(std::uint64_t seed, double duration) {
   Random random(seed);
   const auto spread = [&](double low, double high) {

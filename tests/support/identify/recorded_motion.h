@@ -25,8 +25,8 @@ inline std::string text_of_arm(const char* arm) {
   return content.str();
 }
 
-/// Returns what `thimble identify --record` writes of a simulated arm whose driver takes it for the
-/// shipped arm of a name; `hold_it` leaves its file's hand on the tip.
+/// Returns the recording of `thimble identify --record` for a simulated arm that its driver takes
+/// for the shipped arm of that name. `hold_it` keeps the hand of its file on the tip.
 inline session::Recording recorded_motion(const scene::ArmFile& file, const char* arm,
                                           std::uint64_t seed, double seconds = 10,
                                           bool hold_it = false) {

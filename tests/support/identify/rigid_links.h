@@ -10,24 +10,24 @@
 
 namespace thimble::support {
 
-/// One rigid body of a serial arm: its centre lies `along_b` (m) along link B and `along_c` along
+/// One rigid body of a serial arm. Its centre is `along_b` (m) along link B and `along_c` along
 /// link C from the shoulder, and it turns with one of them.
 struct LinkBody {
   double mass = 0;  ///< kg
   double along_b = 0, along_c = 0;
   bool turns_with_c = false;
-  /// Inertias about its centre: about the link, about the level axis, about the third, kg m^2.
+  /// Inertias about its centre: about the link, about the horizontal axis, about the third, kg m^2.
   double axial = 0, pitch = 0, third = 0;
 };
 
-/// An arm of rigid bodies whose equations of motion come out of their places and turns by numerical
-/// differentiation alone (Lagrange): a reference that shares nothing with the simulated arm.
+/// An arm of rigid bodies whose equations of motion follow from their positions and orientations by
+/// numerical differentiation only (Lagrange). The reference shares no code with the simulated arm.
 class RigidLinks {
  public:
   RigidLinks(std::vector<LinkBody> bodies, const Eigen::Vector3d& gravity_B)
       : bodies_(std::move(bodies)), gravity_B_(gravity_B) {}
 
-  /// Kinetic energy, J.
+  /// Returns the kinetic energy, J.
   double kinetic(const Eigen::Vector3d& q, const Eigen::Vector3d& rate) const {
     double energy = 0;
     for (const LinkBody& body : bodies_) {
@@ -42,7 +42,7 @@ class RigidLinks {
     return energy;
   }
 
-  /// Energy of the weight, J.
+  /// Returns the potential energy of the weight, J.
   double potential(const Eigen::Vector3d& q) const {
     double energy = 0;
     for (const LinkBody& body : bodies_) energy -= body.mass * gravity_B_.dot(centre(body, q));
@@ -60,7 +60,7 @@ class RigidLinks {
     return M;
   }
 
-  /// g(q) - C(q, rate) rate, N m.
+  /// Returns g(q) - C(q, rate) rate, N m.
   Eigen::Vector3d torque(const Eigen::Vector3d& q, const Eigen::Vector3d& rate) const {
     const Eigen::Matrix3d M_dot =
         (inertia(q + kStep * rate) - inertia(q - kStep * rate)) / (2 * kStep);
@@ -74,7 +74,7 @@ class RigidLinks {
     return torque;
   }
 
-  /// What the bodies are to the simulated arm.
+  /// Returns the bodies as settings of the simulated arm.
   device_sim::LinkSettings settings() const {
     device_sim::LinkSettings links;
     for (const LinkBody& body : bodies_) {
@@ -96,7 +96,7 @@ class RigidLinks {
   static constexpr double kStep = 1e-4;
 
   static Eigen::Matrix3d turn(const LinkBody& body, const Eigen::Vector3d& q) {
-    // Link B points up at B = 0 and falls outwards; link C hangs down at C = 0 and rises outwards.
+    // Link B points up at B = 0 and falls outwards; link C points down at C = 0 and rises outwards.
     const Eigen::AngleAxisd yaw(q[0], Eigen::Vector3d::UnitZ());
     const double fall = body.turns_with_c ? -q[2] : q[1];
     return (yaw * Eigen::AngleAxisd(fall, Eigen::Vector3d::UnitY())).toRotationMatrix();
@@ -111,8 +111,8 @@ class RigidLinks {
   Eigen::Vector3d gravity_B_;
 };
 
-/// Links as heavy as those of a desk arm of this geometry: both links, the linkage's rod that runs
-/// along B, a counterweight behind the shoulder, and a base that turns. `more` scales their masses.
+/// Returns links with the masses of a desk arm of this geometry: both links, the rod of the linkage
+/// along B, a counterweight behind the shoulder, and a turning base. `more` scales the masses.
 inline RigidLinks desk_links(const driver::SerialArm& arm, double more = 1,
                              const Eigen::Vector3d& gravity_B = {0, 0, -9.80665}) {
   const double b = arm.length_b, c = arm.length_c;

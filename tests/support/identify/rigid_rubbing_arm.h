@@ -9,13 +9,13 @@
 
 namespace thimble::support {
 
-// About which friction of a joint is drawn: 3.1 mN m, 25 mN at the tip, so that with that of the
-// tip beside it the probe's pushes move the arm; of the viscous ten times what the tip has there
-// [chosen].
+// Typical friction of a joint, from which random values are drawn. Dry friction is 3.1 mN m, 25 mN
+// at the tip, so that the probe's forces still move the arm with the friction of the tip. Viscous
+// friction is ten times that of the tip there [chosen].
 inline constexpr double kJointDry = 3.1e-3, kJointViscous = 1e-3;
 
-/// A rigid arm whose joints rub by 1/3 to 3 times these; every second one's tip does not rub beside
-/// them.
+/// Draws a rigid arm whose joints have 1/3 to 3 times these frictions. With an even seed the tip
+/// has no friction of its own.
 inline HiddenArm rigid_rubbing_arm(std::uint64_t seed) {
   HiddenArm arm = hidden_arm(seed);
   Random random(seed + 4000);
@@ -28,7 +28,7 @@ inline HiddenArm rigid_rubbing_arm(std::uint64_t seed) {
   const double carried = simulated.drive_train.coulomb.minCoeff() / 0.14;  // N at either link's end
   simulated.plant.coulomb *= seed % 2 == 0 ? 0 : 0.5;
   simulated.plant.viscous *= seed % 2 == 0 ? 0 : 1;
-  // No more weight than what rubs carries.
+  // No more weight than the friction supports.
   const double weight = random.uniform(0, 0.8) * (carried + simulated.plant.coulomb);
   simulated.weight_B = arm.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -weight);
   return arm;

@@ -17,7 +17,7 @@ namespace thimble::support {
 
 using render::MapSettings;
 
-/// The PHANTOM-like arm at 1 kHz, as effects know it [PHYSICS 0].
+/// Returns the PHANTOM-like arm at 1 kHz as the context of effects [PHYSICS 0].
 inline render::EffectContext phantom_context() {
   render::EffectContext context;
   context.encoder_step = 3e-5;
@@ -36,7 +36,7 @@ inline const render::EffectKind* friction_kind(std::string_view name) {
   return nullptr;
 }
 
-/// Builds a friction of the table; empty if its settings were refused.
+/// Builds a friction of the table; returns null if its settings are invalid.
 inline std::unique_ptr<render::AnyStage> make_friction(
     std::string_view name, MapSettings settings,
     const render::EffectContext& context = phantom_context()) {
@@ -47,7 +47,7 @@ inline std::unique_ptr<render::AnyStage> make_friction(
   return build();
 }
 
-/// Returns the names of all frictions of the table.
+/// Returns the names of all friction models of the table.
 inline std::vector<std::string> friction_names() {
   std::vector<std::string> names;
   for (const render::EffectKind& kind : render::effect_table()) {
@@ -56,7 +56,7 @@ inline std::vector<std::string> friction_names() {
   return names;
 }
 
-/// Notes which settings an effect asks for.
+/// Records the keys that an effect reads.
 class NotedSettings final : public render::SettingsReader {
  public:
   bool has(std::string_view key) override {
@@ -76,7 +76,7 @@ class NotedSettings final : public render::SettingsReader {
   }
   void reject(std::string_view, const std::string&) override {}
 
-  /// Returns whether a setting was asked for.
+  /// Returns whether a key was read.
   bool asked(std::string_view key) const { return keys_.contains(std::string(key)); }
 
  private:
@@ -85,7 +85,7 @@ class NotedSettings final : public render::SettingsReader {
   std::set<std::string> keys_;
 };
 
-/// Returns the names of all frictions of the table that have a setting.
+/// Returns the names of all friction models of the table that have a setting.
 inline std::vector<std::string> frictions_with(std::string_view setting) {
   std::vector<std::string> names;
   for (const std::string& name : friction_names()) {
@@ -96,7 +96,7 @@ inline std::vector<std::string> frictions_with(std::string_view setting) {
   return names;
 }
 
-/// Returns the complaints about the settings of a friction.
+/// Returns the errors about the settings of a friction.
 inline std::vector<std::string> complaints_of(
     std::string_view name, MapSettings settings,
     const render::EffectContext& context = phantom_context()) {
@@ -113,7 +113,7 @@ struct Rubbing {
   double depth = 0.001;  // m
   render::SurfaceResponse response{};
 
-  /// Touches at a point (m) and gives the friction's force on the hand, N.
+  /// Touches at a point (m); returns the friction force on the hand, N.
   Eigen::Vector3d at(const Eigen::Vector3d& p_WT) {
     driver::DeviceState state;
     state.dt = dt;
@@ -126,7 +126,7 @@ struct Rubbing {
     return response.f_T_W - load * n_W;
   }
 
-  /// The same along x; gives the force along x.
+  /// The same along x; returns the force along x.
   double at_x(double x) { return at({x, 0, 0}).x(); }
 };
 

@@ -25,21 +25,21 @@
 
 namespace thimble::support {
 
-/// What is wrong with an arm.
+/// Fault of an arm.
 enum class Trouble {
   kNone,
-  kAllReversed,       ///< From the beginning.
-  kOneReversed,       ///< One joint, from the beginning.
-  kTouchReversed,     ///< All, from a moment in the middle of a touch.
-  kTouchOneReversed,  ///< One joint, from such a moment.
-  kDoubled,           ///< The amplifiers' gain.
-  kStuck,             ///< One amplifier keeps the current it has at such a moment.
+  kAllReversed,       ///< All motors reversed from the start.
+  kOneReversed,       ///< One joint reversed from the start.
+  kTouchReversed,     ///< All reversed from a moment in the middle of a touch.
+  kTouchOneReversed,  ///< One joint reversed from such a moment.
+  kDoubled,           ///< Doubled gain of the amplifiers.
+  kStuck,             ///< One amplifier holds its current from such a moment.
   kOneSided,          ///< One amplifier gives no current of one sign.
   kLate,              ///< Reports are 5 ms late.
-  kFrozen,            ///< One encoder stands still from such a moment.
+  kFrozen,            ///< One encoder stops from such a moment.
 };
 
-/// An arm of any build as its file describes it: all that a run of strokes needs.
+/// All data of an arm of any kind that a run of strokes needs.
 struct StrokedArm {
   driver::ArmModel model;
   bool has_motors = true;  ///< False for an arm behind its vendor's library.
@@ -50,10 +50,10 @@ struct StrokedArm {
   driver::MotionWatchSettings watch;
   device_sim::PlantSettings plant;
   double velocity_corner_frequency = 100;
-  double step = 1e-5;  ///< Of a position without encoders, m.
+  double step = 1e-5;  ///< Resolution of a position without encoders, m.
 };
 
-/// A run of strokes, and what became of it.
+/// A run of strokes, and its result.
 struct StrokeRun {
   device_sim::HandSettings hand{.mass = 0.025,
                                 .stiffness = 300,
@@ -61,36 +61,36 @@ struct StrokeRun {
                                 .tremor_amplitude = 5e-5,
                                 .tremor_frequency = 10};
   MotionScene scene;
-  std::vector<std::pair<double, Eigen::Vector3d>> way;  ///< As of MotionRun.
+  std::vector<std::pair<double, Eigen::Vector3d>> way;  ///< As in MotionRun.
   Trouble trouble = Trouble::kNone;
-  int joint = 0;       ///< That is in trouble, if it is one.
-  double begin = 0.7;  ///< Trouble in a touch begins at the first force after this time, s.
+  int joint = 0;       ///< The faulty joint, if only one is.
+  double begin = 0.7;  ///< A fault in a touch starts at the first force after this time, s.
   std::uint64_t seed = 1;
-  /// Looks at each tick, before its force is sent; returns whether to stop.
+  /// Called in each tick, before its force is sent; returns whether to stop.
   std::function<bool(const driver::Device&, const Eigen::Matrix3d& J_BT)> look;
 
   driver::Fault fault = driver::Fault::kNone;
   std::uint64_t ticks = 0;
   double end = 0;         ///< s
-  double shown_at = -1;   ///< When the trouble first had 0.3 N to show itself, s.
-  double way_since = 0;   ///< Of the true tip since then, m.
-  double off_since = 0;   ///< Farthest of the true tip from where it was then, m.
-  double speed = 0;       ///< Most since then, m/s.
-  double force_true = 0;  ///< Most that the motors gave, N.
-  double force_sent = 0;  ///< Most that was sent, N.
-  double unseen = 0;      ///< Farthest that a frozen joint moved the tip, m.
+  double shown_at = -1;   ///< Time at which the fault first has an effect of 0.3 N, s.
+  double way_since = 0;   ///< Path of the true tip since then, m.
+  double off_since = 0;   ///< Largest distance of the true tip from its position then, m.
+  double speed = 0;       ///< Largest speed since then, m/s.
+  double force_true = 0;  ///< Largest force of the motors, N.
+  double force_sent = 0;  ///< Largest sent force, N.
+  double unseen = 0;      ///< Largest motion of the tip by a frozen joint, m.
 };
 
 namespace stroke_rig {
 
-/// Returns the force at the tip of joint torques.
+/// Returns the force at the tip for joint torques.
 inline Eigen::Vector3d force_of(const Eigen::Matrix3d& J, const Eigen::Vector3d& tau) {
   const Eigen::Vector3d a = J.col(0), b = J.col(1), c = J.col(2);
   return (tau[0] * b.cross(c) + tau[1] * c.cross(a) + tau[2] * a.cross(b)) / a.dot(b.cross(c));
 }
 
 /// The tip of an arm in a hand, and the link to it: a mass of three axes with the exact map of the
-/// simulated arm, motors behind a message that is one tick on its way, encoders that count.
+/// simulated arm, motors with a delay of one tick, and encoders.
 class StrokedLink final : public driver::ArmLink {
  public:
   StrokedLink(const StrokedArm& arm, StrokeRun& run, driver::Clock& clock,
@@ -113,7 +113,7 @@ class StrokedLink final : public driver::ArmLink {
   driver::LinkRead read(driver::ArmSample& sample, std::int64_t) noexcept override {
     advance_to(clock_.now_ns());
     driver::ArmSample fresh = measured();
-    // Late reports come out of a queue.
+    // Late reports come from a queue.
     constexpr std::size_t kLate = 5;
     for (std::size_t i = kLate; i > 0; --i) queue_[i] = queue_[i - 1];
     queue_[0] = fresh;
@@ -166,7 +166,7 @@ class StrokedLink final : public driver::ArmLink {
            run_.trouble == Trouble::kStuck || run_.trouble == Trouble::kFrozen;
   }
 
-  /// Whether the force that is wrong has 0.3 N at the tip.
+  /// Returns whether the wrong part of the force is 0.3 N at the tip.
   bool shows(const Eigen::Vector3d& sound, const Eigen::Vector3d& tau,
              const Eigen::Matrix3d& J) const {
     if (run_.trouble == Trouble::kNone) return false;
@@ -277,7 +277,7 @@ class StrokedLink final : public driver::ArmLink {
   }
 
   Eigen::Matrix3d J_true() const {
-    // Off by what the tip does in a tick; of a frozen joint, the sound geometry.
+    // One tick out of date; for a frozen joint, the intact geometry.
     if (run_.trouble != Trouble::kFrozen) return J_;
     const auto q = driver::inverse(arm_.model.geometry, p_B());
     if (!q) return J_;
@@ -310,7 +310,7 @@ class StrokedLink final : public driver::ArmLink {
 
 }  // namespace stroke_rig
 
-/// Runs it for `duration` (s), or until a fault.
+/// Runs the strokes for `duration` (s), or until a fault.
 inline void run_strokes(const StrokedArm& arm, StrokeRun& run, double duration) {
   std::vector<device_sim::HandPath::Point> points;
   for (const auto& [time, p_WH] : run.way) {
@@ -346,8 +346,8 @@ inline void run_strokes(const StrokedArm& arm, StrokeRun& run, double duration) 
   run.end = 1e-3 * static_cast<double>(run.ticks);
 }
 
-/// Draws the strokes of a person: the shipped hand goes in straight lines at 0.05 to 0.6 m/s from
-/// point to point about a wall. Returns how many there are.
+/// Draws strokes of a person: straight lines at 0.05 to 0.6 m/s between points around a wall.
+/// Returns their number.
 inline int draw_strokes(StrokeRun& run, std::uint64_t seed, double duration, double reach = 0.02) {
   Random random(seed);
   run.seed = seed;
@@ -367,7 +367,7 @@ inline int draw_strokes(StrokeRun& run, std::uint64_t seed, double duration, dou
   return strokes;
 }
 
-/// Returns an arm with its data in code, as MotionRun has it.
+/// Returns an arm with its data in code, as in MotionRun.
 inline StrokedArm stroked_arm(MotionArm kind) {
   StrokedArm arm;
   double mass = 0.1;
@@ -405,8 +405,8 @@ inline StrokedArm stroked_arm(MotionArm kind) {
   return arm;
 }
 
-/// Draws strokes of any hand at a wall of any stiffness and friction, with the arm turned at random
-/// about its tip, dry friction up to 0.3 N and a limit of 3 to 9 N.
+/// Draws strokes of any hand at a wall of any stiffness and friction. The arm is turned at random
+/// about its tip, with dry friction up to 0.3 N and a force limit of 3 to 9 N.
 inline void draw_turned(StrokeRun& run, StrokedArm& arm, std::uint64_t seed, double duration) {
   Random random(seed + 4242);
   const auto spread = [&](double low) { return low * std::pow(10, random.uniform(0, 1)); };
@@ -425,7 +425,7 @@ inline void draw_turned(StrokeRun& run, StrokedArm& arm, std::uint64_t seed, dou
   run.scene.friction = random.bits() % 2 != 0 ? 0 : random.uniform(0, 1);
 }
 
-/// Draws a hand that does anything with any scene, as `any_hand` does. Returns its strokes.
+/// Draws random motion of a hand in a random scene, like `any_hand`. Returns the number of strokes.
 inline int draw_any(StrokeRun& run, StrokedArm& arm, std::uint64_t seed, double duration) {
   const MotionRun any = any_hand(seed, duration);
   run.seed = seed;

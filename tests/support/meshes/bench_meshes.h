@@ -14,11 +14,11 @@
 
 namespace thimble::support {
 
-// Closed shapes of 0.1 m from 10^3 to 10^7 triangles, made in linear time, and the surface that
-// they stand for. Lengths in m.
+// Closed shapes of 0.1 m with 10^3 to 10^7 triangles, made in linear time, and the surfaces that
+// they approximate. Lengths in m.
 
-/// The surface r(u) = radius * (1 + amplitude * sin(w x) sin(w y + 1) sin(w z + 2)), u = (x, y,
-/// z) a direction: a ball of 0.1 m with dents and bumps.
+/// The surface r(u) = radius * (1 + amplitude * sin(w x) sin(w y + 1) sin(w z + 2)) with the
+/// direction u = (x, y, z): a ball of 0.1 m with dents and bumps.
 struct BumpyBall {
   double radius = 0.05;
   double amplitude = 0.05;
@@ -36,14 +36,14 @@ struct BumpyBall {
     const Eigen::Vector3d u = direction.normalized();
     const Eigen::Vector3d side = u.unitOrthogonal();
     const Eigen::Vector3d other = u.cross(side);
-    constexpr double kStep = 1e-5;  // central differences: wrong by about 1e-10
+    constexpr double kStep = 1e-5;  // central differences: error about 1e-10
     const Eigen::Vector3d du = at(u + kStep * side) - at(u - kStep * side);
     const Eigen::Vector3d dv = at(u + kStep * other) - at(u - kStep * other);
     return du.cross(dv).normalized();
   }
 };
 
-/// A torus about z of 0.1 m across.
+/// A torus about z, 0.1 m in diameter.
 struct Ring {
   double ring_radius = 0.035;
   double tube_radius = 0.015;
@@ -56,20 +56,20 @@ struct Ring {
     return {std::cos(across) * std::cos(around), std::cos(across) * std::sin(around),
             std::sin(across)};
   }
-  /// Returns how far a point is below the surface.
+  /// Returns the depth of a point below the surface.
   double depth(const Eigen::Vector3d& p) const {
     return tube_radius - std::hypot(std::hypot(p.x(), p.y()) - ring_radius, p.z());
   }
 };
 
-/// Makes a ball of about `triangles` triangles from a cube whose faces are grids, row by row as
-/// scanners and modellers write them.
+/// Makes a ball of about `triangles` triangles from a cube whose faces are grids, in rows like
+/// scanners and modelling programs write them.
 inline render::TriangleMesh bench_ball(const BumpyBall& ball, std::size_t triangles) {
   const auto n = static_cast<std::int32_t>(
       std::max(2.0, std::round(std::sqrt(static_cast<double>(triangles) / 12))));
   render::TriangleMesh mesh;
-  // A lattice point on the cube's skin has one number: by layers of z, full squares below and
-  // above, rings between.
+  // Numbers each lattice point of the cube's surface: by layers of z, full squares at the bottom
+  // and the top, rings between them.
   const std::int32_t side = n + 1;
   const auto ring_place = [n](std::int32_t i, std::int32_t j) {
     if (j == 0) return i;
@@ -114,7 +114,7 @@ inline render::TriangleMesh bench_ball(const BumpyBall& ball, std::size_t triang
   return mesh;
 }
 
-/// Makes a torus of about `triangles` triangles of nearly equal sides.
+/// Makes a torus of about `triangles` triangles with nearly equal sides.
 inline render::TriangleMesh bench_ring(const Ring& ring, std::size_t triangles) {
   const double ratio = ring.ring_radius / ring.tube_radius;
   const auto across = static_cast<std::int32_t>(

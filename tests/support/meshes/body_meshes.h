@@ -16,7 +16,8 @@
 
 namespace thimble::support {
 
-/// Makes an open sheet of n x n vertices with triangles of equal sides (m), valence 6 inside.
+/// Makes an open sheet of n x n vertices with equilateral triangles of the given side (m); inner
+/// vertices have valence 6.
 inline render::TriangleMesh triangle_sheet(std::int32_t n, double side) {
   render::TriangleMesh mesh;
   for (std::int32_t j = 0; j < n; ++j) {
@@ -34,7 +35,7 @@ inline render::TriangleMesh triangle_sheet(std::int32_t n, double side) {
   return mesh;
 }
 
-/// Makes a chain-and-chords network of `n` nodes with constants spread over many powers of ten.
+/// Makes a network of `n` nodes in a chain with chords, with constants over many powers of ten.
 template <int kDof>
 render::SpringNetwork<kDof> wild_network(std::int32_t n, double stiffness_max, bool damped,
                                          std::uint64_t seed) {
@@ -57,8 +58,8 @@ render::SpringNetwork<kDof> wild_network(std::int32_t n, double stiffness_max, b
   return render::SpringNetwork<kDof>::build(nodes, springs).value();
 }
 
-/// Joins the vertices of a mesh along its edges, each vertex free along its normal alone: the
-/// smallest network whose limits and motion are known in closed form.
+/// Makes a network of a mesh's vertices along its edges, in which each vertex moves only along its
+/// normal. It is the smallest network whose limits and motion are known in closed form.
 inline render::SpringNetwork<1> join_heights(const render::TriangleMesh& mesh,
                                              const render::MeshSpringSettings& settings) {
   std::set<std::pair<std::int32_t, std::int32_t>> edges;
@@ -76,7 +77,7 @@ inline render::SpringNetwork<1> join_heights(const render::TriangleMesh& mesh,
   return render::SpringNetwork<1>::build(nodes, springs).value();
 }
 
-/// Throws every node somewhere, up to `u` (m) away and with up to `v` (m/s).
+/// Moves every node at random, up to `u` (m) away and at up to `v` (m/s).
 template <int kDof>
 void throw_nodes(render::SpringMotion<kDof>& motion, double u, double v, std::uint64_t seed) {
   Random random(seed);

@@ -11,7 +11,7 @@
 namespace thimble::support {
 
 /// Returns moves that press a dent of `depth` (m) into a mesh around vertex `centre`, along `way`
-/// (unit), fading to nothing at `radius` (m), with a tenth of it at random.
+/// (unit). The dent fades to zero at `radius` (m); a tenth of it is random.
 inline std::vector<render::VertexMove> dent(const render::ContactMesh& mesh, std::int32_t centre,
                                             const Eigen::Vector3d& way, double depth, double radius,
                                             Random& random) {
@@ -27,7 +27,7 @@ inline std::vector<render::VertexMove> dent(const render::ContactMesh& mesh, std
   return moves;
 }
 
-/// Gives moves back to where a mesh's vertices were.
+/// Returns moves back to the original vertices of a mesh.
 inline std::vector<render::VertexMove> back_to(const std::vector<Eigen::Vector3d>& vertices,
                                                const std::vector<render::VertexMove>& moves) {
   std::vector<render::VertexMove> back;
@@ -37,7 +37,7 @@ inline std::vector<render::VertexMove> back_to(const std::vector<Eigen::Vector3d
   return back;
 }
 
-/// Returns the mean of the faces' normals around a vertex, unit.
+/// Returns the mean of the face normals around a vertex, unit.
 inline Eigen::Vector3d outwards_at(const render::ContactMesh& mesh, std::int32_t vertex) {
   Eigen::Vector3d sum{0, 0, 0};
   for (const std::int32_t t : mesh.fan(vertex)) sum += mesh.cell(t).face.n;

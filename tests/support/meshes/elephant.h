@@ -15,17 +15,17 @@
 
 namespace thimble::support {
 
-/// Says where the demo's scene is.
+/// Returns the file of the demo's scene.
 inline std::filesystem::path elephant_scene() {
   return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/elephant.yaml";
 }
 
-/// Returns whether the scanned meshes are there (app/fetch_meshes.sh brings them).
+/// Returns whether the scanned meshes are available (app/fetch_meshes.sh downloads them).
 inline bool have_meshes() {
   return std::filesystem::exists(std::filesystem::path(THIMBLE_MESHES) / "elephant.off");
 }
 
-/// Opens the demo's scene on the virtual clock; fails the test if that cannot be done.
+/// Opens the demo's scene on the virtual clock; fails the test on error.
 inline std::unique_ptr<session::Session> open_elephant(std::optional<double> duration = {},
                                                        std::optional<std::uint64_t> seed = {}) {
   session::SessionOptions options;
@@ -40,7 +40,7 @@ inline std::unique_ptr<session::Session> open_elephant(std::optional<double> dur
   return std::move(session).value();
 }
 
-/// Returns the demo's scene as text, to be put anywhere, with a `contact:` section.
+/// Returns the text of the demo's scene with a `contact:` section, for a file in any folder.
 inline std::string elephant_text(const std::string& contact) {
   std::ifstream stream(elephant_scene());
   std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
@@ -49,8 +49,8 @@ inline std::string elephant_text(const std::string& contact) {
   return text;
 }
 
-/// Opens a scene out of its text; nothing if that cannot be done. Why goes to `error`, or fails the
-/// test without one.
+/// Opens a scene from its text; null on error. The message goes to `error`; without it the test
+/// fails.
 inline std::unique_ptr<session::Session> open_elephant_text(const std::string& text,
                                                             std::string* error = nullptr) {
   const auto file = scratch_folder() / "elephant.yaml";
@@ -68,7 +68,7 @@ inline std::unique_ptr<session::Session> open_elephant_text(const std::string& t
 
 }  // namespace thimble::support
 
-/// Skips a test that needs the scanned meshes where they are not there.
+/// Skips a test that needs the scanned meshes if they are not available.
 #define THIMBLE_NEEDS_MESHES()                                                               \
   if (!thimble::support::have_meshes()) {                                                    \
     GTEST_SKIP() << "Needs the scanned meshes: run app/fetch_meshes.sh (it downloads them)"; \

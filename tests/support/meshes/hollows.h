@@ -12,18 +12,18 @@
 
 namespace thimble::support {
 
-/// A solid with one sharp hollow in its top, and how a hand presses into it. W, m.
+/// A solid with one sharp concave place in its top, and how a hand presses into it. W, m.
 struct Hollow {
   TriangleMesh mesh;
-  Vector3d bottom{0, 0, 0};    ///< Where the planes meet.
-  Vector3d pressed{0, 0, -1};  ///< Unit direction that the hand presses in.
-  double turn = 0;             ///< Angle between the planes' normals, rad; of a pit the largest.
+  Vector3d bottom{0, 0, 0};    ///< Common point of the planes.
+  Vector3d pressed{0, 0, -1};  ///< Unit direction of the hand's force.
+  double turn = 0;             ///< Angle between the planes' normals, rad; the largest for a pit.
   bool groove = false;         ///< Whether it has two planes.
 };
 
-/// Makes a closed prism along y out of a polygon in x and z that runs counter-clockwise seen from
-/// -y (outside on its right in x, z), its length cut at `cuts`. The walls are split along y, so
-/// that the bottom of a groove is made of several edges. The two ends are fans about corner
+/// Makes a closed prism along y from a polygon in x and z, whose length is cut at `cuts`. The
+/// polygon is counter-clockwise seen from -y (outside on its right in x, z). The walls are split
+/// along y, so that the bottom of a groove has several edges. The two ends are fans about corner
 /// `middle`.
 inline TriangleMesh prism(const std::vector<Vector3d>& around, const std::vector<double>& cuts,
                           std::int32_t middle) {
@@ -54,8 +54,8 @@ inline TriangleMesh prism(const std::vector<Vector3d>& around, const std::vector
   return mesh;
 }
 
-/// Makes a groove along y: two walls that rise by `left` and `right` (rad) over walls of the given
-/// lengths (m), in a block that is 45 mm deep.
+/// Makes a groove along y in a block 45 mm deep: two walls that rise by `left` and `right` (rad),
+/// with the given lengths (m).
 inline Hollow groove(double left, double right, double left_long, double right_long,
                      const std::vector<double>& cuts) {
   const std::vector<Vector3d> around{
@@ -67,8 +67,8 @@ inline Hollow groove(double left, double right, double left_long, double right_l
   return {.mesh = prism(around, cuts, 1), .turn = left + right, .groove = true};
 }
 
-/// Makes a pit: a point below the middle of a block's top from which `sides` planes rise to the
-/// top's rim, `deep` m below it.
+/// Makes a pit: a point below the middle of a block's top, from which `sides` planes rise to the
+/// rim, `deep` m above it.
 inline Hollow pit(int sides, double radius, double deep, Random& random) {
   Hollow made;
   TriangleMesh& mesh = made.mesh;
@@ -104,8 +104,8 @@ inline Hollow pit(int sides, double radius, double deep, Random& random) {
   return made;
 }
 
-/// Draws a groove (three of four) or a pit whose planes turn by 10 to 170 degrees from one to the
-/// next, turned about z, with a direction to press in between the planes' normals.
+/// Draws a groove (three of four) or a pit, turned about z. Adjacent planes turn by 10 to 170
+/// degrees. The direction to press in is between the planes' normals.
 inline Hollow random_hollow(Random& random) {
   constexpr double kDegree = std::numbers::pi / 180;
   Hollow made;
@@ -120,7 +120,7 @@ inline Hollow random_hollow(Random& random) {
     const double left_long = random.uniform(0.01, 0.035);
     const double right_long = random.uniform(0.01, 0.035);
     made = groove(left, right, left_long, right_long, cuts);
-    // From one wall's normal to the other's, and a little along the groove.
+    // From one wall's normal to the other's, and slightly along the groove.
     const double across = random.uniform(-1, 1);
     const double angle = across > 0 ? across * left : across * right;
     made.pressed = -Vector3d(-std::sin(angle), random.uniform(-0.1, 0.1), std::cos(angle));

@@ -12,7 +12,7 @@
 
 namespace thimble::support {
 
-// Slow and plain answers that share no code with the library under test.
+// Slow and simple references that share no code with the library under test.
 
 using Eigen::Vector3d;
 using render::TriangleMesh;
@@ -26,8 +26,8 @@ inline Vector3d outward_normal(const TriangleMesh& mesh, std::size_t t) {
   return (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).normalized();
 }
 
-/// Sums the solid angles of all triangles seen from `p`, as turns: 1 inside a closed mesh, 0
-/// outside (van Oosterom and Strackee 1983).
+/// Returns the sum of the solid angles of all triangles seen from `p`, divided by 4 pi: 1 inside a
+/// closed mesh, 0 outside (van Oosterom and Strackee 1983).
 inline double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -45,8 +45,8 @@ inline bool is_inside(const TriangleMesh& mesh, const Vector3d& p) {
   return winding_number(mesh, p) > 0.5;
 }
 
-/// Finds the nearest point of a triangle: the foot of the normal if it lies in the triangle, else
-/// the nearest of the three sides' nearest points.
+/// Returns the closest point of a triangle: the projection along the normal if it is inside the
+/// triangle, else the closest of the three sides' closest points.
 inline Vector3d nearest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b,
                                     const Vector3d& c) {
   const Vector3d n = (b - a).cross(c - a);
@@ -66,7 +66,7 @@ inline Vector3d nearest_on_triangle(const Vector3d& p, const Vector3d& a, const 
   return nearest;
 }
 
-/// The nearest point of a mesh.
+/// The closest point of a mesh.
 struct Nearest {
   std::size_t triangle = 0;
   Vector3d point{0, 0, 0};
@@ -83,7 +83,8 @@ inline Nearest nearest_on_mesh(const TriangleMesh& mesh, const Vector3d& p) {
   return best;
 }
 
-/// Finds where a segment pierces a triangle, as a parameter 0 to 1 (Moeller and Trumbore 1997).
+/// Returns where a segment crosses a triangle, as a parameter from 0 to 1 (Moeller and Trumbore
+/// 1997).
 inline std::optional<double> pierce(const Vector3d& from, const Vector3d& to, const Vector3d& a,
                                     const Vector3d& b, const Vector3d& c) {
   const Vector3d d = to - from;

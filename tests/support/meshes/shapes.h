@@ -12,7 +12,7 @@
 
 namespace thimble::support {
 
-// Closed test shapes about the origin, wound counter-clockwise from outside. Lengths in m.
+// Closed test shapes about the origin, counter-clockwise seen from outside. Lengths in m.
 
 using Eigen::Vector3d;
 using render::TriangleMesh;
@@ -22,7 +22,7 @@ inline std::int32_t add_vertex(TriangleMesh& mesh, const Vector3d& p) {
   return static_cast<std::int32_t>(mesh.vertices.size() - 1);
 }
 
-/// Makes a sphere of 20 * 4^subdivisions triangles with all vertices on the sphere.
+/// Makes a sphere of 20 * 4^subdivisions triangles; all vertices are on the sphere.
 inline TriangleMesh icosphere(int subdivisions, double radius) {
   const double g = std::numbers::phi;
   TriangleMesh mesh;
@@ -59,7 +59,8 @@ inline TriangleMesh icosphere(int subdivisions, double radius) {
   return mesh;
 }
 
-/// Makes a sphere whose radius is scaled per direction by 1 + amplitude * waves: dents and bumps.
+/// Makes a sphere whose radius is scaled per direction by 1 + amplitude * waves, which gives dents
+/// and bumps.
 inline TriangleMesh bumpy_sphere(int subdivisions, double radius, double amplitude, double waves) {
   TriangleMesh mesh = icosphere(subdivisions, 1);
   for (Vector3d& p : mesh.vertices) {
@@ -70,7 +71,7 @@ inline TriangleMesh bumpy_sphere(int subdivisions, double radius, double amplitu
   return mesh;
 }
 
-/// Makes a torus about z from `around` by `across` quadrilaterals.
+/// Makes a torus about z of `around` by `across` quadrilaterals.
 inline TriangleMesh torus(double ring_radius, double tube_radius, int around, int across) {
   TriangleMesh mesh;
   for (int i = 0; i < around; ++i) {
@@ -134,7 +135,7 @@ inline TriangleMesh plate(double side, double thickness, int cells) {
   return mesh;
 }
 
-/// Makes a pyramid with `valence` sides, its tip at z = height and its base at z = 0.
+/// Makes a pyramid with `valence` sides, its apex at z = height and its base at z = 0.
 inline TriangleMesh needle(int valence, double height, double radius) {
   TriangleMesh mesh;
   for (int i = 0; i < valence; ++i) {

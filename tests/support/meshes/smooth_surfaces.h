@@ -8,8 +8,8 @@ namespace thimble::support {
 
 using Eigen::Vector3d;
 
-// Smooth closed surfaces given by a function that is negative inside and 0 on the surface, with its
-// gradient: what a mesh of them is measured against. About the origin, m.
+// Smooth closed surfaces defined by a function that is negative inside and 0 on the surface, with
+// its gradient. They are references for meshes of them. Centred at the origin, m.
 
 struct SphereSurface {
   double radius;
@@ -31,8 +31,8 @@ struct TorusSurface {
   }
 };
 
-/// The space on one side of the gyroid sin x cos y + sin y cos z + sin z cos x = 0, rounded off
-/// at a sphere, so that it is closed and smooth: saddles everywhere but near the sphere.
+/// The space on one side of the gyroid sin x cos y + sin y cos z + sin z cos x = 0, rounded off at
+/// a sphere, so that it is closed and smooth. It is a saddle everywhere except near the sphere.
 struct GyroidSurface {
   double wave;      ///< rad/m: the gyroid repeats after 2 pi / wave.
   double radius;    ///< Of the sphere, m.
@@ -41,7 +41,7 @@ struct GyroidSurface {
   double value(const Vector3d& p) const {
     const double a = gyroid(p);
     const double b = ball(p);
-    // The larger of the two, smooth where they are equal.
+    // The larger of the two, smoothed where they are equal.
     return (a + b + std::hypot(a - b, rounding)) / 2;
   }
 
@@ -66,7 +66,7 @@ struct GyroidSurface {
   double ball(const Vector3d& p) const { return p.squaredNorm() / (radius * radius) - 1; }
 };
 
-/// Moves a point that is near a surface onto it, along the gradient (Newton).
+/// Moves a point near a surface onto it, along the gradient (Newton).
 template <class Surface>
 Vector3d onto(const Surface& surface, Vector3d p) {
   for (int i = 0; i < 50; ++i) {

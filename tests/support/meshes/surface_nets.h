@@ -10,10 +10,10 @@
 
 namespace thimble::support {
 
-/// Meshes a smooth closed surface within a cube about the origin by surface nets (Gibson 1998): one
-/// vertex per grid cell that the surface passes, moved onto the surface, and one quadrilateral, cut
-/// along its shorter diagonal, per grid edge that it crosses. `cell` (m) must be small against
-/// the surface's thinnest part.
+/// Meshes a smooth closed surface within a cube about the origin by surface nets (Gibson 1998).
+/// Each grid cell that the surface crosses has one vertex, moved onto the surface. Each grid edge
+/// that it crosses has one quadrilateral, cut along its shorter diagonal. `cell` (m) must be small
+/// compared with the thinnest part of the surface.
 template <class Surface>
 render::TriangleMesh surface_nets(const Surface& surface, double half_side, double cell) {
   const int n = static_cast<int>(2 * half_side / cell) + 2;  // grid points per axis

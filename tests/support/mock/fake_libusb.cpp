@@ -41,7 +41,7 @@ bool FakeLibusb::take_read(Read& read) {
 
 namespace {
 
-// The library hides its own types; any address will do.
+// The library hides its types, so any address is valid.
 int place = 0;
 libusb_device* const kDevice = reinterpret_cast<libusb_device*>(&place);
 std::array<libusb_device*, 2> list{kDevice, nullptr};
@@ -176,7 +176,7 @@ int libusb_handle_events_timeout_completed(libusb_context*, timeval*, int*) {
     if (usb.answers) usb.say(usb.answer);
     complete(slot, usb.write_status, transfer->length);
   }
-  // A read that is complete is handed over again by its callback, into the place that it left.
+  // A completed read is submitted again by its callback, into the same place.
   FakeLibusb::Read read;
   for (std::size_t i = 0, idle = 0; idle < usb.waiting.size(); i = (i + 1) % usb.waiting.size()) {
     void*& slot = usb.waiting[i];

@@ -10,11 +10,11 @@
 
 namespace thimble::support {
 
-/// Builds a root folder that looks to Thimble like a machine: /sys, /dev, /proc and /etc, with as
-/// much of the kernel's files as Thimble reads.
+/// Builds a root folder that looks to Thimble like a machine: the files of /sys, /dev, /proc and
+/// /etc that Thimble reads.
 class FakeUsb {
  public:
-  /// Begins with a machine that has USB and nothing plugged in. `name` keeps tests apart.
+  /// Starts with a machine that has USB and no devices. `name` separates tests.
   explicit FakeUsb(std::string_view name) : root_(scratch_folder() / name) {
     std::filesystem::create_directories(root_ / "sys/bus/usb/devices");
     write("proc/sys/kernel/sched_rt_runtime_us", "950000");
@@ -23,13 +23,13 @@ class FakeUsb {
 
   const std::filesystem::path& root() const { return root_; }
 
-  /// Writes a file, with its folders.
+  /// Writes a file and creates its folders.
   void write(const std::filesystem::path& file, std::string_view text) const {
     std::filesystem::create_directories((root_ / file).parent_path());
     std::ofstream(root_ / file) << text << '\n';
   }
 
-  /// Plugs a device in; `port` is the kernel's name ("1-4" or, behind a hub, "1-4.2").
+  /// Adds a device; `port` is the kernel's name ("1-4" or, behind a hub, "1-4.2").
   void plug(const std::string& port, std::string_view vendor, std::string_view product,
             std::string_view serial, int bus, int device, std::string_view speed = "12") const {
     const std::filesystem::path folder = device_folder(port);
@@ -45,7 +45,7 @@ class FakeUsb {
     write(node, "");
   }
 
-  /// Gives a device an interface with a driver.
+  /// Adds an interface with a driver to a device.
   void bind(const std::string& port, int interface, const std::string& driver) const {
     const auto folder = root_ / interface_folder(port, interface);
     std::filesystem::create_directories(folder);
@@ -54,7 +54,8 @@ class FakeUsb {
     std::filesystem::create_directory_symlink(drivers, folder / "driver");
   }
 
-  /// Gives an interface a hidraw node whose reports have `bytes` each way (0: no descriptor).
+  /// Adds a hidraw node to an interface, with reports of `bytes` in each direction (0: no
+  /// descriptor).
   void add_hidraw(const std::string& port, int interface, const std::string& node,
                   unsigned char bytes = 8, unsigned page = 0xffab) const {
     const auto hid = interface_folder(port, interface) / "0003:0000:0000.0001";
@@ -68,12 +69,12 @@ class FakeUsb {
     write("dev/" + node, "");
   }
 
-  /// Gives a device its product string.
+  /// Sets the product string of a device.
   void call(const std::string& port, std::string_view product) const {
     write(device_folder(port) / "product", product);
   }
 
-  /// Gives an interface a serial port.
+  /// Adds a serial port to an interface.
   void add_tty(const std::string& port, int interface, const std::string& node) const {
     std::filesystem::create_directories(root_ / interface_folder(port, interface) / "tty" / node);
     write("dev/" + node, "");

@@ -25,9 +25,9 @@ using boost::system::error_code;
 using nlohmann::json;
 
 constexpr const char* kId = "049D";
-/// How long the service keeps a force after the last message, ns.
+/// Time for which the service keeps a force after the last message, ns.
 constexpr std::int64_t kKept_ns = 20'000'000;
-/// How late it answers where it is late, ns.
+/// Delay of a late answer, ns.
 constexpr std::int64_t kLate_ns = 60'000'000;
 
 json vector(const Eigen::Vector3d& v) {
@@ -182,7 +182,7 @@ class MockHaplyService::Server {
     return text;
   }
 
-  /// Takes a message as the service of one version does, and notes what is wrong with it.
+  /// Handles a message as one version of the service does, and records its errors.
   void take(const std::string& text) {
     const std::lock_guard lock(mutex_);
     ++log_.messages;

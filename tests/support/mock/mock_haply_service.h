@@ -10,52 +10,52 @@
 
 namespace thimble::support {
 
-/// What the mock service does with the next messages.
+/// Behaviour of the mock service for the next messages.
 enum class HaplyMischief {
   kNone,
-  kSilent,        ///< Answers nothing.
+  kSilent,        ///< Sends no answers.
   kLate,          ///< Answers 60 ms late.
-  kLeavesOneOut,  ///< Answers every second message alone.
-  kNan,           ///< A position that is no JSON number.
-  kInfinite,      ///< A number that no double holds.
-  kMillimetres,   ///< A position that no arm can have.
+  kLeavesOneOut,  ///< Answers only every second message.
+  kNan,           ///< A position that is not a JSON number.
+  kInfinite,      ///< A number outside the range of a double.
+  kMillimetres,   ///< A position that no arm can reach.
   kNull,          ///< A position without a number.
-  kGarbage,       ///< No JSON.
-  kHuge,          ///< A message larger than any.
-  kNotReady,      ///< The arm says that it is not ready.
-  kUnplugged,     ///< The arm is not in the list any more.
+  kGarbage,       ///< Not JSON.
+  kHuge,          ///< A message above the size limit.
+  kNotReady,      ///< The arm reports that it is not ready.
+  kUnplugged,     ///< The arm is no longer in the list.
   kClose,         ///< Closes the WebSocket.
-  kDie,           ///< Ends without a word, as a killed process does.
+  kDie,           ///< Ends without closing, like a killed process.
 };
 
-/// How the mock service greets.
+/// First message of the mock service.
 enum class HaplyGreeting {
-  kInverse3,      ///< As the service does.
-  kWithGrip,      ///< With a wireless grip beside the arm.
+  kInverse3,      ///< Like the real service.
+  kWithGrip,      ///< With a wireless grip in addition to the arm.
   kUncalibrated,  ///< Its arm is not calibrated.
   kInUse,         ///< Another program uses its arm.
   kNoArm,         ///< It has no arm.
   kOther,         ///< JSON of another service.
-  kNoJson,        ///< No JSON.
-  kNothing,       ///< Says nothing.
+  kNoJson,        ///< Not JSON.
+  kNothing,       ///< Sends nothing.
 };
 
-/// What the mock was told and did.
+/// Messages and state of the mock.
 struct HaplyLog {
-  int messages = 0;                      ///< That came.
-  int wrong = 0;                         ///< That keep not to the published JSON.
-  std::vector<Eigen::Vector3d> taken_B;  ///< Forces that it took, N.
-  Eigen::Vector3d f_T_B{0, 0, 0};        ///< The force that stands, N: it keeps none for long.
-  Eigen::Vector3d p_BT{0, 0, 0};         ///< Where its arm is, m.
-  bool closed_by_client = false;         ///< The WebSocket was closed as it should be.
+  int messages = 0;                      ///< Number of received messages.
+  int wrong = 0;                         ///< Messages that violate the published JSON format.
+  std::vector<Eigen::Vector3d> taken_B;  ///< Received forces, N.
+  Eigen::Vector3d f_T_B{0, 0, 0};        ///< The current force, N; it expires soon.
+  Eigen::Vector3d p_BT{0, 0, 0};         ///< Position of its arm, m.
+  bool closed_by_client = false;         ///< The client closed the WebSocket correctly.
 };
 
-/// A service that keeps to Haply's published JSON, in a thread of its own, with a mass on a hand as
-/// its arm. It listens on this computer, on a port that the kernel chooses. It goes by `clock`,
-/// which outlives it and which any thread may read; by the time of the world where there is none.
+/// A service with Haply's published JSON format, in its own thread, whose arm is a mass on a hand.
+/// It listens on 127.0.0.1, on a port that the kernel selects. It uses `clock`, which must outlive
+/// it and which any thread may read; without it, real time.
 class MockHaplyService {
  public:
-  /// `old_spelling`: takes the force under "values", as until 3.4, and knows no other; else under
+  /// `old_spelling`: accepts the force only under "values", as until version 3.4; else under
   /// "vector". `port`: 0 for any.
   explicit MockHaplyService(HaplyGreeting greeting = HaplyGreeting::kInverse3,
                             bool old_spelling = false, std::uint16_t port = 0,
@@ -67,7 +67,7 @@ class MockHaplyService {
   /// Moves the hand that holds the arm, m.
   void hand_to(const Eigen::Vector3d& p_BH);
   HaplyLog log() const;
-  /// Returns how many messages have come, and all that follows from them has been done.
+  /// Returns the number of messages that have been handled completely.
   std::uint64_t dealt_with() const;
 
  private:

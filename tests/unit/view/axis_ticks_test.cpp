@@ -31,7 +31,7 @@ TEST(AxisTicks, AreRoundNumbers) {
   EXPECT_EQ(texts(ticks_around(996, 1003.9, 5)), (Texts{"996", "998", "1000", "1002", "1004"}));
 }
 
-TEST(AxisTicks, AreAsManyAsThereIsRoomForAndInTheirRange) {
+TEST(AxisTicks, FillTheRangeWithoutOverlap) {
   std::mt19937_64 random(support::seed_of(7));
   std::uniform_real_distribution<double> size(-6, 4);
   std::uniform_real_distribution<double> place(-3, 3);
@@ -46,7 +46,7 @@ TEST(AxisTicks, AreAsManyAsThereIsRoomForAndInTheirRange) {
     ASSERT_LE(within.count, room);
     EXPECT_GE(within.first, least - rim);
     EXPECT_LE(within.last(), most + rim);
-    // No more of them would have fitted in, but by the next round step.
+    // With the next smaller round step they would overlap.
     EXPECT_GT(static_cast<double>(within.count) * 2.5 * within.step, width - 2 * within.step);
     const AxisTicks around = ticks_around(least, most, room);
     ASSERT_GE(around.count, 2U);
@@ -67,7 +67,7 @@ TEST(AxisTicks, AreAsManyAsThereIsRoomForAndInTheirRange) {
   }
 }
 
-TEST(AxisTicks, AreNoneWhereThereIsNoRange) {
+TEST(AxisTicks, EmptyRangeHasNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ticks_within(1, 1, 4).count, 0U);
   EXPECT_EQ(ticks_within(2, 1, 4).count, 0U);
@@ -75,7 +75,7 @@ TEST(AxisTicks, AreNoneWhereThereIsNoRange) {
   EXPECT_EQ(ticks_around(0, std::numeric_limits<double>::infinity(), 4).count, 0U);
 }
 
-TEST(AxisTicks, TellValuesInTheUnitThatIsReadBest) {
+TEST(AxisTicks, ValuesHaveAReadableUnit) {
   EXPECT_EQ(with_unit(Quantity::kForce, 2.314), "2.31 N");
   EXPECT_EQ(with_unit(Quantity::kForce, -0.0456), "-45.6 mN");
   EXPECT_EQ(with_unit(Quantity::kLength, 0.01234), "12.3 mm");

@@ -22,7 +22,7 @@ Camera any_camera(support::Random& random) {
   return camera;
 }
 
-TEST(Camera, PutsEveryPointWhereTheRayThroughItsPixelPasses) {
+TEST(Camera, ProjectionAndRaysAgree) {
   support::Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const Camera camera = any_camera(random);
@@ -30,7 +30,7 @@ TEST(Camera, PutsEveryPointWhereTheRayThroughItsPixelPasses) {
     const double y = random.uniform(0, 500);
     const Vector3d p = camera.p_WEye() + random.uniform(0.1, 2) * camera.ray(x, y, 800, 500);
     EXPECT_LT((camera.pixel(p, 800, 500) - Vector2d(x, y)).norm(), 1e-6);
-    // The matrices say the same.
+    // The matrices give the same result.
     const Eigen::Vector4f clip =
         camera.projection(800.0 / 500) * camera.view() * p.cast<float>().homogeneous();
     EXPECT_NEAR((clip.x() / clip.w() + 1) * 400, x, 0.05);
@@ -63,7 +63,7 @@ TEST(Camera, FramesAllThatMustBeSeenFromAnySide) {
         nearest_rim = std::min(nearest_rim, inside);
       }
     }
-    EXPECT_LT(nearest_rim, 0.2 * 500);  // and not from far away
+    EXPECT_LT(nearest_rim, 0.2 * 500);  // and not from a large distance
   }
 }
 

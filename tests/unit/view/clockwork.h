@@ -8,7 +8,7 @@
 
 namespace thimble::view {
 
-/// A source whose time alone moves; scene, moment and run are what a test makes them.
+/// A source in which only the time advances; the test sets scene, moment and run.
 class Clockwork final : public TouchSource {
  public:
   explicit Clockwork(PlayHead head, session::SharedReader* reader = nullptr)
@@ -30,7 +30,7 @@ class Clockwork final : public TouchSource {
   std::string kept() const override { return ""; }
   const std::vector<std::string>& about() const override { return about_; }
 
-  /// Give what is shown, to be changed.
+  /// Return the displayed data, for changes.
   DrawnScene& shown_scene() { return scene_; }
   DrawnMoment& shown_moment() { return *moment_; }
 

@@ -27,7 +27,7 @@ TEST(CreasedMesh, GivesEachFaceOfABoxItsOwnNormal) {
   EXPECT_EQ(drawn.edges.size(), 18U);
 }
 
-TEST(CreasedMesh, IsTheMeshItselfWhereNothingIsSharp) {
+TEST(CreasedMesh, EqualsMeshWithoutSharpEdges) {
   const render::TriangleMesh ball = support::icosphere(3, 1.0);
   const CreasedMesh drawn = crease(ball, kSharp);
   ASSERT_EQ(drawn.positions.size(), ball.vertices.size());
@@ -59,7 +59,7 @@ TEST(CreasedMesh, ClosedMeshHasTwoSidesPerEdge) {
   EXPECT_FALSE(crease({}, kSharp).closed);
 }
 
-TEST(CreasedMesh, MakesNoNormalOfTrianglesWithoutAreaOrOfSpikes) {
+TEST(CreasedMesh, IgnoresDegenerateTrianglesAndSpikes) {
   render::TriangleMesh bad;
   bad.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
   bad.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 0, 1}};

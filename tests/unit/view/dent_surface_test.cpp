@@ -49,13 +49,12 @@ Vector3d any_weights(support::Random& random) {
   return w / w.sum();
 }
 
-// The mesh's own normal at a place that a bent corner came from, as Phong's shading interpolates
-// it.
+// Returns the mesh's own normal at the origin of a bent corner, interpolated as in Phong shading.
 Vector3f whole_normal(const DentVertex& v) {
   return v.weights[0] * v.n_a + v.weights[1] * v.n_b + v.weights[2] * v.n_c;
 }
 
-TEST(DentSurface, ShowsAtFirstTouchWhatTheWholeTrianglesShowed) {
+TEST(DentSurface, EqualsWholeTrianglesAtFirstTouch) {
   support::Random random(1);
   for (const auto& mesh : {support::icosphere(2, 0.04), support::box({0.04, 0.05, 0.06})}) {
     Fixture f(mesh);
@@ -73,7 +72,7 @@ TEST(DentSurface, ShowsAtFirstTouchWhatTheWholeTrianglesShowed) {
   }
 }
 
-TEST(DentSurface, HidesWhatItStandsForOnceAndInOrder) {
+TEST(DentSurface, HidesReplacedTrianglesOnceAndInOrder) {
   support::Random random(2);
   Fixture f(support::icosphere(3, 0.04));
   for (int i = 0; i < 50; ++i) {
@@ -100,7 +99,7 @@ TEST(DentSurface, NormalsTurnWithTheSurfaceAsItBends) {
   EXPECT_GT(most, 0.05F);
 }
 
-TEST(DentSurface, DrawsNothingOfAPatchThatNamesWhatIsNotThere) {
+TEST(DentSurface, IgnoresPatchWithInvalidIndices) {
   Fixture f(support::icosphere(2, 0.04));
   f.press(3, Vector3d::Constant(1.0 / 3), 0.002);
   const render::BodyPatch good = f.patch;

@@ -16,8 +16,8 @@ namespace {
 
 using support::difference;
 
-/// The coarsest of balls (app/scenes/soft_coarse.yaml), a camera before one of its triangles,
-/// and the patch of the least of touches.
+/// The coarsest ball (app/scenes/soft_coarse.yaml), a camera in front of one of its triangles, and
+/// the patch of the slightest touch.
 struct FirstTouch {
   FirstTouch() {
     scene.objects.push_back({.name = "ball", .mesh = support::icosphere(0, 0.04)});
@@ -26,7 +26,7 @@ struct FirstTouch {
         std::make_shared<const render::ContactMesh>(render::ContactMesh::build(mesh).value());
     auto dent = render::BendablePolygon::build(contact, {}).value();
     camera.distance = 0.25;
-    // Straight before it, where a change is largest in the picture.
+    // Straight in front of it, where a change is largest in the picture.
     std::int32_t facing = 0;
     for (std::int32_t t = 0; t < contact->triangle_count(); ++t) {
       if (contact->cell(t).face.n.dot(camera.towards_eye()) >
@@ -71,8 +71,8 @@ TEST(FirstTouch, ChangesNoShade) {
         "normals, %.0f (mean %.4f) with split ones\n",
         shading == Shading::kPhong ? "Phong" : "Gouraud", naive.most, naive.mean, cured.most,
         cured.mean);
-    EXPECT_GT(naive.most, 5);  // the jump is there to be cured
-    // What is left is rounding, and samples on the new edges.
+    EXPECT_GT(naive.most, 5);  // the jump that the patch must not show
+    // The rest is rounding, and samples on the new edges.
     EXPECT_LE(cured.mean, 0.002);
     EXPECT_LE(cured.mean, naive.mean / 50);
     EXPECT_EQ(cured.bad_blocks, 0);

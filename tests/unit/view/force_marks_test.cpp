@@ -18,12 +18,12 @@ driver::TickRecord tick_at(double seconds, double x, double force) {
   return tick;
 }
 
-TEST(TipTrail, KeepsTheLastSecondsAndTheStrongestBlow) {
+TEST(TipTrail, KeepsLastSecondsAndStrongestForce) {
   TipTrail trail;
   std::vector<TrailPoint> points;
   for (int i = 0; i <= 10'000; ++i) {
     const double t = 1e-3 * i;
-    trail.add(tick_at(t, 0.01 * t, i == 9'555 ? 3.0 : 0.5));  // 10 mm/s, one blow
+    trail.add(tick_at(t, 0.01 * t, i == 9'555 ? 3.0 : 0.5));  // 10 mm/s, one strong force
   }
   trail.give(points);
   ASSERT_GT(points.size(), 50U);
@@ -33,7 +33,7 @@ TEST(TipTrail, KeepsTheLastSecondsAndTheStrongestBlow) {
   double most = 0;
   for (const TrailPoint& point : points) most = std::max(most, point.force);
   EXPECT_EQ(most, 3);
-  // Rest and nonsense add nothing; another run begins anew.
+  // A resting tip and invalid ticks add nothing; another run clears the trail.
   const std::size_t before = points.size();
   trail.add(tick_at(10.001, 0.1, 0.5));
   trail.add(tick_at(10.002, NAN, 0.5));
@@ -44,7 +44,7 @@ TEST(TipTrail, KeepsTheLastSecondsAndTheStrongestBlow) {
   EXPECT_EQ(points.size(), 1U);
 }
 
-TEST(ForceMarks, ScaleEndsAtARoundForceAboveAll) {
+TEST(ForceMarks, ScaleEndsAtRoundForceAboveTheMaximum) {
   DrawnScene scene;
   DrawnMoment moment;
   EXPECT_EQ(strongest_force(scene, moment), 0);
@@ -58,14 +58,15 @@ TEST(ForceMarks, ScaleEndsAtARoundForceAboveAll) {
   EXPECT_TRUE(std::isfinite(strongest_force(scene, moment)));
 }
 
-TEST(ForceMarks, PointAsTheFieldPushesAndLeaveWeakPlacesOut) {
+TEST(ForceMarks, PointAlongTheFieldAndSkipWeakPlaces) {
   DrawnScene scene;
   scene.field = {{{0, 0, 0}, {0, 0, 1}}, {{0.01, 0, 0}, {0, 0.5, 0}}, {{0.02, 0, 0}, {1e-3, 0, 0}}};
   ColouredMesh mesh, one;
   add_field(scene, 1, mesh);
   add_arrow({0, 0, 0}, {0, 0, 0.01}, 1e-4, kForceColour, one);
   EXPECT_EQ(mesh.vertices.size(), 2 * one.vertices.size());
-  // The first arrow stands on its place half and half, no longer than the samples are apart.
+  // The middle of the first arrow is at its sample, and it is no longer than the distance of the
+  // samples.
   float least = 0, most = 0;
   for (std::size_t i = 0; i < one.vertices.size(); ++i) {
     least = std::min(least, mesh.vertices[i].p.z());
@@ -76,7 +77,7 @@ TEST(ForceMarks, PointAsTheFieldPushesAndLeaveWeakPlacesOut) {
   for (const ColouredVertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.n.norm(), 1, 1e-5);
 }
 
-TEST(ForceMarks, SayWhyAViscousFieldHasNoArrows) {
+TEST(ForceMarks, LegendExplainsMissingArrowsOfViscousField) {
   DrawnScene scene;
   scene.objects.resize(2);
   scene.objects[1].name = "honey";
@@ -90,14 +91,14 @@ TEST(ForceMarks, SayWhyAViscousFieldHasNoArrows) {
   choice.fields = false;
   EXPECT_TRUE(legend_of(scene, {}, choice).lines.empty());
   choice.fields = true;
-  scene.field.push_back({{0, 0, 0}, {0, 0, 1}});  // one that pushes
+  scene.field.push_back({{0, 0, 0}, {0, 0, 1}});  // a sample with a force
   EXPECT_TRUE(legend_of(scene, {}, choice).lines.empty());
 }
 
 TEST(ForceMarks, DrawATrailAlongItsPointsWithoutCollapsing) {
   const std::vector<TrailPoint> trail = {{{0, 0, 0}, 0},
                                          {{0.01, 0, 0}, 1},
-                                         {{0.01, 0, 0}, 1},  // the same once more
+                                         {{0.01, 0, 0}, 1},  // the same point again
                                          {{0.01, 0.01, 0}, 2},
                                          {{0.01, 0.009, 0}, 0}};
   ColouredMesh mesh;

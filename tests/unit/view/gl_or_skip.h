@@ -11,8 +11,8 @@
 
 namespace thimble::support {
 
-/// Opens OpenGL without a screen. Where there is none, says so loudly and gives nullptr; in CI,
-/// which has it by app/setup.sh, that is a failure.
+/// Opens OpenGL without a screen. If there is none, prints a warning and returns nullptr; in CI,
+/// where app/setup.sh installs it, the test fails.
 inline std::unique_ptr<view::OffscreenContext> open_gl() {
   auto context = view::OffscreenContext::open();
   if (context) return std::move(context).value();

@@ -25,8 +25,8 @@ Eigen::AlignedBox2i box_of(const Camera& camera, const Eigen::AlignedBox2f& cast
   return ground_shadow(block.view_projection, block.shadow_from_world, -0.05F, casters, kSize);
 }
 
-/// Counts the pixels that see ground below what casts shadows, as the shader finds them
-/// (shader_parts.h, lit), and how many of those lie outside of the box.
+/// Counts the pixels of ground in the shadow, as the shader finds them (shader_parts.h, lit), and
+/// those of them outside of the box.
 struct Count {
   int shadowed = 0;
   int outside = 0;
@@ -54,7 +54,7 @@ Count count(const Camera& camera) {
   return result;
 }
 
-TEST(GroundShadow, HoldsEveryPixelOfGroundBelowWhatCastsShadows) {
+TEST(GroundShadow, BoxContainsEveryShadowedGroundPixel) {
   for (const double yaw : {0.0, 0.7, 2.0, 3.9, 5.5}) {
     for (const double distance : {0.15, 0.3, 0.8}) {
       const Count all = count(camera_at(yaw, 0.1, distance));
@@ -73,7 +73,7 @@ TEST(GroundShadow, IsASmallPartOfThePictureFromAfar) {
 
 TEST(GroundShadow, CoversAllIfTheGroundPassesTheEye) {
   EXPECT_TRUE(box_of(camera_at(0, 0, 0.3), {}).isEmpty());
-  Camera within;  // among what casts shadows, close to the ground
+  Camera within;  // among the objects that cast shadows, close to the ground
   within.distance = 0.001;
   const Eigen::AlignedBox2i box = box_of(within, kCasters);
   EXPECT_EQ(box.min(), Eigen::Vector2i::Zero());

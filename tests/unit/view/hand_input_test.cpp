@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A report of numbers of 16 bits behind its own.
+/// A report of 16-bit numbers after its own number.
 std::vector<std::byte> report(int id, const std::vector<int>& counts) {
   std::vector<std::byte> bytes{static_cast<std::byte>(id)};
   for (const int count : counts) {
@@ -26,7 +26,7 @@ std::vector<std::byte> report(int id, const std::vector<int>& counts) {
   return bytes;
 }
 
-TEST(SpaceMouseReport, TellsTranslationAndRotationApartOrTogether) {
+TEST(SpaceMouseReport, ParsesTranslationAndRotation) {
   SpaceMouseState apart;
   EXPECT_TRUE(take_space_mouse_report(report(1, {10, -20, 350}), apart));
   EXPECT_TRUE(take_space_mouse_report(report(2, {-350, 5, 256}), apart));
@@ -37,7 +37,7 @@ TEST(SpaceMouseReport, TellsTranslationAndRotationApartOrTogether) {
   EXPECT_EQ(together, apart);
 }
 
-TEST(SpaceMouseReport, KeepsTheRotationWhereOnlyATranslationIsTold) {
+TEST(SpaceMouseReport, KeepsRotationIfOnlyTranslationIsReported) {
   SpaceMouseState state;
   take_space_mouse_report(report(1, {1, 2, 3, 4, 5, 6}), state);
   take_space_mouse_report(report(1, {7, 8, 9}), state);
@@ -45,7 +45,7 @@ TEST(SpaceMouseReport, KeepsTheRotationWhereOnlyATranslationIsTold) {
   EXPECT_EQ(state.translation, (std::array<std::int16_t, 3>{7, 8, 9}));
 }
 
-TEST(SpaceMouseReport, TellsButtonsOfOneToFourBytes) {
+TEST(SpaceMouseReport, ParsesButtonsOfOneToFourBytes) {
   SpaceMouseState state;
   EXPECT_TRUE(take_space_mouse_report(report(3, {0x0102}), state));
   EXPECT_EQ(state.buttons, 0x0102U);
@@ -56,7 +56,7 @@ TEST(SpaceMouseReport, TellsButtonsOfOneToFourBytes) {
   EXPECT_EQ(state.buttons, 2U);
 }
 
-TEST(SpaceMouseReport, RejectsWhatIsTornOrUnknownAndKeepsWhatItHad) {
+TEST(SpaceMouseReport, KeepsStateForIncompleteOrUnknownReports) {
   SpaceMouseState state;
   take_space_mouse_report(report(1, {1, 2, 3}), state);
   const SpaceMouseState before = state;
@@ -68,22 +68,22 @@ TEST(SpaceMouseReport, RejectsWhatIsTornOrUnknownAndKeepsWhatItHad) {
   }
 }
 
-TEST(SpaceMouse, IsKnownByItsIdsAndItsUse) {
+TEST(SpaceMouse, IsIdentifiedByIdsAndUsage) {
   EXPECT_TRUE(is_space_mouse(0x046d, 0xc62b, 1, 8));
   EXPECT_TRUE(is_space_mouse(0x256f, 0xc635, 1, 8));
-  EXPECT_TRUE(is_space_mouse(0x256f, 0xc635, 0, 0)) << "a system that tells no use";
+  EXPECT_TRUE(is_space_mouse(0x256f, 0xc635, 0, 0)) << "a system that reports no usage";
   EXPECT_FALSE(is_space_mouse(0x256f, 0xc652, 1, 2)) << "the mouse of a receiver";
   EXPECT_FALSE(is_space_mouse(0x046d, 0xc52b, 1, 8)) << "another receiver of Logitech";
 }
 
-TEST(HandPush, OfKeysIsAlongThePicturesAxes) {
+TEST(HandPush, KeysPushAlongViewAxes) {
   EXPECT_EQ(push_of(HandKeys{.right = true, .up = true}).share, Vector3d(1, 1, 0));
   EXPECT_EQ(push_of(HandKeys{.farther = true}).share, Vector3d(0, 0, -1));
   EXPECT_FALSE(push_of(HandKeys{.left = true, .right = true}).any());
   EXPECT_TRUE(push_of(HandKeys{.slow = true}).slow);
 }
 
-TEST(HandPush, OfAStickBeginsAtZeroAtItsDeadZone) {
+TEST(HandPush, StickStartsAtZeroAtDeadZone) {
   EXPECT_FALSE(push_of(GamepadState{}).any());
   for (int i = 0; i < 16; ++i) {
     const double angle = 0.4 * i;
@@ -96,10 +96,10 @@ TEST(HandPush, OfAStickBeginsAtZeroAtItsDeadZone) {
     EXPECT_NEAR((full - Vector3d(way.x(), -way.y(), 0)).norm(), 0, 1e-12);
   }
   EXPECT_NEAR(push_of(GamepadState{.left = {1, 1}}).share.norm(), 1, 1e-12)
-      << "a corner is no more";
+      << "a corner is not larger";
 }
 
-TEST(HandPush, OfTriggersIsAwayAndNear) {
+TEST(HandPush, TriggersPushAwayAndNear) {
   EXPECT_NEAR(push_of(GamepadState{.right_trigger = 1}).share.z(), -1, 1e-12);
   EXPECT_NEAR(push_of(GamepadState{.left_trigger = 1}).share.z(), 1, 1e-12);
   EXPECT_FALSE(push_of(GamepadState{.left_trigger = -0.8}).any());
@@ -107,7 +107,7 @@ TEST(HandPush, OfTriggersIsAwayAndNear) {
   EXPECT_FALSE(push_of(GamepadState{.left_trigger = std::nan(""), .right_trigger = -1}).any());
 }
 
-TEST(HandPush, OfACapIsAsItIsPushed) {
+TEST(HandPush, CapPushesInItsDirection) {
   EXPECT_NEAR(
       (push_of(SpaceMouseState{.translation = {350, 0, 0}}).share - Vector3d(1, 0, 0)).norm(), 0,
       1e-12);
@@ -135,7 +135,7 @@ class HandInputTest : public ::testing::Test {
   Eigen::AlignedBox3d reach_{Vector3d(-0.1, -0.03, -0.1), Vector3d(0.1, 0.1, 0.1)};
 };
 
-TEST_F(HandInputTest, TakesTheHandAtTheTipAndKeepsIt) {
+TEST_F(HandInputTest, HoldsTheHandAtTheTip) {
   push({0, 0, 0});
   EXPECT_FALSE(input_.holds());
   push({1, 0, 0});
@@ -143,12 +143,12 @@ TEST_F(HandInputTest, TakesTheHandAtTheTipAndKeepsIt) {
   const double way = 0.01 * input_.speed();
   EXPECT_NEAR((input_.hand().p_WH - (p_WT_ + Vector3d(0, way, 0))).norm(), 0, 1e-12);
   push({0, 0, 0});
-  EXPECT_TRUE(input_.holds()) << "it stays where it was pushed to";
+  EXPECT_TRUE(input_.holds()) << "it keeps its position";
   push({0, -1, 1});
   EXPECT_NEAR((input_.hand().p_WH - (p_WT_ + Vector3d(way, way, -way))).norm(), 0, 1e-12);
 }
 
-TEST_F(HandInputTest, LetsGoWhenAskedAndWhenAnotherSourceIsChosen) {
+TEST_F(HandInputTest, ReleasesOnRequestAndOnSourceChange) {
   push({1, 0, 0});
   const Vector3d held = input_.hand().p_WH;
   input_.step({.share = {1, 0, 0}, .let_go = true}, camera_, p_WT_, reach_, 0.01);
@@ -170,17 +170,17 @@ TEST_F(HandInputTest, StaysNearTheTipAndInTheWorkspace) {
   EXPECT_LT((input_.hand().p_WH - p_WT_).norm(), (far - p_WT_).norm());
 }
 
-TEST_F(HandInputTest, MovesNoFartherForAPictureThatTookLong) {
+TEST_F(HandInputTest, SlowFrameDoesNotMoveFarther) {
   push({0, 1, 0}, 1000);
   EXPECT_NEAR((input_.hand().p_WH - p_WT_).norm(), HandInput::kFrameMost * input_.speed(), 1e-12);
 }
 
-TEST_F(HandInputTest, IsNotMovedByWhatIsNoNumber) {
+TEST_F(HandInputTest, IgnoresNaN) {
   push({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   EXPECT_FALSE(input_.holds());
 }
 
-TEST_F(HandInputTest, HasSpeedsThatEndAndASlowFifth) {
+TEST_F(HandInputTest, SpeedIsLimitedAndSlowIsAFifth) {
   for (int i = 0; i < 20; ++i) input_.change_speed(true);
   EXPECT_EQ(input_.speed(), HandInput::kSpeeds.back());
   input_.step({.share = {0, 1, 0}, .slow = true}, camera_, p_WT_, reach_, 0.01);
@@ -189,7 +189,7 @@ TEST_F(HandInputTest, HasSpeedsThatEndAndASlowFifth) {
   EXPECT_EQ(input_.speed(), HandInput::kSpeeds.front());
 }
 
-TEST(HandSources, AreThoseThatTheProgramNames) {
+TEST(HandSources, MatchTheirNames) {
   EXPECT_EQ(hand_source_named("spacemouse"), HandSource::kSpaceMouse);
   EXPECT_EQ(hand_source_named("keyboard"), HandSource::kKeyboard);
   EXPECT_EQ(hand_source_named("nose"), std::nullopt);

@@ -9,7 +9,7 @@
 namespace thimble::view {
 namespace {
 
-/// A ball above another; a moment says where they are.
+/// A ball above another, and a moment with their poses.
 DrawnScene two_balls() {
   DrawnScene scene;
   scene.objects.push_back({.name = "still", .mesh = support::icosphere(1, 0.03)});
@@ -35,16 +35,16 @@ Picture painted(ScenePainter& painter, const DrawnMoment& moment, bool shadows =
   return canvas.read();
 }
 
-TEST(KeptShadows, AreThoseThatAreDrawnAnewWhateverMoved) {
+TEST(KeptShadows, EqualRedrawnShadowsAfterAnyMotion) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   ScenePainter painter(two_balls(), ScenePrograms::make().value());
-  // Still twice, so that all is kept; then away, still there, and back.
+  // At rest twice, so that everything is stored; then moved away, at rest there, and moved back.
   for (const double x : {0.0, 0.0, 0.0, 0.03, 0.03, 0.03, 0.0, 0.0}) {
     ScenePainter fresh(two_balls(), ScenePrograms::make().value());
     EXPECT_EQ(painted(painter, moved_to(x)).rgb, painted(fresh, moved_to(x)).rgb) << x;
   }
-  // A shape that changed casts another shadow, though it stands where it stood.
+  // A deformed object casts another shadow, although its pose is the same.
   DrawnMoment shaped = moved_to(0);
   shaped.shapes.resize(2);
   shaped.shapes[1] = std::make_shared<render::TriangleMesh>(support::icosphere(1, 0.02));
@@ -54,14 +54,14 @@ TEST(KeptShadows, AreThoseThatAreDrawnAnewWhateverMoved) {
   EXPECT_NE(larger.rgb, painted(painter, shaped, false).rgb);
 }
 
-TEST(ClosedSurfaces, AreSeenFromWithinAsFromWithout) {
+TEST(ClosedSurfaces, LookAlikeFromInsideAndOutside) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const auto differs = [](double distance) {
     DrawnScene scene;
     scene.objects.push_back({.name = "ball", .mesh = support::icosphere(2, 0.05)});
     ScenePainter painter(scene, ScenePrograms::make().value());
-    DrawnMoment away;  // out of the picture
+    DrawnMoment away;  // outside of the picture
     away.poses.resize(1);
     away.poses[0].p_WB = {0, 100, 0};
     Canvas canvas(32, 32);

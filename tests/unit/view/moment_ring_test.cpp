@@ -8,7 +8,7 @@
 namespace thimble::view {
 namespace {
 
-// A moment whose every part tells its time.
+// A moment in which each part encodes its time.
 void make(double time, DrawnMoment& moment) {
   moment.tick = {};
   moment.tick.time_ns = std::llround(1e9 * time);
@@ -54,7 +54,7 @@ TEST(MomentRing, ShowsTheNewestMomentThatIsNoLater) {
   EXPECT_EQ(shown->tick.p_WT[0], 0);
 }
 
-TEST(MomentRing, ForgetsADentThatIsOver) {
+TEST(MomentRing, ForgetsAFinishedDent) {
   const auto moment = std::make_unique<DrawnMoment>();
   MomentRing ring;
   make(0, *moment);
@@ -69,7 +69,7 @@ TEST(MomentRing, ForgetsADentThatIsOver) {
   EXPECT_EQ(shown->patch.triangle_count, 0);
 }
 
-TEST(MomentRing, KeepsAMinuteAndBeginsAnewWithAnotherRun) {
+TEST(MomentRing, KeepsAMinuteAndIsClearedByAnotherRun) {
   const auto moment = std::make_unique<DrawnMoment>();
   MomentRing ring;
   for (int i = 0; i < 150 * 60; ++i) {
@@ -85,7 +85,7 @@ TEST(MomentRing, KeepsAMinuteAndBeginsAnewWithAnotherRun) {
   EXPECT_EQ(ring.oldest(), 0.5);
 }
 
-TEST(MomentRing, KeepsFewerSecondsWhereMomentsAreLarge) {
+TEST(MomentRing, KeepsFewerSecondsOfLargeMoments) {
   const auto moment = std::make_unique<DrawnMoment>();
   MomentRing ring;
   std::vector<std::weak_ptr<const render::TriangleMesh>> meshes;
@@ -98,7 +98,7 @@ TEST(MomentRing, KeepsFewerSecondsWhereMomentsAreLarge) {
     ring.keep(*moment);
   }
   moment->shapes.clear();
-  // What is in memory by the count of those who hold it, not by the ring's own.
+  // Memory, by the reference counts and not by the ring's own count.
   std::size_t alive = 0;
   for (const auto& mesh : meshes) alive += mesh.expired() ? 0 : 1;
   const std::size_t bytes = alive * 40'000 * sizeof(Eigen::Vector3d);

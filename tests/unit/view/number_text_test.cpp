@@ -7,7 +7,7 @@
 namespace thimble::view {
 namespace {
 
-TEST(NumberText, IsAsWideWhateverTheNumber) {
+TEST(NumberText, HasConstantWidth) {
   for (const double force : {0.0, 1e-5, 0.0042, 0.0999, 0.1, 1.234, -7.5, 99.99}) {
     EXPECT_EQ(force_text(force).size(), 9U) << force;
     EXPECT_EQ(length_text(force * 1e-2).size(), 9U) << force;
@@ -17,7 +17,7 @@ TEST(NumberText, IsAsWideWhateverTheNumber) {
   EXPECT_EQ(length_text(-std::numeric_limits<double>::infinity()).size(), 9U);
 }
 
-TEST(NumberText, IsInTheUnitThatIsReadBest) {
+TEST(NumberText, HasAReadableUnit) {
   EXPECT_EQ(length_text(0.00234), "  2.34 mm");
   EXPECT_EQ(length_text(0.0000123), "  12.3 um");
   EXPECT_EQ(length_text(0), "  0.00 mm");

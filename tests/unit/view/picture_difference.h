@@ -10,7 +10,7 @@
 
 namespace thimble::support {
 
-/// Returns how two pictures of one size differ, in steps of 255.
+/// Difference of two pictures of the same size, in steps of 1/255.
 struct PictureDifference {
   double mean = 0;  ///< Of all bytes.
   double most = 0;  ///< Of any byte.
@@ -36,7 +36,7 @@ inline PictureDifference difference(const view::Picture& a, const view::Picture&
         for (int u = x; u < x + kBlock; ++u) {
           const auto i = 3 * (static_cast<std::size_t>(v) * static_cast<std::size_t>(a.width) +
                               static_cast<std::size_t>(u));
-          // Brightness as the eye weighs it [ITU-R BT.709].
+          // Brightness as the eye perceives it [ITU-R BT.709].
           constexpr std::array kWeights = {0.2126, 0.7152, 0.0722};
           for (std::size_t k = 0; k < 3; ++k) sum += kWeights[k] * (a.rgb[i + k] - b.rgb[i + k]);
         }

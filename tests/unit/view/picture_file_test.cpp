@@ -17,7 +17,7 @@
 namespace thimble::view {
 namespace {
 
-/// Makes a picture with slopes and a few spots, as a shaded scene has.
+/// Makes a picture with gradients and a few spots, similar to a shaded scene.
 Picture any_picture(support::Random& random, int width, int height) {
   Picture picture{width, height, {}};
   const double turn = random.uniform(0, 6);
@@ -51,8 +51,8 @@ std::size_t number_at(const std::string& bytes, std::size_t at) {
   return number;
 }
 
-/// Returns what an animated PNG shows after each of its pictures, as numbers of colours; fails the
-/// test where a chunk is not whole.
+/// Returns the picture after each frame of an animated PNG, as indices of colours. Fails the test
+/// if a chunk is invalid.
 std::vector<std::vector<std::uint8_t>> frames_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -118,7 +118,7 @@ TEST(PictureFile, ReadsBackEveryByteWritten) {
   }
 }
 
-TEST(PictureFile, FewColoursAreHardlySeenAndTakeLessRoom) {
+TEST(PictureFile, FewColoursLookAlikeAndSaveSpace) {
   support::Random random(6);
   const Picture picture = any_picture(random, 320, 240);
   const auto all = support::scratch_folder() / "all.png";
@@ -131,7 +131,7 @@ TEST(PictureFile, FewColoursAreHardlySeenAndTakeLessRoom) {
   EXPECT_LT(std::filesystem::file_size(few), std::filesystem::file_size(all));
 }
 
-TEST(PictureFile, FewColoursAreThoseOfTheTableInEveryPixel) {
+TEST(PictureFile, FewColoursUseOnlyTheTable) {
   support::Random random(9);
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {131, 77}}) {
     const Picture picture = any_picture(random, width, height);
@@ -144,7 +144,7 @@ TEST(PictureFile, FewColoursAreThoseOfTheTableInEveryPixel) {
   }
 }
 
-TEST(PictureFile, AnimationShowsEachPictureInTheColoursOfTheTable) {
+TEST(PictureFile, AnimationShowsEachPictureWithTableColours) {
   support::Random random(10);
   std::vector<Picture> pictures;
   for (int i = 0; i < 3; ++i) pictures.push_back(any_picture(random, 31, 20));
@@ -164,7 +164,7 @@ TEST(PictureFile, StillReadersShowTheFirstPicture) {
   support::Random random(7);
   std::vector<Picture> pictures;
   for (int i = 0; i < 4; ++i) pictures.push_back(any_picture(random, 90, 60));
-  pictures.push_back(pictures.back());  // and one in which nothing changes
+  pictures.push_back(pictures.back());  // and one without a change
   const auto file = support::scratch_folder() / "animated.png";
   ASSERT_TRUE(write_animated_png(pictures, 0.04, file));
   const auto read = read_png(file);
@@ -172,7 +172,7 @@ TEST(PictureFile, StillReadersShowTheFirstPicture) {
   EXPECT_LT(mean_difference(*read, pictures[0]), 3);
 }
 
-TEST(PictureFile, TellsWhereNothingCanBeWrittenOrRead) {
+TEST(PictureFile, ErrorsNameTheFile) {
   support::Random random(8);
   const auto nowhere = support::scratch_folder() / "no_such_folder" / "a.png";
   const auto written = write_png(any_picture(random, 4, 4), nowhere);
@@ -181,10 +181,10 @@ TEST(PictureFile, TellsWhereNothingCanBeWrittenOrRead) {
   const auto animated = write_animated_png({any_picture(random, 4, 4)}, 0.04, nowhere);
   ASSERT_FALSE(animated);
   EXPECT_NE(animated.error().message.find("a.png"), std::string::npos);
-  if (std::filesystem::is_character_file("/dev/full")) {  // a disk without room
+  if (std::filesystem::is_character_file("/dev/full")) {  // a disk without space
     EXPECT_FALSE(write_png(any_picture(random, 200, 200), "/dev/full"));
     EXPECT_FALSE(write_animated_png({any_picture(random, 200, 200)}, 0.04, "/dev/full"));
-    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));  // and nothing was deleted
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));  // and it was not deleted
   }
   EXPECT_FALSE(read_png(nowhere));
 }

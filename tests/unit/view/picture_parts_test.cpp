@@ -25,7 +25,8 @@ Box box(int left, int low, int right, int high) {
   return {Eigen::Vector2i(left, low), Eigen::Vector2i(right, high)};
 }
 
-/// Adds red to the pixels within and green to those beside: what is painted twice is brighter.
+/// Adds red to the pixels inside and green to those outside, so that a pixel painted twice is
+/// brighter.
 Picture painted(const Box& within) {
   const GlProgram program = GlProgram::make(kCover, shaders::plain_fragment()).value();
   const GlVertexArray nothing;
@@ -49,7 +50,7 @@ Picture painted(const Box& within) {
   return canvas.read();
 }
 
-TEST(PaintApart, PaintsEveryPixelOnceAndThoseOfTheBoxWithin) {
+TEST(PaintApart, PaintsEachPixelOnceInsideOrOutsideTheBox) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   constexpr int kHigh = kHeight - kStrip;

@@ -5,7 +5,7 @@
 namespace thimble::view {
 namespace {
 
-TEST(PlayHead, OfARecordingPlaysAtItsSpeedAndStandsStillAtTheEnd) {
+TEST(PlayHead, RecordingPlaysAtSetSpeedAndStopsAtTheEnd) {
   PlayHead head = PlayHead::of_recording();
   head.set_span(3, 5);
   EXPECT_TRUE(head.plays());
@@ -21,12 +21,12 @@ TEST(PlayHead, OfARecordingPlaysAtItsSpeedAndStandsStillAtTheEnd) {
   EXPECT_EQ(head.time(), 5);
   EXPECT_FALSE(head.plays());
   EXPECT_FALSE(head.live());
-  head.toggle();  // anew
+  head.toggle();  // again from the start
   EXPECT_EQ(head.time(), 3);
   EXPECT_TRUE(head.plays());
 }
 
-TEST(PlayHead, StandsWhereItIsPutWithinWhatThereIs) {
+TEST(PlayHead, PositionIsClampedToTheSpan) {
   PlayHead head = PlayHead::of_recording();
   head.set_span(0, 2);
   head.stand_at(1.25);
@@ -38,7 +38,7 @@ TEST(PlayHead, StandsWhereItIsPutWithinWhatThereIs) {
   EXPECT_EQ(head.time(), 2);
 }
 
-TEST(PlayHead, OfARunFollowsItUntilOneLooksBack) {
+TEST(PlayHead, FollowsRunUntilMovedBack) {
   PlayHead head = PlayHead::of_run();
   for (int i = 1; i < 5; ++i) {
     head.set_span(0, i);
@@ -48,12 +48,12 @@ TEST(PlayHead, OfARunFollowsItUntilOneLooksBack) {
     EXPECT_EQ(head.behind(), 0);
   }
   head.go(1.5);
-  head.set_span(0, 8);  // the run goes on meanwhile
+  head.set_span(0, 8);  // the run continues
   head.step(0.1);
   EXPECT_FALSE(head.live());
   EXPECT_EQ(head.time(), 1.5);
   EXPECT_EQ(head.behind(), 6.5);
-  head.set_span(2, 10);  // what was looked at is no longer kept
+  head.set_span(2, 10);  // the displayed moment is no longer stored
   EXPECT_EQ(head.time(), 2);
   head.to_end();
   EXPECT_TRUE(head.live());
@@ -61,7 +61,7 @@ TEST(PlayHead, OfARunFollowsItUntilOneLooksBack) {
   EXPECT_EQ(head.time(), 11);
 }
 
-TEST(PlayHead, OfARunIsLiveAgainWhenItHasCaughtUp) {
+TEST(PlayHead, RunIsLiveAgainAfterCatchingUp) {
   PlayHead head = PlayHead::of_run();
   head.set_span(0, 4);
   head.toggle();  // holds this moment

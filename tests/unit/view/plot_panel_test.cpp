@@ -31,7 +31,7 @@ class PlotPanelUsed : public Screenless {
       ImGui::End();
     });
   }
-  // Over the first plot, where that time is if all is shown.
+  // Over the first plot, at that time if everything is shown.
   ImVec2 at(double seconds) const {
     return {inner.x + inner.width * static_cast<float>(seconds / 10), 90};
   }
@@ -82,7 +82,7 @@ TEST_F(PlotPanelUsed, AsksForTheMomentOfAClick) {
   EXPECT_FALSE(panel.is_zoomed());
 }
 
-TEST_F(PlotPanelUsed, LeavesAZoomWhoseTimeIsOver) {
+TEST_F(PlotPanelUsed, EndsZoomOfForgottenTime) {
   rest(at(2));
   look(at(2), false, 5);
   EXPECT_TRUE(panel.is_zoomed());
@@ -94,7 +94,7 @@ TEST_F(PlotPanelUsed, LeavesAZoomWhoseTimeIsOver) {
   EXPECT_FALSE(panel.is_zoomed());
 }
 
-TEST_F(PlotPanelUsed, FollowsARunUnlessOneLooksBack) {
+TEST_F(PlotPanelUsed, FollowsRunUnlessLookingBack) {
   time = {.looked = std::nullopt, .recorded = false};
   EXPECT_NEAR(range().begin, 10 - Plots::kShownSeconds, 1e-9);
   time.looked = 1.5;

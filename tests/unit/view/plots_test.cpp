@@ -21,12 +21,12 @@ driver::TickRecord tick(double time, double force) {
   return record;
 }
 
-TEST(Plots, FindTheLeastAndTheMostOfAnyRange) {
+TEST(Plots, FindMinAndMaxOfAnyRange) {
   Plots plots;
   std::mt19937_64 random(support::seed_of(3));
   std::uniform_real_distribution<double> any(0, 4);
   std::vector<double> forces;
-  // More than a minute, so that the first ticks are forgotten and blocks begin anywhere.
+  // More than a minute, so that the first ticks are forgotten and blocks start anywhere.
   constexpr int kTicks = 70'037;
   for (int i = 0; i < kTicks; ++i) {
     forces.push_back(any(random));
@@ -47,7 +47,7 @@ TEST(Plots, FindTheLeastAndTheMostOfAnyRange) {
   }
 }
 
-TEST(Plots, TellTheValueOfTheLastTickThatIsNoLater) {
+TEST(Plots, ReturnValueOfLastTickNotLater) {
   Plots plots;
   for (int i = 0; i < 100; ++i) plots.add(tick(0.01 * i, i));
   EXPECT_EQ(plots.value_at(Channel::kForce, 0.505), 50);
@@ -74,7 +74,7 @@ TEST(Plots, KeepAMinuteOfARunAndAllOfARecording) {
   EXPECT_EQ(Plots().kept().end, 0);
 }
 
-TEST(Plots, ZoomAboutTheMouseWithinWhatThereIs) {
+TEST(Plots, ZoomAroundTheMouseWithinTheRecording) {
   const TimeRange all{0, 10};
   const TimeRange closer = zoomed({0, 10}, 4, 0.5, all);
   EXPECT_DOUBLE_EQ(closer.begin, 2);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a viewer of the run saw at some times, and the recording of the same run.
+// Moments that a viewer of the run displayed, and the recording of the same run.
 struct Seen {
   std::vector<DrawnMoment> moments;
   std::unique_ptr<RecordingView> recorded;
@@ -56,7 +56,7 @@ Seen see(const std::string& scene, const std::vector<double>& times) {
   return seen;
 }
 
-// Positions in m that single precision tells apart no better.
+// Positions, m, that single precision cannot distinguish better.
 constexpr double kSingle = 1e-8;
 
 void expect_same(const DrawnMoment& then, const DrawnMoment& now, double exact) {
@@ -94,14 +94,14 @@ void expect_same(const DrawnMoment& then, const DrawnMoment& now, double exact) 
   }
 }
 
-// `exact`: of bodies, m and parts of quaternions.
+// `exact`: tolerance of bodies, m and parts of quaternions.
 void expect_as_seen(const std::string& scene, const std::vector<double>& times,
                     double exact = 1e-12) {
   SCOPED_TRACE(scene);
   const Seen seen = see(scene, times);
   ASSERT_EQ(seen.moments.size(), times.size());
   ASSERT_NE(seen.recorded, nullptr);
-  // What the test is to see must be there to be seen.
+  // The moments must contain the tested features.
   const auto& first = seen.moments.front();
   const auto& last = seen.moments.back();
   EXPECT_TRUE(last.patch.triangle_count > 0 ||
@@ -110,13 +110,14 @@ void expect_as_seen(const std::string& scene, const std::vector<double>& times,
                        first.poses[static_cast<std::size_t>(&pose - last.poses.data())].p_WB;
               }));
   const auto now = std::make_unique<DrawnMoment>();
-  // From the last to the first as well: it is shown in any order.
+  // In reverse as well, because a recording can be shown in any order.
   for (std::size_t i = times.size(); i-- > 0;) {
     const DrawnMoment& then = seen.moments[i];
     seen.recorded->show(1e-9 * static_cast<double>(then.tick.time_ns), *now);
     expect_same(then, *now, exact);
     for (std::size_t arm = 0; arm < then.others.size(); ++arm) {
-      // Who looks at a tick of the first arm sees the one before of the others, which come later.
+      // At a tick of the first arm, the previous ticks of the other arms are shown, because theirs
+      // are later.
       const driver::TickRecord& told = then.others[arm].tick;
       ASSERT_EQ(told.tick + 1, then.tick.tick);
       EXPECT_EQ(now->others[arm].tick.tick, then.tick.tick);
@@ -148,10 +149,10 @@ TEST(RecordingView, ShowsBodiesWhereTheyWere) {
 }
 
 TEST(RecordingView, ShowsSeveralArms) {
-  expect_as_seen("two_hands", {0.2, 0.7, 1.2}, 1e-4);  // as far as it moves in a tick
+  expect_as_seen("two_hands", {0.2, 0.7, 1.2}, 1e-4);  // its motion in a tick
 }
 
-TEST(RecordingView, ShowsWhatWasShapedForGood) {
+TEST(RecordingView, ShowsPermanentShapes) {
   const Seen seen = see("clay", {0.1, 3.0});
   ASSERT_EQ(seen.moments.size(), 2U);
   ASSERT_NE(seen.recorded, nullptr);
@@ -176,8 +177,8 @@ TEST(RecordingView, ShowsWhatWasShapedForGood) {
   }));
 }
 
-// A can that rolls after its wall snapped in: what is shaped for good is drawn by the object's
-// pose, as its dent is.
+// A can that rolls after its wall snapped in. Permanent shapes are drawn in the pose of the object,
+// as its dent is.
 TEST(RecordingView, ShowsLastingShapesOnAMovedObject) {
   const Seen seen = see("tin_can", {6.7});
   ASSERT_NE(seen.recorded, nullptr);
@@ -191,7 +192,7 @@ TEST(RecordingView, ShowsLastingShapesOnAMovedObject) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     off[i] = (now->shapes[0]->vertices.at(i) - first[i]).norm();
   }
-  // The dent under the finger is a part of it.
+  // The dent under the finger is part of it.
   std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
   EXPECT_LT(off[off.size() / 2], kSingle);
   for (std::size_t i = 0; i < now->patch.point_count; ++i) {
@@ -219,7 +220,7 @@ TEST(RecordingView, StepsFromTickToTick) {
   EXPECT_EQ(recorded.beside(time, 100'000), recorded.time().end);
 }
 
-TEST(RecordingView, SaysWhatAFileIsNot) {
+TEST(RecordingView, ErrorNamesWrongFile) {
   const auto opened = RecordingView::open({fs::path(THIMBLE_SOURCE_DIR) / "README.md"});
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("README.md"), std::string::npos);

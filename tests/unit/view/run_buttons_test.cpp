@@ -41,13 +41,13 @@ TEST(SceneMenu, ListsShippedUserAndNeighbouringScenes) {
   ASSERT_EQ(found.own.size(), 1u);
   EXPECT_TRUE(lists(found.own, own));
   EXPECT_EQ(found.own[0].about, "Mine.");
-  ASSERT_EQ(found.beside.size(), 1u) << "arm files and hidden ones are no scenes";
+  ASSERT_EQ(found.beside.size(), 1u) << "arm files and hidden files are not scenes";
   EXPECT_EQ(found.beside[0].name, "beside");
-  EXPECT_TRUE(find_scenes(shipped).beside.empty()) << "they are listed above";
+  EXPECT_TRUE(find_scenes(shipped).beside.empty()) << "shipped scenes are listed separately";
   unsetenv("XDG_DATA_HOME");
 }
 
-TEST(RunButtons, TellTicksOfAPauseApart) {
+TEST(RunButtons, CountPausedTicksSeparately) {
   session::SharedReader::Counters counters;
   counters.ticks = 1200;
   counters.missed = 3;
@@ -56,7 +56,7 @@ TEST(RunButtons, TellTicksOfAPauseApart) {
   EXPECT_EQ(counted(counters), "1200 ticks, 3 periods missed, 40 paused");
 }
 
-TEST(RunButtons, AreDrawnForAnyRunAndTellWhyAPhysicalArmRefuses) {
+TEST(RunButtons, AreDrawnForAnyRunAndExplainWhyPhysicalArmRefuses) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {400, 300};

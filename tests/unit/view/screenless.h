@@ -7,7 +7,7 @@
 
 namespace thimble::view {
 
-/// ImGui without a screen: what a person would do with the mouse is written into its state.
+/// ImGui without a screen. Tests write mouse input into its state.
 class Screenless : public ::testing::Test {
  protected:
   Screenless(float width, float height) {
@@ -22,7 +22,7 @@ class Screenless : public ::testing::Test {
   }
   ~Screenless() override { ImGui::DestroyContext(); }
 
-  /// Draws one picture with the mouse there.
+  /// Draws one frame with the mouse at this position.
   static void frame(const ImVec2& mouse, bool left, float wheel,
                     const std::function<void()>& draw) {
     ImGuiIO& io = ImGui::GetIO();

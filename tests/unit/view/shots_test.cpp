@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 using support::difference;
 using support::PictureDifference;
 
-// The stored pictures have 256 colours, and other releases of Mesa round otherwise; what a person
-// would see differs by far more (see the controls below).
+// The stored pictures have 256 colours, and other releases of Mesa round differently. A visible
+// change is much larger (see the controls below).
 constexpr double kMeanMost = 2.5;         // of 255
 constexpr double kBadBlocksMost = 0.004;  // 4 of 1200 blocks
 
@@ -39,7 +39,8 @@ ShotChoice small_choice() {
   return choice;
 }
 
-/// Plays a scene up to a time and hands over the moment; false if the scene's mesh is not there.
+/// Plays a scene up to a time and passes the moment on; returns false if the scene's mesh is not
+/// available.
 bool play(const fs::path& scene, double time,
           const std::function<void(const DrawnScene&, DrawnMoment&, const Plots&)>& look) {
   session::SessionOptions options;
@@ -61,7 +62,7 @@ ShotPainter painter_of(const DrawnScene& scene, const ShotChoice& choice) {
   return ShotPainter(scene, choice, ScenePrograms::make().value());
 }
 
-/// Tells at which second a scene is drawn: in touch, where the usual one is not.
+/// Returns the second at which a scene is drawn: in contact, if the default is not.
 double second_of(const std::string& scene) {
   static const std::map<std::string, double> others = {
       {"clay", 3.008}, {"clay_tablet", 5.008}, {"tin_can", 4.208},  {"held_block", 2.4},
@@ -79,7 +80,7 @@ std::vector<fs::path> shipped_scenes() {
   return scenes;
 }
 
-TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
+TEST(Shots, EveryShippedSceneMatchesStoredShot) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const fs::path stored_folder = fs::path(THIMBLE_TEST_DATA) / "shots";
@@ -102,23 +103,24 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
              return;
            }
            const auto stored = read_png(stored_file);
-           ASSERT_TRUE(stored) << stored.error().message
-                               << " A new scene? Draw it by THIMBLE_WRITE_SHOTS=1 and look at it.";
+           ASSERT_TRUE(stored)
+               << stored.error().message
+               << " For a new scene, draw it with THIMBLE_WRITE_SHOTS=1 and check it.";
            const PictureDifference found = difference(*stored, picture);
            if (!alike(found)) {
              const fs::path drawn_file = fs::path(testing::TempDir()) / (name + "_drawn.png");
              EXPECT_TRUE(write_png(picture, drawn_file));
-             ADD_FAILURE() << name << " looks otherwise: mean " << found.mean
+             ADD_FAILURE() << name << " looks different: mean " << found.mean
                            << " of 255, bad blocks " << found.bad_blocks << "; compare "
                            << stored_file << " with " << drawn_file
-                           << ". If it is better now, store it by THIMBLE_WRITE_SHOTS=1.";
+                           << ". If the change is intended, store it with THIMBLE_WRITE_SHOTS=1.";
            }
-           // Controls: what this must find, it finds.
+           // Controls: differences that this test must detect.
            ShotChoice armless = small_choice();
            armless.camera = painter.camera();
            armless.paint.marks.arm = false;
            EXPECT_FALSE(alike(difference(*stored, painter_of(drawn, armless).paint(moment, plots))))
-               << name << " without its arm passes for the one with it";
+               << name << " without its arm is not detected";
            if (std::any_of(moment.shapes.begin(), moment.shapes.end(),
                            [](const auto& shape) { return shape != nullptr; })) {
              DrawnMoment unshaped = moment;
@@ -127,7 +129,7 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
              same_camera.camera = painter.camera();
              const Picture as_at_first = painter_of(drawn, same_camera).paint(unshaped, plots);
              EXPECT_GT(difference(picture, as_at_first).mean, 0)
-                 << name << " looks as it was before it was shaped";
+                 << name << " without its shape is not detected";
            }
            const bool solid =
                std::any_of(drawn.objects.begin(), drawn.objects.end(),
@@ -138,12 +140,12 @@ TEST(Shots, OfEveryShippedSceneLookAsTheyDid) {
            for (render::BodyPose& pose : moment.poses) pose.p_WB[1] += 0.004;
            EXPECT_FALSE(
                alike(difference(*stored, painter_of(drawn, as_before).paint(moment, plots))))
-               << name << " 4 mm beside its place passes for the right one";
+               << name << " moved by 4 mm is not detected";
          });
   }
 }
 
-/// A picture of what is felt, as it is stored.
+/// A picture with marks, as it is stored.
 struct MarkedShot {
   const char* name;
   const char* scene;
@@ -151,7 +153,7 @@ struct MarkedShot {
   void (*choose)(PaintChoice& paint);
 };
 
-TEST(Shots, OfFieldsTrailNormalAndTexturesLookAsTheyDid) {
+TEST(Shots, FieldsTrailNormalAndTexturesMatchStoredShots) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const MarkedShot shots[] = {
@@ -183,13 +185,13 @@ TEST(Shots, OfFieldsTrailNormalAndTexturesLookAsTheyDid) {
            }
            const auto stored = read_png(stored_file);
            ASSERT_TRUE(stored) << stored.error().message;
-           EXPECT_TRUE(alike(difference(*stored, picture))) << shot.name << " looks otherwise";
+           EXPECT_TRUE(alike(difference(*stored, picture))) << shot.name << " looks different";
            EXPECT_FALSE(alike(difference(*stored, bare))) << shot.name << " shows no marks";
          });
   }
 }
 
-TEST(Shots, AreTheSameEachTime) {
+TEST(Shots, AreDeterministic) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   std::vector<Picture> pictures;

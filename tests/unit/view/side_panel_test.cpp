@@ -22,7 +22,8 @@ class SidePanel : public Screenless {
  protected:
   SidePanel() : Screenless(600, 100) {}
 
-  /// Presses the mouse on the slider, a share of its length from the left, and returns the value.
+  /// Presses the mouse on the slider, at a share of its length from the left, and returns the
+  /// value.
   static double pressed(const session::SharedScene::Knob& knob, float share) {
     double value = knob.initial;
     for (int i = 0; i < 4; ++i) {
@@ -51,7 +52,7 @@ session::SharedScene::Knob knob(double least, double most) {
   return made;
 }
 
-TEST_F(SidePanel, TurnsAKnobOfAnySizeByItsLogarithm) {
+TEST_F(SidePanel, WideKnobIsLogarithmic) {
   for (const double least : {1e-2, 1e-5, 2e-7, 1e-9}) {
     const auto wide = knob(least, 1000 * least);
     for (const float share : {0.25F, 0.5F, 0.75F}) {
@@ -60,13 +61,13 @@ TEST_F(SidePanel, TurnsAKnobOfAnySizeByItsLogarithm) {
   }
 }
 
-TEST_F(SidePanel, TurnsANarrowKnobInProportion) {
+TEST_F(SidePanel, NarrowKnobIsLinear) {
   EXPECT_NEAR(pressed(knob(0, 2000), 0.25F), 500, 20);
   EXPECT_NEAR(pressed(knob(100, 300), 0.5F), 200, 4);
   EXPECT_EQ(pressed(knob(100, 300), 0.999F), 300);
 }
 
-TEST_F(SidePanel, WritesAKnobInTheUnitThatIsReadBest) {
+TEST_F(SidePanel, KnobHasAReadableUnit) {
   auto rough = knob(1e-6, 1e-4);
   EXPECT_EQ(knob_text(rough, 2e-5), "20 um");
   rough.unit = "N/m";
@@ -75,7 +76,7 @@ TEST_F(SidePanel, WritesAKnobInTheUnitThatIsReadBest) {
   EXPECT_EQ(knob_text(rough, 0.25), "0.25");
 }
 
-/// Draws the panel of a run with knobs and a field, and returns what of it is cut off.
+/// Draws the panel of a run with knobs and a field, and returns the parts that are cut off.
 std::vector<std::string> cut_off(float width, float height, float scale) {
   set_text_style(scale, Theme::kDark);
   ImGuiIO& io = ImGui::GetIO();
@@ -112,7 +113,7 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   }
   std::vector<std::string> cut;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
-    // The panel itself is scrolled only where its text is too large for the window.
+    // The panel itself scrolls only if its text is too large for the window.
     const bool scrolls = (window->Flags & ImGuiWindowFlags_NoScrollbar) == 0 &&
                          (std::string(window->Name) != "panel" || height < 420 * scale);
     if (!window->WasActive || window->Hidden) continue;
@@ -126,7 +127,7 @@ std::vector<std::string> cut_off(float width, float height, float scale) {
   return cut;
 }
 
-/// Returns the help as it is read, line by line.
+/// Returns the text of the help, line by line.
 std::string help_text(bool closing_ends) {
   ViewNotes notes;
   notes.closing_ends = closing_ends;
@@ -137,26 +138,27 @@ std::string help_text(bool closing_ends) {
   io.SetClipboardTextFn = [](void*, const char* text) { taken = text; };
   ViewChoice choice;
   choice.help = true;
-  for (int frame = 0; frame < 3; ++frame) {  // a window that finds its size is hidden at first
+  for (int frame = 0; frame < 3; ++frame) {  // a window of automatic size is hidden at first
     io.DeltaTime = 0.02F;
     ImGui::NewFrame();
-    if (frame == 2) ImGui::LogToClipboard();  // until the window ends
+    if (frame == 2) ImGui::LogToClipboard();  // until the end of the window
     draw_notices({0, 0, 1280, 800}, notes, choice);
     ImGui::Render();
   }
   return taken;
 }
 
-TEST_F(SidePanel, SaysInItsHelpWhetherClosingEndsTheRun) {
+TEST_F(SidePanel, HelpStatesWhetherClosingEndsTheRun) {
   const std::string watching = help_text(false), leading = help_text(true);
   EXPECT_NE(watching.find("Q close"), std::string::npos) << watching;
-  EXPECT_NE(watching.find("Closing leaves the run on."), std::string::npos) << watching;
-  EXPECT_EQ(leading.find("leaves the run on"), std::string::npos) << leading;
-  EXPECT_NE(leading.find("Closing ends the run: its hand is in this window."), std::string::npos)
+  EXPECT_NE(watching.find("The run continues when the window closes."), std::string::npos)
+      << watching;
+  EXPECT_EQ(leading.find("The run continues"), std::string::npos) << leading;
+  EXPECT_NE(leading.find("Closing ends the run: this window moves its hand."), std::string::npos)
       << leading;
 }
 
-TEST_F(SidePanel, CutsNothingOffInWindowsOfAnyUsualSize) {
+TEST_F(SidePanel, ShowsEverythingInUsualWindowSizes) {
   for (const auto& [width, height] :
        {std::pair{700.0F, 420.0F}, {1280.0F, 800.0F}, {2560.0F, 1440.0F}}) {
     for (const float scale : {0.75F, 1.0F, 1.5F}) {

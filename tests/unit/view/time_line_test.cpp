@@ -1,7 +1,7 @@
 #include "view/playback/time_line.h"
 
 #include <epoxy/gl.h>
-// After the above, which brings OpenGL.
+// After the header above, which includes OpenGL.
 #include <GLFW/glfw3.h>
 
 #include "clockwork.h"
@@ -19,7 +19,7 @@ class TimeLineUsed : public Screenless {
   }
 };
 
-TEST_F(TimeLineUsed, IsDraggedToAnyMomentOfARunAndBackToNow) {
+TEST_F(TimeLineUsed, DragsToAnyMomentAndBackToNow) {
   Clockwork run(PlayHead::of_run());
   run.head().set_span(10, 70);
   EXPECT_EQ(words_of(run.head()), "now");
@@ -39,7 +39,7 @@ TEST_F(TimeLineUsed, IsDraggedToAnyMomentOfARunAndBackToNow) {
   EXPECT_TRUE(run.head().live());
 }
 
-TEST_F(TimeLineUsed, TakesItsKeysAndNoOthers) {
+TEST_F(TimeLineUsed, HandlesOnlyItsKeys) {
   Clockwork recording(PlayHead::of_recording());
   PlayHead& head = recording.head();
   head.set_span(0, 2);
@@ -61,10 +61,10 @@ TEST_F(TimeLineUsed, TakesItsKeysAndNoOthers) {
   EXPECT_TRUE(TimeLine::take_key(GLFW_KEY_COMMA, recording));
   EXPECT_EQ(head.speed(), 0.5);
   EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_S, recording));
-  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_LEFT, recording, false));  // the hand's
+  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_LEFT, recording, false));  // the key of the hand
 
   Clockwork run(PlayHead::of_run());
-  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_SPACE, run));  // that pauses the run itself
+  EXPECT_FALSE(TimeLine::take_key(GLFW_KEY_SPACE, run));  // the key that pauses the run
 }
 
 }  // namespace

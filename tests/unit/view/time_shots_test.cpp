@@ -1,4 +1,4 @@
-// Pictures of what shows time: a recording's equals the run's, plots look as they did.
+// Pictures over time: a recording looks like its run, and plots match the stored picture.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::difference;
 
-TEST(TimeShots, OfARecordingAreThoseOfItsRun) {
+TEST(TimeShots, RecordingLooksLikeItsRun) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   session::SessionOptions options;
@@ -55,7 +55,7 @@ TEST(TimeShots, OfARecordingAreThoseOfItsRun) {
     const auto found = difference(picture, again);
     EXPECT_LE(found.mean, 0.01);
     EXPECT_EQ(found.bad_blocks, 0);
-    // A control: another moment does not pass for it.
+    // Control: another moment looks different.
     if (before) {
       EXPECT_GT(difference(*before, picture).mean, 0.05);
     }
@@ -63,7 +63,7 @@ TEST(TimeShots, OfARecordingAreThoseOfItsRun) {
   }
 }
 
-TEST(TimeShots, OfPlotsLookAsTheyDid) {
+TEST(TimeShots, PlotsMatchStoredShot) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   Plots plots = Plots::of_recording();
@@ -99,7 +99,7 @@ TEST(TimeShots, OfPlotsLookAsTheyDid) {
   const auto stored = read_png(stored_file);
   ASSERT_TRUE(stored) << stored.error().message;
   const auto found = difference(*stored, drawn);
-  EXPECT_LE(found.mean, 2.5);  // as other shots (shots_test.cpp)
+  EXPECT_LE(found.mean, 2.5);  // as in shots_test.cpp
   EXPECT_LE(found.bad_blocks, 0.004);
 }
 

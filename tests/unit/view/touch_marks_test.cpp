@@ -20,7 +20,7 @@ DrawnMoment moment_with(const Eigen::Matrix3d& R_WT) {
   return moment;
 }
 
-/// Finds the end of the stylus: where the far end of its longest rod is drawn.
+/// Returns the end of the stylus: the far end of its longest drawn rod.
 Vector3d end_of_stylus(const DrawnMoment& moment) {
   const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
   Vector3d end(0, 0, 0);
@@ -37,7 +37,7 @@ Vector3d end_of_stylus(const DrawnMoment& moment) {
   return end;
 }
 
-TEST(TouchMarks, ShowAStylusThatPointsAsTheArmTells) {
+TEST(TouchMarks, StylusFollowsReportedOrientation) {
   const Vector3d tip(0.01, 0.02, 0.03);
   for (const double angle : {0.0, 0.7, -2.1}) {
     const Eigen::Matrix3d R_WT =
@@ -47,11 +47,11 @@ TEST(TouchMarks, ShowAStylusThatPointsAsTheArmTells) {
   }
 }
 
-TEST(TouchMarks, ShowNoStylusOfAnArmThatTellsNoOrientation) {
+TEST(TouchMarks, ShowNoStylusWithoutOrientation) {
   DrawnMoment moment;
   const MarkChoice only_arm{.arm = true, .tip = false, .force = false, .edge_planes = false};
   EXPECT_TRUE(mark_touch({}, moment, 1, only_arm).solids.empty());
-  // A roll about its own axis is seen: something on it moves.
+  // A roll about its own axis is visible, because a part of it moves.
   const auto rolled = [&](double angle) {
     const Eigen::Matrix3d R_WT = Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix();
     return mark_touch({}, moment_with(R_WT), 1, only_arm).solids.back().model;
@@ -59,7 +59,7 @@ TEST(TouchMarks, ShowNoStylusOfAnArmThatTellsNoOrientation) {
   EXPECT_GT((rolled(0) - rolled(1)).norm(), 1e-3);
 }
 
-TEST(TouchMarks, ShowTheNormalAndWhatOfTheForceLiesAlongTheSurface) {
+TEST(TouchMarks, ShowNormalAndTangentialForce) {
   DrawnMoment moment;
   moment.tick.in_contact = true;
   moment.tick.n_W = {0, 0, 1};

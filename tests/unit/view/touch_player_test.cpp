@@ -33,7 +33,7 @@ TEST(RumbleOf, IsTheForceOfTheTouchWithinItsBounds) {
   EXPECT_EQ(rumble_of(hard, 4), (RumbleLevel{1, 1}));
 }
 
-TEST(RumbleOf, IsNothingWhereNothingTouchesOrNothingIsANumber) {
+TEST(RumbleOf, IsZeroWithoutContactOrForNaN) {
   std::vector<driver::TickRecord> ticks{touching(3), touching(1)};
   for (driver::TickRecord& tick : ticks) tick.in_contact = false;
   EXPECT_EQ(rumble_of(ticks, 4), RumbleLevel{});
@@ -42,7 +42,7 @@ TEST(RumbleOf, IsNothingWhereNothingTouchesOrNothingIsANumber) {
   EXPECT_EQ(rumble_of(nonsense, 4), RumbleLevel{});
 }
 
-/// What a player did, and the run that it plays.
+/// The output of a player, and the run that it plays.
 class TouchPlayerTest : public ::testing::Test {
  protected:
   struct Sound final : SoundOutput {
@@ -72,7 +72,7 @@ class TouchPlayerTest : public ::testing::Test {
     player_ = std::make_unique<TouchPlayer>(std::make_unique<Sound>(heard_),
                                             std::make_unique<Rumble>(felt_));
   }
-  /// Lets the run go on for `ms` with a force, and the player look afterwards.
+  /// Runs for `ms` with a force, then updates the player.
   void go_on(int ms, double force) {
     for (int i = 0; i < ms; ++i) run_->store_tick(touching(force, tick_++));
     look(ms);
@@ -91,12 +91,12 @@ class TouchPlayerTest : public ::testing::Test {
   std::int64_t now_ns_ = 5'000'000'000;
 };
 
-TEST_F(TouchPlayerTest, PlaysWhatIsFeltFromItsBeginningOn) {
+TEST_F(TouchPlayerTest, PlaysOnlyTicksAfterItsStart) {
   join(true);
   for (int i = 0; i < 50; ++i) run_->store_tick(touching(2, tick_++));
   player_->begin(*reader_);
   look(10);
-  EXPECT_TRUE(heard_.empty()) << "what was before is not played";
+  EXPECT_TRUE(heard_.empty()) << "earlier ticks are not played";
   EXPECT_TRUE(felt_.empty());
   go_on(20, 2);
   EXPECT_EQ(heard_.size(), 20U * 48U);
@@ -104,11 +104,11 @@ TEST_F(TouchPlayerTest, PlaysWhatIsFeltFromItsBeginningOn) {
   EXPECT_EQ(felt_[0].strong, 0.5);
 }
 
-TEST_F(TouchPlayerTest, TellsTheGamepadInTimeAndNotTooOften) {
+TEST_F(TouchPlayerTest, UpdatesGamepadEvery50To100ms) {
   join(true);
   player_->begin(*reader_);
   for (int i = 0; i < 100; ++i) go_on(10, 2);
-  // A second: at least every 100 ms, at most every 50.
+  // One second: at least every 100 ms, at most every 50 ms.
   EXPECT_GE(felt_.size(), 10U);
   EXPECT_LE(felt_.size(), 21U);
 }
@@ -118,12 +118,12 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenTheRunStallsPausesOrEnds) {
   player_->begin(*reader_);
   go_on(10, 2);
   look(190);
-  EXPECT_NE(felt_.back(), RumbleLevel{}) << "it has told something less than 0.2 s ago";
+  EXPECT_NE(felt_.back(), RumbleLevel{}) << "the last update is less than 0.2 s old";
   look(20);
   EXPECT_EQ(felt_.back(), RumbleLevel{});
   const std::size_t told = felt_.size();
   look(500);
-  EXPECT_EQ(felt_.size(), told) << "it is told once";
+  EXPECT_EQ(felt_.size(), told) << "updated once";
   for (const session::RunState state : {session::RunState::kPaused, session::RunState::kEnded}) {
     run_->set_state(session::RunState::kRunning);
     go_on(60, 2);
@@ -145,7 +145,7 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenNothingTouches) {
   EXPECT_EQ(felt_.back(), RumbleLevel{});
 }
 
-TEST_F(TouchPlayerTest, PlaysAPacedRunWhereItsPaceIsThatOfRealTime) {
+TEST_F(TouchPlayerTest, PlaysPacedRunOnlyAtRealTimeSpeed) {
   join(false, true);
   player_->begin(*reader_);
   go_on(20, 2);
@@ -155,10 +155,10 @@ TEST_F(TouchPlayerTest, PlaysAPacedRunWhereItsPaceIsThatOfRealTime) {
   heard_.clear();
   for (int i = 0; i < 10; ++i) go_on(20, 2);
   EXPECT_TRUE(heard_.empty()) << "half as many samples as the card plays";
-  EXPECT_GT(felt_.size(), 1U) << "a gamepad is told what is felt at any pace";
+  EXPECT_GT(felt_.size(), 1U) << "a gamepad is updated at any pace";
 }
 
-TEST_F(TouchPlayerTest, LeavesARunInVirtualTimeAlone) {
+TEST_F(TouchPlayerTest, DoesNotPlayRunsInVirtualTime) {
   join(false);
   player_->begin(*reader_);
   go_on(100, 2);
@@ -166,11 +166,11 @@ TEST_F(TouchPlayerTest, LeavesARunInVirtualTimeAlone) {
   EXPECT_TRUE(felt_.empty());
 }
 
-TEST(Rumble, SaysWhatToDoWhereNoGamepadCan) {
+TEST(Rumble, ErrorNamesTheRemedyWithoutGamepad) {
   const auto opened = open_rumble(support::scratch_folder());
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message,
-            "No rumble: no gamepad that can is plugged in; plug one in and begin again.");
+            "No rumble: no gamepad with rumble is plugged in. Plug one in and start again.");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Ticks of a touch whose force is `force(t)` (N); it slides at `speed` along x.
+/// Returns the ticks of a touch whose force is `force(t)` (N) and which slides at `speed` along x.
 template <class Force>
 std::vector<driver::TickRecord> ticks_of(double rate, double seconds, Force force,
                                          double speed = 0) {
@@ -40,7 +40,7 @@ std::vector<float> sound_at(double rate, const std::vector<driver::TickRecord>& 
   return sound_of(ticks, std::llround(1e9 / rate));
 }
 
-/// Returns how loud a frequency is in the second half of a sound.
+/// Returns the loudness of a frequency in the second half of a sound.
 double loudness(const std::vector<float>& sound, double hertz) {
   std::complex<double> sum = 0;
   const std::size_t half = sound.size() / 2;
@@ -68,7 +68,8 @@ TEST(TouchSound, GivesTheFrequencyOfATexture) {
     EXPECT_EQ(sound.size(), 48000U);
     const double at_250 = loudness(sound, 250);
     EXPECT_NEAR(at_250, 0.4 * 0.3, 0.01) << rate;
-    // What a plain staircase of ticks would add: at 1 kHz 750 and 1250 Hz, a third and a fifth.
+    // Frequencies that a step function of ticks would add: at 1 kHz 750 and 1250 Hz, with a third
+    // and a fifth of the loudness.
     for (const double other : {125.0, 500.0, 750.0, 1000.0, 1250.0, 1750.0}) {
       EXPECT_LT(loudness(sound, other), 0.02 * at_250) << rate << ": " << other;
     }
@@ -95,7 +96,7 @@ TEST(TouchSound, IsSilentAtRestAndForSlowForces) {
   EXPECT_LT(loudest(slow, slow.size() / 2), 0.01);
 }
 
-TEST(TouchSound, IsExactlySilentWhereNothingTouches) {
+TEST(TouchSound, IsExactlySilentWithoutContact) {
   auto ticks = ticks_of(
       1000, 1, [](double t) { return Eigen::Vector3d(0, 0, 1 + std::sin(2 * kPi * 200 * t)); });
   for (std::size_t i = 500; i < ticks.size(); ++i) ticks[i].in_contact = false;
@@ -103,10 +104,10 @@ TEST(TouchSound, IsExactlySilentWhereNothingTouches) {
   EXPECT_GT(loudest(sound), 0.2);
   EXPECT_EQ(loudest(sound, 600 * 48), 0);
   for (driver::TickRecord& tick : ticks) tick.in_contact = false;
-  EXPECT_EQ(loudest(sound_at(1000, ticks)), 0) << "a force that no touch makes is not heard";
+  EXPECT_EQ(loudest(sound_at(1000, ticks)), 0) << "a force without contact is silent";
 }
 
-TEST(TouchSound, NeverGetsLouderThanItMay) {
+TEST(TouchSound, NeverExceedsItsLimit) {
   const auto ticks = ticks_of(
       1000, 0.5,
       [](double t) { return Eigen::Vector3d(0, 0, std::fmod(t, 0.004) < 0.002 ? 1e4 : -1e4); },
@@ -116,7 +117,7 @@ TEST(TouchSound, NeverGetsLouderThanItMay) {
   EXPECT_GT(loudest(sound), 0.9 * TouchSound::kLoudest);
 }
 
-TEST(TouchSound, ClicksAsLoudAsATouchIsFast) {
+TEST(TouchSound, ClickLoudnessFollowsSpeed) {
   double before = 0;
   for (const double speed : {0.02, 0.05, 0.1, 0.2}) {
     auto ticks = ticks_of(1000, 0.2, [](double) { return Eigen::Vector3d::Zero(); });
@@ -129,7 +130,7 @@ TEST(TouchSound, ClicksAsLoudAsATouchIsFast) {
   }
 }
 
-TEST(TouchSound, HissesWhereFrictionSlidesAndNotWhereItRests) {
+TEST(TouchSound, HissesOnlyWhileFrictionSlides) {
   const auto rubbed = [](double speed) {
     const auto sound =
         sound_at(1000, ticks_of(
@@ -154,7 +155,7 @@ TEST(TouchSound, MissingTicksKeepTheTime) {
   for (const float x : sound_at(1000, ticks)) ASSERT_LE(std::abs(x), 0.5F);
 }
 
-TEST(TouchSound, IsTheSameWhetherTakenAtOnceOrInParts) {
+TEST(TouchSound, IsEqualInOneOrSeveralParts) {
   const auto ticks = ticks_of(
       1000, 0.2, [](double t) { return Eigen::Vector3d(0.1, 0, std::sin(700 * t)); }, 0.1);
   TouchSound sound(1'000'000);
@@ -167,7 +168,7 @@ TEST(TouchSound, IsTheSameWhetherTakenAtOnceOrInParts) {
   EXPECT_EQ(parts, sound_at(1000, ticks));
 }
 
-TEST(WavFile, IsWhatOthersRead) {
+TEST(WavFile, HasStandardFormat) {
   const std::string file = (support::scratch_folder() / "out.wav").string();
   const std::vector<float> samples{0, 0.5F, -1, 2, std::nanf("")};
   ASSERT_TRUE(write_wav(samples, 48000, file));

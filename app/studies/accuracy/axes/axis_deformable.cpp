@@ -147,21 +147,20 @@ AccuracyAxis deformable_axis() {
   axis.knob_unit = "us";
   axis.metric = "largest error of all nodes and frames";
   axis.unit = "% of the largest motion";
-  axis.truth = "The sum of all sine modes of the membrane, each by its closed form.";
+  axis.truth = "The sum of all sine modes of the membrane, each in closed form.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of force (3.5 %)";
   axis.default_words =
-      "Implicit Euler with one step per tick is stable at any stiffness, mass and step and comes "
-      "to "
-      "rest as well; what it gets wrong is how fast a body oscillates after a poke, not how deep "
-      "it "
-      "dents under a steady hand. Of what is cheaper, symplectic Euler and Verlet diverge as soon "
-      "as "
-      "a scene's body is stiffer. The trapezoid does not: it is as stable, cheaper and truer, but "
-      "what is too fast for its step rings. --quality auto and reference take it with finer steps.";
+      "Implicit Euler with one step per tick is stable at any stiffness, mass and "
+      "step, and comes to rest. Its error is in the frequency of the oscillation "
+      "after a poke, not in the depth of a dent under a steady hand. Of the cheaper "
+      "methods, symplectic Euler and Verlet diverge if the body is stiffer. The "
+      "trapezoid is stable, cheaper and more accurate, but modes too fast for its "
+      "step ring. --quality auto and reference use it with finer steps.";
   axis.left_out =
-      "XPBD is not in the product: converged it is implicit Euler, and a single round of it is "
-      "dominated by that. Scanned meshes are in `thimble study integrators`.";
+      "XPBD is not in the product: when it has converged it equals implicit Euler, "
+      "and a single iteration of it is both slower and less accurate. For scanned "
+      "meshes see `thimble study integrators`.";
   for (const Scheme& scheme : kSchemes) {
     AccuracyLine line{
         .name = scheme.name, .title = scheme.title, .order = scheme.order, .points = {}};

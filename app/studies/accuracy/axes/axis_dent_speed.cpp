@@ -88,18 +88,18 @@ double error_of(double omega_h, double rate, SpringScheme scheme) {
 AccuracyAxis dent_speed_axis() {
   AccuracyAxis axis;
   axis.name = "dent_speed";
-  axis.title = "How fast a dent may swing: a vertex on its spring, let go";
-  axis.knob = "w h, the phase of a tick";
+  axis.title = "Dents of high frequency: a vertex on its spring, released";
+  axis.knob = "w h, phase per tick";
   axis.knob_unit = "rad";
   axis.metric = "largest error over half a period";
   axis.unit = "% of the dent";
   axis.truth = "The closed form of a mass on a spring.";
   axis.threshold = 7;
-  axis.threshold_words = "the change of force that is felt (7 %)";
+  axis.threshold_words = "the noticeable change of force (7 %)";
   axis.default_words =
-      "The scene brings how fast a dent is. Implicit Euler is the default, since it comes to rest "
-      "without dampers.";
-  axis.left_out = "Springs between vertices: their rounds end at 1 % of what a tick changes.";
+      "The scene determines the frequency of a dent. Implicit Euler is the default, "
+      "because it comes to rest without dampers.";
+  axis.left_out = "Springs between vertices: their iterations stop at 1 % of a tick's change.";
   axis.given = true;
   struct Line {
     const char* name;

@@ -47,25 +47,23 @@ Stroke stroke_of(const CostSubject& subject) {
 AccuracyAxis effects_axis() {
   AccuracyAxis axis;
   axis.name = "effects";
-  axis.title = "Each effect on and off: what it adds to the force, and to a tick";
+  axis.title = "Each effect on and off: its share of the force, and its cost per tick";
   axis.metric = "force missing without the effect, RMS";
   axis.unit = "mN";
   axis.truth = "The same stroke over the same ring with the effect.";
   axis.threshold = 20;
-  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.threshold_words = "the smallest noticeable force (20 mN)";
   axis.felt_words =
-      "An effect whose force lies below the dashed line could be left out of this stroke "
-      "unnoticed; "
-      "the others are what their scenes are about.";
+      "An effect whose force is below the dashed line could be left out of this "
+      "stroke unnoticed. The others can be felt.";
   axis.over_knob = false;
   axis.cost_is_added = true;
   axis.default_words =
-      "Off: a scene gets the effects that it names, and pays for no others. The cost is what "
-      "leaving "
-      "the effect out saves: a tick with it, less the same tick of the bare ring.";
+      "Off: a scene has only the effects that it names. The cost of an effect is the "
+      "time of a tick with it, minus the time of the same tick on the bare ring.";
   axis.left_out =
-      "What several effects cost together, which is the sum. Fronts say nothing here: who wants a "
-      "texture is not served by a cheaper one.";
+      "The cost of several effects, which is the sum of their costs. The Pareto "
+      "front has no meaning here, because effects are not alternatives.";
   auto subjects = std::make_shared<std::vector<CostSubject>>();
   const CostSubject* bare = nullptr;
   *subjects = cost_subjects();

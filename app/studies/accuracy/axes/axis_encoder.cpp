@@ -56,24 +56,24 @@ Stroke work_of(const Wall& wall, double step) {
 AccuracyAxis encoder_axis() {
   AccuracyAxis axis;
   axis.name = "encoder";
-  axis.title = "What the steps of the encoders cost: noise in the force of a wall of 800 N/m";
+  axis.title = "Encoder resolution: noise in the force of a wall of 800 N/m";
   axis.knob = "encoder step at the tip";
   axis.knob_unit = "um";
   axis.metric = "force error, RMS";
   axis.unit = "mN";
   axis.truth =
-      "The same wall on places without steps; for the spring alone the closed form "
-      "K step / sqrt(12), drawn as a thin line.";
+      "The same wall with exact positions; for the spring without damper the closed "
+      "form K step / sqrt(12), drawn as a thin line.";
   axis.threshold = 20;
-  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.threshold_words = "the smallest noticeable force (20 mN)";
   axis.over_cost = false;
   axis.given = true;
-  axis.default_words = "the step comes with the encoders.";
+  axis.default_words = "the encoders determine the step.";
   axis.left_out =
-      "The error over the cost: a tick costs the same whatever the step. How stiff a wall the "
-      "steps "
-      "bear, 2 c / step, and how far they let the arm oscillate, which are in `thimble study "
-      "stability`. No step at all, which has no place on this scale and no error.";
+      "The error over the cost: a tick costs the same with any step. The stiffness "
+      "limit by dry friction, 2 c / step, and the amplitude of limit cycles: see "
+      "`thimble study stability`. A step of zero, which cannot be drawn on this "
+      "scale and has no error.";
   struct Line {
     const char* name;
     const char* title;
@@ -104,19 +104,18 @@ AccuracyAxis encoder_axis() {
 AccuracyAxis encoder_friction_axis() {
   AccuracyAxis axis;
   axis.name = "encoder_friction";
-  axis.title =
-      "What the steps of the encoders cost: limit cycles of friction under a creeping hand";
+  axis.title = "Encoder resolution: limit cycles of friction under a creeping hand";
   axis.knob = "encoder step at the tip";
   axis.knob_unit = "um";
   axis.metric = "force above 50 Hz at 1 mm/s, RMS";
   axis.unit = "mN";
-  axis.truth = "Coulomb's friction slides evenly: no force above 50 Hz.";
+  axis.truth = "Coulomb friction slides evenly: no force above 50 Hz.";
   axis.threshold = 20;
-  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.threshold_words = "the smallest noticeable force (20 mN)";
   axis.over_cost = false;
   axis.given = true;
-  axis.default_words = "the step comes with the encoders.";
-  axis.left_out = "The error over the cost: a tick costs the same whatever the step.";
+  axis.default_words = "the encoders determine the step.";
+  axis.left_out = "The error over the cost: a tick costs the same with any step.";
   for (const FrictionCase& which : friction_cases()) {
     if (which.name != "naive_hold" && which.name != "paper_velocity" && which.name != "bristle") {
       continue;

@@ -65,23 +65,24 @@ RingTouch ring_at(render::TrackerChoice tracker, double place) {
 AccuracyAxis float_axis() {
   AccuracyAxis axis;
   axis.name = "float";
-  axis.title = "Single and double precision: the same ring, farther and farther from the origin";
-  axis.knob = "place of the ring along x, y and z";
+  axis.title =
+      "Single and double precision: the same ring at growing distances from the "
+      "origin";
+  axis.knob = "offset of the ring along x, y and z";
   axis.knob_unit = "m";
   axis.metric = "largest force error";
   axis.unit = "% of the largest force";
   axis.truth = "The same tracker at the origin.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of force (3.5 %)";
   axis.over_cost = false;
   axis.default_words =
-      "Double precision costs the same in a tick and leaves nothing to choose; where memory "
-      "counts, "
-      "`compact` keeps corners relative to their surface in few bits.";
+      "Double precision costs the same per tick, so there is no choice to make. "
+      "Where memory matters, `compact` stores corners relative to their surface in "
+      "few bits.";
   axis.left_out =
-      "The error over the cost: a tick's arithmetic takes as long in either, for it waits for "
-      "memory "
-      "and roots and not for the width of numbers (see the figures).";
+      "The error over the cost: a tick takes the same time in both, because it waits "
+      "for memory and square roots, not for the width of numbers (see the figures).";
   using render::TrackerChoice;
   struct Line {
     const char* name;

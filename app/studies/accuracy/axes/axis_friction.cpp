@@ -32,12 +32,12 @@ AccuracyPoint point_of(const FrictionCase& which, const std::string& name, doubl
 
 AccuracyAxis axis_of(Wrong wrong) {
   AccuracyAxis axis;
-  axis.knob = "bristle: how far it gives before it slides";
+  axis.knob = "bristle: deflection before it slides";
   axis.knob_unit = "mm";
   axis.unit = "mN";
-  axis.truth = "Coulomb's set-valued friction, which at an even creep is 0.5 N and nothing else.";
+  axis.truth = "Set-valued Coulomb friction, which is exactly 0.5 N at a constant creep.";
   axis.threshold = 20;
-  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.threshold_words = "the smallest noticeable force (20 mN)";
   AccuracyLine bristles{
       .name = "bristle", .title = "bristle, by its length", .order = {}, .points = {}};
   AccuracyLine others{
@@ -58,11 +58,10 @@ AccuracyAxis axis_of(Wrong wrong) {
   }
   axis.lines = {std::move(bristles), std::move(others)};
   axis.default_words =
-      "Cheaper models have larger limit cycles, or creep under any load; but for the stiction "
-      "point, "
-      "which is felt as little here for a twentieth less. The bristle has a quarter of it, and "
-      "none at "
-      "rest whatever the delay, which `thimble study friction` shows.";
+      "Cheaper models have larger limit cycles, or creep under any load. The "
+      "exception is the stiction point: its limit cycle is not noticeable here "
+      "either, and it costs a twentieth less. The bristle has a quarter of that "
+      "limit cycle, and none at rest with any delay (see `thimble study friction`).";
   return axis;
 }
 
@@ -74,9 +73,9 @@ AccuracyAxis friction_axis() {
   axis.title = "Models of friction under a hand that creeps at 1 mm/s: limit cycles";
   axis.metric = "force above 50 Hz, RMS";
   axis.left_out =
-      "Rest after a stop, drift and delays, which are in `thimble study friction`. The letters are "
-      "those of its table; C, the sign of a smoothed velocity, is not in the product, for it "
-      "has the limit cycle of B and lags.";
+      "Rest after a stop, drift and delays: see `thimble study friction`. The "
+      "letters are those of its table. C, the sign of a smoothed velocity, is not in "
+      "the product, because it has the limit cycle of B and lags.";
   return axis;
 }
 

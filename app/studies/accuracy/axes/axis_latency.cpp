@@ -103,11 +103,10 @@ AccuracyAxis axis_of(Felt felt) {
   axis.over_cost = false;
   axis.given = true;
   axis.default_words =
-      "one frame of delay is what a full-speed USB arm costs, whatever the program does: one "
-      "transfer in and one out per frame.";
+      "a full-speed USB arm always has one frame of delay: one transfer in and one "
+      "out per frame.";
   axis.left_out =
-      "The error over the cost: delay and jitter are simulated at the same price whatever they "
-      "are. "
+      "The error over the cost: all delays and jitters cost the same to simulate. "
       "Gaps of 30 ms, where the law is 13 % off.";
   axis.lines = lines_of(felt);
   return axis;
@@ -118,25 +117,25 @@ AccuracyAxis axis_of(Felt felt) {
 AccuracyAxis latency_axis() {
   AccuracyAxis axis = axis_of(Felt::kBounce);
   axis.name = "latency";
-  axis.title = "What delay and jitter cost: all that counts is the mean latency";
+  axis.title = "Delay and jitter: only the mean latency matters (bounce)";
   axis.metric = "speed gained by a bounce, e - 1";
   axis.unit = std::string("%");
   axis.truth =
-      "A wall in continuous time: e = 1. Beside it the law of restitution, "
-      "ln e = pi K L / 2 sqrt(K m).";
+      "A wall in continuous time: e = 1. Also drawn: the law of restitution, ln e = "
+      "pi K L / 2 sqrt(K m).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of impact (3.5 %)";
   return axis;
 }
 
 AccuracyAxis latency_stiffness_axis() {
   AccuracyAxis axis = axis_of(Felt::kGive);
   axis.name = "latency_stiffness";
-  axis.title = "What delay and jitter cost: the stiffest wall that stays still in a hand";
-  axis.metric = "how far the stiffest wall gives";
+  axis.title = "Delay and jitter: the stiffest wall that is stable in a hand";
+  axis.metric = "compliance of the stiffest wall";
   axis.unit = "mm/N";
   axis.truth =
-      "A wall in continuous time, which may be as stiff as wanted. Beside it the law "
+      "A wall in continuous time, which can have any stiffness. Also drawn: the law "
       "K = (b / L) u / sin u, u tan u = b L / m, for a hand of 3 N s/m.";
   axis.threshold = kRigidGive;
   axis.threshold_words = kRigidWords;

@@ -47,23 +47,22 @@ struct Line {
 AccuracyAxis loop_rate_axis() {
   AccuracyAxis axis = axis_of_rates();
   axis.name = "loop_rate";
-  axis.title = "What the rate of the loop buys: speed that a wall gives a free arm";
+  axis.title = "Loop rate: speed that a free arm gains from a wall";
   axis.metric = "speed gained by a bounce, e - 1";
   axis.unit = std::string("%");
   axis.truth =
-      "A wall in continuous time, which returns the speed it was given: e = 1 (but for the "
-      "arm's own friction, which the law counts in).";
+      "A wall in continuous time, which returns the speed of the impact: e = 1 "
+      "(apart from the arm's own friction, which the law includes).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of impact (3.5 %)";
   axis.default_words =
-      "1 kHz is what full-speed USB carries and what textbooks ask for. A free arm bounces there; "
-      "in a "
-      "hand the hand's 3 N s/m take more than the wall gives. Faster loops are a line in the scene "
-      "(rate:) where the arm can follow.";
+      "1 kHz is the rate of full-speed USB, and the rate that textbooks require. A "
+      "free arm bounces at this rate. In a hand, the hand's 3 N s/m dissipate more "
+      "than the wall generates. The key rate: of the scene sets faster loops for "
+      "arms that support them.";
   axis.left_out =
-      "The hand, which damps what is seen here, and dry friction, which stops the smallest "
-      "oscillations: "
-      "both only help. Textures, which gain up to 5 to 10 kHz.";
+      "The hand and dry friction, which damp these oscillations and only help. "
+      "Textures, which gain from rates up to 5 to 10 kHz.";
   const Line lines[] = {{"soft", "800 N/m", 800, 0},
                         {"stiff", "3000 N/m", 3000, 0},
                         {"delayed", "800 N/m, one tick of delay", 800, 1}};
@@ -95,18 +94,19 @@ AccuracyAxis loop_rate_axis() {
 AccuracyAxis loop_rate_stiffness_axis() {
   AccuracyAxis axis = axis_of_rates();
   axis.name = "loop_rate_stiffness";
-  axis.title = "What the rate of the loop buys: the stiffest wall that stays still in a hand";
-  axis.metric = "how far the stiffest wall gives";
+  axis.title = "Loop rate: the stiffest wall that is stable in a hand";
+  axis.metric = "compliance of the stiffest wall";
   axis.unit = "mm/N";
   axis.truth =
-      "A wall in continuous time, which may be as stiff as wanted. Beside it the law "
-      "K = (b / L) u / sin u, u tan u = b L / m, with L half a tick and the delay.";
+      "A wall in continuous time, which can have any stiffness. Also drawn: the law "
+      "K = (b / L) u / sin u, u tan u = b L / m, where L is half a tick plus the "
+      "delay.";
   axis.threshold = kRigidGive;
   axis.threshold_words = kRigidWords;
   axis.default_words =
-      "1 kHz is what full-speed USB carries and what textbooks ask for; it renders 6 N/mm in a "
-      "hand, which is felt as hard (0.8 N/mm) but not as rigid.";
-  axis.left_out = "Arms that give way themselves before the wall does; steps of encoders.";
+      "1 kHz is the rate of full-speed USB, and the rate that textbooks require. It "
+      "renders 6 N/mm in a hand, which feels hard (more than 0.8 N/mm) but not rigid.";
+  axis.left_out = "Arms that are more compliant than the wall; encoder steps.";
   const Line lines[] = {{"hand", "in a hand of 3 N s/m", 0, 0},
                         {"light", "in a light hand of 1 N s/m", 0, 0},
                         {"delayed", "in a hand, one tick of delay", 0, 1}};

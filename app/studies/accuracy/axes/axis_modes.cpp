@@ -138,7 +138,7 @@ double error_of(int count, bool rest) {
 
 AccuracyLine line_of(bool rest) {
   AccuracyLine line{.name = rest ? "with_rest" : "slowest",
-                    .title = rest ? "slowest modes, the rest as springs" : "slowest modes alone",
+                    .title = rest ? "slowest modes, the rest as springs" : "slowest modes only",
                     .order = {},
                     .points = {}};
   for (const int count : {1, 4, 8, 16, 32, 64, 128, 192, 256}) {
@@ -167,22 +167,22 @@ AccuracyLine line_of(bool rest) {
 AccuracyAxis modes_axis() {
   AccuracyAxis axis;
   axis.name = "modes";
-  axis.title = "How many modes of a deformable body are needed: the membrane's touched node";
-  axis.knob = "modes moved";
+  axis.title = "Number of modes of a deformable body: error at the touched node of a membrane";
+  axis.knob = "number of modes";
   axis.metric = "largest error of the touched node";
   axis.unit = "% of the largest motion";
   axis.truth =
-      "All 256 modes, from the eigenvalues of the dense stiffness matrix, each by its complex root "
-      "in long double.";
+      "All 256 modes, from the eigenvalues of the dense stiffness matrix, each "
+      "computed from its complex root in long double.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of force (3.5 %)";
   axis.default_words =
-      "The product moves all modes of what it moves by modes, for which nobody has to choose; a "
-      "body with too many for that is moved by implicit Euler on the patch around the hand.";
+      "The product always uses all modes of a body, so there is no choice to make. A "
+      "body with too many modes is integrated by implicit Euler on the patch around "
+      "the hand.";
   axis.left_out =
-      "Finding the modes (once, when the scene is loaded), and looks at nodes that are not "
-      "touched, "
-      "which cost as much again each.";
+      "The computation of the modes (once, when the scene is loaded). Positions of "
+      "other nodes, each of which costs as much as the touched one.";
   axis.lines = {line_of(false), line_of(true)};
   return axis;
 }

@@ -101,14 +101,16 @@ AccuracyAxis profile_axis() {
   axis.metric = "direction error, 99th percentile";
   axis.unit = "degrees";
   axis.truth =
-      "The ring (torus) itself: the normal of each point in closed form, stroked by the same "
-      "states.";
+      "The exact ring (torus): the normal of each point in closed form, stroked by "
+      "the same states.";
   axis.threshold = 5;  // [PHYSICS 6]
-  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
+  axis.threshold_words = "a quarter of the noticeable change of direction (5 degrees)";
   axis.default_words =
-      "A band is for who wants the paper's way; a scene that names no blending feels none.";
+      "A band reproduces the method of the paper. Scenes without the key blending "
+      "have none.";
   axis.left_out =
-      "How evenly the direction turns, which is what a smooth profile is for: the next diagram.";
+      "How evenly the direction turns, which is the purpose of a smooth profile: see "
+      "the next diagram.";
   for (const Way& way : kProfiles) {
     AccuracyLine line{.name = way.name, .title = way.title};
     for (const double mm : kBands) {
@@ -134,17 +136,18 @@ AccuracyAxis profile_rate_axis() {
   axis.metric = "largest jump of the turning rate";
   axis.unit = "degrees per mm";
   axis.truth =
-      "A rate that is continuous changes less and less as ticks get shorter (slope 1); one that "
-      "jumps keeps its jump (slope 0), and a normal that jumps itself has no rate (slope -1).";
+      "With shorter ticks, the jump of a continuous rate shrinks (slope 1), the jump "
+      "of a discontinuous rate stays (slope 0), and a discontinuous normal has no "
+      "finite rate (slope -1).";
   axis.felt_words =
-      "How large a jump of the turning rate is felt nobody has published; a band of 1 mm turns by "
-      "half the angle between two faces.";
+      "No threshold for a jump of the turning rate has been published. A band of 1 "
+      "mm turns by half the angle between two faces.";
   axis.default_words =
-      "A band is for who wants the paper's way; a scene that names no blending feels none.";
+      "A band reproduces the method of the paper. Scenes without the key blending "
+      "have none.";
   axis.left_out =
-      "The path along which a hand goes: this one is straight on the surface, so that what turns "
-      "is "
-      "the shading alone.";
+      "Curved paths of the hand: this one is straight on the surface, so that only "
+      "the shading turns the normal.";
   const auto ring = [](BlendProfile profile) {
     return banded_ring(BlendingChoice::kFixedBand, profile, 0.001);
   };

@@ -138,20 +138,20 @@ constexpr double kSteps_ms[] = {20, 10, 5, 2, 1, 0.5, 0.25};
 AccuracyAxis rigid_body_axis() {
   AccuracyAxis axis;
   axis.name = "rigid_body";
-  axis.title = "Integrators of a rigid body that turns over freely about its middle axis";
+  axis.title = "Integrators of a rigid body that tumbles freely about its intermediate axis";
   axis.knob = "time of a step";
   axis.knob_unit = "ms";
   axis.metric = "largest error of the turning rate in 1 s";
   axis.unit = std::string("%");
-  axis.truth = "Jacobi's elliptic functions, which solve the free spin in closed form.";
+  axis.truth = "Jacobi elliptic functions, the closed form of the free spin.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of force (3.5 %)";
   axis.per = "ms of touch";
   axis.default_words =
-      "It keeps the angular momentum to rounding at any step, which no method of the textbooks "
-      "does, "
-      "and takes one step per tick so that the hand is never a tick late.";
-  axis.left_out = "Contacts of the body with its floor, which are tested by energy alone.";
+      "It conserves the angular momentum to rounding at any step, which no textbook "
+      "method does. It takes one step per tick, so that the hand is never a tick "
+      "late.";
+  axis.left_out = "Contacts of the body with its floor, which are tested only by their energy.";
   const Line lines[] = {{Method::kEuler, "euler", "explicit Euler", 1},
                         {Method::kMidpoint, "midpoint", "midpoint", 2},
                         {Method::kRungeKutta, "rk4", "RK4", 4}};

@@ -69,18 +69,20 @@ double error_of(int rings, double reach) {
 AccuracyAxis rings_axis() {
   AccuracyAxis axis;
   axis.name = "rings";
-  axis.title = "How large the patch of a dent must be: rings of vertices around the hand";
-  axis.knob = "rings that move";
+  axis.title = "Size of the moving patch of a dent: rings of vertices around the hand";
+  axis.knob = "moving rings";
   axis.metric = "largest force error";
   axis.unit = "% of the largest force";
   axis.truth =
       "The same body with every vertex moving (compared with dense eigenvalues in PhysicsOfDents).";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of force (3.5 %)";
   axis.default_words =
-      "Three rings draw the dent out to where it fades for the eye; the hand alone would do with "
-      "fewer.";
-  axis.left_out = "What the eye sees of a dent that ends too early: this is the force alone.";
+      "Three rings cover all of the dent that can be seen; for the force fewer would "
+      "suffice.";
+  axis.left_out =
+      "The visible shape of a dent that ends too early: the diagram shows only the "
+      "force.";
   struct Reach {
     const char* name;
     const char* title;

@@ -95,16 +95,16 @@ struct Line {
   WallGuard guard;
 };
 constexpr Line kLines[] = {
-    {"none", "limits alone", {}},
+    {"none", "limits only", {}},
     {"passivity",
      "observer and controller (product)",
      {.stage = EnergyStage::kPassivity,
       .allowance = scene::kEnergyAllowance,
       .onset = scene::kEnergyOnset}},
-    {"at_once", "controller that acts at once", {.stage = EnergyStage::kPassivity}},
+    {"at_once", "controller that acts immediately", {.stage = EnergyStage::kPassivity}},
     {"bounding", "energy bound", {.stage = EnergyStage::kBounding}},
     {"coupling",
-     "virtual coupling for the arm alone (not in the product)",
+     "virtual coupling for the free arm (not in the product)",
      {.counted_on = GuardedArm::kViscous}},
     {"held_coupling",
      "virtual coupling for the arm in a hand (not in the product)",
@@ -131,14 +131,14 @@ AccuracyAxis axis_of(double (*error)(const WallGuard&, double)) {
     axis.lines.push_back(std::move(line));
   }
   axis.default_words =
-      "What is shipped lets 2 mJ out before it acts, so the first bounces gain as much as without "
-      "it; what it ends is the arm that gains at every bounce, and in return nothing is felt of "
-      "it. "
-      "At once it would stop the first bounce too, and jolt by half a newton with the encoder's "
-      "steps. The bound gives nothing at any stiffness, but is felt as a wall of a hundredth of "
-      "it, "
-      "and so is a virtual coupling that counts on no hand; one that does gives speed back without "
-      "it, and softens stiff walls.";
+      "The shipped controller lets out 2 mJ before it acts, so the first bounces "
+      "gain as much as without it. It ends a bounce that grows without limit, and "
+      "cannot be felt otherwise. A controller that acts immediately would also stop "
+      "the first bounce, but would jolt by half a newton at encoder steps. The "
+      "energy bound generates no energy at any stiffness, but feels like a wall of a "
+      "hundredth of the stiffness. The same holds for a virtual coupling designed "
+      "for the free arm. A coupling designed for a hand generates energy without the "
+      "hand, and softens stiff walls.";
   return axis;
 }
 
@@ -148,42 +148,43 @@ AccuracyAxis safety_axis() {
   AccuracyAxis axis = axis_of(gained);
   axis.name = "safety";
   axis.title =
-      "Energy stages of the safety gate: speed that a wall of 1 kHz gives in the 20th bounce";
+      "Energy stages of the safety gate: speed gained from a wall at 1 kHz in the "
+      "20th bounce";
   axis.metric = "speed gained in the 20th bounce";
-  axis.truth = "A passive wall, which gives none: e <= 1.";
+  axis.truth = "A passive wall, which adds no speed: e <= 1.";
   axis.threshold = 3.5;
-  axis.threshold_words = "half the change of impact that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of impact (3.5 %)";
   axis.left_out =
-      "The error over the cost: that is the guard's alone, whatever the stiffness (see the "
-      "figures). The first bounces, which an allowance of energy lets through; loops with delay, "
-      "which tests of the whole loop look at.";
+      "The error over the cost, which depends only on the stage and not on the "
+      "stiffness (see the figures). The first bounces, which an energy allowance "
+      "permits. Loops with delay, which tests of the whole loop cover.";
   return axis;
 }
 
 AccuracyAxis safety_stiffness_axis() {
   AccuracyAxis axis = axis_of(softened);
   axis.name = "safety_stiffness";
-  axis.title = "Energy stages of the safety gate: stiffness that is missing under a resting hand";
-  axis.metric = "stiffness missing";
+  axis.title = "Energy stages of the safety gate: stiffness lost under a resting hand";
+  axis.metric = "stiffness lost";
   axis.truth = "The wall's own stiffness, pressed 1 mm deep.";
   axis.threshold = 8;  // [PHYSICS 6]
-  axis.threshold_words = "half the change of stiffness that is felt (8 %)";
-  axis.left_out = "How long the press takes to be felt in full; walls of moving objects.";
+  axis.threshold_words = "half the noticeable change of stiffness (8 %)";
+  axis.left_out = "The time until a press gives its full force; walls of moving objects.";
   return axis;
 }
 
 AccuracyAxis safety_noise_axis() {
   AccuracyAxis axis = axis_of(encoder_noise);
   axis.name = "safety_noise";
-  axis.title = "Energy stages of the safety gate: force that encoder steps of 30 um add";
+  axis.title = "Energy stages of the safety gate: force error due to encoder steps of 30 um";
   axis.metric = "force error, RMS";
   axis.unit = "mN";
-  axis.truth = "The same guard and wall on places without steps, stroked by the same hand.";
+  axis.truth = "The same stage and wall with exact positions, stroked by the same hand.";
   axis.threshold = 20;
-  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.threshold_words = "the smallest noticeable force (20 mN)";
   axis.left_out =
-      "The loop through hand and arm, in which noise moves the arm that makes it; an encoder "
-      "without steps adds nothing, whatever the guard.";
+      "The closed loop through hand and arm, in which this noise moves the arm. An "
+      "encoder without steps, which adds no error with any stage.";
   return axis;
 }
 

@@ -74,25 +74,24 @@ Stroke work_of(int across, SearchChoice choice) {
 AccuracyAxis search_axis() {
   AccuracyAxis axis;
   axis.name = "search";
-  axis.title = "Searches for contact while the tip is free: cost over the size of the mesh";
+  axis.title = "Contact search while the tip is free: cost over the size of the mesh";
   axis.knob = "triangles";
-  axis.metric = "answers that differ from a look at every triangle";
+  axis.metric = "results that differ from a test of every triangle";
   axis.unit = std::string("%");
-  axis.truth = "A look at every triangle, with crossings decided without rounding.";
-  axis.felt_words = "Nothing can be felt of the search: every one gives the same answers.";
+  axis.truth = "A test of every triangle, with exact crossings.";
+  axis.felt_words = "The search cannot be felt: all searches give the same results.";
   axis.per = "question";
   axis.over_cost = false;
   axis.over_knob = false;
   axis.cost_over_knob = true;
   axis.default_words =
-      "Cheaper are smaller meshes alone, and on this one the grid is as good: it is chosen below "
-      "8,000 triangles that lie evenly, a tree from there on.";
+      "Only smaller meshes are cheaper. On this mesh the grid is equally fast: the "
+      "product uses it for fewer than 8,000 evenly distributed triangles, and a tree "
+      "otherwise.";
   axis.left_out =
-      "The error, because there is none: all searches give the same answers, ties included. While "
-      "the "
-      "tip touches, nothing is searched: the surface is followed from neighbour to neighbour, "
-      "whose "
-      "price does not grow with the mesh.";
+      "The error, because it is zero: all searches give the same results, ties "
+      "included. Tracking during contact, which moves from neighbour to neighbour "
+      "and whose cost does not grow with the mesh.";
   for (std::size_t k = 0; k < render::kSearchNames.size(); ++k) {
     const std::string name(render::kSearchNames[k]);
     AccuracyLine line{.name = name, .title = name, .exact = true};

@@ -156,12 +156,12 @@ AccuracyAxis axis_of(bool dry, Wrong wrong) {
   axis.knob = "time of a sub-step";
   axis.knob_unit = "us";
   if (wrong == Wrong::kPlace) {
-    axis.metric = "largest error of the place in 1 s";
+    axis.metric = "largest position error in 1 s";
     axis.unit = "um";
     axis.threshold = 1;  // [PHYSICS 6]
-    axis.threshold_words = "the least vibration that is felt (1 um)";
+    axis.threshold_words = "the smallest noticeable vibration (1 um)";
   } else {
-    axis.metric = "largest error of the speed in 1 s";
+    axis.metric = "largest velocity error in 1 s";
     axis.unit = "mm/s";
     axis.threshold = 20;  // [PHYSICS 6]
     axis.threshold_words = "20 mN from a damper of 1 N s/m";
@@ -207,32 +207,36 @@ AccuracyAxis simulator_axis() {
   axis.name = "simulator";
   axis.title = "Integrators of the simulated arm with dry friction, forces held for 1 ms";
   axis.truth =
-      "The closed form of each slide with the time of its stop, in long double, sharing no code "
-      "with "
-      "the simulator.";
+      "The closed form of each slide and the time of its stop, in long double, "
+      "without code of the simulator.";
   axis.left_out =
-      "Orders: a step that jumps over the moment of a stop costs every method its order, so none "
-      "is "
-      "asked for here; the same methods show them where nothing stops (next diagram). RK4 needs a "
-      "friction without a jump, and keeps the error of that at any cost.";
+      "Orders: a step across a stop breaks the order of every method, so no order is "
+      "checked here. The next diagram shows the orders without stops. RK4 needs a "
+      "continuous friction, and keeps the error of that smoothing at any step.";
   return axis;
 }
 
 AccuracyAxis simulator_speed_axis() {
   AccuracyAxis axis = axis_of(true, Wrong::kSpeed);
   axis.name = "simulator_speed";
-  axis.title = "Integrators of the simulated arm with dry friction: speed";
-  axis.truth = "The same closed form as for the place, in long double.";
-  axis.left_out = "The case without dry friction, where speed errs as the place does.";
+  axis.title = "Integrators of the simulated arm with dry friction: velocity";
+  axis.truth = "The same closed form as for the position, in long double.";
+  axis.left_out =
+      "The case without dry friction, where velocity and position have similar "
+      "errors.";
   return axis;
 }
 
 AccuracyAxis simulator_smooth_axis() {
   AccuracyAxis axis = axis_of(false, Wrong::kPlace);
   axis.name = "simulator_smooth";
-  axis.title = "The same integrators without dry friction, in a hand's spring and damper";
-  axis.truth = "The closed form of the damped oscillator by its complex root, in long double.";
-  axis.left_out = "The arm's other axes: each moves on its own, and costs the same again.";
+  axis.title =
+      "The same integrators without dry friction, with the spring and damper of a "
+      "hand";
+  axis.truth =
+      "The closed form of the damped oscillator, from its complex root in long "
+      "double.";
+  axis.left_out = "The arm's other axes: they are independent, and each adds the same cost.";
   return axis;
 }
 

@@ -67,12 +67,12 @@ AccuracyAxis axis_of(Wrong wrong) {
   AccuracyAxis axis;
   axis.knob = "edge length over radius of curvature, L/R";
   axis.truth =
-      "The ring (torus) itself: depth and normal of each point in closed form, stroked by the same "
-      "states.";
+      "The exact ring (torus): depth and normal of each point in closed form, "
+      "stroked by the same states.";
   axis.default_words =
-      "It is the paper's way, which scenes keep until they name another: on a scan with edges of a "
-      "tenth of the radius it is not distinguishable by direction, and it asks nothing of the "
-      "normals of the mesh. --quality reference takes Phong with curved depth.";
+      "It is the method of the paper. On a scan with edges of a tenth of the radius, "
+      "its direction error cannot be felt, and it does not depend on the normals of "
+      "the mesh. --quality reference uses Phong with curved depth.";
   for (const Way& way : kWays) {
     AccuracyLine line{.name = way.name, .title = way.title, .order = {}, .points = {}};
     const double order = wrong == Wrong::kJump ? 0
@@ -106,46 +106,45 @@ AccuracyAxis axis_of(Wrong wrong) {
 AccuracyAxis tessellation_axis() {
   AccuracyAxis axis = axis_of(Wrong::kForce);
   axis.name = "tessellation";
-  axis.title = "How finely a surface must be cut, by the way it is felt: force";
+  axis.title = "Mesh resolution by contact method: force";
   axis.metric = "force error, RMS";
   axis.unit = std::string("%");
   axis.threshold = 3.5;  // half of 7 % [PHYSICS 6, after Pang, Tan, Durlach 1991]
-  axis.threshold_words = "half the change of force that is felt (3.5 %)";
+  axis.threshold_words = "half the noticeable change of force (3.5 %)";
   axis.left_out =
-      "One shape alone, the ring, because its truth is exact on hollow and round sides; sharp "
-      "edges "
-      "and deep presses, which tell trackers apart.";
+      "Other shapes: the ring has an exact reference on its concave and convex "
+      "sides. Sharp edges and deep presses, where trackers differ.";
   return axis;
 }
 
 AccuracyAxis tessellation_direction_axis() {
   AccuracyAxis axis = axis_of(Wrong::kDirection);
   axis.name = "tessellation_direction";
-  axis.title = "How finely a surface must be cut, by the way it is felt: direction";
+  axis.title = "Mesh resolution by contact method: direction";
   axis.metric = "direction error, 99th percentile";
   axis.unit = "degrees";
   axis.threshold = 5;  // [PHYSICS 6]
-  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
-  axis.left_out = "Jumps from tick to tick over edges, which are in the next diagram.";
+  axis.threshold_words = "a quarter of the noticeable change of direction (5 degrees)";
+  axis.left_out = "Jumps from tick to tick over edges: see the next diagram.";
   return axis;
 }
 
 AccuracyAxis tessellation_jump_axis() {
   AccuracyAxis axis = axis_of(Wrong::kJump);
   axis.name = "tessellation_jump";
-  axis.title = "How finely a surface must be cut, by the way it is felt: jumps over edges";
+  axis.title = "Mesh resolution by contact method: jumps over edges";
   axis.metric = "largest turn of the force in a tick";
   axis.unit = "degrees";
   axis.truth =
-      "The ring itself, on which the same stroke turns the force by no more than 0.2 degrees in a "
-      "tick, which is taken off.";
+      "The exact ring, on which the same stroke turns the force by at most 0.2 "
+      "degrees in a tick. This turn is subtracted.";
   axis.threshold = 5;  // [PHYSICS 6]
-  axis.threshold_words = "a quarter of the turn that is felt (5 degrees)";
+  axis.threshold_words = "a quarter of the noticeable change of direction (5 degrees)";
   axis.default_words =
-      "It is the paper's way, which scenes keep until they name another: edges of a tenth of the "
-      "radius turn the force by 6 degrees, a third of what a hand alone can tell (18 degrees). Any "
-      "blending turns it by less than one.";
-  axis.left_out = "Faster strokes, which meet the same edges in fewer ticks.";
+      "It is the method of the paper. Edges of a tenth of the radius turn the force "
+      "by 6 degrees, a third of the change that a hand can notice without sight (18 "
+      "degrees). With any blending the turn is less than one degree.";
+  axis.left_out = "Faster strokes, which cross the same edges in fewer ticks.";
   return axis;
 }
 

@@ -119,7 +119,7 @@ double wrong_faces(const FollowerChoice& choice, double speed) {
   return 100.0 * wrong / (kTicks - 1);
 }
 
-/// The most expensive tick of a stroke: the follower before it, and the new position.
+/// The tick of a stroke with the highest cost: the follower before it, and the new position.
 struct WorstTick {
   std::shared_ptr<const Follower> before;
   Vector3d p_WT{0, 0, 0};
@@ -164,38 +164,39 @@ struct Way {
 };
 
 const Way kWays[] = {
-    {"hops", "hops alone", {}},
-    {"hops_ring", "hops, and one ring around", {.rings = 1}},
+    {"hops", "hops only", {}},
+    {"hops_ring", "hops, and one ring of neighbours", {.rings = 1}},
     {"edge_planes", "edge planes (product)", {.tracker = TrackerChoice::kEdgePlanes}},
     {"offset", "offset (product)", {.tracker = TrackerChoice::kOffset}},
     {"compact", "compact (product)", {.tracker = TrackerChoice::kPacked}},
     {"god_object", "god-object (product)", {.tracker = TrackerChoice::kGodObject}},
     {"projection", "normal projection (product)", {.tracker = TrackerChoice::kNormalProjection}},
     {"tree", "nearest by tree, each tick", {.search = SearchChoice::kTree}},
-    {"linear", "nearest by look at all", {.search = SearchChoice::kLinear}}};
+    {"linear", "nearest by test of all triangles", {.search = SearchChoice::kLinear}}};
 
 }  // namespace
 
 AccuracyAxis tracking_axis() {
   AccuracyAxis axis;
   axis.name = "tracking";
-  axis.title = "Following a fast stroke over 16,384 triangles with hills: wrong triangles";
+  axis.title = "Tracking of a fast stroke over 16,384 triangles with hills: wrong triangles";
   axis.knob = "speed of the stroke";
   axis.knob_unit = "m/s";
   axis.metric = "ticks in a wrong triangle";
   axis.unit = std::string("%");
   axis.truth =
-      "The nearest triangle by a look at every one, in each tick. A triangle is wrong if it is "
-      "farther away by more than 25 um, which 800 N/m turn into the smallest force that is felt.";
-  axis.felt_words =
-      "What counts here as wrong is what can be felt: below the lower edge nothing is.";
+      "The nearest of all triangles in each tick. A triangle is wrong if it is "
+      "farther away by more than 25 um, which at 800 N/m is the smallest noticeable "
+      "force.";
+  axis.felt_words = "A triangle counts as wrong only if the error can be felt.";
   axis.per = "worst tick";
   axis.cost_over_knob = true;
   axis.left_out =
-      "The mean tick, which is in `thimble study cost`. The worst one is that with the most hops "
-      "and looks around (of searches, the one farthest from the surface), found by counting and "
-      "not by a clock. Thin parts, where the nearest triangle is not the one to be felt: there "
-      "every search without memory falls through, and trackers do not.";
+      "The mean tick: see `thimble study cost`. The worst tick is the one with the "
+      "largest number of hops and neighbour tests (for searches, the one farthest "
+      "from the surface), found by counting, not by timing. Thin parts, where the "
+      "nearest triangle may be on the wrong side: there searches without memory fall "
+      "through, and trackers do not.";
   for (const Way& way : kWays) {
     AccuracyLine line{.name = way.name, .title = way.title};
     for (const double speed : kSpeeds) {
@@ -212,12 +213,12 @@ AccuracyAxis tracking_axis() {
     axis.lines.push_back(std::move(line));
   }
   axis.default_words =
-      "Hops alone are as right on this course for less (some of the difference is the contact "
-      "stage "
-      "around the product's tracker). But where cells leave gaps, or a walk has left for the far "
-      "side of a part, they stay wrong, and edge planes look around there alone. Smooth cells "
-      "(offset, compact) and the god-object name another triangle where a hollow makes several as "
-      "near: the one that the smooth surface has there, or that the proxy can slide to.";
+      "Hops only are equally correct on this course and cheaper (part of the "
+      "difference is the contact stage around the product's tracker). But they stay "
+      "wrong at gaps between cells, or after a walk to the far side of a part. Only "
+      "there do edge planes test the neighbours. Smooth cells (offset, compact) and "
+      "the god-object choose another triangle where several in a groove are equally "
+      "near: that of the smooth surface, or that to which the proxy can slide.";
   return axis;
 }
 

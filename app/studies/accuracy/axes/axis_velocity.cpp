@@ -105,7 +105,7 @@ std::vector<AccuracyLine> lines_of(Price price) {
 
 AccuracyAxis axis_of(Price price) {
   AccuracyAxis axis;
-  axis.knob = "how far back the estimate looks";
+  axis.knob = "time span of the estimate";
   axis.knob_unit = "ms";
   axis.lines = lines_of(price);
   return axis;
@@ -121,36 +121,36 @@ AccuracyAxis velocity_axis() {
   axis.unit = "mN";
   axis.truth = "The hand's velocity in closed form: strokes of 20 mm and 1 mm, and tremor.";
   axis.threshold = 20;  // [PHYSICS 6]
-  axis.threshold_words = "the smallest force that is felt (20 mN)";
+  axis.threshold_words = "the smallest noticeable force (20 mN)";
   axis.default_words =
-      "The pole at 100 Hz costs little latency, which stability pays for (13 % of the stiffness "
-      "that "
-      "damping buys); a longer look is truer here and shakier at a wall.";
+      "The pole at 100 Hz adds little latency (13 % of the stiffness that damping "
+      "permits). A longer time span is more accurate here, but less stable at a wall.";
   axis.left_out =
-      "What the lag costs at a wall, which is in the next diagram. The difference alone is the "
-      "first point of the window.";
+      "The effect of the lag at a wall: see the next diagram. The plain difference "
+      "is the first point of the window.";
   return axis;
 }
 
 AccuracyAxis velocity_stiffness_axis() {
   AccuracyAxis axis = axis_of(Price::kLag);
   axis.name = "velocity_stiffness";
-  axis.title = "Estimates of velocity: the stiffest wall with a damper that stays still in a hand";
-  axis.metric = "how far the stiffest wall gives";
+  axis.title =
+      "Estimates of velocity: the stiffest wall with a damper that is stable in a "
+      "hand";
+  axis.metric = "compliance of the stiffest wall";
   axis.unit = "mm/N";
   axis.truth =
-      "A wall in continuous time, which may be as stiff as wanted: what is left is half a tick and "
-      "what the estimate lags.";
+      "A wall in continuous time, which can have any stiffness: the latency is half "
+      "a tick plus the lag of the estimate.";
   axis.threshold = kRigidGive;
   axis.threshold_words = kRigidWords;
   axis.default_words =
-      "The difference alone lags less, with more than twice the quantisation noise (diagram "
-      "before); "
-      "the pole at 100 Hz gives up a tenth of the stiffness for that.";
+      "The plain difference lags less, but has more than twice the quantisation "
+      "noise (see the previous diagram). The pole at 100 Hz costs a tenth of the "
+      "stiffness.";
   axis.left_out =
-      "Steps of the encoder, so that lag alone is seen: the window that adapts to them and "
-      "Levant's "
-      "differentiator answer another motion here than on counts.";
+      "Encoder steps, so that the diagram shows only the lag. The adaptive window "
+      "and Levant's differentiator respond differently to counts.";
   return axis;
 }
 

@@ -98,7 +98,7 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   const auto meshes = std::make_shared<scene::SharedMeshes>();
   auto session = open_with(scene, {}, meshes);
   if (!session) return session.error();
-  if ((*session)->simulation() == nullptr) return driver::Error{"The arm is not simulated."};
+  if ((*session)->simulation() == nullptr) return driver::Error{"The study needs a simulated arm."};
   const double ticks = static_cast<double>((*session)->setup().ticks());
   const std::atomic<bool> stop{false};
   (*session)->run(stop);
@@ -117,7 +117,7 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
     // Rules compare magnitudes; only the run shows the response of the hand.
     if (one.left_out && !(*one.change <= kShareFelt)) {
       one.left_out = false;
-      one.rule += "; it is, but the check below says no";
+      one.rule += "; the rule holds, but the change of force below does not allow it";
     }
   }
   const Adjust reduced = without(report.decisions);

@@ -57,50 +57,53 @@ std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& see
   const double step = context.encoder_step;
   const double by_spring = stiffness * step;
   const double by_damper = damping * step / context.tick;
-  all.push_back({.effect = "steps of the encoders",
-                 .name = "quantisation",
-                 .rule = fmt::format("K step = {:.1f} mN and B step / T = {:.1f} mN, to be at most "
-                                     "20 mN, and no friction",
-                                     1e3 * by_spring, 1e3 * by_damper) +
-                         (friction ? " (there is one)" : " (there is none)"),
-                 .left_out = by_spring <= kForceFelt && by_damper <= kForceFelt && !friction});
+  all.push_back(
+      {.effect = "steps of the encoders",
+       .name = "quantisation",
+       .rule =
+           fmt::format("K step = {:.1f} mN and B step / T = {:.1f} mN; both must be at most 20 mN, "
+                       "without friction",
+                       1e3 * by_spring, 1e3 * by_damper) +
+           (friction ? " (the scene has friction)" : " (the scene has none)"),
+       .left_out = by_spring <= kForceFelt && by_damper <= kForceFelt && !friction});
   const double delay = context.delay;
   const double holds = simulated.plant.viscous + damping + simulated.hand.damping;
   all.push_back({.effect = "delay and jitter",
                  .name = "delay",
-                 .rule = fmt::format("K (L - T/2) = {:.3f} N s/m, to be below 5 % of the damping "
-                                     "that holds the tip, {:.3f} N s/m",
-                                     stiffness * delay, kLatencyShare * holds),
+                 .rule = fmt::format(
+                     "K (L - T/2) = {:.3f} N s/m; must be below 5 % of the total damping at the "
+                     "tip, {:.3f} N s/m",
+                     stiffness * delay, kLatencyShare * holds),
                  .left_out = stiffness * delay < kLatencyShare * holds});
   all.push_back({.effect = "dry friction of the arm",
                  .name = "coulomb",
-                 .rule = fmt::format("c = {:.1f} mN, to be below {:.0f} mN",
+                 .rule = fmt::format("c = {:.1f} mN; must be below {:.0f} mN",
                                      1e3 * simulated.plant.coulomb, 1e3 * kForceFelt),
                  .left_out = simulated.plant.coulomb < kForceFelt});
   const double inertia = simulated.plant.mass * seen.acceleration;
   all.push_back({.effect = "inertia of the arm",
                  .name = "inertia",
-                 .rule = fmt::format("m a = {:.3f} N, to be below 3.5 % of the force, {:.3f} N",
+                 .rule = fmt::format("m a = {:.3f} N; must be below 3.5 % of the force, {:.3f} N",
                                      inertia, kShareFelt * seen.force_rms) +
-                         "; the exact map costs the same with it, so it stays",
+                         "; kept, because the exact map costs the same with it",
                  .left_out = false,
                  .changes = false});
   all.push_back({.effect = "lag of the amplifiers",
                  .name = "amplifier",
-                 .rule = "to be below 5 % of the latency; this simulator has none",
+                 .rule = "must be below 5 % of the latency; this simulator has no lag",
                  .left_out = true,
                  .changes = false});
-  all.push_back(
-      {.effect = "saturation",
-       .name = "saturation",
-       .rule = fmt::format("K x = {:.2f} N at most, to be below the arm's {:.2f} N; the "
-                           "limit is the gate's, which nothing leaves out",
-                           stiffness * seen.depth_max, scene.arms.front().arm.limits.force_max),
-       .left_out = stiffness * seen.depth_max < scene.arms.front().arm.limits.force_max,
-       .changes = false});
+  all.push_back({.effect = "saturation",
+                 .name = "saturation",
+                 .rule = fmt::format(
+                     "K x = {:.2f} N at most; must be below the arm's {:.2f} N. The gate always "
+                     "applies this limit",
+                     stiffness * seen.depth_max, scene.arms.front().arm.limits.force_max),
+                 .left_out = stiffness * seen.depth_max < scene.arms.front().arm.limits.force_max,
+                 .changes = false});
   all.push_back({.effect = "model of the hand",
                  .name = "hand",
-                 .rule = "leads the tip in this scene, so it stays; a replay needs none",
+                 .rule = "kept, because it moves the tip in this scene; a replay needs none",
                  .left_out = false,
                  .changes = false});
   return all;

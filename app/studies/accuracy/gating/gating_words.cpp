@@ -13,23 +13,27 @@ std::string gating_text(const GatingReport& report) {
     text += one.effect + ": " + (one.left_out ? "may be left out" : "is needed") + ". " + one.rule +
             ".";
     if (one.change) {
-      text += " Without it alone the force changes by " + three_digits(100 * *one.change) + " %.";
+      text += " If only this effect is left out, the force changes by " +
+              three_digits(100 * *one.change) + " %.";
     }
     text += "\n";
   }
-  text += "\nWithout all that may be left out the force (" + three_digits(report.force) +
+  text += "\nWithout all effects that may be left out, the force (" + three_digits(report.force) +
           " N) changes by " + three_digits(100 * report.change) + " %: ";
-  text += report.holds ? "less than can be felt, the choice holds.\n"
-                       : "more than can be felt, this scene needs the full model.\n";
+  text += report.holds ? "too little to be felt. The reduced model is valid.\n"
+                       : "this can be felt. This scene needs the full model.\n";
   const bool saves =
       std::any_of(report.decisions.begin(), report.decisions.end(),
                   [](const GateDecision& one) { return one.left_out && one.changes; });
-  if (!saves) text += "This scene calls for every effect that costs anything: nothing is saved.\n";
-  text += "A whole tick takes " + three_digits(report.full_ns) + " ns, or " +
-          three_digits(report.reduced_ns) + " ns without them";
+  if (!saves)
+    text +=
+        "This scene needs every effect that costs time, so the reduced model saves "
+        "nothing.\n";
+  text += "A tick with the full model takes " + three_digits(report.full_ns) +
+          " ns, with the reduced model " + three_digits(report.reduced_ns) + " ns";
   if (report.full_instructions && report.reduced_instructions) {
-    text += "; " + three_digits(*report.full_instructions) + " instructions, or " +
-            three_digits(*report.reduced_instructions) + " without";
+    text += "; " + three_digits(*report.full_instructions) +
+            " instructions, with the reduced model " + three_digits(*report.reduced_instructions);
   }
   return text + ".\n";
 }

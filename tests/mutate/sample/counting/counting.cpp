@@ -1,24 +1,24 @@
 #include "counting/counting.h"
 
-// Every mutant is killed but `>=`, which is equivalent.
+// Every mutant is killed except `>=`, which is equivalent.
 int at_most(int x, int most) {
   if (x > most) return most;
   return x;
 }
 
-// Without its `++i` it hangs.
+// Hangs without `++i`.
 int counted(int n) {
   int i = 0;
   while (i < n) ++i;
   return i;
 }
 
-// A sum of pointers does not compile.
+// The mutant `begin + end` does not compile.
 long length(const char* begin, const char* end) {
   return end - begin;
 }
 
-// Called by a test that looks at nothing.
+// Called by a test without an expectation.
 int doubled(int x) {
   return x + x;
 }

@@ -1,4 +1,4 @@
-// The stiffest wall on which a tip rests, where walls beyond it rest again.
+// The stiffest wall on which a tip rests, if stiffer walls beyond an unstable range rest again.
 
 #include "stability/raised_edge.h"
 
@@ -26,15 +26,16 @@ TEST(RaisedEdge, IsBelowTheFirstWallThatDoesNotRest) {
   EXPECT_GT(*edge, 0.99 * 850);
 }
 
-TEST(RaisedEdge, GoesAsFarAsAskedWhereAllRest) {
+TEST(RaisedEdge, ReachesMaxStiffnessIfAllRest) {
   const auto edge = raised_edge(100, 10'000, [](double) -> driver::Result<bool> { return true; });
   ASSERT_TRUE(edge);
   EXPECT_GE(*edge, 10'000);
   EXPECT_LE(*edge, 10'000 * kWallRaised * kWallRaised);
 }
 
-TEST(RaisedEdge, PassesOnWhyAWallWasNotTried) {
-  for (const double out_of_reach : {535.0, 1003.0}) {  // while it is raised, and while it is halved
+TEST(RaisedEdge, ReturnsErrorOfFailedTrial) {
+  for (const double out_of_reach :
+       {535.0, 1003.0}) {  // while the stiffness is raised, and during the bisection
     const auto edge = raised_edge(100, 10'000, [&](double stiffness) -> driver::Result<bool> {
       if (std::abs(stiffness - out_of_reach) < 0.02 * out_of_reach) return driver::Error{"too far"};
       return stiffness < 1000;
@@ -44,8 +45,8 @@ TEST(RaisedEdge, PassesOnWhyAWallWasNotTried) {
   }
 }
 
-// Halving the whole range told one that stands alone among walls that do not rest, 1,654 N/m.
-TEST(RaisedEdge, OfASimulatedArmHasFewWallsBelowItThatDoNotRest) {
+// Bisection of the whole range returned an isolated stable wall among unstable ones, 1,654 N/m.
+TEST(RaisedEdge, FewWallsBelowItOfSimulatedArmAreUnstable) {
   scene::ArmFile arm = support::hidden_arm(18).file;
   arm.simulated.hand.tremor_amplitude = 0;
   const Carried carried = carried_by(arm, loop_times(arm, 1000), 1000, 0);

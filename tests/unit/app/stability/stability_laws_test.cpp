@@ -8,7 +8,7 @@
 
 #include "support/wall_laws.h"
 
-// The figures are those of [PHYSICS 1 and 2.3], which independent simulations have confirmed.
+// The values are those of [PHYSICS 1 and 2.3], which independent simulations have confirmed.
 
 namespace thimble::stability {
 namespace {
@@ -21,20 +21,20 @@ using support::WallRegion;
 
 constexpr double kMass = 0.075, kViscous = 0.005, kCoulomb = 0.04, kStep = 3e-5;
 
-TEST(StabilityLaws, SumUpTheLatencyBudget) {
+TEST(StabilityLaws, SumOfTheLatencyBudget) {
   EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001}), 0.0005);
   EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001, .delay = 0.002, .amplifier_lag = 0.0003}),
                    0.0028);
-  // Exponential periods have a spread as large as their mean: half the stiffness.
+  // Exponential periods have a standard deviation equal to their mean: half the stiffness.
   EXPECT_DOUBLE_EQ(scene::latency_of({.period = 0.001, .period_spread = 0.001}), 0.001);
-  // Of 1000 ticks, 10 take 10 ms: 396 -> 221 N/m, 44 % lost (b = 0.2 gives the 396).
+  // 10 of 1000 ticks take 10 ms: 396 -> 221 N/m, 44 % lost (b = 0.2 gives the 396).
   const double mean = 0.99e-3 + 0.01 * 10e-3, square = 0.99e-6 + 0.01 * 100e-6;
   const double spread = std::sqrt(square - mean * mean);
   const double jittered = scene::latency_of({.period = mean, .period_spread = spread});
   EXPECT_NEAR(0.0005 / jittered, 221.0 / 396, 0.03);
 }
 
-TEST(StabilityLaws, GiveAFilterTheLagThatItsPoleHas) {
+TEST(StabilityLaws, LagOfALowPassFollowsItsPole) {
   EXPECT_EQ(scene::low_pass_lag(0, 0.001), 0);
   const double a = 1 - std::exp(-2 * M_PI * 100 * 0.001);
   EXPECT_NEAR(scene::low_pass_lag(100, 0.001), 0.001 * (1 - a) / a, 1e-12);
@@ -42,16 +42,16 @@ TEST(StabilityLaws, GiveAFilterTheLagThatItsPoleHas) {
   EXPECT_NEAR(scene::low_pass_lag(1, 1e-5), 1 / (2 * M_PI), 1e-5);
 }
 
-TEST(StabilityLaws, AskForTheFrictionThatColgateAndSchenkelDo) {
+TEST(StabilityLaws, PassiveDampingFollowsColgateAndSchenkel) {
   EXPECT_NEAR(passive_damping(1000, 0, 0.001), 0.5, 1e-9);
   EXPECT_NEAR(passive_damping(1000, -0.3, 0.001), 0.8, 1e-9);
   EXPECT_NEAR(passive_damping(1000, 0.3, 0.001), 0.8, 1e-9);
   EXPECT_NEAR(passive_damping(1000, 0, 0.001, 0.001), 1.5, 1e-9);
   EXPECT_NEAR(passive_damping(1000, 0, 0.001, 0.002), 2.5, 1e-9);
-  EXPECT_NEAR(passive_damping(1000, 0.5, 0.001, 0.001), 1.25, 1e-6);  // the sum would say 2
+  EXPECT_NEAR(passive_damping(1000, 0.5, 0.001, 0.001), 1.25, 1e-6);  // a sum would give 2
 }
 
-TEST(StabilityLaws, FindTheStiffnessThatAFrictionMakesPassive) {
+TEST(StabilityLaws, PassiveStiffnessOfAFriction) {
   for (const double delay : {0.0, 0.0005, 0.001, 0.003}) {
     for (const double damping : {-0.2, 0.0, 0.4}) {
       const double stiffness = passive_stiffness(2, damping, 0.001, delay);
@@ -64,7 +64,7 @@ TEST(StabilityLaws, FindTheStiffnessThatAFrictionMakesPassive) {
   EXPECT_DOUBLE_EQ(passive_stiffness_quantised(5, kCoulomb, 0, 0.001), 10'000);
 }
 
-TEST(StabilityLaws, PlaceAWallInTheMapOfDiolaiti) {
+TEST(StabilityLaws, PositionOfAWallInDiolaitisMap) {
   using enum WallRegion;
   for (const double d : {0.0, 1.0}) {
     EXPECT_EQ(region_of({0.52 + d, 0.52, d}), kComesToRest);
@@ -83,7 +83,7 @@ TEST(StabilityLaws, PlaceAWallInTheMapOfDiolaiti) {
             std::numeric_limits<double>::infinity());
 }
 
-TEST(StabilityLaws, TellTheRestitutionOfAnImpact) {
+TEST(StabilityLaws, RestitutionOfAnImpact) {
   EXPECT_NEAR(restitution(1000, kViscous, kMass, 0.0005), 1.0939, 5e-5);
   EXPECT_NEAR(restitution(1000, kViscous, kMass, 0.0015), 1.3115, 5e-5);
   EXPECT_NEAR(restitution(3000, kViscous, kMass, 0.0005), 1.170, 6e-4);
@@ -92,15 +92,16 @@ TEST(StabilityLaws, TellTheRestitutionOfAnImpact) {
   EXPECT_NEAR(restitution(1000, 2 + kViscous, kMass, 0.0005), 0.761, 5e-4);
 }
 
-TEST(StabilityLaws, TellHowFarABristleMustGive) {
-  // 0.5 N, hand of 3 N s/m: the law without its factor is 0.083 mm without delay, 0.582 at 3 ms.
+TEST(StabilityLaws, LengthOfABristle) {
+  // 0.5 N, hand of 3 N s/m: the law without its factor gives 0.083 mm without delay, 0.582 mm at 3
+  // ms.
   EXPECT_NEAR(bristle_length(0.5, 0.0005, 3.005, 0, 0), 1.5 * 0.083e-3, 0.5e-6);
   EXPECT_NEAR(bristle_length(0.5, 0.0035, 3.005, 0, 0), 1.5 * 0.582e-3, 1e-6);
   EXPECT_NEAR(bristle_length(0.5, 0.0005, 3.005, kStep, kCoulomb), 0.1875e-3, 1e-9);
   EXPECT_EQ(bristle_length(0.5, 0.0005, 3, kStep, 0), std::numeric_limits<double>::infinity());
 }
 
-TEST(SampledWall, HasTheEdgeOfTheLatencyBudgetWhereItsLawHolds) {
+TEST(SampledWall, EdgeEqualsLatencyBudgetWithinValidity) {
   for (const double period : {0.004, 0.001, 0.000125}) {
     for (const double delay : {0.0, 0.5, 1.0, 2.0}) {
       const SampledWall wall{
@@ -114,7 +115,7 @@ TEST(SampledWall, HasTheEdgeOfTheLatencyBudgetWhereItsLawHolds) {
   EXPECT_NEAR(stiffness_edge(lagging) / scene::stiffness_limit(0.2, 0.0015), 1, 0.03);
 }
 
-TEST(SampledWall, LosesWhatAnAmplifierLagsLikeADelay) {
+TEST(SampledWall, AmplifierLagActsLikeDelay) {
   for (const double lag : {0.0002, 0.0005, 0.001, 0.002}) {
     const SampledWall wall{.mass = kMass, .viscous = 0.2, .period = 0.001, .amplifier_lag = lag};
     EXPECT_NEAR(limit_by_phase(wall) / stiffness_edge(wall), 1, 0.01) << lag;
@@ -123,7 +124,7 @@ TEST(SampledWall, LosesWhatAnAmplifierLagsLikeADelay) {
   }
 }
 
-TEST(SampledWall, IsThatOfARigidArmWhereTheCableIsStiff) {
+TEST(SampledWall, EqualsRigidArmWithStiffCable) {
   SampledWall wall{.mass = kMass, .viscous = 1, .period = 0.001, .delay = 0.0015};
   const double mass = wall.mass;
   const double rigid = stiffness_edge(wall);
@@ -136,8 +137,8 @@ TEST(SampledWall, IsThatOfARigidArmWhereTheCableIsStiff) {
   EXPECT_NEAR(limit_by_phase(wall) / late_stiffness_limit(1, 0.002, mass), 1, 1e-3);
 }
 
-TEST(SampledWall, CableShiftsItByTheTwoMassLaw) {
-  // The same two masses by steps of 2 us, in place of the exact map.
+TEST(SampledWall, CableShiftsEdgeByTwoMassLaw) {
+  // The same two masses with steps of 2 us instead of the exact map.
   const auto grows = [](const SampledWall& wall, double stiffness) {
     double x = 0, v = 0.01, rotor = 0, rate = 0.01, force = 0, early = 0, late = 0;
     const double h = 2e-6;
@@ -175,7 +176,7 @@ TEST(SampledWall, CableShiftsItByTheTwoMassLaw) {
 }
 
 // From 4.4 to 7.1 kN/m the motor oscillates against the tip; up to 10.2 kN/m it rests again.
-TEST(SampledWall, BehindACableGrowsFromItsFirstBandOn) {
+TEST(SampledWall, WithCableIsUnstableFromFirstBandOn) {
   SampledWall wall{.mass = 0.7 * 0.075,
                    .viscous = 1,
                    .period = 0.001,
@@ -190,7 +191,7 @@ TEST(SampledWall, BehindACableGrowsFromItsFirstBandOn) {
   EXPECT_LT(growth_per_tick(wall), 1);
 }
 
-TEST(SampledWall, LosesWhatALowPassOnItsVelocityCosts) {
+TEST(SampledWall, VelocityLowPassLowersTheEdge) {
   // B = 2 N s/m, simulated [PHYSICS 1.1]; the exact map agrees within 0.3 %.
   SampledWall wall{.mass = kMass, .viscous = kViscous, .damping = 2, .period = 0.001};
   for (const auto& [corner, edge] :

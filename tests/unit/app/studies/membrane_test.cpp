@@ -18,7 +18,7 @@ using render::SpringScheme;
 constexpr int kFrames = 70;
 constexpr double kFrame = 1e-3;
 
-// Finds the largest error over all nodes and frames, as a share of the largest height. Undefined
+// Returns the largest error over all nodes and frames, relative to the largest height. Undefined
 // heights (after divergence) count as an infinite error.
 double error_of(const Membrane& membrane, SpringScheme scheme, int substeps) {
   render::SpringMotionOptions options;
@@ -91,7 +91,7 @@ TEST(Membrane, ShowsTheOrderOfEachIntegrator) {
 TEST(HardCaseMembrane, GuardExplicitEulerDivergesAtItsBound) {
   Membrane membrane;
   membrane.n = 12;
-  // Dampers stand at the nodes alone: 2 zeta / w of the stiffest mode, here 8 us.
+  // There are dampers at the nodes only: 2 zeta / w of the stiffest mode, here 8 us.
   const render::NetworkBounds bounds = membrane_network(membrane).bounds();
   const double limit = render::largest_step(SpringScheme::kExplicitEuler, bounds);
   const double rate = membrane.damping / membrane.mass;

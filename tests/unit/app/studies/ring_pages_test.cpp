@@ -39,7 +39,7 @@ std::array<std::int32_t, 3> corner(const PackedTriangle& t, std::size_t k) {
   return {t.x[k], t.y[k], t.z[k]};
 }
 
-/// Returns whether the edge from corner k of `t` runs backwards along one edge of `other` whose
+/// Returns whether the edge from corner k of `t` runs in reverse along an edge of `other` whose
 /// neighbour is `number`, with the same normals at its ends.
 bool shares_edge(const PackedTriangle& t, std::size_t k, std::int32_t number,
                  const PackedTriangle& other) {
@@ -85,7 +85,7 @@ TEST(RingPages, FormAClosedSurface) {
   }
 }
 
-TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
+TEST(RingPages, EqualPagesOfTheSameMesh) {
   const auto file = ring_of(20'000);
   const auto pages = render::PageFile::open(file);
   ASSERT_TRUE(pages.ok());
@@ -108,7 +108,7 @@ TEST(RingPages, GiveTheSameEntriesAsTheSameMeshCutByTheUsualWay) {
   const auto surface = render::PackedSurface::build(mesh);
   ASSERT_TRUE(surface.ok()) << surface.error().message;
   const render::TreeSearch<render::PackedSurface> tree(*surface);
-  // Corner normals of the mesh are averages, those of the ring are exact.
+  // Corner normals of the mesh are averages; those of the ring are exact.
   for (std::int32_t t = 0; t < surface->triangle_count(); ++t) {
     const std::int32_t source = surface->source(t);
     if (source / render::kPageTriangles != 3) continue;
@@ -152,7 +152,7 @@ TEST(RingPages, NormalIsThatOfTheSurface) {
   }
 }
 
-TEST(RingPages, AreWrittenInAMemoryThatDoesNotGrowWithTheMesh) {
+TEST(RingPages, WritingNeedsConstantMemory) {
   if (!support::long_form()) GTEST_SKIP() << "writes 640 MB: only with THIMBLE_LONG=1";
   ring_of(1'000'000);
   const std::size_t before = resident_memory().most;
@@ -161,8 +161,8 @@ TEST(RingPages, AreWrittenInAMemoryThatDoesNotGrowWithTheMesh) {
   std::filesystem::remove(file);
 }
 
-// A tip that slides at 0.5 m/s over a ring of 10^7 triangles on the disk (10^5 in the short form),
-// with 16 MiB (4) of it in memory: the depth is known in closed form, every page comes in time, and
+// A tip slides at 0.5 m/s over a ring of 10^7 triangles on disk (10^5 in the short form), with 16
+// MiB (4) of it in memory. The depth is known in closed form, every page is loaded in time, and
 // memory does not grow with the mesh.
 TEST(RingPages, TenMillionTrianglesFitTheFrames) {
   const auto file = ring_of(support::long_form() ? 10'000'000 : 100'000);
@@ -174,7 +174,7 @@ TEST(RingPages, TenMillionTrianglesFitTheFrames) {
   render::PagedContact contact(std::move(opened).value());
   constexpr double kTick = 1e-3, kSpeed = 0.5, kPressed = 5e-4;
   const auto at = [](double turn, double height) {
-    // Winds around the tube as it goes around the ring.
+    // Winds around the tube while it moves around the ring.
     return Vector3d(kRing.at(turn, 3.7 * turn) + height * kRing.normal(turn, 3.7 * turn));
   };
   driver::DeviceState state;
@@ -206,7 +206,7 @@ TEST(RingPages, TenMillionTrianglesFitTheFrames) {
   EXPECT_EQ(contact.misses(), 0u);
   EXPECT_LT(worst, 1e-6);
   EXPECT_LT(most, before + (48u << 20));
-  EXPECT_GT(contact.surface().counters().loads, frames) << "all of it was in memory";
+  EXPECT_GT(contact.surface().counters().loads, frames) << "the whole ring was in memory";
 }
 
 TEST(RingPages, SayWhenTheyCannotBeWritten) {

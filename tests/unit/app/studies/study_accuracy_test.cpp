@@ -32,13 +32,13 @@
 namespace thimble::studies {
 namespace {
 
-// What takes long in a debug build is looked at once, by its shortest form.
+// Cases that take long in a debug build are tested once, in their shortest form.
 bool is_costly(const AccuracyAxis& axis) {
   return axis.name == "search" || axis.name == "float" || axis.name == "effects" ||
          axis.name == "tracking";
 }
 
-TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
+TEST(AccuracyAxes, HaveAllTextsOfThePage) {
   std::set<std::string> names, titles;
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
@@ -62,13 +62,13 @@ TEST(AccuracyAxes, SayAllThatAReaderNeeds) {
       }
     }
     EXPECT_LE(defaults, 1) << axis.name;
-    // The page says why where the default is not the best bargain, or that there is no default.
+    // The page gives a reason if the default is not on the Pareto front or if there is no default.
     const bool simulator = axis.name.rfind("simulator", 0) == 0;
     EXPECT_TRUE(simulator || !axis.default_words.empty()) << axis.name;
   }
 }
 
-TEST(AccuracyAxes, ShowTheOrderOfEachMethodAndExactOnesAtRounding) {
+TEST(AccuracyAxes, ShowOrderOfEachMethodAndRoundingOfExactOnes) {
   int orders = 0;
   int exact = 0;
   for (const AxisMaker& maker : accuracy_axes()) {
@@ -106,14 +106,14 @@ TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
       for (const AccuracyPoint& point : line.points) {
         if (!point.law) continue;
         const bool bounce = axis.name == "loop_rate" || axis.name == "latency";
-        // The law of a bounce holds where an oscillation lasts for many ticks [PHYSICS 1.5].
+        // The law of a bounce holds if an oscillation lasts for many ticks [PHYSICS 1.5].
         if (bounce && *point.law > 15) continue;
         const double error = point.error();
         const std::string where = axis.name + ' ' + line.name + ' ' + point.name;
         if (bounce) {
           EXPECT_NEAR((100 + error) / (100 + *point.law), 1, 0.01) << where;
         } else {
-          // Long ticks are drawn by chance: 4 s of them are some percent off their mean.
+          // Long ticks are random: their share in 4 s differs from its mean by some percent.
           EXPECT_NEAR(error / *point.law, 1, line.name == "gaps" ? 0.07 : 0.03) << where;
         }
         ++looked_at;
@@ -123,7 +123,7 @@ TEST(AccuracyAxes, AgreeWithThePublishedLaws) {
   EXPECT_GE(looked_at, 55);
 }
 
-TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
+TEST(AccuracyAxes, ErrorsAreBitIdenticalAndPreparedStrokesRun) {
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
     if (is_costly(axis)) continue;
@@ -135,8 +135,8 @@ TEST(AccuracyAxes, GiveTheSameErrorsToTheBitAndReadyStrokesThatRun) {
   }
 }
 
-TEST(StiffestWall, IsThatOfTheTableForDampersWithLowPasses) {
-  // [PHYSICS 1.1]: B = 2 N s/m in front of the PHANTOM-like arm, checked there by a simulation.
+TEST(StiffestWall, EqualsTableForDampersWithLowPass) {
+  // [PHYSICS 1.1]: B = 2 N s/m with the PHANTOM-like arm, confirmed there by a simulation.
   struct Row {
     double corner, stiffness;
   };
@@ -148,7 +148,7 @@ TEST(StiffestWall, IsThatOfTheTableForDampersWithLowPasses) {
   }
 }
 
-// The least damping that a coupling counts on with which a bounce gives no speed.
+// Returns the largest damping on which a coupling may count without adding speed in a bounce.
 double least_counted_on(double stiffness) {
   double gives = 1, none = GuardedArm::kViscous / 2;
   while (gives > 1.02 * none) {
@@ -179,20 +179,21 @@ AccuracyAxis axis_named(std::string_view name) {
       ->make();
 }
 
-TEST(AccuracyAxes, MeasureTheCompactTrackerWhereverTrackersDiffer) {
+TEST(AccuracyAxes, IncludeCompactTrackerWhereverTrackersDiffer) {
   for (const char* name :
        {"tessellation", "tessellation_direction", "tessellation_jump", "tracking", "float"}) {
     const AccuracyAxis axis = axis_named(name);
     EXPECT_EQ(line_named(axis, "compact").points.size(), axis.lines.front().points.size()) << name;
   }
-  // At the default size flat triangles are off by a fifth of the force, compact by a hundredth.
+  // At the default size, the force of flat triangles is off by a fifth, that of compact by a
+  // hundredth.
   const AccuracyAxis force = axis_named("tessellation");
   const auto error = [&](const char* line) { return line_named(force, line).points[4].error(); };
   EXPECT_GT(error("flat"), 10);
   EXPECT_LT(error("compact"), 1.5);
 }
 
-TEST(AccuracyAxes, ShadeDiagramsOfOneMeasureAtOneLimit) {
+TEST(AccuracyAxes, DiagramsOfOneMetricHaveOneThreshold) {
   std::map<std::string, double> limits;
   int shared = 0;
   for (const AxisMaker& maker : accuracy_axes()) {
@@ -205,12 +206,12 @@ TEST(AccuracyAxes, ShadeDiagramsOfOneMeasureAtOneLimit) {
   EXPECT_GE(shared, 5);
 }
 
-TEST(AccuracyAxes, DentsAreRightDownToAThousandthOfARadian) {
+TEST(AccuracyAxes, DentErrorsFollowTheClosedForm) {
   const AccuracyAxis axis = axis_named("dent_speed");
   for (const char* name : {"implicit", "implicit_20k"}) {
     const AccuracyPoint& slowest = line_named(axis, name).points.back();
     ASSERT_EQ(slowest.knob, 0.001);
-    // Implicit Euler loses w h / 2 of the swing for each radian; half a period has pi of them.
+    // Implicit Euler loses w h / 2 of the amplitude per radian; half a period has pi radians.
     EXPECT_NEAR(slowest.error(), 100 * M_PI * slowest.knob / 2, 0.01) << name;
   }
   for (const char* name : {"trapezoid", "trapezoid_20k"}) {
@@ -218,7 +219,7 @@ TEST(AccuracyAxes, DentsAreRightDownToAThousandthOfARadian) {
   }
 }
 
-TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
+TEST(AccuracyAxes, ParametersOfSceneOrArmAreMarkedAsGiven) {
   for (const AxisMaker& maker : accuracy_axes()) {
     const AccuracyAxis axis = maker.make();
     const bool given = axis.name.starts_with("encoder") || axis.name.starts_with("latency") ||
@@ -231,16 +232,17 @@ TEST(AccuracyAxes, CountNothingAsAChoiceThatTheSceneOrArmBrings) {
   for (const MeasuredPoint& point : measured.lines[0].points) EXPECT_FALSE(point.on_front);
   AccuracyAxis product = axis_named("encoder");
   const MeasuredAxis whole = measure_axis(std::move(product), {.rounds = 0, .count = false});
-  EXPECT_EQ(default_sentence(whole).rfind("No choice of a program: the step comes with", 0), 0U);
+  EXPECT_EQ(default_sentence(whole).rfind("The arm determines this value: the encoders", 0), 0U);
   for (const session::Figure& figure : figures_of(whole)) {
     EXPECT_EQ(figure.name.find("default"), std::string::npos) << figure.name;
   }
 }
 
-TEST(AccuracyAxes, TakeTheTwentiethBounceForTheSafetyStages) {
+TEST(AccuracyAxes, SafetyStagesAreComparedAtTheTwentiethBounce) {
   const AccuracyAxis axis = axis_named("safety");
   for (std::size_t i = 1; i < 4; ++i) {  // 500 to 2,000 N/m
-    // Limits alone give speed for ever; the observer gives some in the first bounces only.
+    // With limits only, the speed grows forever; the observer permits some growth in the first
+    // bounces only.
     EXPECT_GT(line_named(axis, "none").points[i].error(), 2);
     EXPECT_LT(line_named(axis, "passivity").points[i].error(),
               line_named(axis, "none").points[i].error() / 4)
@@ -248,18 +250,18 @@ TEST(AccuracyAxes, TakeTheTwentiethBounceForTheSafetyStages) {
   }
 }
 
-TEST(AccuracyAxes, OnlyTheSmoothProfileTurnsContinuously) {
+TEST(AccuracyAxes, OnlySmoothProfileHasContinuousTurningRate) {
   const AccuracyAxis axis = axis_named("profile_rate");
   const auto at = [&](const char* line, std::size_t i) {
     return line_named(axis, line).points[i].error();
   };
-  // Steps of 1 and of 30 um: what jumps keeps its jump.
+  // Steps of 1 um and of 30 um: a discontinuous rate keeps its jump.
   EXPECT_NEAR(at("linear", 0) / at("linear", 3), 1, 0.3);
   EXPECT_LT(at("smooth", 0), at("linear", 0) / 25);
   EXPECT_LT(at("smooth", 0), at("smooth", 3) / 20);
 }
 
-TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
+TEST(StraightWalk, RoundABlockReturnsToItsStart) {
   const auto mesh = render::ContactMesh::build(support::box({0.005, 0.005, 0.005})).value();
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     const Eigen::Vector3d& n = mesh.cell(t).face.n;
@@ -273,7 +275,7 @@ TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
           ASSERT_GE(walk.weights().minCoeff(), 0);
         }
         const Eigen::Vector3d here = render::point_at(mesh, walk.triangle(), walk.weights());
-        // Half-way round it stands opposite, on the other side of the block's middle.
+        // Half-way round it is opposite, on the other side of the block's centre.
         if (side == 2) {
           EXPECT_NEAR((begin - here).dot(n), 0.01, 1e-12) << t;
         }
@@ -285,16 +287,16 @@ TEST(StraightWalk, RoundABlockComesBackToWhereItBegan) {
   }
 }
 
-TEST(VirtualCoupling, GivesNoSpeedUpToItsSizedLimit) {
+TEST(VirtualCoupling, AddsNoSpeedUpToItsDesignLimit) {
   for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
-    // The law asks for no more than the arm has, and wastes less than half.
+    // Counting on the arm's own damping adds no speed; the limit is less than twice as large.
     const double counted_on = least_counted_on(stiffness);
     EXPECT_GE(counted_on, GuardedArm::kViscous) << stiffness;
     EXPECT_LE(counted_on, 2 * GuardedArm::kViscous) << stiffness;
   }
 }
 
-TEST(Tracking, SearchesInEachTickAreRightAndEdgePlanesNearlyAlways) {
+TEST(Tracking, SearchesAreExactAndEdgePlanesAlmostAlways) {
   for (const AxisMaker& maker : accuracy_axes()) {
     if (maker.name != "tracking") continue;
     const AccuracyAxis axis = maker.make();
@@ -313,7 +315,7 @@ TEST(Tracking, SearchesInEachTickAreRightAndEdgePlanesNearlyAlways) {
   }
 }
 
-TEST(FreeSpin, SolvesEulersEquationsOnBothSidesOfTheMiddleAxis) {
+TEST(FreeSpin, SolvesEulerEquationsNearIntermediateAxis) {
   for (const Eigen::Vector3d& start : {Eigen::Vector3d(0.2, 12, 0.5), Eigen::Vector3d(3, 5, -1),
                                        Eigen::Vector3d(-2, -7, 1), Eigen::Vector3d(0.3, 1, -4)}) {
     FreeSpin spin;
@@ -329,7 +331,7 @@ TEST(FreeSpin, SolvesEulersEquationsOnBothSidesOfTheMiddleAxis) {
   }
 }
 
-// Makes an axis of two methods with given costs and errors; nothing is timed.
+// Makes an axis of two methods with given costs and errors, without timing.
 MeasuredAxis measured_by_hand() {
   AccuracyAxis axis;
   axis.name = "by_hand";
@@ -350,7 +352,7 @@ MeasuredAxis measured_by_hand() {
   return measure_axis(axis, {.rounds = 0, .count = false});
 }
 
-TEST(MeasuredAxis, IsTheSameFromItsNumbers) {
+TEST(MeasuredAxis, IsRestoredFromItsNumbers) {
   const MeasuredAxis measured = measured_by_hand();
   const MeasuredAxis again = with_numbers(measured.axis, numbers_of(measured));
   EXPECT_TRUE(again.complete);
@@ -362,7 +364,7 @@ TEST(MeasuredAxis, IsTheSameFromItsNumbers) {
   }
 }
 
-TEST(MeasuredAxis, OfTooFewNumbersIsNotComplete) {
+TEST(MeasuredAxis, TooFewNumbersAreIncomplete) {
   const MeasuredAxis measured = measured_by_hand();
   std::vector<double> numbers = numbers_of(measured);
   numbers.pop_back();
@@ -387,7 +389,7 @@ TEST(MeasuredAxis, IsStoppedBetweenTwoPoints) {
   EXPECT_EQ(steps, 2);
 }
 
-TEST(MeasuredAxis, ReportsAsManyStepsAsItAnnounces) {
+TEST(MeasuredAxis, ReportsTheAnnouncedNumberOfSteps) {
   AccuracyAxis axis = measured_by_hand().axis;
   int steps = 0;
   MeasureOptions options{.rounds = 5, .count = false, .advance = [&](int done) { steps += done; }};
@@ -403,14 +405,14 @@ TEST(MeasuredAxis, FindsSlopeDefaultAndFeltLimit) {
   ASSERT_NE(axis.enough(), nullptr);
   EXPECT_EQ(axis.enough()->error, 10);
   ASSERT_NE(axis.default_point(), nullptr);
-  // All cost the same, so only the best is on the front.
+  // All have the same cost, so only the one with the smallest error is on the front.
   EXPECT_TRUE(axis.lines[0].points[0].on_front);
   EXPECT_FALSE(axis.default_point()->on_front);
   EXPECT_NE(default_sentence(axis).find("because."), std::string::npos);
   EXPECT_NE(felt_sentence(axis).find("method a at 1"), std::string::npos);
 }
 
-TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
+TEST(MeasuredAxis, RunsSubtractedWorkAsOftenAsThePoint) {
   AccuracyAxis axis;
   axis.name = "by_hand";
   int with = 0, beside = 0;
@@ -422,11 +424,11 @@ TEST(MeasuredAxis, RunsWhatIsBesideAPointAsOftenAsThePoint) {
                          .beside = [&] { return Stroke([&] { return 1.0 * ++beside; }); }});
   axis.lines.push_back(line);
   measure_axis(std::move(axis), {.rounds = 7, .count = false});
-  EXPECT_EQ(with, 8);  // once more, to read everything into the caches
+  EXPECT_EQ(with, 8);  // one more, to fill the caches
   EXPECT_EQ(beside, 8);
 }
 
-TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
+TEST(RateBench, VerdictUsesLateTicksAndJitter) {
   RateBench bench;
   bench.rate = 1000;
   bench.priority = true;
@@ -439,7 +441,7 @@ TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
   EXPECT_NEAR(verdict_of(bench).headroom, 0.97, 0.01);
   EXPECT_EQ(verdict_of(bench).sentence.rfind("Enough", 0), 0U);
 
-  // One tick in a hundred takes 10 ms: 44 % of the stiffness are gone [PHYSICS 1.1].
+  // One tick in a hundred takes 10 ms: 44 % of the stiffness is lost [PHYSICS 1.1].
   session::Histogram gaps;
   for (int i = 0; i < 9900; ++i) gaps.add(1'000'000);
   for (int i = 0; i < 100; ++i) gaps.add(10'000'000);
@@ -452,7 +454,7 @@ TEST(RateBench, AnswersByTheLateOnesAndByWhatUnevenTicksCost) {
 
   RateBench slow = bench;
   for (int i = 0; i < 100; ++i) slow.work.add(2'000'000);
-  EXPECT_NE(verdict_of(slow).sentence.find("the work alone"), std::string::npos);
+  EXPECT_NE(verdict_of(slow).sentence.find("the computation takes"), std::string::npos);
 }
 
 class GatingOfScene : public ::testing::TestWithParam<std::string> {};
@@ -476,7 +478,7 @@ TEST_P(GatingOfScene, IsCheckedAgainstTheFullModel) {
   }
   EXPECT_GT(report->force, 0);
   EXPECT_LT(report->change, 0.01);
-  // Nothing left out is the same run to the bit.
+  // With no effect left out, the run is bit-identical.
   if (!any_left_out) {
     EXPECT_EQ(report->change, 0);
   }

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(RingSurface, KnowsItsDepthAndNormalAlongEachWayIn) {
+TEST(RingSurface, DepthAndNormalAreExactAlongEachApproach) {
   const RingSurface ring;
   for (const double around : {0.0, 1.0, 4.0}) {
     for (const double across : {0.0, 0.7, 2.5, 3.1}) {

@@ -18,7 +18,7 @@
 namespace thimble::studies {
 namespace {
 
-/// A folder of its own in that of this process.
+/// A subfolder in the folder of this process.
 class Folder {
  public:
   Folder() {
@@ -34,7 +34,7 @@ class Folder {
 
 const std::atomic<bool> kNoStop{false};
 
-/// A sweep whose cells give what they alone know, some of it no ordinary number.
+/// A sweep whose results depend on the cell only; some are NaN or infinite.
 Sweep plain_sweep(std::size_t cells = 50) {
   return {.name = "plain", .key = "plain 1", .cells = cells, .measure = [](std::size_t cell) {
             const double x = static_cast<double>(cell);
@@ -79,7 +79,7 @@ TEST(Sweep, ResumesAfterATornJournal) {
   EXPECT_EQ(journal_after(scratch.path(), 2, true), whole);
 }
 
-TEST(Sweep, MeasuresNoCellAgainThatItsJournalHolds) {
+TEST(Sweep, DoesNotRepeatCellsOfItsJournal) {
   const Folder scratch;
   journal_after(scratch.path(), 2, false);
   Sweep sweep = plain_sweep();
@@ -99,12 +99,12 @@ TEST(Sweep, KeepsAnOlderJournalBesideANewOne) {
   EXPECT_EQ(scene::text_of(scratch.path() / "plain.journal.old"), first);
 }
 
-TEST(Sweep, RefusesAFolderThatIsBeingWrittenAndSaysByWhom) {
+TEST(Sweep, RefusesFolderInUseAndNamesTheProcess) {
   const Folder scratch;
   CellNumbers numbers;
   auto first = SweepJournal::open(scratch.path() / "a.journal", "key", 3, false, numbers);
   ASSERT_TRUE(first);
-  // Outputs of one process share its lock of a folder; those of another are refused.
+  // Outputs of one process share its lock of a folder; those of another process are rejected.
   const std::string holder = "is being written by process " + std::to_string(getpid());
   const pid_t child = fork();
   if (child == 0) {
@@ -114,8 +114,8 @@ TEST(Sweep, RefusesAFolderThatIsBeingWrittenAndSaysByWhom) {
   }
   int status = -1;
   ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0) << "another process was let in, or the holder was not named";
-  first.value().reset();  // whatever ends it
+  EXPECT_EQ(status, 0) << "another process got the folder, or the error did not name the holder";
+  first.value().reset();  // ends it in any way
   EXPECT_TRUE(SweepJournal::open(scratch.path() / "b.journal", "key", 3, true, numbers));
 }
 
@@ -142,13 +142,13 @@ TEST(Sweep, NamesTheCellThatFailed) {
   EXPECT_EQ(done.error().message, "plain, cell 17: no such wall");
 }
 
-TEST(Sweep, TakesNoCellWithoutNumbersAndOutlivesAnException) {
+TEST(Sweep, EmptyResultsAndExceptionsAreErrors) {
   const Folder scratch;
   Sweep sweep = plain_sweep();
   sweep.measure = [](std::size_t) { return std::vector<double>{}; };
   const auto empty = run_sweep(sweep, {.folder = scratch.path(), .jobs = 1}, kNoStop);
   ASSERT_FALSE(empty);
-  EXPECT_NE(empty.error().message.find("plain, cell 0: it gave no numbers"), std::string::npos)
+  EXPECT_NE(empty.error().message.find("plain, cell 0: no result"), std::string::npos)
       << empty.error().message;
   sweep.measure = [](std::size_t) -> std::vector<double> { throw std::bad_alloc(); };
   const auto thrown = run_sweep(sweep, {.folder = scratch.path(), .jobs = 1}, kNoStop);
@@ -156,7 +156,7 @@ TEST(Sweep, TakesNoCellWithoutNumbersAndOutlivesAnException) {
   EXPECT_NE(thrown.error().message.find("bad_alloc"), std::string::npos) << thrown.error().message;
 }
 
-TEST(Sweep, StopsWhenAskedAndLaterGoesOn) {
+TEST(Sweep, StopsOnRequestAndResumes) {
   const Folder scratch, other;
   std::atomic<bool> stop{false};
   Sweep sweep = plain_sweep();
@@ -170,7 +170,7 @@ TEST(Sweep, StopsWhenAskedAndLaterGoesOn) {
   EXPECT_EQ(journal_after(scratch.path(), 2, true), journal_after(other.path(), 1, false));
 }
 
-TEST(Sweep, SaysWhatToDoAboutAFolderThatIsNotThere) {
+TEST(Sweep, ErrorNamesMissingFolder) {
   const auto done = run_sweep(plain_sweep(), {.folder = "/nowhere/at/all", .jobs = 1}, kNoStop);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("Cannot write /nowhere/at/all"), std::string::npos);

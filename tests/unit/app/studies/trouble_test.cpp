@@ -1,4 +1,4 @@
-// The random search for trouble, and what it measures by.
+// The random search for trouble, and its measures.
 
 #include <gtest/gtest.h>
 
@@ -41,11 +41,11 @@ std::vector<std::filesystem::path> worst_scenes() {
   return files;
 }
 
-TEST(Trouble, DoesNotComeBackInTheWorstScenesOfALongSearch) {
+TEST(Trouble, WorstScenesOfALongSearchStayFixed) {
   const auto files = worst_scenes();
   ASSERT_EQ(files.size(), 10U);
   for (const auto& file : files) {
-    // Nothing in these scenes has energy of its own: no weights, no fields.
+    // Nothing in these scenes has its own energy: no weights, no fields.
     const TroubleFound found = run_for_trouble(file, {.text = "", .own_energy = 0});
     EXPECT_FALSE(found.refused) << file;
     EXPECT_EQ(found.not_finite, 0) << file;
@@ -56,7 +56,7 @@ TEST(Trouble, DoesNotComeBackInTheWorstScenesOfALongSearch) {
   }
 }
 
-TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
+TEST(Trouble, TooStiffWallIsDetected) {
   const auto file = support::scratch_folder() / "too_stiff.yaml";
   ASSERT_TRUE(report::write_text(
       "name: too_stiff\narm: " + kArm.string() +
@@ -73,9 +73,9 @@ TEST(Trouble, IsSeenWhereAWallIsFarTooStiffForItsHand) {
   EXPECT_GT(found.limit_cycle, 0.1);
 }
 
-// What damping and friction took before is no credit: the hand rubs over rubber for two seconds,
-// then leans on a wall that is too stiff for it.
-TEST(Trouble, IsSeenThoughMoreWasTakenBefore) {
+// Energy dissipated earlier by damping and friction is no credit: the hand rubs over rubber for two
+// seconds, then presses on a wall that is too stiff for it.
+TEST(Trouble, TooStiffWallIsDetectedAfterDissipation) {
   const auto file = support::scratch_folder() / "rubbed_before.yaml";
   ASSERT_TRUE(report::write_text(
       "name: rubbed_before\narm: " + kArm.string() +
@@ -106,19 +106,19 @@ TEST(EnergyGiven, CountsOnlyWhatSpringsHeld) {
   EXPECT_EQ(passive.most(), 0);
   EnergyGiven active = passive;
   active.book(-5e-3, 4e-3);
-  active.book(6e-3, 0);  // 2 mJ more than it held
+  active.book(6e-3, 0);  // 2 mJ more than the spring stored
   EXPECT_NEAR(active.most(), 2e-3, 1e-15);
-  for (int i = 0; i < 4; ++i) {  // and again before anything is taken
+  for (int i = 0; i < 4; ++i) {  // and again before energy returns
     active.book(-4e-3, 4e-3);
     active.book(5e-3, 0);
   }
   EXPECT_NEAR(active.most(), 6e-3, 1e-15);
-  active.book(-6e-3, 0);  // damping pays
+  active.book(-6e-3, 0);  // damping dissipates
   active.book(1e-3, 0);
   EXPECT_NEAR(active.most(), 6e-3, 1e-15);
 }
 
-TEST(EnergyGiven, MayBeWhatTheStageLetsGo) {
+TEST(EnergyGiven, IsBoundedByTheStagesAllowance) {
   driver::EnergyGuardSettings stage;
   EXPECT_EQ(energy_let_go(stage), kLetGoWithoutStage);
   stage = {.stage = driver::EnergyStage::kPassivity,
@@ -155,12 +155,12 @@ bool any_has(const std::vector<std::string>& warnings, const std::string& word) 
   });
 }
 
-// Seeds of a search through 100,000 scenes, of which 552 oscillated; by cause. What each one showed
-// before stands behind it.
+// Seeds of a search of 100,000 scenes, of which 552 oscillated, by cause. Each comment is the limit
+// cycle before the fix.
 
-TEST(Trouble, RestsWhereTheEnergyStageOscillatedByItself) {
-  for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade as a spring
-                                   0x0ba1cf68047f62f8u,     // 1.2 N: a deep soft wall let go
+TEST(Trouble, EnergyStageDoesNotOscillate) {
+  for (const std::uint64_t seed : {0x9fdca176d19cc5a4u,     // 2.0 N: the fade acted as a spring
+                                   0x0ba1cf68047f62f8u,     // 1.2 N: release of a deep soft wall
                                    0x9d31e7a72db18a0cu,     // 1.7 N
                                    0xe8e7f42db1d78623u}) {  // 0.11 N: jolts of single counts
     const TroubleFound found = run_seed(seed);
@@ -170,7 +170,7 @@ TEST(Trouble, RestsWhereTheEnergyStageOscillatedByItself) {
   }
 }
 
-TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
+TEST(Trouble, PullOfADentDoesNotOscillate) {
   for (const std::uint64_t seed : {0x397910a12f34a399u,     // 0.31 N
                                    0x8caa046a37ca9eeeu,     // 0.34 N
                                    0x4ef4be767faa6f60u}) {  // 0.14 N
@@ -181,9 +181,9 @@ TEST(Trouble, RestsWhereThePullOfADentWasASwitch) {
 }
 
 TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
-  constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring, nothing on it
+  constexpr std::uint64_t kSeed = 0x8836b4fd9b78a8ec;  // a ring without effects
   std::vector<std::string> warnings;
-  // Above 20 mN before both facets of a hollow edge held the tip at once.
+  // Above 20 mN before both facets of a concave edge held the tip at once.
   EXPECT_LE(run_seed(kSeed, "", "", &warnings).limit_cycle, 1e-3);
   EXPECT_FALSE(any_has(warnings, "facets"));
   const std::string plain = "    size: 0.0425869\n";
@@ -192,22 +192,23 @@ TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
   EXPECT_TRUE(any_has(warnings, "facets"));
 }
 
-TEST(Trouble, OfATextureThatIsTooShortIsForetold) {
+TEST(Trouble, WarningNamesTooShortTexture) {
   std::vector<std::string> warnings;
   EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).limit_cycle, kLimitCycleMost);
   EXPECT_TRUE(any_has(warnings, "texture"));
 }
 
-// It had a limit cycle before tips and bodies were coupled by the whole implicit step; the warning
-// is on the safe side.
-TEST(Trouble, LightBodyInTheGripOfAFrictionRests) {
+// It had a limit cycle before the implicit step coupled tips and bodies completely; the warning is
+// conservative.
+TEST(Trouble, LightBodyWithFrictionRests) {
   std::vector<std::string> warnings;
   EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
-  EXPECT_TRUE(any_has(warnings, "so light"));
+  EXPECT_TRUE(any_has(warnings, "such a light body"));
 }
 
-TEST(RestWarnings, FindCurvatureAndVelocityGrain) {
-  // Hollows of a cube: none; its texture and friction as a scene names them.
+TEST(RestWarnings, FindCurvatureAndQuantisationNoise) {
+  // Quantisation noise in closed form; curvature of the texture and stiffness of the friction as
+  // set in the scene.
   EXPECT_NEAR(stability::quantisation_noise_of(2, 3e-5, 3e-3, 0, 1e-3),
               2 * 0.03 * std::sqrt(0.1 * 0.9), 1e-12);
   EXPECT_EQ(stability::quantisation_noise_of(2, 0, 3e-3, 0, 1e-3), 0);
@@ -227,14 +228,14 @@ TEST(RestWarnings, FindCurvatureAndVelocityGrain) {
   EXPECT_NEAR(stability::hold_of(scene->objects[0].effects[1]), 700, 1);
 }
 
-TEST(RandomScene, IsDrawnAgainByItsSeedAndByNoOther) {
+TEST(RandomScene, DependsOnItsSeedOnly) {
   EXPECT_EQ(random_scene(7, limits()).text, random_scene(7, limits()).text);
   EXPECT_NE(random_scene(7, limits()).text, random_scene(8, limits()).text);
 }
 
-TEST(RandomScene, StaysWithinWhatTheLawsAllow) {
+TEST(RandomScene, StaysWithinTheStabilityLaws) {
   RandomSceneLimits none = limits();
-  none.arm.declared.stiffness = 60;  // what an arm declares binds too
+  none.arm.declared.stiffness = 60;  // a declared limit of the arm also applies
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const std::string text = random_scene(support::seed_of(seed), none).text;
     for (std::size_t at = text.find("\n    stiffness: "); at != std::string::npos;
@@ -244,7 +245,7 @@ TEST(RandomScene, StaysWithinWhatTheLawsAllow) {
   }
 }
 
-TEST(TroubleFound, SurvivesItsWayThroughASweep) {
+TEST(TroubleFound, RoundTripsThroughASweep) {
   const TroubleFound found{.not_finite = 2,
                            .fault = 3,
                            .force_share = 0.5,
@@ -258,7 +259,7 @@ TEST(TroubleFound, SurvivesItsWayThroughASweep) {
   EXPECT_TRUE(found.bad());
 }
 
-TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
+TEST(WallMeasures, EdgeEqualsExactMapOfATick) {
   const auto arm = scene::load_arm(kArm);
   for (const double delay : {0.0, 0.001}) {
     stability::WallCase wall;
@@ -271,7 +272,7 @@ TEST(WallMeasures, FindTheEdgeThatTheExactMapOfATickHas) {
   }
 }
 
-TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
+TEST(WallMeasures, RestNeedsDryFrictionOfHalfAStep) {
   const auto arm = scene::load_arm(kArm);
   stability::WallCase wall;
   wall.direction = *stability::worst_direction_at_home(*arm);
@@ -288,7 +289,7 @@ TEST(WallMeasures, FindRestOnlyWhereDryFrictionHoldsHalfAStep) {
   }
 }
 
-TEST(WallMeasures, ThrowBackAsTheLawOfRestitutionSays) {
+TEST(WallMeasures, RestitutionFollowsTheLaw) {
   const auto arm = scene::load_arm(kArm);
   stability::WallCase wall;
   wall.direction = *stability::worst_direction_at_home(*arm);

@@ -76,9 +76,10 @@ TEST(MockDhd, ComplainsOfEachCallThatIsOutOfOrder) {
          call.drdClose(kId);
        },
        [&] { call.dhdSetForce(0, 0, 0, kId); }},
-      {"dhdGetPosition with another number", open, [&] { call.dhdGetPosition(&x, &y, &z, 1); }},
+      {"dhdGetPosition with another arm's number", open,
+       [&] { call.dhdGetPosition(&x, &y, &z, 1); }},
       {"drdOpenID twice", open, open},
-      {"dhdSetWatchdog by who is no expert", open, [&] { call.dhdSetWatchdog(160, kId); }},
+      {"dhdSetWatchdog without expert functions", open, [&] { call.dhdSetWatchdog(160, kId); }},
       {"dhdSetWatchdog switches it off",
        [&] {
          open();
@@ -91,7 +92,7 @@ TEST(MockDhd, ComplainsOfEachCallThatIsOutOfOrder) {
          call.dhdEnableExpertMode();
        },
        [&] { call.dhdSetWatchdog(10, kId); }},
-      {"dhdEnableForce for an arm that does not know its zero",
+      {"dhdEnableForce for an uninitialised arm",
        [&] {
          watch();
          call.dhdSetGravityCompensation(1, kId);
@@ -126,9 +127,9 @@ TEST(MockDhd, ComplainsOfEachCallThatIsOutOfOrder) {
        },
        enable},
       {"dhdSetForce before the forces are on", ready, [&] { call.dhdSetForce(0.1, 0, 0, kId); }},
-      {"dhdSetForce with what is no number", pushing,
+      {"dhdSetForce with NaN or infinity", pushing,
        [&] { call.dhdSetForce(std::numeric_limits<double>::quiet_NaN(), 0, 0, kId); }},
-      {"dhdEnableForce off while a force stands", pushing, [&] { call.dhdEnableForce(0, kId); }},
+      {"dhdEnableForce off during a force", pushing, [&] { call.dhdEnableForce(0, kId); }},
       {"drdClose with the forces on",
        [&] {
          pushing();
@@ -199,13 +200,13 @@ TEST(MockHd, ComplainsOfEachCallThatIsOutOfOrder) {
       {"hdCheckCalibration before hdInitDevice", nothing, [&] { call.hdCheckCalibration(); }},
       {"hdScheduleAsynchronous before hdInitDevice", nothing, schedule,
        [&] { call.hdUnschedule(task); }},
-      {"hdScheduleAsynchronous of nothing", open,
+      {"hdScheduleAsynchronous without a callback", open,
        [&] { call.hdScheduleAsynchronous(nullptr, nullptr, 1); }},
       {"hdStartScheduler before hdInitDevice", nothing, [&] { call.hdStartScheduler(); },
        [&] { call.hdStopScheduler(); }},
       {"hdStopScheduler without hdStartScheduler", open, [&] { call.hdStopScheduler(); }},
       {"hdUpdateCalibration without a scheduler", open, [&] { call.hdUpdateCalibration(4); }},
-      {"a style that the device does not have",
+      {"an unsupported style",
        [&] {
          open();
          call.hdStartScheduler();
@@ -218,16 +219,16 @@ TEST(MockHd, ComplainsOfEachCallThatIsOutOfOrder) {
          calibrated();
        },
        [&] { call.hdEnable(hd::kForceOutput); }},
-      {"hdEnable of another capability", calibrated, [&] { call.hdEnable(0x4001); }},
+      {"hdEnable of an unknown capability", calibrated, [&] { call.hdEnable(0x4001); }},
       {"hdBeginFrame in a frame", frame, [&] { call.hdBeginFrame(device); }},
       {"hdEndFrame without hdBeginFrame", open, [&] { call.hdEndFrame(device); }},
       {"hdGetDoublev outside of a frame", open, [&] { call.hdGetDoublev(hd::kPosition, values); }},
-      {"hdGetDoublev of another number", frame, [&] { call.hdGetDoublev(0x2100, values); }},
+      {"hdGetDoublev of an unknown parameter", frame, [&] { call.hdGetDoublev(0x2100, values); }},
       {"hdGetIntegerv outside of a frame", open,
        [&] { call.hdGetIntegerv(hd::kButtons, &buttons); }},
       {"hdSetDoublev outside of a frame", open, [&] { set(0); }},
       {"a force before forces are on", frame, [&] { set(0.1); }},
-      {"a force that is no number",
+      {"a force that is NaN or infinite",
        [&] {
          pushing();
          call.hdBeginFrame(device);
@@ -247,9 +248,9 @@ TEST(MockHd, ComplainsOfEachCallThatIsOutOfOrder) {
          while (!forgetful.done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
          call.hdStopScheduler();
        }},
-      {"hdUnschedule of no task", open, [&] { call.hdUnschedule(4711); }},
-      {"hdDisableDevice of what is not open", nothing, [&] { call.hdDisableDevice(0); }},
-      {"hdDisableDevice while a force stands", pushing, [&] { call.hdDisableDevice(device); }},
+      {"hdUnschedule of an unknown task", open, [&] { call.hdUnschedule(4711); }},
+      {"hdDisableDevice of a closed device", nothing, [&] { call.hdDisableDevice(0); }},
+      {"hdDisableDevice during a force", pushing, [&] { call.hdDisableDevice(device); }},
       {"hdDisableDevice while the scheduler runs",
        [&] {
          open();
