@@ -82,7 +82,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
   }
   if (!state.done()) {
     return driver::Error{
-        "The simulated Falcon was not homed; its hand must begin inside of its workspace."};
+        "The simulated Falcon was not homed. Start its hand inside the workspace."};
   }
   // The arm's frames continue from here; the hand's path begins with one of them.
   begin_ns_ = (std::max(bus.time_ns(), end_ns) / FtdiBus::kFrame_ns + 1) * FtdiBus::kFrame_ns;

@@ -262,8 +262,8 @@ TEST(DriveTrainPlant, RefusesWhatCannotBe) {
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.inertia.z() = 0; }), "inertia"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.cogging.x() = 0.1; }), "periods"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.ripple_phase.z() = NAN; }), "phase"));
-  EXPECT_TRUE(
-      refuses(made_with([](auto& s) { s.drive_train.stiffness.setZero(); }), "need a stiffness"));
+  EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.stiffness.setZero(); }),
+                      "require a stiffness"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.weight_B.z() = HUGE_VAL; }), "weight"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.motors.current_max = 0; }), "current_max"));
 }

@@ -180,8 +180,8 @@ TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
   firmware.receive(drive_message(1000, 2000, 3000), 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
   settings.wiring.motor_of = {0, 3, 1};
-  EXPECT_TRUE(refuses(Firmware::make(arm_model(support::vintage_model()), settings),
-                      "joint that is not there"));
+  EXPECT_TRUE(
+      refuses(Firmware::make(arm_model(support::vintage_model()), settings), "unknown joint"));
 }
 
 TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {

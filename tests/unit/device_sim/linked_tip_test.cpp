@@ -247,12 +247,12 @@ TEST(LinkedTip, RefusesLinksThatCannotBe) {
   EXPECT_TRUE(refuses(made_with([](auto& l) { l.moment_b = NAN; }), "finite"));
   EXPECT_TRUE(refuses(made_with([](auto& l) { l.inertia[1] = -1e-4; }), "must not be negative"));
   EXPECT_TRUE(refuses(made_with([](auto& l) { l.coupling = 1; }), "square of coupling"));
-  EXPECT_TRUE(refuses(made_with([](auto& l) { l.yaw_b = -0.01; }), "below zero in some pose"));
+  EXPECT_TRUE(refuses(made_with([](auto& l) { l.yaw_b = -0.01; }), "negative in some pose"));
   EXPECT_TRUE(refuses(made_with([](auto& l) {
                         l.inertia = {0, 1e-3, 1e-3};
                         l.yaw_b = l.yaw_c = 5e-4, l.coupling = -8e-4;
                       }),
-                      "below zero in some pose"));
+                      "negative in some pose"));
   // Below zero on an edge alone: neither upright nor level.
   for (const bool b : {true, false}) {
     EXPECT_TRUE(refuses(made_with([b](auto& l) {
@@ -260,7 +260,7 @@ TEST(LinkedTip, RefusesLinksThatCannotBe) {
                           l.yaw_b = b ? 1e-4 : 1e-3, l.yaw_c = b ? 1e-3 : 1e-4;
                           l.coupling = 3.5e-4;
                         }),
-                        "below zero in some pose"));
+                        "negative in some pose"));
   }
 }
 

@@ -64,7 +64,7 @@ driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::st
   const auto done = driver::run_apart(work, limits);
   if (!done) return unreadable(kind, "it " + done.error().message);
   driver::ApartReader in(done->bytes());
-  const driver::Error broken = unreadable(kind, "it breaks its reader");
+  const driver::Error broken = unreadable(kind, "it crashes its reader");
   std::string error, notes;
   double unit = 0;
   TriangleMesh mesh;

@@ -77,7 +77,7 @@ TEST(WoodyProof, CountsWhatWasSkippedAsSent) {
 
 TEST(WoodyProof, RefusesWhatIsNoSuchBoardAndSendsItNothing) {
   const auto silent = refusal([](int) { return std::nullopt; });
-  EXPECT_NE(silent.find("sends nothing by itself"), std::string::npos) << silent;
+  EXPECT_NE(silent.find("sends no reports by itself"), std::string::npos) << silent;
   support::Random random(8);
   const auto noise =
       refusal([&](int) { return numbered(static_cast<int>(random.bits() % 65'536)); });

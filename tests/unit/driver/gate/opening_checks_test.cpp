@@ -64,7 +64,7 @@ TEST(OpeningChecks, TakeRotationsAsFilesGiveThem) {
 
 TEST(OpeningChecks, RefusePlacesThatAreNone) {
   for (const double x : {11.0, 1e300, static_cast<double>(NAN), HUGE_VAL}) {
-    EXPECT_TRUE(names(refusal([=](auto& s) { s.p_WB = {0, x, 0}; }), "position")) << x;
+    EXPECT_TRUE(names(refusal([=](auto& s) { s.p_WB = {0, x, 0}; }), "p_WB")) << x;
   }
 }
 

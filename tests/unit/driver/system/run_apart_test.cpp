@@ -53,7 +53,7 @@ TEST(RunApart, SurvivesWorkThatCrashesHangsOrAsksForTooMuch) {
       },
       {});
   ASSERT_FALSE(crashed.ok());
-  EXPECT_EQ(crashed.error().message, "breaks its reader");
+  EXPECT_EQ(crashed.error().message, "crashes its reader");
   const auto left = run_apart([]() -> std::string { std::_Exit(0); }, {});
   EXPECT_FALSE(left.ok());
   const auto hung = run_apart(

@@ -181,7 +181,7 @@ TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {
   std::ofstream(file) << "";
   const auto no_port = open_serial_transport(file, hfab::kLineFraming, clock_);
   ASSERT_FALSE(no_port);
-  EXPECT_NE(no_port.error().message.find("no serial port"), std::string::npos);
+  EXPECT_NE(no_port.error().message.find("not a serial port"), std::string::npos);
 }
 
 TEST_F(SerialTransportTest, BelongsToOneUserAtATime) {

@@ -343,7 +343,7 @@ TEST_F(HidWire, IsNotOpenedWithMessagesOfALengthThatTheArmThrowsAway) {
             std::string::npos);
   EXPECT_NE(refusal(8), "");
   hid_.report_bytes = 0;
-  EXPECT_NE(refusal(14).find("no HID device"), std::string::npos);
+  EXPECT_NE(refusal(14).find("not a usable HID device"), std::string::npos);
   EXPECT_EQ(hid_.open, 0);
   EXPECT_EQ(hid_.messages, 0u);
 }

@@ -215,7 +215,8 @@ TEST_F(PoseArmTest, ComesBackOverANewLinkToTheSameArmAndToNoOther) {
       std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire),
                                  std::make_unique<hfab::HfabArm>(support::vintage_model())));
   ASSERT_FALSE(other);
-  EXPECT_NE(other.error().message.find("not the one that was pulled"), std::string::npos);
+  EXPECT_NE(other.error().message.find("differs from the one that was disconnected"),
+            std::string::npos);
 
   support::PoseArm again = arm_from_now();
   ASSERT_TRUE(device_->offer(std::make_unique<support::PoseLink>(again, clock_)));
@@ -235,7 +236,7 @@ TEST_F(PoseArmTest, HasNoHeatThatAnybodyCouldKnow) {
   warm.heat = {.continuous_current = {1, 1, 1}, .time_constant = {60, 60, 60}};
   const auto opened = Device::open(std::make_unique<support::PoseLink>(arm_, clock_), warm, 0);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("keeps its motors to itself"), std::string::npos);
+  EXPECT_NE(opened.error().message.find("does not report its motor currents"), std::string::npos);
 }
 
 TEST_F(PoseArmTest, BooksWhatItsForceDidToTheHand) {

@@ -77,9 +77,9 @@ TEST_F(DhdLinkTest, SaysWhyAnArmCannotBeOpened) {
     return link ? std::string() : link.error().message;
   };
   mock_->arms = 0;
-  EXPECT_NE(message().find("finds no arm"), std::string::npos);
+  EXPECT_NE(message().find("found no arm"), std::string::npos);
   mock_->arms = 2;
-  EXPECT_NE(message().find("finds 2 arms"), std::string::npos);
+  EXPECT_NE(message().find("found 2 arms"), std::string::npos);
   mock_->arms = 1;
   mock_->held = true;
   EXPECT_NE(message().find("told to fail"), std::string::npos);

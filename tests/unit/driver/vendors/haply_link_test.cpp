@@ -184,12 +184,12 @@ TEST_F(HaplyLinkTest, StalledLoopSendsNothing) {
 
 TEST_F(HaplyLinkTest, SendsNothingToAnUnprovenService) {
   const std::pair<HaplyGreeting, const char*> kCases[] = {
-      {HaplyGreeting::kOther, "does not speak as Haply's"},
-      {HaplyGreeting::kNoJson, "does not speak as Haply's"},
-      {HaplyGreeting::kNothing, "says nothing"},
-      {HaplyGreeting::kNoArm, "no Inverse3 called 049D"},
+      {HaplyGreeting::kOther, "not Haply's service"},
+      {HaplyGreeting::kNoJson, "not Haply's service"},
+      {HaplyGreeting::kNothing, "sends no messages"},
+      {HaplyGreeting::kNoArm, "no Inverse3 named 049D"},
       {HaplyGreeting::kUncalibrated, "not calibrated"},
-      {HaplyGreeting::kInUse, "Another program uses it"}};
+      {HaplyGreeting::kInUse, "Another program uses the arm"}};
   for (const auto& [greeting, sentence] : kCases) {
     greet(greeting);
     const auto opened = link();
@@ -205,7 +205,7 @@ TEST_F(HaplyLinkTest, SaysWhenNobodyListens) {
   service_.reset();
   const auto opened = haply::open_link("049D", port, clock_);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("Nobody listens on port " + std::to_string(port)),
+  EXPECT_NE(opened.error().message.find("No server listens on port " + std::to_string(port)),
             std::string::npos);
 }
 

@@ -154,7 +154,7 @@ class VendorLinkTest : public ::testing::Test {
     ASSERT_NO_FATAL_FAILURE(open());
     const auto second = Vendor::open_link(library_, clock_);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("open already"), std::string::npos);
+    EXPECT_NE(second.error().message.find("already opened"), std::string::npos);
     const std::uint64_t before = device_->wire_counters().reports;
     EXPECT_TRUE(
         ticks_until({0, 0, 0}, [&] { return device_->wire_counters().reports > before + 50; }));
