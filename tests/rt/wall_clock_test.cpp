@@ -15,7 +15,7 @@
 namespace thimble {
 namespace {
 
-TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
+TEST(WallClockRun, ReadersDoNotStallTheRun) {
   THIMBLE_NEEDS_MESHES();
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;

@@ -36,7 +36,7 @@ Eigen::Vector3d currents_for(const Eigen::Vector3d& f_T_B, const Eigen::Vector3d
   return amperes;
 }
 
-TEST(ArmPlant, PushesTheTipWithTheForceThatTheCurrentsMean) {
+TEST(ArmPlant, CurrentsExertTheExpectedTipForce) {
   const Eigen::Vector3d q(0.3, 1.4, 0.2);
   const Eigen::Vector3d p_BT = support::vintage_model().geometry.forward(q);
   const Eigen::Vector3d f_T_B(0.5, -0.7, 1.1);
@@ -64,7 +64,7 @@ Eigen::Vector3d oscillation(std::int64_t step_ns) {
   return plant.p_BT();
 }
 
-TEST(ArmPlant, ErrsWithTheSquareOfTheSubStepAlone) {
+TEST(ArmPlant, ErrorIsSecondOrderInTheSubStep) {
   const Eigen::Vector3d truth = oscillation(1'000);
   const double coarse = (oscillation(1'000'000) - truth).norm();
   const double fine = (oscillation(500'000) - truth).norm();
@@ -73,7 +73,7 @@ TEST(ArmPlant, ErrsWithTheSquareOfTheSubStepAlone) {
   EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 
-TEST(ArmPlant, TurnsTorqueIntoTheKineticEnergyThatItsWorkPays) {
+TEST(ArmPlant, KineticEnergyEqualsTheWorkOfTheTorque) {
   ArmPlant plant = plant_with(free_arm(), home_tip());
   const Eigen::Vector3d amperes(1.0, 0.8, -0.6);
   plant.set_currents(amperes);

@@ -55,7 +55,7 @@ std::vector<std::byte> raw_reports(unsigned in, unsigned out) {
 
 class MbedBoard : public testing::TestWithParam<std::pair<const char*, unsigned>> {};
 
-TEST_P(MbedBoard, SaysWhatTheUsbHidClassSays) {
+TEST_P(MbedBoard, DescriptorsMatchTheUsbHidClass) {
   const auto [name, size] = GetParam();
   EXPECT_EQ(
       asked(name, 0x80, kDeviceDescriptor, 0),
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Boards, MbedBoard,
                            return std::string(param_info.param.first);
                          });
 
-TEST(TeensyBoard, SaysWhatRawHidSays) {
+TEST(TeensyBoard, DescriptorsMatchRawHid) {
   const char* const name = "polhem-64";
   EXPECT_EQ(
       asked(name, 0x80, kDeviceDescriptor, 0),
@@ -110,7 +110,7 @@ TEST(TeensyBoard, SaysWhatRawHidSays) {
       std::all_of(serial.begin(), serial.end(), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
-TEST(BoardDescriptions, TellAnotherSerialNumberWhereOneIsAskedFor) {
+TEST(BoardDescriptions, UseTheRequestedSerialNumber) {
   EXPECT_EQ(text_of(mbed_hid_description(8, "77"), 3), "77");
   EXPECT_EQ(text_of(teensy_raw_hid_description("78"), 3), "78");
   EXPECT_EQ(text_of(falcon_description("79"), 3), "79");

@@ -36,7 +36,7 @@ BoardBytes newest(SimulatedArm& arm) {
   return report;
 }
 
-TEST(BoardWire, IsThatOfTheArm) {
+TEST(BoardWire, MatchesTheDecoderOfTheArm) {
   const auto woody = driver::hfab::woody_model();
   const Eigen::Vector3d home = woody.geometry.forward(woody.joint_angles({}));
   SimulatedArm eight =
@@ -65,7 +65,7 @@ TEST(BoardWire, IsThatOfTheArm) {
   EXPECT_EQ(newest(fourteen).size, driver::hfab::kReportSize);
 }
 
-TEST(BoardWire, DoesNotUnderstandTheMessagesOfOtherBoards) {
+TEST(BoardWire, RejectsMessagesOfOtherBoards) {
   const auto woody = driver::hfab::woody_model();
   const Eigen::Vector3d home = woody.geometry.forward(woody.joint_angles({}));
   for (const ArmKind kind : {ArmKind::kWoody, ArmKind::kHfabLine, ArmKind::kPolhem}) {
@@ -81,7 +81,7 @@ TEST(BoardWire, DoesNotUnderstandTheMessagesOfOtherBoards) {
   }
 }
 
-TEST(BoardWire, CarriesTheSameCountsInEveryLanguage) {
+TEST(BoardWire, CarriesTheSameCountsInEveryProtocol) {
   const auto model = support::vintage_model();
   const HandPath path =
       HandPath::make({{0, home_tip()}, {0.2, home_tip() + Eigen::Vector3d(0.02, -0.01, 0.03)}})
@@ -102,7 +102,7 @@ TEST(BoardWire, CarriesTheSameCountsInEveryLanguage) {
   }
 }
 
-TEST(BoardWire, CannotBeThatOfAFalcon) {
+TEST(BoardWire, RejectsTheProtocolOfAFalcon) {
   EXPECT_TRUE(refuses(SimulatedArm::make(support::vintage_model(), speaking(ArmKind::kFalcon),
                                          resting_at(home_tip())),
                       "14-byte reports"));
@@ -145,7 +145,7 @@ TEST(SimulatedGimbal, IsReadThroughTheBytesOfTheWire) {
   }
 }
 
-TEST(SimulatedGimbal, IsPresetAsItsBoardDoesIt) {
+TEST(SimulatedGimbal, PresetMatchesTheBoard) {
   auto model = support::vintage_model();
   model.gimbal = driver::Gimbal{.counts_per_turn = {2000, 2000, 2000}};
   Firmware firmware = Firmware::make(arm_model(model), {}).value();

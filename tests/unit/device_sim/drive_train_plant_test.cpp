@@ -67,7 +67,7 @@ TEST(DriveTrainPlant, RigidDriveTrainIsTheIdealArm) {
   EXPECT_GT((plant.p_BT() - home_tip()).norm(), 1e-3);
 }
 
-TEST(DriveTrainPlant, LetsCurrentsLagByTheirExactMap) {
+TEST(DriveTrainPlant, CurrentLagMatchesItsClosedForm) {
   constexpr double kLag = 2e-3, kAmperes = 1e-3;
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.current_lag = kLag;
@@ -95,7 +95,7 @@ double stretch_at(double t, double amperes, double damping) {
   return still * (1 - std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t)));
 }
 
-TEST(DriveTrainPlant, OscillatesAsTwoMassesOnACable) {
+TEST(DriveTrainPlant, OscillatesLikeTwoMassesOnACable) {
   for (const double damping : {0.0, 0.02, 0.1}) {
     SerialDriveTrainPlant plant = plant_with(compliant_arm(damping));
     constexpr double kAmperes = 1e-3;
@@ -110,7 +110,7 @@ TEST(DriveTrainPlant, OscillatesAsTwoMassesOnACable) {
   }
 }
 
-TEST(DriveTrainPlant, NeitherGainsNorLosesEnergyInItsCables) {
+TEST(DriveTrainPlant, CablesConserveEnergy) {
   SerialDriveTrainPlant plant = plant_with(compliant_arm());
   // A push of 1 ms, and free from then on.
   plant.set_currents({0.02, 0.03, -0.01});
@@ -130,7 +130,7 @@ TEST(DriveTrainPlant, NeitherGainsNorLosesEnergyInItsCables) {
   EXPECT_NEAR(largest_stretch() / first, 1, 0.02);
 }
 
-TEST(DriveTrainPlant, CrossesItsPlayWithoutPullingTheTip) {
+TEST(DriveTrainPlant, MotorCrossesBacklashWithoutForceOnTheTip) {
   constexpr double kPlay = 2e-3;
   SimulatedArmSettings settings = compliant_arm(0.05);
   settings.drive_train.play.setConstant(kPlay);
@@ -156,7 +156,7 @@ TEST(DriveTrainPlant, CrossesItsPlayWithoutPullingTheTip) {
   EXPECT_NEAR(ends[0] - ends[1], kPlay + 2 * std::abs(kYawTorque) * 0.5 / 200, 1e-8);
 }
 
-TEST(DriveTrainPlant, HoldsItsMotorsByDryFriction) {
+TEST(DriveTrainPlant, DryFrictionHoldsTheMotors) {
   SimulatedArmSettings settings = compliant_arm(0.02);
   settings.drive_train.coulomb.setConstant(0.02);
   SerialDriveTrainPlant plant = plant_with(settings);
@@ -169,7 +169,7 @@ TEST(DriveTrainPlant, HoldsItsMotorsByDryFriction) {
   EXPECT_GT(plant.q()[0] - q[0], 1e-3);
 }
 
-TEST(DriveTrainPlant, MovesTheMassThatItsMotorsAddInEachPose) {
+TEST(DriveTrainPlant, MotorsAddApparentMassInEachPose) {
   for (const Eigen::Vector3d& p_BT :
        {home_tip(), Eigen::Vector3d(home_tip() + Eigen::Vector3d(0.06, -0.05, 0.04))}) {
     SimulatedArmSettings settings = compliant_arm(2);
@@ -192,7 +192,7 @@ TEST(DriveTrainPlant, MovesTheMassThatItsMotorsAddInEachPose) {
   }
 }
 
-TEST(DriveTrainPlant, SettlesTowardsThePolesOfItsMotors) {
+TEST(DriveTrainPlant, CoggingPullsMotorsTowardsTheirPoles) {
   constexpr double kCogging = 0.005, kPeriods = 7, kAngle = 2e-4;
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.cogging.x() = kCogging;
@@ -220,7 +220,7 @@ TEST(DriveTrainPlant, TorqueRipplesWithTheMotorAngle) {
   }
 }
 
-TEST(DriveTrainPlant, TurnsCoggingAndRippleByTheirPhases) {
+TEST(DriveTrainPlant, PhasesShiftCoggingAndRipple) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.cogging.x() = 0.001;
   settings.drive_train.cogging_phase.x() = 0.4;
@@ -249,7 +249,7 @@ TEST(DriveTrainPlant, StopsAtTheEndOfItsReachAndComesBack) {
   EXPECT_LT((plant.p_BT() - home_tip()).norm(), 1e-3);
 }
 
-TEST(DriveTrainPlant, RefusesWhatCannotBe) {
+TEST(DriveTrainPlant, RefusesImpossibleSettings) {
   const auto made_with = [](const std::function<void(SimulatedArmSettings&)>& change) {
     SimulatedArmSettings settings = compliant_arm();
     change(settings);

@@ -44,7 +44,7 @@ double moment_about_a(const LinkedSerialPlant& plant, double mass) {
   return mass * lever.dot(plant.v_BT());
 }
 
-TEST(DryFriction, OfTheTipIsWhatNoOtherSolutionIsOf) {
+TEST(DryFriction, TipFrictionIsTheUniqueSolution) {
   support::Random random(9);
   const auto any = [&] {
     return Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -73,7 +73,7 @@ TEST(DryFriction, OfTheTipIsWhatNoOtherSolutionIsOf) {
   EXPECT_GT(turned, 500);
 }
 
-TEST(DryFriction, OfTipAndJointsIsWhatNoOtherSolutionIsOf) {
+TEST(DryFriction, TipAndJointFrictionIsTheUniqueSolution) {
   support::Random random(10);
   const auto any = [&] {
     return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -110,12 +110,12 @@ TEST(DryFriction, OfTipAndJointsIsWhatNoOtherSolutionIsOf) {
   EXPECT_GT(slid, 500);
 }
 
-TEST(DryFriction, OfJointsIsNotForgottenByATipThatKnowsNothingOfIt) {
+TEST(DryFriction, PointTipRefusesJointFriction) {
   EXPECT_FALSE(SerialDriveTrainPlant::make(
       support::vintage_model(), rubbing_arm({0, 0.001, 0}, {0, 0, 0}), home_tip(), home_tip()));
 }
 
-TEST(DryFriction, OfAJointTakesTheMomentAboutItEvenlyUntilItStands) {
+TEST(DryFriction, JointFrictionReducesItsMomentumUniformly) {
   constexpr double kTorque = 0.004;
   const SimulatedArmSettings settings = rubbing_arm({kTorque, 0, 0}, {0, 0, 0});
   LinkedSerialPlant plant = plant_with(settings, home_tip());
@@ -137,7 +137,7 @@ TEST(DryFriction, OfAJointTakesTheMomentAboutItEvenlyUntilItStands) {
   EXPECT_NEAR(plant.v_BT().z(), 0.01, 1e-9) << "no other joint rubs";
 }
 
-TEST(DryFriction, OfJointsTakesTheEnergyOfTheirWays) {
+TEST(DryFriction, JointFrictionDissipatesTorqueTimesAngle) {
   const Vector3d coulomb(0.01, 0.02, 0.015), viscous(2e-3, 1e-3, 3e-3);
   const SimulatedArmSettings settings = rubbing_arm(coulomb, viscous);
   LinkedSerialPlant plant = plant_with(settings, home_tip());
@@ -155,7 +155,7 @@ TEST(DryFriction, OfJointsTakesTheEnergyOfTheirWays) {
   EXPECT_NEAR(taken, begin - left, 1e-4 * begin);
 }
 
-TEST(DryFriction, OfJointsHoldsExactlyUpToItsTorqueAndNoMore) {
+TEST(DryFriction, JointFrictionHoldsExactlyUpToItsTorque) {
   const Vector3d coulomb(0.002, 0.003, 0.0025);
   for (int joint = 0; joint < 3; ++joint) {
     for (const double share : {0.99, 1.01}) {

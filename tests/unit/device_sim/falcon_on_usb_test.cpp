@@ -58,7 +58,7 @@ class FalconOnUsbTest : public testing::Test {
   driver::falcon::BootSettings quick_{.greetings_max = 5, .settle_ms = 0};
 };
 
-TEST_F(FalconOnUsbTest, SaysNothingUntilItHasFirmware) {
+TEST_F(FalconOnUsbTest, SendsNothingBeforeItHasFirmware) {
   plug({});
   ASSERT_TRUE(driver::falcon::enter_run_mode(*line_).ok());
   EXPECT_FALSE(driver::falcon::firmware_answers(*line_, quick_));
@@ -76,7 +76,7 @@ TEST_F(FalconOnUsbTest, BootsTakesFirmwareAndRunsIt) {
   EXPECT_TRUE(driver::falcon::firmware_answers(*line_, quick_));
 }
 
-TEST_F(FalconOnUsbTest, DoesNotRunFirmwareThatCameWrong) {
+TEST_F(FalconOnUsbTest, DoesNotRunCorruptFirmware) {
   plug(with_image());
   ASSERT_TRUE(driver::falcon::enter_boot_loader(*line_, quick_).ok());
   std::vector<std::byte> wrong(image_.begin(), image_.begin() + 62);
@@ -88,7 +88,7 @@ TEST_F(FalconOnUsbTest, DoesNotRunFirmwareThatCameWrong) {
   EXPECT_FALSE(falcon_->board().running());
 }
 
-TEST_F(FalconOnUsbTest, TakesFirmwareOverABadCableInTheEnd) {
+TEST_F(FalconOnUsbTest, UploadSucceedsOverABadCable) {
   plug(with_image());
   // One bit in 20,000 flips on the way out: about one in the 16,000 of the first upload, until the
   // cable is pushed home after 400 frames.
@@ -100,7 +100,7 @@ TEST_F(FalconOnUsbTest, TakesFirmwareOverABadCableInTheEnd) {
   EXPECT_TRUE(falcon_->board().running());
 }
 
-TEST_F(FalconOnUsbTest, KnowsWhereItIsOnlyAfterHoming) {
+TEST_F(FalconOnUsbTest, PositionIsKnownOnlyAfterHoming) {
   plug({});
   ASSERT_TRUE(driver::falcon::upload_firmware(*line_, image_, quick_).ok());
   auto state = driver::falcon::home_once(*line_, 0, quick_);
@@ -121,7 +121,7 @@ TEST_F(FalconOnUsbTest, KnowsWhereItIsOnlyAfterHoming) {
   }
 }
 
-TEST_F(FalconOnUsbTest, IsHomedByItsHandWhateverElseTheHandDoes) {
+TEST_F(FalconOnUsbTest, HandHomesTheArmAtAnyTime) {
   const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
   for (const HandMotion motion : {HandMotion::kRest, HandMotion::kTap, HandMotion::kStroke}) {
     for (const int late_ms : {0, 1300}) {  // the driver may come while the hand is on its way
@@ -161,7 +161,7 @@ TEST_F(FalconOnUsbTest, IsHomedByItsHandWhateverElseTheHandDoes) {
   }
 }
 
-TEST_F(FalconOnUsbTest, LosesItsHomeByOnePacketWithoutTheHomingBit) {
+TEST_F(FalconOnUsbTest, OnePacketWithoutTheHomingBitLosesHoming) {
   ShelfOptions options;
   options.motion = HandMotion::kRest;
   plug(options);
@@ -202,7 +202,7 @@ struct HomedBoard {
   ByteQueue says;
 };
 
-TEST(FalconBoard, MakesOfAPacketWithoutTheHomingBitWhatItsDataSay) {
+TEST(FalconBoard, DecodesAPacketWithoutTheHomingBit) {
   using driver::falcon::kAllHomed;
   using driver::falcon::kHomingMode;
   for (const FalconHoming homing :
@@ -228,7 +228,7 @@ TEST_F(FalconOnUsbTest, LosesItsFirmwareWhenDtrRises) {
   EXPECT_FALSE(falcon_->board().running());
 }
 
-TEST_F(FalconOnUsbTest, HearsNothingAtTheWrongRate) {
+TEST_F(FalconOnUsbTest, ReceivesNothingAtTheWrongBaudRate) {
   plug({});
   ASSERT_TRUE(line_->set_rate_divisor(driver::falcon::kRunDivisor));
   ASSERT_TRUE(line_->write(image_));
@@ -236,7 +236,7 @@ TEST_F(FalconOnUsbTest, HearsNothingAtTheWrongRate) {
   EXPECT_EQ(falcon_->chip().garbled(), image_.size());
 }
 
-TEST_F(FalconOnUsbTest, SendsStatusAloneWhenTheLatencyTimerIsOver) {
+TEST_F(FalconOnUsbTest, LatencyTimerSendsStatusOnly) {
   plug({});
   ASSERT_TRUE(line_->set_latency_ms(16));
   std::vector<std::int64_t> frames;
@@ -268,7 +268,7 @@ TEST_F(FalconOnUsbTest, SwitchesTheMotorsOffWhenTheHostIsSilent) {
   EXPECT_EQ(falcon_->truth().currents.norm(), 0);
 }
 
-TEST(DeltaPlant, ExertsTheForceThatItsTorquesAreWorth) {
+TEST(DeltaPlant, TorquesExertTheExpectedTipForce) {
   // Checked against the driver's Jacobian, which was found in another way: f = J^-T tau.
   const auto model = driver::falcon::falcon_model();
   std::mt19937_64 random(support::seed_of(11));

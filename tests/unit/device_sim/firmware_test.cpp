@@ -45,7 +45,7 @@ TEST(Firmware, CountsFromZeroAtHomeAndRoundsToTheNearestStep) {
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{100, -8, 2000, 0, 0, 0}));
 }
 
-TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
+TEST(Firmware, OneCountMovesTheTipAsGeometryPredicts) {
   // 0.024, 0.028 and 0.023 mm per count at home [DEVICES 2].
   const auto model = support::vintage_model();
   const driver::hfab::HfabArm arm(model);
@@ -70,7 +70,7 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
   }
 }
 
-TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
+TEST(Firmware, FractionsOfCountsResolveTenNanometres) {
   const auto model = support::vintage_model();
   const auto arm = driver::make_ideal_arm(arm_model(model));
   FirmwareSettings ideal;
@@ -103,7 +103,7 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
             (std::array<std::int16_t, 6>{-32768, 32767, 5, 0, 0, 0}));
 }
 
-TEST(Firmware, SamplesAnglesOnlyFromSureCounts) {
+TEST(Firmware, SamplesAnglesOnlyFromReliableCounts) {
   FirmwareSettings ideal;
   ideal.ideal_encoders = true;
   for (const FirmwareSettings& settings : {FirmwareSettings(), ideal}) {
@@ -168,7 +168,7 @@ TEST(Firmware, HomingPresetsCountersWithoutCurrent) {
   EXPECT_EQ(sampled(firmware, steps_from_home(10.55, 20.55, 30.55)).counts[0], 2);
 }
 
-TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
+TEST(Firmware, WiringSelectsEncodersAndMotors) {
   FirmwareSettings settings;
   settings.wiring.encoder_of = {1, 0, 2};
   settings.wiring.encoder_gain = {1, -1, 0};

@@ -36,7 +36,7 @@ TEST(HandPath, WaitsBeforeItsFirstAndAfterItsLastPoint) {
   EXPECT_EQ(still.at(1), Eigen::Vector3d(1, 2, 3));
 }
 
-TEST(HandPath, AnswersTheSameWhateverWasAskedBefore) {
+TEST(HandPath, PositionIsIndependentOfEarlierQueries) {
   HandPath wandering = zigzag();
   support::Random random(7);
   for (int i = 0; i < 1000; ++i) {

@@ -16,7 +16,7 @@ HandPath straight() {
 
 const Tremor kSteady = Tremor::make({}, 0).value();
 
-TEST(Hand, GoesAlongItsPathUntilSomebodyLeadsIt) {
+TEST(Hand, FollowsItsPathUntilItIsLed) {
   Hand hand(straight(), kSteady);
   EXPECT_DOUBLE_EQ(hand.at(500 * kMs).x(), 0.05);
   hand.lead({0.05, 0.02, 0});
@@ -24,7 +24,7 @@ TEST(Hand, GoesAlongItsPathUntilSomebodyLeadsIt) {
   EXPECT_LT((hand.at(2000 * kMs) - Eigen::Vector3d(0.05, 0.02, 0)).norm(), 1e-9);
 }
 
-TEST(Hand, NeverGoesFasterThanAHandAndNeverJumps) {
+TEST(Hand, LimitsItsSpeedAndNeverJumps) {
   Hand hand(straight(), kSteady);
   Eigen::Vector3d before = hand.at(0);
   Eigen::Vector3d v_before(0, 0, 0);
@@ -54,7 +54,7 @@ TEST(Hand, ComesToItsPointWithoutOvershoot) {
   EXPECT_NEAR(before, 0.2, 1e-9);
 }
 
-TEST(Hand, StandsStillWhileItIsHeldAndGoesOnWhereItStood) {
+TEST(Hand, PausesWhileHeldAndContinuesFromThere) {
   Hand hand(straight(), kSteady);
   const double here = hand.at(300 * kMs).x();
   hand.hold(true);
@@ -70,7 +70,7 @@ TEST(Hand, StandsStillWhileItIsHeldAndGoesOnWhereItStood) {
   EXPECT_EQ(hand.at(1500 * kMs), led);
 }
 
-TEST(Hand, IgnoresAPointThatIsNowhere) {
+TEST(Hand, IgnoresAPointThatIsNotFinite) {
   Hand hand(straight(), kSteady);
   hand.lead({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   EXPECT_DOUBLE_EQ(hand.at(500 * kMs).x(), 0.05) << "still on its path";

@@ -80,7 +80,7 @@ class HidArmTest : public testing::TestWithParam<const char*> {
   std::optional<support::UsbHost> host_;
 };
 
-TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
+TEST_P(HidArmTest, ReportsItsPositionWithinHalfACount) {
   int moved = 0;
   std::array<std::int32_t, 3> before{};
   for (int i = 0; i < 3000; ++i) {
@@ -103,7 +103,7 @@ TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
   EXPECT_GT(moved, 1000);
 }
 
-TEST_P(HidArmTest, FeedsItsMotorsWhatTheMessageSays) {
+TEST_P(HidArmTest, MessageSetsTheMotorCurrents) {
   std::mt19937_64 random(support::seed_of(2));
   for (int i = 0; i < 300; ++i) {
     const auto mA = static_cast<std::int16_t>(static_cast<int>(random() % 5000) - 2500);
@@ -140,7 +140,7 @@ TEST_P(HidArmTest, IgnoresMessagesOfAnotherLengthAndCountsThem) {
   EXPECT_EQ(arm_->truth().messages, 1U);
 }
 
-TEST_P(HidArmTest, IsNotKeptOnByMessagesOfAnotherLength) {
+TEST_P(HidArmTest, MessagesOfAnotherLengthDoNotFeedTheWatchdog) {
   exchange(500);
   ASSERT_TRUE(arm_->truth().motors_on);
   for (int i = 0; i < 510; ++i) {
@@ -176,7 +176,7 @@ TEST_P(HidArmTest, ServesOnlyTheHidRequestsOfItsLibrary) {
   EXPECT_EQ(descriptor->data, arm_->description().interfaces[0].report_descriptor);
 }
 
-TEST_P(HidArmTest, SpeaksUnaskedOnlyIfItIsFreeRunning) {
+TEST_P(HidArmTest, SendsUnaskedOnlyIfFreeRunning) {
   int reports = 0;
   for (int i = 0; i < 200; ++i) {
     const std::uint32_t asked = ask();
@@ -237,7 +237,7 @@ TEST_P(BoardThatAnswers, SendsOneReportForEachMessage) {
   }
 }
 
-TEST_P(BoardThatAnswers, DoesNotListenWhileItsReportWaits) {
+TEST_P(BoardThatAnswers, ReadsNoMessageWhileItsReportWaits) {
   Board board(GetParam().first, GetParam().second);
   board.arm->advance_to(1'000'000);
   EXPECT_EQ(board.tell(700), Answer::kDone);  // waits in the endpoint

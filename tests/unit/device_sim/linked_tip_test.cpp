@@ -55,7 +55,7 @@ Eigen::Vector3d acceleration(const RigidLinks& links, const SimulatedArmSettings
   return (links.inertia(q) + tip.inertia(q)).inverse() * all;
 }
 
-TEST(LinkMechanics, AreLagrangesOfItsBodiesAtAnyPoseAndRate) {
+TEST(LinkMechanics, MatchLagrangesEquationsOfTheBodies) {
   support::Random random(3);
   const RigidLinks links = desk_links(geometry(), 1, kTilted);
   const LinkMechanics mechanics(geometry(), links.settings());
@@ -76,7 +76,7 @@ TEST(LinkMechanics, AreLagrangesOfItsBodiesAtAnyPoseAndRate) {
   }
 }
 
-TEST(LinkedTip, MovesAsItsBodiesDoByLagrangeAndRungeKutta) {
+TEST(LinkedTip, MotionMatchesLagrangeWithRungeKutta) {
   const RigidLinks links = desk_links(geometry(), 1, kTilted);
   SimulatedArmSettings settings = linked_arm(links);
   settings.hand.stiffness = 50;
@@ -131,7 +131,7 @@ TEST(LinkedTip, IsOfSecondOrderInItsStep) {
   EXPECT_NEAR(coarse / half, 4, 0.4);
 }
 
-TEST(LinkedTip, NeitherGainsNorLosesEnergyWithoutFriction) {
+TEST(LinkedTip, ConservesEnergyWithoutFriction) {
   const RigidLinks links = desk_links(geometry(), 1, kTilted);
   SimulatedArmSettings settings = linked_arm(links);
   settings.hand.stiffness = 200;
@@ -155,7 +155,7 @@ TEST(LinkedTip, NeitherGainsNorLosesEnergyWithoutFriction) {
   EXPECT_EQ(plant.stops(), 0U);
 }
 
-TEST(LinkedTip, HasTheMassOfItsLinksInEachPoseAndDirection) {
+TEST(LinkedTip, ApparentMassMatchesTheLinksInEachPose) {
   support::Random random(5);
   const RigidLinks links = desk_links(geometry(), 1, Eigen::Vector3d::Zero());
   const SimulatedArmSettings settings = linked_arm(links);
@@ -176,7 +176,7 @@ TEST(LinkedTip, HasTheMassOfItsLinksInEachPoseAndDirection) {
   EXPECT_GT(most, 1.2 * least);
 }
 
-TEST(LinkedTip, IsAPointWhereLinksWeighNothing) {
+TEST(LinkedTip, EqualsPointTipForMasslessLinks) {
   SimulatedArmSettings settings = phantom_like();
   settings.weight_B = {0, 0, -0.1};
   SerialDriveTrainPlant point =
@@ -201,7 +201,7 @@ TEST(LinkedTip, IsAPointWhereLinksWeighNothing) {
   EXPECT_GT(held, 10);
 }
 
-TEST(LinkedTip, StaysExactlyWhereFrictionCarriesItsLinks) {
+TEST(LinkedTip, FrictionHoldsTheLinksExactly) {
   SimulatedArmSettings settings = linked_arm(desk_links(geometry()));
   const Eigen::Vector3d q = support::vintage_home();
   const Eigen::Vector3d pull = geometry().jacobian(q).transpose().inverse() *
@@ -236,7 +236,7 @@ TEST(LinkedTip, OscillatesAgainstItsMotorOnACable) {
   }
 }
 
-TEST(LinkedTip, RefusesLinksThatCannotBe) {
+TEST(LinkedTip, RefusesImpossibleLinks) {
   const auto made_with = [](const std::function<void(LinkSettings&)>& change) {
     SimulatedArmSettings settings = linked_arm(desk_links(geometry()));
     change(settings.links);

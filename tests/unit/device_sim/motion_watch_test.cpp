@@ -59,7 +59,7 @@ TEST(ReversedMotors, AreFoundWithin16mmAtUpTo300mmPerSecond) {
   }
 }
 
-TEST(ReversedMotors, AreNotSeenInStrokesOfASoundArm) {
+TEST(ReversedMotors, AreNotReportedInStrokesOfASoundArm) {
   for (const MotionArm arm : kMotionArms) {
     for (const double speed : {0.05, 0.1, 0.2, 0.3, 0.6}) {
       MotionRun sound = strokes(arm, speed);
@@ -97,7 +97,7 @@ TEST(ReversedMotors, OneReversedJointIsFoundInManyStrokes) {
   }
 }
 
-TEST(MotionWatch, TakesNoHandOnASoundArmForAFault) {
+TEST(MotionWatch, HandOnASoundArmIsNoFault) {
   int touches = 0;
   for (std::uint64_t seed = 0; seed < 600; ++seed) {
     MotionRun run = support::any_hand(seed, 2);
@@ -133,7 +133,7 @@ void freeze(MotionRun& run, std::size_t joint, int from) {
   };
 }
 
-TEST(FrozenEncoder, IsFoundWhereTheForceOnItsJointChanges) {
+TEST(FrozenEncoder, IsFoundIfTheForceOnItsJointChanges) {
   constexpr std::array<std::size_t, 3> kJoints{1, 2, 2};  // that carry the wall's force
   for (const MotionArm arm : kMotionArms) {
     const std::size_t joint = kJoints[static_cast<std::size_t>(arm)];
@@ -169,7 +169,7 @@ MotionRun yaw_strokes() {
   return run;
 }
 
-TEST(FrozenEncoder, IsNotSeenInAPureYawStroke) {
+TEST(FrozenEncoder, IsNotReportedInAPureYawStroke) {
   MotionRun run = yaw_strokes();
   run.run(4);
   EXPECT_EQ(run.fault, Fault::kNone);
@@ -196,7 +196,7 @@ int strokes_of(const support::StrokeRun& run) {
   return strokes;
 }
 
-TEST(FrozenEncoder, IsNotSeenInRandomStrokesOfSoundArms) {
+TEST(FrozenEncoder, IsNotReportedInRandomStrokesOfSoundArms) {
   // Long form: 160,000 strokes. Short form: those of its runs that a rule with less evidence fails.
   std::vector<std::uint64_t> seeds{30,   40,   93,   225,  259,  343,  373,  377,
                                    387,  461,  505,  680,  804,  833,  1096, 1107,
@@ -248,7 +248,7 @@ TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
   }
 }
 
-TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {
+TEST(UnchangedCounts, EndALongHeldForce) {
   MotionRun run;
   run.hand.tremor_amplitude = 0;
   run.hold_most = 2;
@@ -264,7 +264,7 @@ TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {
   EXPECT_EQ(short_of_it.fault, Fault::kNone);
 }
 
-TEST(UnchangedCounts, AreFoundAtOnceWhereAMovingTipSeemsToStopDead) {
+TEST(UnchangedCounts, AreFoundAtOnceAfterAnAbruptStop) {
   MotionRun run = rubbing(MotionArm::kVintage);
   constexpr int kFrom = 1380;
   std::array<std::int16_t, 6> last{};

@@ -47,7 +47,7 @@ double risen(double from, double u, double tau, double a, double t) {
   return end + (from - end) * std::exp(-rate * t);
 }
 
-TEST(MotorHeat, FollowsItsClosedFormWhereTheCurrentIsHeld) {
+TEST(MotorHeat, MatchesItsClosedFormAtConstantCurrent) {
   for (const double a : {0.0, kCopper}) {
     MotorHeatSettings settings = some_motors();
     settings.resistance = a;
@@ -66,7 +66,7 @@ TEST(MotorHeat, FollowsItsClosedFormWhereTheCurrentIsHeld) {
   }
 }
 
-TEST(MotorHeat, RunsAwayAboveTheCurrentThatItsCopperBears) {
+TEST(MotorHeat, RunsAwayAboveTheCriticalCurrent) {
   MotorHeat heat = MotorHeat::make(some_motors()).value();
   const double share = 80 / (1 + kCopper * 80);
   // Below the current from which on there is no end, and above it.
@@ -123,7 +123,7 @@ TEST(MotorHeat, NeverExceedsTheModelOfTheDriver) {
   }
 }
 
-TEST(MotorHeat, WeakensTheMotorsOfAnArmAndNothingElse) {
+TEST(MotorHeat, ReducesTheMotorTorqueOnly) {
   const auto pushed = [](const MotorHeatSettings& heat) {
     SimulatedArmSettings settings = free_arm();
     settings.drive_train.current_lag = 1e-3;
@@ -145,7 +145,7 @@ TEST(MotorHeat, WeakensTheMotorsOfAnArmAndNothingElse) {
   EXPECT_EQ(pushed(warm), cold);
 }
 
-TEST(MotorHeat, ComesFromTheCurrentsThatFlow) {
+TEST(MotorHeat, DependsOnTheActualCurrents) {
   SimulatedArmSettings settings = free_arm();
   settings.hand = {.mass = 0, .stiffness = 500, .damping = 20};
   settings.motors.current_max = 1;
@@ -161,7 +161,7 @@ TEST(MotorHeat, ComesFromTheCurrentsThatFlow) {
   EXPECT_EQ(plant.winding_rise().y(), 0);
 }
 
-TEST(MotorHeat, RefusesWhatCannotBe) {
+TEST(MotorHeat, RefusesImpossibleSettings) {
   const auto made_with = [](const std::function<void(MotorHeatSettings&)>& change) {
     MotorHeatSettings settings = some_motors();
     change(settings);

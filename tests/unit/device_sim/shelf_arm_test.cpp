@@ -50,7 +50,7 @@ double driven(UsbArm& arm) {
   return (arm.truth().p_BT - begin).norm();
 }
 
-TEST(ShelfArm, PullsAsItsOwnConstantsSay) {
+TEST(ShelfArm, UsesTheConstantsOfItsFile) {
   const std::vector<std::pair<const char*, driver::ArmModel>> boards{
       {"woodenhaptics", arm_model(driver::hfab::woody_model())},
       {"polhem", arm_model(driver::hfab::polhem_model())},
@@ -65,7 +65,7 @@ TEST(ShelfArm, PullsAsItsOwnConstantsSay) {
   }
 }
 
-TEST(ShelfArm, IsRefusedOnABoardThatDrivesAnotherBuild) {
+TEST(ShelfArm, IsRefusedOnABoardOfAnotherGeometry) {
   const auto of = [](const char* name, const driver::ArmModel& model) {
     return make_usb_arm(name, {.serial = {}, .firmware = {}, .arm = shelf_arm(model, 1)});
   };

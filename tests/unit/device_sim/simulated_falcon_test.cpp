@@ -57,7 +57,7 @@ struct InProgram {
   std::unique_ptr<driver::Device> device;  // holds the wire to it, so it goes first
 };
 
-TEST(SimulatedFalcon, IsHomedBeforeItsHandBeginsAndSaysWhereItIs) {
+TEST(SimulatedFalcon, IsHomedBeforeItsHandBegins) {
   InProgram run(std::vector<std::byte>(1500, std::byte{7}));
   EXPECT_TRUE(run.falcon->arm().board().running());
   EXPECT_EQ(run.falcon->arm().board().uploaded(), 1500u);
@@ -74,7 +74,7 @@ TEST(SimulatedFalcon, IsHomedBeforeItsHandBeginsAndSaysWhereItIs) {
   EXPECT_LT((run.device->state().p_WT - p_BM - run.p_MH).norm(), 5e-4);
 }
 
-TEST(SimulatedFalcon, HearsTheHomingBitInEveryMessageOfTheDriver) {
+TEST(SimulatedFalcon, EveryDriverMessageHasTheHomingBit) {
   InProgram run;
   ASSERT_TRUE(run.device->activate());
   const FalconBoard& board = run.falcon->arm().board();
@@ -122,7 +122,7 @@ class LegLost final : public driver::Transport {
   std::unique_ptr<driver::Transport> wire_;
 };
 
-TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
+TEST(SimulatedFalcon, GetsNoForceAfterALegLosesHoming) {
   InProgram run;
   run.device.reset();
   auto made = std::make_unique<LegLost>(run.falcon->wire(run.clock));
@@ -151,7 +151,7 @@ TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
   EXPECT_GT(run.device->wire_counters().rejected, 19U);
 }
 
-TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {
+TEST(SimulatedFalcon, PushesItsHandBitIdentically) {
   InProgram first, second;
   ASSERT_TRUE(first.device->activate());
   ASSERT_TRUE(second.device->activate());
@@ -197,7 +197,7 @@ double pushed(const driver::JointModel<driver::DeltaArm>& model,
   return (*made)->arm().plant().p_BT().y() - begin;
 }
 
-TEST(SimulatedFalcon, PullsAsItsOwnMotorsWhateverTheDriverBelieves) {
+TEST(SimulatedFalcon, UsesItsOwnMotorConstants) {
   SimulatedArmSettings settings;
   settings.plant.mass = 0.15;
   auto weak = driver::falcon::falcon_model();

@@ -68,7 +68,7 @@ class EveryArm : public testing::TestWithParam<ShelfEntry> {
   std::unique_ptr<UsbArm> arm_;
 };
 
-TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
+TEST_P(EveryArm, DescriptorsAreConsistent) {
   const UsbDescription& d = arm_->description();
   const auto device = build_descriptor(d, kDeviceDescriptor, 0);
   ASSERT_EQ(device.size(), 18U);
@@ -112,7 +112,7 @@ TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
   EXPECT_EQ(interfaces, d.interfaces.size());
 }
 
-TEST_P(EveryArm, NamesItselfInTheStringsItPromises) {
+TEST_P(EveryArm, HasAllPromisedStrings) {
   const UsbDescription& d = arm_->description();
   const auto device = build_descriptor(d, kDeviceDescriptor, 0);
   for (const std::size_t field : {14U, 15U, 16U}) {
@@ -155,7 +155,7 @@ TEST(UsbDescription, CutsStringsThatDoNotFit) {
   EXPECT_EQ(at(text, 0), 254U);
 }
 
-TEST(ArmShelf, AnswersAnUnknownNameWithTheKnownOnes) {
+TEST(ArmShelf, UnknownNameListsTheKnownArms) {
   const auto made = make_usb_arm("excalibur", {});
   ASSERT_FALSE(made.ok());
   for (const ShelfEntry& entry : kShelf) {

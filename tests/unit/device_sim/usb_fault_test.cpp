@@ -63,7 +63,7 @@ class Faulty : public testing::Test {
   std::int64_t frame_ = 0;
 };
 
-TEST_F(Faulty, PassesEverythingUntouchedWithoutAnOrder) {
+TEST_F(Faulty, ChangesNothingWithoutAFault) {
   for (int i = 1; i <= 10; ++i) {
     EXPECT_EQ(poll().answer, Answer::kDone);
     EXPECT_EQ(packet_, of(i));
@@ -139,7 +139,7 @@ TEST_F(Faulty, SendsEveryPacketTwiceWhenDuplicating) {
   EXPECT_EQ(inner_.taken, (std::vector<Packet>{of(9), of(9)}));
 }
 
-TEST_F(Faulty, LosesPacketsThatWereTaken) {
+TEST_F(Faulty, LosesAcceptedPackets) {
   order("lost in for=3");
   EXPECT_EQ(poll().answer, Answer::kNak);
   EXPECT_EQ(poll().answer, Answer::kNak);
@@ -152,7 +152,7 @@ TEST_F(Faulty, LosesPacketsThatWereTaken) {
   EXPECT_EQ(device_.hits(FaultKind::kLost), 4U);
 }
 
-TEST_F(Faulty, FlipsAsManyBitsAsTheRateSays) {
+TEST_F(Faulty, FlipsBitsAtTheGivenRate) {
   order("bit_errors in rate=0.1");
   int flipped = 0;
   const int packets = 2000;
@@ -188,7 +188,7 @@ TEST_F(Faulty, KeepsTheLatestOrdersWhenThereAreTooMany) {
   EXPECT_EQ(poll().size, 4U);
 }
 
-TEST(FaultScript, ReadsWhatItDocuments) {
+TEST(FaultScript, ReadsTheDocumentedSyntax) {
   const auto order = parse_fault("  bit_errors out after=10 for=20 rate=0.25 ");
   ASSERT_TRUE(order.ok());
   EXPECT_EQ(order->kind, FaultKind::kBitErrors);
@@ -203,7 +203,7 @@ TEST(FaultScript, ReadsWhatItDocuments) {
   }
 }
 
-TEST(FaultScript, NamesTheWordItDoesNotUnderstand) {
+TEST(FaultScript, NamesAnUnknownWord) {
   for (const char* line : {"", "quake", "stall for=0", "stall for=x", "stall after=-1",
                            "bit_errors rate=2", "bit_errors rate=nan", "stall sideways"}) {
     const auto order = parse_fault(line);

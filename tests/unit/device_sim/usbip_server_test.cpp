@@ -144,7 +144,7 @@ class DeafClient {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-TEST_F(UsbipServerTest, TakesNoMoreFromClientThatDoesNotRead) {
+TEST_F(UsbipServerTest, StopsReadingFromClientThatDoesNotRead) {
   const DeafClient client(server_);
   client.say(encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}));
   server_.serve(0);
@@ -303,7 +303,7 @@ TEST_F(AttachedHost, CutsWhatItSendsIntoPackets) {
   EXPECT_EQ(device_.taken, sent);
 }
 
-TEST_F(AttachedHost, LetsTheHostWaitWhileTheDeviceSaysLater) {
+TEST_F(AttachedHost, HostWaitsWhileTheDeviceIsNotReady) {
   device_.silent = true;
   const std::uint32_t asked = host_.ask(1, 8), told = host_.tell(1, std::vector<std::byte>(8));
   host_.frames(100);
@@ -315,7 +315,7 @@ TEST_F(AttachedHost, LetsTheHostWaitWhileTheDeviceSaysLater) {
   EXPECT_TRUE(host_.done(told).has_value());
 }
 
-TEST_F(AttachedHost, TakesATransferBackOnlyWhileItWaits) {
+TEST_F(AttachedHost, CancelsOnlyPendingTransfers) {
   const std::uint32_t first = host_.ask(1, 8), second = host_.ask(1, 8);
   const std::uint32_t back = host_.take_back(second);
   EXPECT_EQ(host_.done(back)->status, kUnlinked);
@@ -356,7 +356,7 @@ TEST_F(AttachedHost, HaltsAStalledEndpointUntilTheHostClearsIt) {
   EXPECT_EQ(host_.done(now)->status, 0);
 }
 
-TEST_F(AttachedHost, KnowsNoEndpointBeforeItIsConfigured) {
+TEST_F(AttachedHost, HasNoEndpointBeforeItIsConfigured) {
   host_.hang_up();
   support::UsbHost fresh(server_);
   ASSERT_TRUE(fresh.import_device());
@@ -381,17 +381,17 @@ TEST_F(AttachedHost, DisconnectsWhenTheDeviceLeaves) {
   EXPECT_TRUE(again.import_device());
 }
 
-TEST_F(AttachedHost, HangsUpOnWhatIsNoMessage) {
+TEST_F(AttachedHost, DisconnectsOnInvalidMessages) {
   host_.say(std::vector<std::byte>(64, std::byte{0xff}));
   EXPECT_TRUE(host_.hung_up());
 }
 
-TEST_F(AttachedHost, HangsUpOnAClientThatHoardsTransfers) {
+TEST_F(AttachedHost, DisconnectsClientWithTooManyTransfers) {
   for (std::size_t i = 0; i <= UsbipSession::kPendingMax; ++i) host_.ask(1, 8);
   EXPECT_TRUE(host_.hung_up());
 }
 
-TEST_F(UsbipServerTest, LivesThroughClientsThatTalkNonsense) {
+TEST_F(UsbipServerTest, SurvivesInvalidClients) {
   std::mt19937_64 random(support::seed_of(3));
   for (int round = 0; round < 300; ++round) {
     support::UsbHost host(server_);
@@ -429,7 +429,7 @@ TEST(Vhci, FindsTheFirstFreePortForAFullSpeedDevice) {
   EXPECT_EQ(find_free_port("\n\nhs\nhs x y\n"), std::nullopt);
 }
 
-TEST(Vhci, SaysWhatToDoWhenThisKernelHasNoVirtualHost) {
+TEST(Vhci, MissingVirtualHostErrorHasARemedy) {
   const auto attached = attach_to_kernel(1, "1-1", "/nonexistent/vhci_hcd.0");
   ASSERT_FALSE(attached.ok());
   EXPECT_NE(attached.error().message.find("modprobe vhci-hcd"), std::string::npos);

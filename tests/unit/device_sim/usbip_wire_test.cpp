@@ -59,7 +59,7 @@ TEST(UsbipWire, ReadsTheExampleOfTheKernelsDocumentation) {
   EXPECT_EQ(command.size, kUsbipHeaderSize);
 }
 
-TEST(UsbipWire, BringsEveryCommandOverAndTakesItInAnyPieces) {
+TEST(UsbipWire, DecodesEveryCommandFromAnyPieces) {
   std::mt19937_64 random(support::seed_of(1));
   for (int i = 0; i < 300; ++i) {
     const UsbipCommand sent = some_command(random);
@@ -83,7 +83,7 @@ TEST(UsbipWire, BringsEveryCommandOverAndTakesItInAnyPieces) {
   }
 }
 
-TEST(UsbipWire, RefusesWhatNoArmNeeds) {
+TEST(UsbipWire, RefusesUnsupportedCommands) {
   UsbipCommand command;
   command.length = kTransferMax + 1;
   EXPECT_EQ(decode_command(encode_command(command), command), Decode::kInvalid);
@@ -121,7 +121,7 @@ TEST(UsbipWire, LaysOutListAndImportAsDocumented) {
   EXPECT_EQ(encode_import(nullptr, "1-1").size(), kImportRefusalSize);
 }
 
-TEST(UsbipWire, LivesThroughGarbageAndNeverReadsBeyondIt) {
+TEST(UsbipWire, SurvivesGarbageWithoutReadingBeyondIt) {
   std::mt19937_64 random(support::seed_of(7));
   const int rounds = support::long_form() ? 5'000'000 : 200'000;
   int whole = 0;

@@ -69,7 +69,7 @@ class DeviceTest : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(DeviceTest, SaysWhyItCannotBeOpened) {
+TEST_F(DeviceTest, OpenErrorNamesTheReason) {
   EXPECT_NE(open().error().message.find("no report within 1000 ms"), std::string::npos);
 
   wire_.to_host.push_back({std::byte{1}, std::byte{2}});
@@ -133,7 +133,7 @@ TEST_F(DeviceTest, FindsTheTipInTheWorld) {
   EXPECT_NEAR(device_->state().dt, 1e-3, 1e-15);
 }
 
-TEST_F(DeviceTest, SendsTheGatedForceAndTellsIt) {
+TEST_F(DeviceTest, SendsAndReportsTheGatedForce) {
   open_and_activate();
   settle({0, 0.5, 0});
   // 0.5 N at 0.138 m through 9:1 and 0.0234 N m/A, sign -1.
@@ -158,7 +158,7 @@ TEST_F(DeviceTest, SilentArmIsAFault) {
   EXPECT_EQ(last_currents(), kZero);  // in that very tick
 }
 
-TEST_F(DeviceTest, CountsAndSurvivesReportsItDoesNotKnow) {
+TEST_F(DeviceTest, CountsAndSurvivesUnknownReports) {
   open_and_activate();
   settle();
   wire_.to_host.push_back(std::vector<std::byte>(13));
@@ -244,7 +244,7 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfASmallerJump) {
   EXPECT_FALSE(device_->home_needed());
 }
 
-TEST_F(DeviceTest, LetsAnArmRefuseForAsLongAsTheLimitSaysAndNoLonger) {
+TEST_F(DeviceTest, RefusalBecomesAFaultAfterTheLimit) {
   open_and_activate();
   settle();
   const std::int64_t limit_ticks = support::vintage_settings().silence_limit_ns / kPeriod_ns;
@@ -327,7 +327,7 @@ class NumberedReports : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(NumberedReports, AreOldWhenTheyComeAgainAndStopTheForce) {
+TEST_F(NumberedReports, RepeatedNumbersStopTheForce) {
   for (int k = 65500; k < 65600; ++k) ASSERT_TRUE(tick(k));  // the number wraps
   ASSERT_GT(device_->f_sent_W().norm(), 0);
   int ticks = 0;
@@ -340,13 +340,13 @@ TEST_F(NumberedReports, AreOldWhenTheyComeAgainAndStopTheForce) {
   EXPECT_EQ(device_->wire_counters().repeated, 21u);
 }
 
-TEST_F(NumberedReports, ThatComeTwiceCostNothingButTheSecondOne) {
+TEST_F(NumberedReports, OneDuplicateIsDropped) {
   for (int k = 0; k < 200; ++k) EXPECT_EQ(tick(1 + k / 2), k % 2 == 0);
   EXPECT_EQ(device_->fault(), Fault::kNone);
   EXPECT_EQ(device_->wire_counters().repeated, 100u);
 }
 
-TEST_F(NumberedReports, AreTakenFromABoardThatDoesNotCount) {
+TEST_F(NumberedReports, BoardWithConstantNumberIsAccepted) {
   for (int k = 0; k < 100; ++k) EXPECT_TRUE(tick(0));
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }

@@ -11,12 +11,12 @@
 namespace thimble::driver {
 namespace {
 
-TEST(Discovery, ListsOnThisMachineWhatItCanOrSaysWhyItCannot) {
+TEST(Discovery, WorksOrReportsAnErrorOnThisMachine) {
   const auto arms = find_arms();
   EXPECT_TRUE(arms || arms.error().message.find("Cannot list USB devices") != std::string::npos);
 }
 
-TEST(Discovery, LooksIntoNothingOfADeviceButItsInterfaces) {
+TEST(Discovery, ReadsOnlyTheInterfacesOfADevice) {
   const support::FakeUsb usb("discovery_links");
   usb.plug("1-1", "1234", "0006", "WH01", 1, 2);
   // As behind a link to the bus, which has all other devices in it.
@@ -82,7 +82,7 @@ struct Plugged {
   BoardKind board;
 };
 
-TEST(Discovery, TakesABoardForAnArmOnlyByWhatIsTheArmsOwn) {
+TEST(Discovery, IdentifiesAnArmOnlyByItsOwnProperties) {
   constexpr Plugged kBoards[] = {
       // The published boards: examples of mbed and Teensy, whose ids and strings anybody has.
       {"1234", "0006", "HID DEVICE", 8, false, Certainty::kProvesItself, BoardKind::kMbedHid8},
@@ -123,7 +123,7 @@ TEST(Discovery, TakesABoardForAnArmOnlyByWhatIsTheArmsOwn) {
 
 // The rule gives access to the boards that discovery takes for arms by their product string, and to
 // no other Teensy: in udev's globs, alternatives stand between bars.
-TEST(Discovery, AgreesWithTheUdevRuleAboutTheTeensiesThatAreArms) {
+TEST(Discovery, TeensyArmsMatchTheUdevRule) {
   std::ifstream rules(std::filesystem::path(THIMBLE_SOURCE_DIR) / "udev/70-thimble.rules");
   int lines = 0;
   for (std::string line; std::getline(rules, line);) {
@@ -163,7 +163,7 @@ TEST(Discovery, AmbiguousSerialNumbersUseTheSocketName) {
   EXPECT_EQ(names, (std::vector<std::string>{"usb-1-1.4", "usb-1-2", "usb-1-3", "usb-1-4", "F1"}));
 }
 
-TEST(Discovery, TakesACountedOrRepeatedSignForNoName) {
+TEST(Discovery, PlaceholderSerialNumbersAreNoName) {
   for (const char* serial : {"", "0123456789", "1234567890", "123456", "0000", "FFFFFFFF"}) {
     EXPECT_TRUE(is_placeholder(serial)) << serial;
   }
@@ -172,13 +172,13 @@ TEST(Discovery, TakesACountedOrRepeatedSignForNoName) {
   }
 }
 
-TEST(Discovery, LetsNoStringOfADeviceSpeakToTheTerminal) {
+TEST(Discovery, ReplacesControlCharactersInDeviceStrings) {
   const support::FakeUsb usb("discovery_escape");
   usb.plug("1-1", "0403", "cb48", "F\x1b[2J", 1, 2);
   EXPECT_EQ(find_arms(usb.root())->front().name(), "F?[2J");
 }
 
-TEST(Discovery, TellsAnArmWithoutANodeOrWithoutAccess) {
+TEST(Discovery, ReportsAnArmWithoutNodeOrAccess) {
   const support::FakeUsb usb("discovery_access");
   usb.plug("1-1", "1234", "0006", "WH01", 1, 2);
   auto arms = find_arms(usb.root());
@@ -188,7 +188,7 @@ TEST(Discovery, TellsAnArmWithoutANodeOrWithoutAccess) {
   EXPECT_FALSE(arms->front().accessible);
 }
 
-TEST(Discovery, SaysSoWhenThereIsNoUsbAtAll) {
+TEST(Discovery, MissingUsbIsAnError) {
   const auto arms = find_arms(support::scratch_folder() / "nothing_here");
   ASSERT_FALSE(arms);
   EXPECT_NE(arms.error().message.find("Cannot list USB devices"), std::string::npos);

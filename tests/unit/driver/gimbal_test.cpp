@@ -69,7 +69,7 @@ Vector3d direction(const Geometry& arm, double Geometry::*last, const Vector3d& 
   return (p_longer - p).normalized();
 }
 
-TEST(Gimbal, StandsOnALastLinkWhoseXPointsToTheTipAndWhoseYIsLevel) {
+TEST(Gimbal, LastLinkFrameHasXToTheTipAndYLevel) {
   support::Random random(3);
   const auto vintage = support::vintage_model();
   const auto polhem = hfab::polhem_model();
@@ -92,7 +92,7 @@ TEST(Gimbal, StandsOnALastLinkWhoseXPointsToTheTipAndWhoseYIsLevel) {
   EXPECT_EQ(falcon::falcon_geometry().last_link({}, {}), Matrix3d(Matrix3d::Identity()));
 }
 
-TEST(Gimbal, OfThePolhemTurnsTheStylusAsThePublishedLibraryDoes) {
+TEST(Gimbal, PolhemGimbalMatchesThePublishedLibrary) {
   // R = rot_z(tA) rot_y(-lambda) rot_x(tD) rot_y(tE) rot_x(tF), lambda: climb of the forearm [S
   // hfabapi hfab_api.cpp, getRot].
   ArmModel model = arm_model(hfab::polhem_model());
@@ -136,7 +136,7 @@ TEST(Gimbal, OfThePolhemTurnsTheStylusAsThePublishedLibraryDoes) {
   }
 }
 
-TEST(Gimbal, IsNothingToAnArmWithoutOne) {
+TEST(Gimbal, ArmWithoutGimbalLeavesOrientationUnchanged) {
   const auto arm = make_arm(ArmKind::kPolhem, arm_model(hfab::polhem_model()));
   EXPECT_FALSE(arm->has_gimbal());
   Vector3d angles(1, 2, 3);

@@ -95,7 +95,7 @@ TEST_F(HomeNeeded, AfterASilence) {
   expect_home_needed();
 }
 
-TEST_F(HomeNeeded, AfterASilenceInWhichMessagesAreRefused) {
+TEST_F(HomeNeeded, AfterASilenceWithRefusedMessages) {
   tick(kAway);
   wire_.refusals = 1000;
   for (int k = 0; k < 500; ++k) missing();
@@ -177,7 +177,7 @@ TEST_F(HomeNeeded, AfterASilenceBeforeForces) {
   expect_home_needed();
 }
 
-TEST_F(HomeNeeded, NotWhereTheCallerWasAway) {
+TEST_F(HomeNeeded, NotAfterTheCallerPaused) {
   open(std::make_unique<hfab::HfabArm>(support::vintage_model()));
   for (const std::int64_t away_ns : {1'000'000'000, 50'000'000}) {
     now_ns_ += away_ns;
@@ -190,7 +190,7 @@ TEST_F(HomeNeeded, NotWhereTheCallerWasAway) {
   }
 }
 
-TEST_F(HomeNeeded, NotWhereTheCallerSendsNothing) {
+TEST_F(HomeNeeded, NotIfTheCallerSendsNothing) {
   // An arm that speaks only when spoken to is silent then.
   tick(kAway);
   wire_.to_host.push_back(report(kAway));

@@ -31,7 +31,7 @@ Eigen::Vector3d force_of(const MotorCurrents& currents, const Eigen::Matrix3d& J
   return J_BT.transpose().inverse() * tau;
 }
 
-TEST(MotorCurrents, PushTheTipWithTheForceAskedFor) {
+TEST(MotorCurrents, ExertTheRequestedTipForce) {
   const auto model = support::vintage_model();
   support::Random random(31);
   for (int i = 0; i < 1000; ++i) {

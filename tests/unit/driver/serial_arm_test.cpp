@@ -29,7 +29,7 @@ Eigen::Vector3d any_pose(const SerialArm& arm, support::Random& random) {
   }
 }
 
-TEST(SerialArm, PutsTheTipWhereThePublishedPosesAre) {
+TEST(SerialArm, TipMatchesPublishedPoses) {
   const SerialArm& vintage = kArms[0];
   // Upper link level, lower link hanging: the home pose of the refit.
   EXPECT_TRUE(vintage.forward({0, kPi / 2, 0}).isApprox(Eigen::Vector3d(0.138, 0, -0.112), 1e-15));
@@ -75,7 +75,7 @@ TEST(SerialArm, HasTheJacobianOfItsForwardKinematics) {
   }
 }
 
-TEST(SerialArm, DoesTheSameVirtualWorkAtTheTipAsInTheJoints) {
+TEST(SerialArm, TipAndJointVirtualWorkAreEqual) {
   support::Random random(13);
   for (const SerialArm& arm : kArms) {
     for (int i = 0; i < kPoses; ++i) {
@@ -92,7 +92,7 @@ TEST(SerialArm, DoesTheSameVirtualWorkAtTheTipAsInTheJoints) {
   }
 }
 
-TEST(SerialArm, GivesPositionAndJacobianTogetherAsItGivesThemAlone) {
+TEST(SerialArm, CombinedPoseEqualsSeparateResults) {
   support::Random random(14);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d q = any_pose(kArms[1], random);

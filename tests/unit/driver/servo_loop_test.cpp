@@ -88,7 +88,7 @@ class ServoLoopTest : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-TEST_F(ServoLoopTest, RunsItsTicksAtEvenTimesAndLeavesWithZeroForce) {
+TEST_F(ServoLoopTest, RunsEvenlyAndEndsWithZeroForce) {
   VirtualClock clock;
   Records records(2000);
   auto law = [](const DeviceState&) noexcept {
@@ -129,7 +129,7 @@ TEST_F(ServoLoopTest, StepAfterTheEndSendsNothing) {
   EXPECT_EQ(records.rows.size(), 3u);
 }
 
-TEST_F(ServoLoopTest, CopiesALawAndASinkAsWhatTheyReferTo) {
+TEST_F(ServoLoopTest, CopiesOfLawAndSinkReferToTheOriginal) {
   auto law = [](const DeviceState&) noexcept {
     return ForceCommand{.f_T_W = {1, 2, 3}, .touch = {}};
   };
@@ -215,7 +215,7 @@ TEST_F(ServoLoopTest, LawPreparesBeforeEachPunctualTick) {
   EXPECT_EQ(before, (std::vector<std::uint64_t>{1, 2, 3, 4, 6, 7}));
 }
 
-TEST_F(ServoLoopTest, LetsNoLawPrepareItselfUnasked) {
+TEST_F(ServoLoopTest, DoesNotPrepareLawsByDefault) {
   VirtualClock clock;
   Records records(100);
   PreparedLaw law(clock);
@@ -237,7 +237,7 @@ TEST_F(ServoLoopTest, StopsWithinOneTickOfTheStopFlagAndSendsZero) {
   EXPECT_TRUE(ends_in_zero());
 }
 
-TEST_F(ServoLoopTest, EndsInTheTickOfAFaultWithZeroForceAndItsName) {
+TEST_F(ServoLoopTest, FaultEndsTheLoopWithZeroForce) {
   VirtualClock clock;
   Records records(1000);
   auto law = [](const DeviceState& state) noexcept {
@@ -265,7 +265,7 @@ TEST_F(ServoLoopTest, EndsWhenTheArmIsPulledOff) {
   EXPECT_EQ(records.rows.size(), 351u);
 }
 
-TEST_F(ServoLoopTest, LeavesZeroForceBehindWhenTheApplicationThrows) {
+TEST_F(ServoLoopTest, ExceptionLeavesZeroForce) {
   VirtualClock clock;
   Records records(1000);
   auto law = [](const DeviceState&) noexcept {
@@ -285,7 +285,7 @@ TEST_F(ServoLoopTest, LeavesZeroForceBehindWhenTheApplicationThrows) {
   EXPECT_TRUE(ends_in_zero());
 }
 
-TEST(WallClock, SleepsUntilTheTimeAskedForAndNotLess) {
+TEST(WallClock, SleepsAtLeastUntilTheRequestedTime) {
   WallClock clock;
   const std::int64_t start_ns = clock.now_ns();
   clock.sleep_until_ns(start_ns + 3'000'000);

@@ -29,7 +29,7 @@ bool whole(const Value& value) {
   return value.odd_size == static_cast<std::uint32_t>(value.number);
 }
 
-TEST(Snapshot, HasNothingToShowBeforeTheFirstStore) {
+TEST(Snapshot, IsEmptyBeforeTheFirstStore) {
   Snapshot<Value> snapshot;
   Value value = value_of(5);
   EXPECT_FALSE(snapshot.load(value));

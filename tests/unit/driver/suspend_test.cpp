@@ -112,7 +112,7 @@ TEST_F(SuspendTest, LateTickWithoutSleepIsNoSuspend) {
   EXPECT_NE(device_->fault(), Fault::kSuspended);
 }
 
-TEST(WallClock, GoesOnWhileTheComputerSleeps) {
+TEST(WallClock, AdvancesDuringSuspend) {
   const WallClock clock(0);
   const std::int64_t before = clock.now_ns();
   slept_ns += 3'600'000'000'000;

@@ -12,7 +12,7 @@ double work(WorkAccount& account, const Vector3d& x) {
   return account.flow(x, x, {0, 0, 0}, 0).work;
 }
 
-TEST(WorkAccount, BooksEffortTimesTheMotionThatFollowedIt) {
+TEST(WorkAccount, WorkIsEffortTimesTheFollowingMotion) {
   WorkAccount account(0);
   EXPECT_EQ(work(account, {0.1, 0, 0}), 0);  // from where it began nothing is known
   account.sent({2, 0, 0});
@@ -21,7 +21,7 @@ TEST(WorkAccount, BooksEffortTimesTheMotionThatFollowedIt) {
   EXPECT_DOUBLE_EQ(work(account, {0.5, 1, 0}), 0.2);
 }
 
-TEST(WorkAccount, BooksAnEffortSoManyTicksLateAsTheWireIs) {
+TEST(WorkAccount, DelaysAnEffortByTheDelayOfTheWire) {
   WorkAccount account(2);
   work(account, {0, 0, 0});
   account.sent({1, 0, 0});
@@ -32,7 +32,7 @@ TEST(WorkAccount, BooksAnEffortSoManyTicksLateAsTheWireIs) {
   EXPECT_EQ(work(account, {5, 0, 0}), 3);
 }
 
-TEST(WorkAccount, BooksNothingAcrossAStart) {
+TEST(WorkAccount, BooksNoWorkAcrossARestart) {
   WorkAccount account(0);
   work(account, {0, 0, 0});
   account.sent({2, 0, 0});

@@ -85,7 +85,7 @@ TEST_F(FalconGeometry, HasTheJacobianOfCentralDifferences) {
   std::printf("worst relative difference %.3g\n", worst);
 }
 
-TEST_F(FalconGeometry, DoesTheSameWorkAtItsLegsAndAtItsTip) {
+TEST_F(FalconGeometry, LegAndTipWorkAreEqual) {
   // f . v at the tip equals tau . qdot at the legs for any force and any motion.
   double worst = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -112,7 +112,7 @@ TEST_F(FalconGeometry, DoesTheSameWorkAtItsLegsAndAtItsTip) {
   EXPECT_LT(worst, 1e-9);
 }
 
-TEST_F(FalconGeometry, ExertsTheAskedForceEverywhere) {
+TEST_F(FalconGeometry, ExertsTheRequestedForceEverywhere) {
   const JointModel<DeltaArm> model = falcon_model();
   const FalconArm arm(model);
   double worst = 0, worst_on_wire = 0, quantum = 0;
@@ -180,7 +180,7 @@ TEST_F(FalconGeometry, HasTheTipResolutionOfItsGeometry) {
   EXPECT_LT(most, 0.058e-3);
 }
 
-TEST_F(FalconGeometry, GivesAPoseThatClosesOrNoneAtAllForAnyAngles) {
+TEST_F(FalconGeometry, PoseIsConsistentOrEmptyForAnyAngles) {
   int none = 0;
   for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3d q = random_.in_box(M_PI);

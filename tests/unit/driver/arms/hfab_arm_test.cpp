@@ -12,7 +12,7 @@
 namespace thimble::driver::hfab {
 namespace {
 
-TEST(HfabArm, StandsAtHomeWhenItsCountersAreZero) {
+TEST(HfabArm, ZeroCountsAreTheHomePose) {
   const HfabArm arm(support::vintage_model());
   const ArmPose pose = arm.pose({});
   EXPECT_LT((pose.q - support::vintage_home()).norm(), 1e-15);
@@ -88,7 +88,7 @@ TEST(HfabArm, RoundsCurrentsAsTheLibraryDoes) {
   }
 }
 
-TEST(HfabArm, LeavesTheReadingAloneWhenItRejectsAReport) {
+TEST(HfabArm, RejectedReportLeavesTheReadingUnchanged) {
   const HfabArm arm(support::vintage_model());
   ArmReading reading{.counts = {1, 2, 3}, .auxiliary = {}, .buttons = 1};
   const std::array<std::byte, 13> torn{};
@@ -97,7 +97,7 @@ TEST(HfabArm, LeavesTheReadingAloneWhenItRejectsAReport) {
   EXPECT_EQ(reading.buttons, 1);
 }
 
-TEST(HfabArm, SendsNothingThatDidNotPassTheGate) {
+TEST(HfabArm, SendsOnlyForcesFromTheGate) {
   // The one exit to the motors: neither a plain force nor plain currents can be encoded, and only
   // SafetyGate can make a gated force that is not zero.
   static_assert(!std::is_convertible_v<Eigen::Vector3d, MotorCurrents>);

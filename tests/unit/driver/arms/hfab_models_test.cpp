@@ -109,7 +109,7 @@ TEST(HfabModels, PolhemClosesItsLinkage) {
   }
 }
 
-TEST(HfabModels, PolhemStandsAtHomeWhereThePublishedLibraryPutsIt) {
+TEST(HfabModels, PolhemHomeMatchesThePublishedLibrary) {
   // hfab_polhem.h evaluated at the home counts of hfab_api.cpp: yaw 2.102 rad, reach 35.80 mm,
   // height 69.55 mm.
   Eigen::Vector3d p;
@@ -121,7 +121,7 @@ TEST(HfabModels, PolhemStandsAtHomeWhereThePublishedLibraryPutsIt) {
   EXPECT_NEAR(std::atan2(p.y(), p.x()), 2.102, 1e-3);
 }
 
-TEST(HfabModels, PolhemHasNoPoseWhereItsBarsCannotMeet) {
+TEST(HfabModels, PolhemHasNoPoseIfItsBarsCannotMeet) {
   Eigen::Vector3d p;
   Eigen::Matrix3d J;
   polhem_model().geometry.forward({0, 0, std::numbers::pi}, p, J);

@@ -67,7 +67,7 @@ TEST(WoodyProof, AcceptsNumberedReportsWithoutSending) {
             "");
 }
 
-TEST(WoodyProof, CountsWhatWasSkippedAsSent) {
+TEST(WoodyProof, SkippedReportsAdvanceTheExpectedNumber) {
   VirtualClock clock;
   Board board(clock, [](int frame) { return numbered(4 * frame); });
   board.skipped = 3;
@@ -75,7 +75,7 @@ TEST(WoodyProof, CountsWhatWasSkippedAsSent) {
   EXPECT_EQ(board.written, 0);
 }
 
-TEST(WoodyProof, RefusesWhatIsNoSuchBoardAndSendsItNothing) {
+TEST(WoodyProof, RefusesOtherBoardsAndSendsThemNothing) {
   const auto silent = refusal([](int) { return std::nullopt; });
   EXPECT_NE(silent.find("sends no reports by itself"), std::string::npos) << silent;
   support::Random random(8);
@@ -89,7 +89,7 @@ TEST(WoodyProof, RefusesWhatIsNoSuchBoardAndSendsItNothing) {
   EXPECT_NE(refusal([](int frame) { return numbered(frame); }, 7), "");
 }
 
-TEST(WoodyProof, SaysThatTheBoardIsGone) {
+TEST(WoodyProof, ReportsADisconnectedBoard) {
   VirtualClock clock;
   Board board(clock, [](int frame) { return numbered(frame); });
   board.lost = true;

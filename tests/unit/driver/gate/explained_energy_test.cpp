@@ -87,7 +87,7 @@ TEST(ExplainedEnergy, AFieldPassesOnAMillionRandomTicks) {
   EXPECT_GT(rig.gate().energy(), -1e-12);
 }
 
-TEST(ExplainedEnergy, AStifferFieldIsDampedAsMuchAsItGives) {
+TEST(ExplainedEnergy, StifferFieldIsDampedByItsEnergyGain) {
   // The guard of the test above.
   ExplainedRig rig(explained_limits(), explained_stage());
   rig.open({0, 0, 0});
@@ -132,7 +132,7 @@ double swirled(double stored_slope) {
   return rig.work() - rig.dissipated();
 }
 
-TEST(ExplainedEnergy, WhatNoStorageExplainsIsBounded) {
+TEST(ExplainedEnergy, UnexplainedEnergyIsBounded) {
   const EnergyGuardSettings stage = explained_stage();
   const double tick = 1.5 * 0.13 * 2 * kTick;  // and the delay
   EXPECT_LE(swirled(0), stage.allowance + 2 * stage.onset + tick);
@@ -140,7 +140,7 @@ TEST(ExplainedEnergy, WhatNoStorageExplainsIsBounded) {
   EXPECT_LE(swirled(0.5), 20 * 0.02 + stage.reservoir + stage.allowance + 2 * stage.onset + tick);
 }
 
-TEST(ExplainedEnergy, AStorageThatFallsPaysForTheWorkOfAnotherHand) {
+TEST(ExplainedEnergy, FallingStoragePaysForWorkOnAnotherHand) {
   PassivityObserver observer(explained_stage());
   // Another hand lifts a body: nothing of it is this hand's debt.
   observer.book({.stored_change = 0.5});
@@ -153,7 +153,7 @@ TEST(ExplainedEnergy, AStorageThatFallsPaysForTheWorkOfAnotherHand) {
   EXPECT_NEAR(observer.energy(), -0.5, 1e-15);
 }
 
-TEST(ExplainedEnergy, AHandPaysForWhatItPutsIntoAStorage) {
+TEST(ExplainedEnergy, HandPaysForEnergyThatItStores) {
   PassivityObserver observer(explained_stage());
   observer.book({.work = -0.01, .stored_change = 0.008});
   EXPECT_NEAR(observer.energy(), 0.002, 1e-15);
@@ -219,7 +219,7 @@ TEST(ProgramForce, LeavesTheSceneItsEnergyStage) {
   EXPECT_LT(std::hypot(sent_W.x(), sent_W.y()), 0.3);
 }
 
-TEST(PowerLimit, LowersAForceThatPushesOnAndOn) {
+TEST(PowerLimit, LowersAForceThatPushesContinuously) {
   // A program that pushes along the motion, whatever it is: 3 N at 0.6 m/s are 1.8 W.
   ExplainedRig rig(explained_limits(), explained_stage());
   rig.open({0.04, 0, 0});
@@ -237,7 +237,7 @@ TEST(PowerLimit, LowersAForceThatPushesOnAndOn) {
   EXPECT_GT(0.6 * last, 0.9 * limits.power_max);
 }
 
-TEST(PowerLimit, IsNoneWhereItIsNotNamed) {
+TEST(PowerLimit, IsOffUnlessSet) {
   GateLimits limits = explained_limits();
   limits.power_max = 0;
   SafetyGate gate(limits);
@@ -247,7 +247,7 @@ TEST(PowerLimit, IsNoneWhereItIsNotNamed) {
   EXPECT_EQ(gate.counters().power_limited, 0u);
 }
 
-TEST(PowerLimit, TakesNoWorkThatIsNotANumber) {
+TEST(PowerLimit, IgnoresWorkThatIsNotFinite) {
   SafetyGate gate(explained_limits());
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) gate.book_power(bad, kTick);
   gate.book_power(1, std::nan(""));

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPeriod = 1e-3;
 const Eigen::Vector3d kStill{0, 0, 0};
 
-TEST(GateTime, LatchesZeroForceOnATimeThatStepsBackOrIsNoNumber) {
+TEST(GateTime, LatchesZeroForceOnAnInvalidTime) {
   for (const double bad : {-1.0, -1e-2, -1e-9, -5e-324, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     SafetyGate gate = support::open_gate();
     EXPECT_EQ(gate.pass({4, 0, 0}, kStill, bad).f_T_W(), Eigen::Vector3d(0, 0, 0)) << bad;
@@ -40,7 +40,7 @@ TEST(GateTime, LatchesZeroForceWithAnEnergyStageToo) {
   }
 }
 
-TEST(GateTime, TakesATickOfNoLengthForOneInWhichNothingMayRise) {
+TEST(GateTime, ForceDoesNotRiseInATickOfZeroLength) {
   SafetyGate gate = support::open_gate();
   EXPECT_EQ(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().x(), 1);
   EXPECT_EQ(gate.pass({2, 0, 0}, kStill, 0).f_T_W().x(), 1);

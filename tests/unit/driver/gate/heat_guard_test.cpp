@@ -27,7 +27,7 @@ HeatGuard guard(const HeatSettings& settings = kSettings) {
   return {settings, drives(), kLongestHold};
 }
 
-TEST(HeatGuard, FollowsTheClosedFormWhateverTheStep) {
+TEST(HeatGuard, MatchesTheClosedFormForAnyStep) {
   const std::array<std::int16_t, 3> mA{500, -700, 600};
   support::Random random(1);
   for (const bool jitter : {false, true}) {
@@ -90,7 +90,7 @@ TEST(HeatGuard, LowersTheCurrentWithoutAStep) {
   EXPECT_LT(largest_step, 0.005) << "A in a tick";
 }
 
-TEST(HeatGuard, AllowsToTheBitWhatItsFormulaSaysAtEveryHeat) {
+TEST(HeatGuard, AllowedCurrentIsBitIdenticalToItsFormula) {
   constexpr double kRounding = 0.0005;
   int full = 0, lowered = 0;
   for (int i = 0; i <= 4000; ++i) {
@@ -114,7 +114,7 @@ TEST(HeatGuard, AllowsToTheBitWhatItsFormulaSaysAtEveryHeat) {
   EXPECT_GT(lowered, 1000);
 }
 
-TEST(HeatGuard, TakesWhatItCannotKnowForHotAndNoTimeForNone) {
+TEST(HeatGuard, UnknownHeatCountsAsHot) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   HeatSettings settings = kSettings;
   settings.at_start = {nan, 1.5, -1};
@@ -138,7 +138,7 @@ TEST(HeatGuard, ActsForAnArmWhoseFirstMotorIsKnown) {
       (HeatSettings{.continuous_current = {0, 0.9, 0.9}, .time_constant = {60, 60, 60}}.named()));
 }
 
-TEST(HeatGuard, CountsAForceAsLoweredOnlyWhereHeatLowersIt) {
+TEST(HeatGuard, CountsOnlyForcesLoweredByHeat) {
   HeatGuard heat = guard();
   heat.sent({3000, 3000, 3000}, true);  // cold: it was the motors' own limit
   EXPECT_EQ(heat.lowered(), 0u);
@@ -242,7 +242,7 @@ TEST(HeatOfADevice, CoolsOnceTheArmIsGone) {
   EXPECT_LT(run(1000), warm);
 }
 
-TEST(HeatOfADevice, RefusesATimeConstantThatIsNone) {
+TEST(HeatOfADevice, RefusesAnInvalidTimeConstant) {
   DeviceSettings settings = support::vintage_settings();
   settings.heat = kSettings;
   settings.heat.time_constant[1] = 0;

@@ -62,7 +62,7 @@ TEST_F(HoldToRunTest, ReleasedButtonEndsForceInOneTick) {
   EXPECT_EQ(run(400), 1);
 }
 
-TEST_F(HoldToRunTest, ButtonThatIsStuckCountsForNothing) {
+TEST_F(HoldToRunTest, StuckButtonIsIgnored) {
   moved_.buttons = 1;
   open({.buttons = 1});
   EXPECT_EQ(run(1000), 0);
@@ -72,7 +72,7 @@ TEST_F(HoldToRunTest, ButtonThatIsStuckCountsForNothing) {
   EXPECT_EQ(run(500), 1);
 }
 
-TEST_F(HoldToRunTest, AnotherButtonCountsForNothing) {
+TEST_F(HoldToRunTest, OtherButtonsAreIgnored) {
   open({.buttons = 2});
   run(1);
   moved_.buttons = 1;
@@ -120,7 +120,7 @@ TEST_F(HoldToRunTest, FaultsLatchWhileItWaits) {
   EXPECT_EQ(device_->stage(), DeviceStage::kFault);
 }
 
-TEST_F(HoldToRunTest, NoneIsNeededUnlessNamed) {
+TEST_F(HoldToRunTest, IsNotRequiredUnlessSet) {
   open({});
   EXPECT_EQ(run(500), 1);
   EXPECT_EQ(device_->stage(), DeviceStage::kActive);

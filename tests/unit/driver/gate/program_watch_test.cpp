@@ -107,7 +107,7 @@ TEST(ProgramWatch, StopsAPinchGripsOscillationIn300Milliseconds) {
   }
 }
 
-TEST(ProgramWatch, LeavesStableWallsAlone) {
+TEST(ProgramWatch, IgnoresStableWalls) {
   for (const double damping : {0.6, 1.0, 2.0, 3.0, 5.0}) {
     for (const double share : {0.1, 0.3, 0.5, 0.7}) {
       for (const double speed : {0.02, 0.1, 0.3, 0.6}) {

@@ -23,7 +23,7 @@ GateLimits limits() {
   return support::vintage_settings().limits;  // 5 N, 2 N in a tick
 }
 
-TEST(RiseLimit, TurnsAForceRoundInAsManyTicksAsItsRiseTakes) {
+TEST(RiseLimit, ReversalTakesTheTimeOfItsRise) {
   SafetyGate gate = support::open_gate();
   while (gate.pass({5, 0, 0}, kStill, kPeriod).f_T_W().x() < 5) {
   }
@@ -34,7 +34,7 @@ TEST(RiseLimit, TurnsAForceRoundInAsManyTicksAsItsRiseTakes) {
   EXPECT_EQ(gate.counters().rise_limited, 2U + 4U);  // two on the way to 5 N
 }
 
-TEST(RiseLimit, TurnsAForceAsideInAsManyTicksAsItsRiseTakes) {
+TEST(RiseLimit, TurnTakesTheTimeOfItsRise) {
   SafetyGate gate = support::open_gate();
   for (int k = 0; k < 3; ++k) gate.pass({5, 0, 0}, kStill, kPeriod);
   Vector3d last(5, 0, 0);
@@ -68,7 +68,7 @@ TEST(RiseLimit, OneCountOfVelocityDropsNoForce) {
   }
 }
 
-TEST(RiseLimit, HoldsForDampingToo) {
+TEST(RiseLimit, AppliesToDampingToo) {
   // A debt that nothing can pay, at 1 m/s: 5 N of damping are asked for at once.
   SafetyGate gate = support::open_gate(
       limits(), {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02});

@@ -24,7 +24,7 @@ GateLimits limits() {
 
 using support::open_gate;
 
-TEST(SafetyGate, LetsAForceWithinAllLimitsThroughUnchanged) {
+TEST(SafetyGate, ForceWithinAllLimitsIsUnchanged) {
   SafetyGate gate = open_gate();
   const Eigen::Vector3d f{0.5, -1, 0.3};
   EXPECT_EQ(gate.pass(f, kStill, kPeriod).f_T_W(), f);
@@ -138,7 +138,7 @@ TEST(SafetyGate, StallReopensAndWatchdogFaults) {
   EXPECT_EQ(gate.fault(), Fault::kLoopStalled);
 }
 
-TEST(SafetyGate, StaysAsSlowAsItWasAfterAStallInItsSoftStart) {
+TEST(SafetyGate, StallDoesNotShortenTheSoftStart) {
   SafetyGate gate(limits());
   for (int k = 0; k < 100; ++k) gate.pass({5, 0, 0}, kStill, kPeriod);
   gate.pass({5, 0, 0}, kStill, 0.030);
@@ -157,7 +157,7 @@ SafetyGate open_guarded_gate(const EnergyGuardSettings& settings) {
   return gate;
 }
 
-TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
+TEST(EnergyGuard, ForceIsUnchangedWhileTheHandHasPaid) {
   SafetyGate gate = open_guarded_gate(passivity());
   const Eigen::Vector3d f{0.5, -1, 0.3};
   // The hand gives 1 mJ, and gets a part of it back.
@@ -234,7 +234,7 @@ TEST(EnergyGuard, FadedForceReturnsSlowly) {
   EXPECT_NEAR(last, 2, 2e-3);
 }
 
-TEST(EnergyGuard, GivesAForceBackToAHandThatGoesOnAfterTheTrouble) {
+TEST(EnergyGuard, ForceReturnsAfterTheDebtIsPaid) {
   // As the program sets it: some energy is allowed, and one count is not damped.
   for (const double debt : {0.0045, 0.0055, 0.006, 0.012, 0.1}) {
     EnergyGuardSettings settings = passivity();
@@ -258,7 +258,7 @@ TEST(EnergyGuard, GivesAForceBackToAHandThatGoesOnAfterTheTrouble) {
   }
 }
 
-TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
+TEST(EnergyGuard, IgnoresEnergyBelowOneCount) {
   EnergyGuardSettings settings = passivity();
   settings.speed_floor = 0.02;
   SafetyGate gate = open_guarded_gate(settings);
@@ -286,14 +286,14 @@ TEST(EnergyGuard, CreditLastsWhileSpringsArePressed) {
   }
 }
 
-TEST(EnergyGuard, HoldsItsDampingBackWithTheSoftStart) {
+TEST(EnergyGuard, SoftStartAlsoLimitsDamping) {
   SafetyGate gate(limits(), passivity());
   gate.pass_guarded({0, 0, 0}, kStill, 0, {});
   EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {1, 0, 0}, kPeriod, {.work = 1}).f_T_W().norm(),
               5e-3 / 0.3, 1e-12);
 }
 
-TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
+TEST(EnergyGuard, BoundingStageLimitsForceByItsSlope) {
   SafetyGate gate = open_guarded_gate({.stage = EnergyStage::kBounding, .slope = 10});
   // From nothing, 1 mm of way carries 10 mN; held at 2 N, 1 mm back costs at least 10 mN.
   EXPECT_NEAR(gate.pass_guarded({3, 0, 0}, kStill, kPeriod, {.move_W = {-1e-3, 0, 0}}).f_T_W().x(),
@@ -304,7 +304,7 @@ TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
   EXPECT_EQ(gate.counters().bounded, 2u);
 }
 
-TEST(EnergyGuard, FindsNoForceForEnergyThatIsNotANumber) {
+TEST(EnergyGuard, ZeroForceForEnergyThatIsNotFinite) {
   for (const EnergyGuardSettings& settings :
        {passivity(), EnergyGuardSettings{.stage = EnergyStage::kBounding, .slope = 10}}) {
     SafetyGate gate = open_guarded_gate(settings);
@@ -321,7 +321,7 @@ TEST(SafetyGate, KeepsTheFirstFault) {
   EXPECT_EQ(gate.fault(), Fault::kTransportLost);
 }
 
-TEST(Fault, SaysWhatToDo) {
+TEST(Fault, DescriptionHasARemedy) {
   for (int i = 0; i <= static_cast<int>(kLastFault); ++i) {
     const auto fault = static_cast<Fault>(i);
     EXPECT_NE(name(fault), "unknown");
@@ -329,7 +329,7 @@ TEST(Fault, SaysWhatToDo) {
   }
 }
 
-TEST(EnergyGuard, ForgetsDebtAndFadingWhenItStartsAnew) {
+TEST(EnergyGuard, RestartClearsDebtAndFading) {
   PassivityObserver observer(
       {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02, .onset = 0.01});
   observer.book(1);

@@ -113,7 +113,7 @@ TEST_F(WorkspaceWallsTest, StayOffAfterReturnUntilActivated) {
   EXPECT_EQ(moved_.f_T_B, Eigen::Vector3d(1, 0, 0));
 }
 
-TEST_F(WorkspaceWallsTest, LeaveAnArmAloneThatBeginsOutside) {
+TEST_F(WorkspaceWallsTest, DoNotPushAnArmThatStartsOutside) {
   open({-0.2, 0, 0});
   for (int i = 0; i < 400; ++i) tick({-0.2, 0, 0}, {1, 0, 0});
   EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(1, 0, 0));
@@ -132,7 +132,7 @@ TEST_F(WorkspaceWallsTest, StayBelowTheLimitOfTheForce) {
   EXPECT_LT(device_->f_sent_W().x(), -2);
 }
 
-TEST_F(WorkspaceWallsTest, BrakeOnTheWayOutAlone) {
+TEST_F(WorkspaceWallsTest, DampOnlyOutwardMotion) {
   open({0, 0, 0});
   move({0.1, 0, 0}, 200, {0, 0, 0});
   move({0.11, 0, 0}, 20, {0, 0, 0});  // 0.5 m/s
@@ -166,7 +166,7 @@ TEST_F(WorkspaceWallsTest, KeepTheirStrongestForce) {
   EXPECT_GE(device_->wall_counters().f_strongest_W.z(), 4 - 1e-9);
 }
 
-TEST_F(WorkspaceWallsTest, AreNoneUnlessNamed) {
+TEST_F(WorkspaceWallsTest, AreOffUnlessSet) {
   auto opened =
       Device::open(std::make_unique<support::MovedArm>(moved_), support::moved_settings(), 0);
   ASSERT_TRUE(opened);
@@ -177,7 +177,7 @@ TEST_F(WorkspaceWallsTest, AreNoneUnlessNamed) {
   EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(1, 0, 0));
 }
 
-TEST_F(WorkspaceWallsTest, AreRefusedWhereTheyCannotBe) {
+TEST_F(WorkspaceWallsTest, AreRefusedIfInvalid) {
   DeviceSettings settings = support::moved_settings();
   for (const double corner : {0.2, static_cast<double>(NAN)}) {
     settings.walls.min_W = {corner, 0, 0};

@@ -61,7 +61,7 @@ class ZeroForce : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(ZeroForce, IsSaidAgainAtOnceWhenItIsRefused) {
+TEST_F(ZeroForce, IsResentAtOnceWhenRefused) {
   open();
   wire_.refusals = 1;
   device_->deactivate();
@@ -70,7 +70,7 @@ TEST_F(ZeroForce, IsSaidAgainAtOnceWhenItIsRefused) {
   EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));
 }
 
-TEST_F(ZeroForce, IsToldOnlyOnceItWasTaken) {
+TEST_F(ZeroForce, IsReportedOnlyWhenAcknowledged) {
   open();
   wire_.refusals = 3;
   device_->deactivate();
@@ -100,7 +100,7 @@ ServoEnd run_to_end(Device& device, Clock& clock, support::Wire& wire, int refus
   }
 }
 
-TEST_F(ZeroForce, IsInsistedOnAtTheEndOfALoopUntilItIsTaken) {
+TEST_F(ZeroForce, IsRepeatedAtTheEndOfALoopUntilTaken) {
   open();
   VirtualClock clock;
   clock.sleep_until_ns(now_ns_ + kPeriod_ns);
@@ -136,7 +136,7 @@ class DeadClock final : public Clock {
   int sleeps = 0;
 };
 
-TEST_F(ZeroForce, IsInsistedOnNoLongerWithAClockThatStandsStill) {
+TEST_F(ZeroForce, RepetitionEndsWithAStoppedClock) {
   open();
   wire_.refusals = kForGood;
   device_->deactivate();
@@ -160,7 +160,7 @@ class SlowClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-TEST_F(ZeroForce, IsInsistedOnNoLongerWhereEachMessageWaits) {
+TEST_F(ZeroForce, RepetitionEndsIfEachMessageWaits) {
   open();
   wire_.refusals = kForGood;
   device_->deactivate();
@@ -169,14 +169,14 @@ TEST_F(ZeroForce, IsInsistedOnNoLongerWhereEachMessageWaits) {
   EXPECT_EQ(clock.sleeps, 2);  // after them 120 ms are over
 }
 
-TEST_F(ZeroForce, IsInsistedOnByADeviceThatGoes) {
+TEST_F(ZeroForce, IsRepeatedByTheDestructor) {
   open();
   wire_.refusals = 3;  // two at once and one in the next millisecond, by the clock on the wall
   device_.reset();
   EXPECT_TRUE(told_zero());
 }
 
-TEST_F(ZeroForce, IsNotAssuredByAWireThatIsLost) {
+TEST_F(ZeroForce, IsNotAssuredByALostWire) {
   open();
   wire_.lost = true;
   device_->deactivate();
@@ -228,7 +228,7 @@ class LeavingClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-TEST_F(ZeroForce, IsNotAssuredWhileItIsOnItsWay) {
+TEST_F(ZeroForce, IsNotAssuredInTransit) {
   open();
   wire_.settled = TransportStatus::kNothing;
   device_->deactivate();
@@ -241,7 +241,7 @@ TEST_F(ZeroForce, IsNotAssuredWhileItIsOnItsWay) {
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
-TEST_F(ZeroForce, IsSentAgainWhenItFailedOnItsWay) {
+TEST_F(ZeroForce, IsResentWhenItFailedInTransit) {
   open();
   wire_.settled = TransportStatus::kNothing;
   device_->deactivate();
@@ -254,7 +254,7 @@ TEST_F(ZeroForce, IsSentAgainWhenItFailedOnItsWay) {
   EXPECT_TRUE(device_->zero_assured());
 }
 
-TEST_F(ZeroForce, IsNotAssuredWhereTheWireIsLostBeforeItLeft) {
+TEST_F(ZeroForce, IsNotAssuredIfTheWireIsLostInTransit) {
   open();
   wire_.settled = TransportStatus::kNothing;
   device_->deactivate();
@@ -264,7 +264,7 @@ TEST_F(ZeroForce, IsNotAssuredWhereTheWireIsLostBeforeItLeft) {
   EXPECT_FALSE(device_->zero_assured());
 }
 
-TEST_F(ZeroForce, IsNotWhatARefusedTickLeaves) {
+TEST_F(ZeroForce, RefusedTickKeepsThePreviousForce) {
   open();
   wire_.refusals = 10;
   for (int k = 0; k < 10; ++k) {
@@ -277,7 +277,7 @@ TEST_F(ZeroForce, IsNotWhatARefusedTickLeaves) {
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
-TEST_F(ZeroForce, IsBookedAsTheForceThatStandsWhileItIsRefused) {
+TEST_F(ZeroForce, RefusedZeroKeepsThePreviousForceInTheAccount) {
   DeviceSettings settings = support::vintage_settings();
   settings.energy = {
       .stage = EnergyStage::kPassivity, .mass = 0.075, .allowance = 1, .reservoir = 0.02};
@@ -292,7 +292,7 @@ TEST_F(ZeroForce, IsBookedAsTheForceThatStandsWhileItIsRefused) {
   EXPECT_NEAR(before - device_->gate().energy(), 0.5 * way, 0.01 * 0.5 * way);
 }
 
-TEST_F(ZeroForce, FollowsAClockThatStepsBackAndStays) {
+TEST_F(ZeroForce, FollowsABackwardClock) {
   for (const EnergyStage stage : {EnergyStage::kNone, EnergyStage::kPassivity}) {
     DeviceSettings settings = support::vintage_settings();
     settings.energy = {.stage = stage, .mass = 0.075, .allowance = 1, .reservoir = 0.02};
@@ -311,7 +311,7 @@ TEST_F(ZeroForce, FollowsAClockThatStepsBackAndStays) {
   }
 }
 
-TEST_F(ZeroForce, FollowsAClockThatStepsBackInATickWithoutAWrite) {
+TEST_F(ZeroForce, FollowsABackwardClockWithoutAWrite) {
   open();
   now_ns_ -= 10'000'000;
   device_->read(now_ns_, now_ns_);

@@ -136,7 +136,7 @@ void expect_pair(const DoubleDouble& found, Number& number, const std::string& w
   EXPECT_EQ(found.lo, mpfr_get_d(number, MPFR_RNDN)) << what;
 }
 
-TEST(ElementaryByMpfr, TheTablesHoldWhatTheySay) {
+TEST(ElementaryByMpfr, TablesMatchTheirDefinitions) {
   mpfr_set_emin(-5000);
   mpfr_set_emax(5000);
   Number x(1500), pi(1500);

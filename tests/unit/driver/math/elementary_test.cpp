@@ -27,7 +27,7 @@ void expect_same(double found, double wanted) {
   }
 }
 
-TEST(Elementary, GivesTheStoredBitsOnEveryProcessorByEveryCompiler) {
+TEST(Elementary, IsBitIdenticalOnEveryProcessorAndCompiler) {
   // Stored where each result was the one of MPFR (elementary_mpfr_test.cpp).
   for (const Trial& trial : trials()) {
     support::Random random(std::uint64_t{11});
@@ -114,7 +114,7 @@ TEST(Elementary, PowersOfTheExtremesAreThoseOfTheCLibrary) {
   expect_same(pow(-8, 2), kNan);
 }
 
-TEST(Elementary, RunsUphillOnEachSideOfItsJoints) {
+TEST(Elementary, IsMonotonicAcrossItsPieces) {
   // Where one table entry, one series or one range of angles ends and the next begins.
   const auto uphill = [](double (*f)(double), double at) {
     double x = at;
@@ -176,7 +176,7 @@ TEST(Elementary, SineAndCosineAreWithinOneUlp) {
   EXPECT_EQ(hash.value(), 0xb69a902ec97f98feu) << std::hex << hash.value();
 }
 
-TEST(Elementary, SineAndCosineAtOnceHoldAroundEachStepOfTheirTable) {
+TEST(Elementary, SineCosinePairIsAccurateAtEachTableStep) {
   for (int i = -200; i <= 200; ++i) {
     for (const double beside : {0.0, 0x1p-50, 0x1p-30, 0x1p-21, 0x1p-20, 0x1p-19, 0x1.9p-7}) {
       for (const double sign : {-1, 1}) {
@@ -188,7 +188,7 @@ TEST(Elementary, SineAndCosineAtOnceHoldAroundEachStepOfTheirTable) {
   }
 }
 
-TEST(RoughArc, IsNoFartherFromTheTrueAngleThanItSays) {
+TEST(RoughArc, ErrorIsWithinItsReportedBound) {
   support::Random random(12);
   int known = 0;
   for (int i = 0; i < 200000; ++i) {

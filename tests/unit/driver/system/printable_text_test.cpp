@@ -43,7 +43,7 @@ TEST(PrintableText, ReplacesLineFeedsOfNamesOnly) {
   EXPECT_EQ(printable_name("a\nb\tc"), "a?b?c");
 }
 
-TEST(PrintableText, IsPrintableAlready) {
+TEST(PrintableText, LeavesPrintableTextUnchanged) {
   auto state = static_cast<std::uint32_t>(support::seed_of(1));
   for (int round = 0; round < 2000; ++round) {
     std::string text;

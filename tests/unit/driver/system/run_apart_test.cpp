@@ -15,7 +15,7 @@
 namespace thimble::driver {
 namespace {
 
-TEST(RunApart, GivesWhatTheWorkGives) {
+TEST(RunApart, ReturnsTheResultOfTheWork) {
   const std::string much(20'000'000, 'x');
   const auto done = run_apart([&] { return much; }, {});
   ASSERT_TRUE(done.ok()) << done.error().message;
@@ -23,7 +23,7 @@ TEST(RunApart, GivesWhatTheWorkGives) {
   EXPECT_EQ(*run_apart([] { return std::string(); }, {}), "");
 }
 
-TEST(ApartReader, TakesNoMoreThanIsThere) {
+TEST(ApartReader, NeverReadsBeyondItsBytes) {
   const auto written = run_apart(
       [](ApartWriter& out) {
         const double numbers[] = {1, 2, 3};

@@ -15,7 +15,7 @@ HidReports read(const Bytes& bytes) {
   return read_hid_descriptor(std::as_bytes(std::span(bytes)));
 }
 
-TEST(HidDescriptor, TellsPageUsageAndLengthsOfTheRawExamples) {
+TEST(HidDescriptor, ReadsPageUsageAndLengthsOfRawHid) {
   const HidReports reports = read(support::raw_hid_descriptor(14, 8));
   EXPECT_EQ(reports, (HidReports{.usage_page = 0xffab,
                                  .usage = 0x0200,
@@ -60,12 +60,12 @@ TEST(HidDescriptor, PassesOverALongItemAndReadsOn) {
   EXPECT_EQ(read(torn).in_bytes, 8u);
 }
 
-TEST(HidDescriptor, SaysThatReportsAreNumbered) {
+TEST(HidDescriptor, DetectsNumberedReports) {
   const std::vector<unsigned char> numbered = {0x85, 0x01, 0x75, 0x08, 0x95, 0x08, 0x81, 0x02};
   EXPECT_TRUE(read(numbered).numbered);
 }
 
-TEST(HidDescriptor, TakesAnyBytesAndSaysNothingBeyond64KB) {
+TEST(HidDescriptor, AcceptsAnyBytesAndBoundsLengthsAt64KB) {
   support::Random random(16);
   for (int i = 0; i < 20'000; ++i) {
     std::vector<unsigned char> bytes(random.bits() % 64);

@@ -68,7 +68,7 @@ TEST(NodeLock, LetsOneUseANodeAndGivesItBack) {
   EXPECT_TRUE(NodeLock::take(node));
 }
 
-TEST(NodeLock, NamesTheProgramThatHasTheNodeWhetherItLocksOrNot) {
+TEST(NodeLock, NamesTheProgramThatHasTheNode) {
   const std::string node = some_node("lock_other");
   for (const bool locks : {true, false}) {
     {
@@ -88,7 +88,7 @@ TEST(NodeLock, NamesTheProgramThatHasTheNodeWhetherItLocksOrNot) {
   }
 }
 
-TEST(NodeLock, SeesWhoHasANodeOnAnyMachine) {
+TEST(NodeLock, FindsTheHolderInAnyRoot) {
   const support::FakeUsb usb("lock_holder");
   usb.write("proc/77/comm", "steam");
   std::filesystem::create_directories(usb.root() / "proc/77/fd");
@@ -100,7 +100,7 @@ TEST(NodeLock, SeesWhoHasANodeOnAnyMachine) {
   EXPECT_FALSE(find_holder("/dev/hidraw4", usb.root()));
 }
 
-TEST(NodeLock, NamesWhatIsWrongWithANode) {
+TEST(NodeLock, OpenErrorNamesTheReason) {
   const auto missing = NodeLock::take("/dev/no_such_arm");
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("plugged in"), std::string::npos);

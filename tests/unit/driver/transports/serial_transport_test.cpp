@@ -80,7 +80,7 @@ TEST_F(SerialTransportTest, CarriesEveryByteUnchangedBothWays) {
   EXPECT_EQ(read(), "[3,1,2,3,4,5,6,0]");
 }
 
-TEST_F(SerialTransportTest, SetsTheRateOfAPortThatIsARealOne) {
+TEST_F(SerialTransportTest, SetsTheBaudRateOfTheDevice) {
   open();
   termios settings{};
   ASSERT_EQ(tcgetattr(far_, &settings), 0);
@@ -88,7 +88,7 @@ TEST_F(SerialTransportTest, SetsTheRateOfAPortThatIsARealOne) {
   EXPECT_EQ(cfgetispeed(&settings), speed_t{B115200});
 }
 
-TEST_F(SerialTransportTest, ForgetsWhatCameBeforeItWasOpened) {
+TEST_F(SerialTransportTest, DropsBytesReceivedBeforeOpening) {
   const int before = ::open(ptsname(far_), O_RDWR | O_NOCTTY);
   ASSERT_GE(before, 0);
   say("[9]\n");
@@ -111,7 +111,7 @@ TEST_F(SerialTransportTest, JoinsPiecesAndTakesTheNewest) {
   EXPECT_EQ(last_.skipped, 2u);
 }
 
-TEST_F(SerialTransportTest, SaysThatTheArmIsGoneWhenThePortHangsUp) {
+TEST_F(SerialTransportTest, HangUpIsALostArm) {
   open();
   hang_up();
   read();
@@ -150,7 +150,7 @@ TEST_F(SerialTransportTest, CompletesAMessageThatWasTorn) {
   EXPECT_EQ(heard.substr(heard.size() - 5), "\n[2]\n");
 }
 
-TEST_F(SerialTransportTest, OutlivesSignals) {
+TEST_F(SerialTransportTest, SurvivesSignals) {
   open();
   struct sigaction noted {};
   noted.sa_handler = [](int) {};  // and no SA_RESTART
@@ -173,7 +173,7 @@ TEST_F(SerialTransportTest, OutlivesSignals) {
   EXPECT_NE(last_.status, TransportStatus::kLost);
 }
 
-TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {
+TEST_F(SerialTransportTest, OpenErrorNamesTheReason) {
   const auto missing = open_serial_transport("/dev/no_such_arm", hfab::kLineFraming, clock_);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("plugged in"), std::string::npos);
@@ -193,7 +193,7 @@ TEST_F(SerialTransportTest, BelongsToOneUserAtATime) {
   open();
 }
 
-TEST_F(SerialTransportTest, SendsNothingByBeingOpened) {
+TEST_F(SerialTransportTest, OpeningSendsNothing) {
   open();
   EXPECT_EQ(hear(), "");
   wire_.reset();

@@ -125,7 +125,7 @@ TEST_F(StreamTransportTest, WaitsForASilentArmOnlyOnce) {
   EXPECT_EQ(wire_.counters().unanswered, 20u);
 }
 
-TEST_F(StreamTransportTest, GoesOnAfterALostAnswer) {
+TEST_F(StreamTransportTest, ContinuesAfterALostAnswer) {
   wire_.silent = true;
   write();
   wire_.silent = false;
@@ -157,7 +157,7 @@ TEST_F(StreamTransportTest, StaysLostOnceTheWireIsGone) {
   EXPECT_EQ(write(), TransportStatus::kLost);
 }
 
-TEST_F(StreamTransportTest, PassesARefusalOn) {
+TEST_F(StreamTransportTest, ForwardsARefusal) {
   wire_.full = true;
   EXPECT_EQ(write(), TransportStatus::kRefused);
 }

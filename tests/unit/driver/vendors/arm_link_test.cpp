@@ -27,7 +27,7 @@ constexpr bool takes(const Force* = nullptr) {
   };
 }
 
-TEST(ArmLink, TakesNoForceThatDidNotPassTheGate) {
+TEST(ArmLink, AcceptsOnlyForcesFromTheGate) {
   static_assert(takes<GatedForce>());
   static_assert(!takes<Vector3d>());
   static_assert(!takes<ForceCommand>());
@@ -79,7 +79,7 @@ class PoseArmTest : public ::testing::Test {
   std::int64_t ticks_ = 0;
 };
 
-TEST_F(PoseArmTest, TellsALawWhatTheArmMeasuresInTheWorld) {
+TEST_F(PoseArmTest, LawGetsMeasuredValuesInTheWorldFrame) {
   arm_.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   arm_.p_BH = {0.01, 0, 0};
   arm_.buttons = 5;
@@ -103,7 +103,7 @@ TEST_F(PoseArmTest, TellsALawWhatTheArmMeasuresInTheWorld) {
   EXPECT_NEAR(state.counts[0], arm_.p_BT.x() * 1e6, 0.5);
 }
 
-TEST_F(PoseArmTest, GetsTheGatedForceInItsBaseAndItsOwnLimitIsTold) {
+TEST_F(PoseArmTest, GetsGatedForceInItsBaseAndReportsScale) {
   open(settings());
   ticks(400, {0, 1, 0});
   // World y is the arm's x.
@@ -131,7 +131,7 @@ TEST_F(PoseArmTest, OpensSoftlyAndSendsZeroWheneverItIsIdle) {
   EXPECT_TRUE(device_->zero_assured());
 }
 
-TEST_F(PoseArmTest, GoesOffByNameWhenItIsLostSilentOrRefuses) {
+TEST_F(PoseArmTest, LostSilentOrRefusingArmHasItsFault) {
   const auto trouble = [&](bool support::PoseArm::*kind) {
     device_.reset();
     arm_ = arm_from_now();
@@ -157,7 +157,7 @@ TEST_F(PoseArmTest, GoesOffByNameWhenItIsLostSilentOrRefuses) {
   EXPECT_TRUE(arm_.f_T_B.isZero(0));
 }
 
-TEST_F(PoseArmTest, IsNoticedWhenItTellsOldPositionsUnderAForce) {
+TEST_F(PoseArmTest, OldPositionsUnderAForceAreDetected) {
   open(settings());
   arm_.p_BH = {0.05, 0, 0};  // a stroke
   ticks(60, {0, 0, 0.5});
@@ -168,7 +168,7 @@ TEST_F(PoseArmTest, IsNoticedWhenItTellsOldPositionsUnderAForce) {
   EXPECT_EQ(device_->fault(), Fault::kCountsUnchanged);
 }
 
-TEST_F(PoseArmTest, HoldsTheLimitOfSpeedForWhatItDidAndForWhatItSays) {
+TEST_F(PoseArmTest, SpeedLimitCoversComputedAndReportedSpeed) {
   open(settings());
   ticks(10, {0, 0, 0});
   arm_.v_BT = {4, 0, 0};  // says so, beyond 3 m/s
@@ -177,7 +177,7 @@ TEST_F(PoseArmTest, HoldsTheLimitOfSpeedForWhatItDidAndForWhatItSays) {
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
 }
 
-TEST_F(PoseArmTest, HoldsTheLimitOfSpeedOfATipThatSaysItStands) {
+TEST_F(PoseArmTest, SpeedLimitHoldsIfTheArmReportsZeroSpeed) {
   arm_.says_still = true;
   arm_.stiffness = arm_.damping = 0;
   open(settings());
@@ -192,7 +192,7 @@ TEST_F(PoseArmTest, HoldsTheLimitOfSpeedOfATipThatSaysItStands) {
   EXPECT_TRUE(device_->state().v_WT.isZero(0));
 }
 
-TEST_F(PoseArmTest, IsSwitchedOffIfItsOrientationIsNoNumber) {
+TEST_F(PoseArmTest, OrientationThatIsNotFiniteIsAFault) {
   open(settings());
   ticks(10, {0, 0, 0});
   const Matrix3d before = device_->state().R_WT;
@@ -203,7 +203,7 @@ TEST_F(PoseArmTest, IsSwitchedOffIfItsOrientationIsNoNumber) {
   EXPECT_TRUE(arm_.f_T_B.isZero(0));
 }
 
-TEST_F(PoseArmTest, ComesBackOverANewLinkToTheSameArmAndToNoOther) {
+TEST_F(PoseArmTest, ReturnsOnlyThroughALinkToTheSameArm) {
   open(settings());
   ticks(350, {0, 1, 0});
   arm_.lost = true;
@@ -231,7 +231,7 @@ TEST_F(PoseArmTest, ComesBackOverANewLinkToTheSameArmAndToNoOther) {
   device_.reset();  // before the arm that it ends with
 }
 
-TEST_F(PoseArmTest, HasNoHeatThatAnybodyCouldKnow) {
+TEST_F(PoseArmTest, RefusesHeatSettingsWithoutMotors) {
   DeviceSettings warm = settings();
   warm.heat = {.continuous_current = {1, 1, 1}, .time_constant = {60, 60, 60}};
   const auto opened = Device::open(std::make_unique<support::PoseLink>(arm_, clock_), warm, 0);
@@ -239,7 +239,7 @@ TEST_F(PoseArmTest, HasNoHeatThatAnybodyCouldKnow) {
   EXPECT_NE(opened.error().message.find("does not report its motor currents"), std::string::npos);
 }
 
-TEST_F(PoseArmTest, BooksWhatItsForceDidToTheHand) {
+TEST_F(PoseArmTest, AccountsForTheWorkOnTheHand) {
   // A wall that gives energy: its spring is stiffer on the way out. Force times way of the arm that
   // holds its force is what the gate's account must come to.
   DeviceSettings guarded = settings();
@@ -262,7 +262,7 @@ TEST_F(PoseArmTest, BooksWhatItsForceDidToTheHand) {
   EXPECT_NEAR(device_->gate().energy(), -work, 1e-9);
 }
 
-TEST_F(PoseArmTest, IsDampedByTheEnergyStageAsAnyArm) {
+TEST_F(PoseArmTest, EnergyStageDampsItLikeAnyArm) {
   const auto given = [&](EnergyStage stage) {
     device_.reset();
     arm_ = arm_from_now();

@@ -37,7 +37,7 @@ class DhdLinkTest : public VendorLinkTest<ForceDimension> {
   }
 };
 
-TEST_F(DhdLinkTest, TellsPoseGripperAndButtonsAndGivesTheGatedForce) {
+TEST_F(DhdLinkTest, ReadsPoseGripperAndButtonsAndSendsForce) {
   EXPECT_EQ(library_.version, "3.17.5");
   mock_->wrist = mock_->gripper = true;
   mock_->arm.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -71,7 +71,7 @@ TEST_F(DhdLinkTest, UncalibratedArmGetsNoForceOrMotion) {
   ASSERT_NO_FATAL_FAILURE(open());
 }
 
-TEST_F(DhdLinkTest, SaysWhyAnArmCannotBeOpened) {
+TEST_F(DhdLinkTest, OpenErrorNamesTheReason) {
   const auto message = [&] {
     const auto link = dhd::open_link(library_, clock_);
     return link ? std::string() : link.error().message;
@@ -129,14 +129,14 @@ TEST_F(DhdLinkTest, OneLinkOwnsTheLibrary) {
   EXPECT_FALSE(dhd::find_zero(library_)) << "the arm would be closed at its end";
 }
 
-TEST_F(DhdLinkTest, ALoopThatStandsStillLosesItsForce) {
+TEST_F(DhdLinkTest, StalledLoopLosesItsForce) {
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_EQ(force_of_arm(), Vector3d(0, 0, 0));
 }
 
-TEST_F(DhdLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
+TEST_F(DhdLinkTest, DoesNotAllocateOnTheServoThread) {
   ASSERT_NO_FATAL_FAILURE(open());
   int calls = 0, ticks = 100;
   ticks_until({0.1, 0, 0}, [&] {

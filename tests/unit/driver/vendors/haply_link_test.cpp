@@ -147,7 +147,7 @@ TEST_F(HaplyLinkTest, SendsTheGatedForceInTheBaseFrame) {
   }
 }
 
-TEST_F(HaplyLinkTest, TellsHowTheGripIsTurned) {
+TEST_F(HaplyLinkTest, ReportsTheOrientationOfTheGrip) {
   greet(HaplyGreeting::kWithGrip);
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(50, {0, 0, 0});
@@ -158,7 +158,7 @@ TEST_F(HaplyLinkTest, TellsHowTheGripIsTurned) {
   EXPECT_EQ(device_->state().buttons, 2);
 }
 
-TEST_F(HaplyLinkTest, EndsWithZeroForceAndClosesAsItShould) {
+TEST_F(HaplyLinkTest, EndsWithZeroForceAndAWebSocketClose) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->f_sent_W().x() > 0.3; }));
@@ -199,7 +199,7 @@ TEST_F(HaplyLinkTest, SendsNothingToAnUnprovenService) {
   }
 }
 
-TEST_F(HaplyLinkTest, SaysWhenNobodyListens) {
+TEST_F(HaplyLinkTest, ReportsAMissingServer) {
   greet();
   const std::uint16_t port = service_->port();
   service_.reset();
@@ -209,7 +209,7 @@ TEST_F(HaplyLinkTest, SaysWhenNobodyListens) {
             std::string::npos);
 }
 
-TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndTellsItNothing) {
+TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndSendsNothing) {
   greet();
   const auto arms = haply::find_arms(service_->port());
   ASSERT_TRUE(arms) << arms.error().message;
@@ -266,7 +266,7 @@ TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
   }
 }
 
-TEST_F(HaplyLinkTest, CountsWhatCannotBeUnderstood) {
+TEST_F(HaplyLinkTest, CountsInvalidMessages) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(20, {0, 0, 0});
@@ -275,7 +275,7 @@ TEST_F(HaplyLinkTest, CountsWhatCannotBeUnderstood) {
   EXPECT_TRUE(ticks_until({0, 0, 0}, [&] { return device_->wire_counters().rejected > 5; }));
 }
 
-TEST_F(HaplyLinkTest, AnAnswerThatIsLeftOutEndsNothing) {
+TEST_F(HaplyLinkTest, ContinuesAfterAMissingAnswer) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   service_->begin(HaplyMischief::kLeavesOneOut);
@@ -319,7 +319,7 @@ TEST_F(HaplyLinkTest, LeavesTheServiceWhenTheArmIsGone) {
   EXPECT_TRUE(service_->log().closed_by_client);
 }
 
-TEST_F(HaplyLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
+TEST_F(HaplyLinkTest, DoesNotAllocateOnTheServoThread) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(20, {0.1, 0, 0});

@@ -30,7 +30,7 @@ struct OpenHaptics {
 
 using HdLinkTest = VendorLinkTest<OpenHaptics>;
 
-TEST_F(HdLinkTest, TellsPoseAndButtonsInMetresAndGivesTheGatedForce) {
+TEST_F(HdLinkTest, ReadsPoseInMetresAndSendsTheGatedForce) {
   mock_->arm.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   mock_->arm.buttons = 2;
   ASSERT_NO_FATAL_FAILURE(open());
@@ -56,7 +56,7 @@ TEST_F(HdLinkTest, ClampsToTheNominalForce) {
   EXPECT_NEAR(device_->f_sent_W().norm(), 0.5, 1e-9);
 }
 
-TEST_F(HdLinkTest, AnArmThatIsNotCalibratedGetsNoForce) {
+TEST_F(HdLinkTest, UncalibratedArmGetsNoForce) {
   mock_->calibrated = false;
   const auto link = hd::open_link(library_, clock_);
   ASSERT_FALSE(link);
@@ -70,7 +70,7 @@ TEST_F(HdLinkTest, AnArmThatIsNotCalibratedGetsNoForce) {
   ASSERT_NO_FATAL_FAILURE(open());
 }
 
-TEST_F(HdLinkTest, SaysWhyAnArmCannotBeOpened) {
+TEST_F(HdLinkTest, OpenErrorNamesTheReason) {
   mock_->there = false;
   const auto link = hd::open_link(library_, clock_);
   ASSERT_FALSE(link);
@@ -112,7 +112,7 @@ TEST_F(HdLinkTest, OneLinkOwnsTheLibrary) {
   EXPECT_FALSE(hd::how_to_calibrate(library_));
 }
 
-TEST_F(HdLinkTest, ALoopThatStandsStillLosesItsForce) {
+TEST_F(HdLinkTest, StalledLoopLosesItsForce) {
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(200));

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(NewestSlot, GivesTheNewestOnce) {
+TEST(NewestSlot, ReturnsTheNewestValueOnce) {
   NewestSlot<int> slot;
   int value = 0;
   EXPECT_FALSE(slot.take(value));
@@ -24,7 +24,7 @@ TEST(NewestSlot, GivesTheNewestOnce) {
   EXPECT_FALSE(slot.take(value));
 }
 
-TEST(NewestSlot, NeverGivesAHalfOrAnOlderValueToAnotherThread) {
+TEST(NewestSlot, ConcurrentReadsAreCompleteAndOrdered) {
   struct Wide {
     std::array<int, 64> same{};
   };
@@ -83,7 +83,7 @@ TEST(ForceBox, ZeroIsSettledOnceTheOtherThreadHasIt) {
   EXPECT_TRUE(box.zero_settled());
 }
 
-TEST(ForceBox, EveryForceThatWasTakenInGoesOutOnceAndInOrder) {
+TEST(ForceBox, EveryAcceptedForceIsSentOnceInOrder) {
   ForceBox box;
   constexpr int kForces = 500;
   std::atomic<bool> done{false};
@@ -125,7 +125,7 @@ class OpenSlotLink final : public SlotLink {
   using SlotLink::take_force;
 };
 
-TEST(SlotLink, AForceThatWasRefusedNeverGoesOut) {
+TEST(SlotLink, RefusedForceIsNeverSent) {
   VirtualClock clock;
   OpenSlotLink link({}, clock);
   const GatedForce force = support::open_gate().pass({0.5, 0, 0}, {0, 0, 0}, 0.009);

@@ -36,7 +36,7 @@ void expect_complaint(Mock& mock, const std::string& words, const std::function<
   EXPECT_EQ(mock.wrong.front(), words);
 }
 
-TEST(MockDhd, ComplainsOfEachCallThatIsOutOfOrder) {
+TEST(MockDhd, ReportsEachCallThatIsOutOfOrder) {
   const auto library = dhd::load(THIMBLE_MOCK_DHD);
   ASSERT_TRUE(library) << library.error().message;
   const dhd::Functions& call = library->call;
@@ -156,7 +156,7 @@ struct Turn {
   }
 };
 
-TEST(MockHd, ComplainsOfEachCallThatIsOutOfOrder) {
+TEST(MockHd, ReportsEachCallThatIsOutOfOrder) {
   const auto library = hd::load(THIMBLE_MOCK_HD);
   ASSERT_TRUE(library) << library.error().message;
   const hd::Functions& call = library->call;
