@@ -25,7 +25,7 @@ ArmPlant plant_with(const SimulatedArmSettings& settings, const Eigen::Vector3d&
   return made_with(settings, p_BT).value();
 }
 
-// Currents that make this force in the pose q, A.
+// Returns the currents (A) that exert this force in the pose q.
 Eigen::Vector3d currents_for(const Eigen::Vector3d& f_T_B, const Eigen::Vector3d& q) {
   const auto model = support::vintage_model();
   Eigen::Vector3d amperes = model.geometry.jacobian(q).transpose() * f_T_B;
@@ -56,7 +56,7 @@ TEST(ArmPlant, SaturatesEachMotor) {
   EXPECT_EQ(plant.currents(), Eigen::Vector3d(0, 3, 0));
 }
 
-// Moves a free arm fast under constant torque for 40 ms in sub-steps of this length.
+// Accelerates a free arm under constant torque for 40 ms, in sub-steps of the given length.
 Eigen::Vector3d oscillation(std::int64_t step_ns) {
   ArmPlant plant = plant_with(free_arm(), home_tip());
   plant.set_currents({1.0, 0.8, -0.6});

@@ -61,7 +61,7 @@ TEST(AxisDynamics, MatchesAnIndependentIntegratorThroughAllEvents) {
     reversals += axis.counters().reversals;
     breakaways += axis.counters().breakaways;
   }
-  // The cases must have met what they are here to test.
+  // The cases must include the events that they test.
   EXPECT_GT(reversals, 200U);
   EXPECT_GT(breakaways, 10U);
 }
@@ -144,8 +144,8 @@ TEST(AxisDynamics, BreaksLooseAtTheExpectedTime) {
 }
 
 TEST(AxisDynamics, FindsAReversalInsideAStep) {
-  // Thrown against the spring of a hand that runs away, the axis stops, is held and leaves again in
-  // its old direction, all within one step.
+  // The axis moves against the spring of a receding hand. It stops, is held by friction and moves
+  // on in its old direction, all within one step.
   const PlantSettings plant{.mass = 0.01, .viscous = 0, .coulomb = 0.05};
   HandSettings hand;
   hand.stiffness = 2000;

@@ -11,8 +11,8 @@
 namespace thimble::device_sim {
 namespace {
 
-// The closed forms, in extended precision and regime by regime: everything that AxisResponse
-// avoids.
+// The closed forms in extended precision, one per damping regime; AxisResponse uses a different
+// method.
 long double exact_impulse(long double damping, long double stiffness, long double t) {
   const long double gamma = damping / 2, square = gamma * gamma - stiffness;
   const long double decay = std::exp(-gamma * t);

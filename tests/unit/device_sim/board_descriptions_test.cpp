@@ -1,5 +1,5 @@
-// What the boards say of themselves, byte for byte as the sources of their libraries have it. The
-// bytes stand here a second time, typed from those sources and not from the code under test.
+// USB descriptors of the boards, byte for byte as in the sources of their libraries. The bytes were
+// typed from those sources, independently of the code under test.
 #include "usb/board_descriptions.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::string text_of(const UsbDescription& d, std::uint8_t index) {
   return text;
 }
 
-/// Asks a plugged arm for a descriptor as a host does.
+/// Requests a descriptor from a plugged arm, as a host does.
 std::vector<std::byte> asked(const char* name, std::uint8_t request_type, std::uint8_t kind,
                              std::uint16_t index) {
   auto arm = make_usb_arm(name, {});

@@ -14,7 +14,7 @@
 #include "thimble/driver/wire_link.h"
 #include "vintage_simulation.h"
 
-// What a simulated arm speaks is what its kind of arm speaks, and the driver's own arm understands.
+// The simulated arm uses the protocol of its kind of arm, and the driver decodes it.
 
 namespace thimble::device_sim {
 namespace {
@@ -136,12 +136,12 @@ TEST(SimulatedGimbal, IsReadThroughTheBytesOfTheWire) {
       ASSERT_LE((sample.gimbal - arm.gimbal()).cwiseAbs().maxCoeff(), 0.5 * step + 1e-9) << k;
       const Eigen::Matrix3d R_true = model.geometry.last_link(arm.plant().q(), arm.plant().p_BT()) *
                                      model.gimbal->rotation(arm.gimbal());
-      // Three axes, half a step each, and the links' own steps.
+      // Half a step for each of three axes, and the steps of the links.
       ASSERT_LT((sample.R_BT - R_true).norm(), 3 * step) << k;
       if (k == 0) first = sample.R_BT;
       turned = std::max(turned, (sample.R_BT - first).norm());
     }
-    EXPECT_GT(turned, 1) << "a gimbal that does not turn shows nothing";
+    EXPECT_GT(turned, 1) << "a gimbal that does not turn proves nothing";
   }
 }
 

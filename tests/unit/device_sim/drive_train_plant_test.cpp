@@ -27,7 +27,7 @@ Eigen::Vector3d link_angles(const SerialDriveTrainPlant& plant) {
   return support::vintage_model().geometry.inverse(plant.p_BT()).value();
 }
 
-/// A free arm whose motors turn the links by cables that stretch.
+/// A free arm whose motors turn the links through elastic cables.
 SimulatedArmSettings compliant_arm(double damping = 0) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.inertia.setConstant(1e-3);
@@ -59,7 +59,7 @@ TEST(DriveTrainPlant, RigidDriveTrainIsTheIdealArm) {
     plant.set_currents(amperes);
     ideal.set_currents(amperes);
     plant.step(home_tip(), kMillisecond);
-    // In sub-steps as short as the other's.
+    // In sub-steps as short as those of the other plant.
     for (int part = 0; part < 40; ++part) ideal.step(home_tip(), kMillisecond / 40);
     ASSERT_LT((plant.p_BT() - ideal.p_BT()).norm(), 1e-12);
     ASSERT_LT((plant.q() - ideal.q()).norm(), 1e-11);
@@ -78,15 +78,15 @@ TEST(DriveTrainPlant, CurrentLagMatchesItsClosedForm) {
     plant.step(home_tip(), kMillisecond);
     const double t = 1e-3 * k, risen = -std::expm1(-t / kLag);
     ASSERT_NEAR(plant.currents().x(), kAmperes * risen, 1e-15);
-    // From now on the tip moves along y by what the currents have added up to.
+    // From now on the motion of the tip along y is the integral of the currents.
     ASSERT_NEAR(plant.v_BT().y() / (a * (t - kLag * risen)), 1, 1e-6);
     const double way = a * (t * t / 2 - kLag * t + kLag * kLag * risen);
     ASSERT_NEAR((plant.p_BT() - home_tip()).y(), way, 5e-4 * std::abs(way));
   }
 }
 
-/// What the cable of the yaw is stretched by at a time (s) after its motor began to pull with
-/// kYawTorque times `amperes`, rad: a free oscillation of two masses.
+/// Returns the stretch (rad) of the yaw cable at a time (s) after its motor began to pull with
+/// kYawTorque times `amperes`: a free oscillation of two masses.
 double stretch_at(double t, double amperes, double damping) {
   const double per_inertia = 1 / 1e-3 + kYawTurn * kYawTurn / 0.1;
   const double w2 = 200 * per_inertia, decay = 0.5 * damping * per_inertia;
@@ -112,7 +112,7 @@ TEST(DriveTrainPlant, OscillatesLikeTwoMassesOnACable) {
 
 TEST(DriveTrainPlant, CablesConserveEnergy) {
   SerialDriveTrainPlant plant = plant_with(compliant_arm());
-  // A push of 1 ms, and free from then on.
+  // A push of 1 ms, then free motion.
   plant.set_currents({0.02, 0.03, -0.01});
   plant.step(home_tip(), kMillisecond);
   plant.set_currents({0, 0, 0});
@@ -145,7 +145,7 @@ TEST(DriveTrainPlant, MotorCrossesBacklashWithoutForceOnTheTip) {
     for (int k = 0; k < 100'000; ++k) {
       const double before = stretched();
       plant.step(home_tip(), SerialDriveTrainPlant::kSubStep_ns);
-      // Well inside the play at both ends of the sub-step.
+      // Well inside the backlash at both ends of the sub-step.
       if (std::max(std::abs(before), std::abs(stretched())) > 0.4 * kPlay) continue;
       ++slack;
       ASSERT_EQ(plant.f_T_B().y(), 0);

@@ -21,7 +21,7 @@ driver::SerialArm geometry() {
   return support::vintage_model().geometry;
 }
 
-/// An arm without friction at its tip, whose joints rub.
+/// An arm with friction in its joints and none at its tip.
 SimulatedArmSettings rubbing_arm(const Vector3d& coulomb, const Vector3d& viscous) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.coulomb = coulomb;
@@ -33,12 +33,12 @@ LinkedSerialPlant plant_with(const SimulatedArmSettings& settings, const Vector3
   return LinkedSerialPlant::make(support::vintage_model(), settings, p_BT, p_BT).value();
 }
 
-/// Where the tip is, moving as it is told (m/s).
+/// Sets the velocity of the tip (m/s) in its present pose.
 void set_off(LinkedSerialPlant& plant, const Vector3d& v_BT) {
   plant.put({.p_BT = plant.p_BT(), .v_BT = v_BT, .q_rotor = plant.q()});
 }
 
-/// The moment of the tip's momentum about the axis that joint A turns about, kg m^2/s.
+/// Returns the angular momentum of the tip about the axis of joint A, kg m^2/s.
 double moment_about_a(const LinkedSerialPlant& plant, double mass) {
   const Vector3d lever = geometry().jacobian(plant.q()).col(0);
   return mass * lever.dot(plant.v_BT());
@@ -90,7 +90,8 @@ TEST(DryFriction, TipAndJointFrictionIsTheUniqueSolution) {
     const Vector3d momentum = any();
     const Vector3d before = trial % 3 == 0 ? Vector3d(0, 0, 0) : any();
     const Vector3d v = velocity_after_friction(inertia, momentum, friction, before);
-    // Of all velocities it has the least energy beside what friction takes; so a little off costs.
+    // The solution minimises kinetic energy plus the energy lost to friction, so any small
+    // deviation costs energy.
     const auto cost = [&](const Vector3d& at) {
       return 0.5 * at.dot(inertia * at) - momentum.dot(at) + friction.tip * at.lpNorm<1>() +
              friction.joints.dot((friction.G * at).cwiseAbs());
@@ -119,7 +120,7 @@ TEST(DryFriction, JointFrictionReducesItsMomentumUniformly) {
   constexpr double kTorque = 0.004;
   const SimulatedArmSettings settings = rubbing_arm({kTorque, 0, 0}, {0, 0, 0});
   LinkedSerialPlant plant = plant_with(settings, home_tip());
-  // Across the plane of the links, and a little outwards, which the joint does not feel.
+  // Across the plane of the links, and a little outwards, which does not turn the joint.
   const Vector3d across = geometry().jacobian(plant.q()).col(0).normalized();
   set_off(plant, 0.1 * across + Vector3d(0, 0, 0.01));
   const double moment = moment_about_a(plant, settings.plant.mass);
@@ -134,7 +135,7 @@ TEST(DryFriction, JointFrictionReducesItsMomentumUniformly) {
                 1e-4 * std::abs(moment) + 1e-4 * kTorque)
         << time;
   }
-  EXPECT_NEAR(plant.v_BT().z(), 0.01, 1e-9) << "no other joint rubs";
+  EXPECT_NEAR(plant.v_BT().z(), 0.01, 1e-9) << "no other joint has friction";
 }
 
 TEST(DryFriction, JointFrictionDissipatesTorqueTimesAngle) {

@@ -29,12 +29,12 @@ TEST(Hand, LimitsItsSpeedAndNeverJumps) {
   Eigen::Vector3d before = hand.at(0);
   Eigen::Vector3d v_before(0, 0, 0);
   for (int i = 1; i < 4000; ++i) {
-    // Somebody throws the mouse about.
+    // The mouse is moved violently.
     hand.lead({i / 700 % 2 == 0 ? 0.5 : -0.5, i / 300 % 2 == 0 ? 0.0 : 0.3, 0});
     const Eigen::Vector3d now = hand.at(i * kMs);
     const Eigen::Vector3d v = (now - before) / 1e-3;
     EXPECT_LE(v.norm(), 1.0001 * Hand::kSpeedMax) << i;
-    // Twice the pull, when it is turned round at full speed.
+    // Twice the acceleration, if it reverses at full speed.
     EXPECT_LE((v - v_before).norm() / 1e-3, 4.01 * Hand::kQuickness * Hand::kSpeedMax) << i;
     before = now;
     v_before = v;
@@ -62,7 +62,7 @@ TEST(Hand, PausesWhileHeldAndContinuesFromThere) {
   hand.hold(false);
   EXPECT_DOUBLE_EQ(hand.at(800 * kMs).x(), here);
   EXPECT_NEAR(hand.at(900 * kMs).x(), here + 0.01, 1e-12);
-  // Led, it stands still as well.
+  // A led hand also pauses.
   hand.lead({0.1, 0.1, 0});
   hand.at(920 * kMs);
   const Eigen::Vector3d led = hand.at(921 * kMs);

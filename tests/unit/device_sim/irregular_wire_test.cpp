@@ -28,7 +28,7 @@ SimulatedArmSettings irregular(std::int64_t jitter_ns, double loss) {
   return settings;
 }
 
-/// Takes reports for so many periods; returns how late each came after its least delay, ns.
+/// Reads reports for `periods` periods; returns the delay of each beyond the minimum delay, ns.
 std::vector<std::int64_t> lateness(SimulatedArm& arm, int periods) {
   std::vector<std::int64_t> late;
   while (arm.time_ns() < periods * kMillisecond) {
@@ -109,10 +109,10 @@ TEST(IrregularWire, RefusesInvalidProbabilities) {
   EXPECT_TRUE(refuses(made(0, NAN), "loss"));
 }
 
-/// Leads the arm to and fro and compares its counters with those of one that misses nothing.
+/// Moves the arm to and fro and compares its counters with those of an arm that misses no edge.
 struct Missed {
   std::int64_t passed = 0;      // edges of all encoders
-  std::uint64_t missed = 0;     // as the board counts them
+  std::uint64_t missed = 0;     // counted by the board
   std::int64_t wrong_most = 0;  // counts
   driver::hfab::InputReport last{};
 };

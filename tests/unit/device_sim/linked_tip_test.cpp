@@ -19,7 +19,7 @@ using support::desk_links;
 using support::RigidLinks;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
-const Eigen::Vector3d kTilted(1.2, -2.1, -9.4);  // gravity of a base that stands aslant, m/s^2
+const Eigen::Vector3d kTilted(1.2, -2.1, -9.4);  // gravity for a tilted base, m/s^2
 
 driver::SerialArm geometry() {
   return support::vintage_model().geometry;
@@ -41,7 +41,7 @@ SimulatedArmSettings linked_arm(const RigidLinks& links) {
   return settings;
 }
 
-/// The same arm with the tip's mass, which bears no weight, as one body more: what accelerates it.
+/// The same arm with the tip's mass as an additional body without weight, for its acceleration.
 Eigen::Vector3d acceleration(const RigidLinks& links, const SimulatedArmSettings& settings,
                              const Eigen::Vector3d& tau, const Eigen::Vector3d& q,
                              const Eigen::Vector3d& rate) {
@@ -110,7 +110,7 @@ TEST(LinkedTip, MotionMatchesLagrangeWithRungeKutta) {
   EXPECT_EQ(plant.stops(), 0U);
 }
 
-/// Where the tip is 0.2 s after it was let go, by steps of some length.
+/// Returns the tip position 0.2 s after its release, for steps of the given length.
 Eigen::Vector3d let_go(std::int64_t dt_ns) {
   SimulatedArmSettings settings = linked_arm(desk_links(geometry(), 1, kTilted));
   settings.hand = {.mass = 0, .stiffness = 100, .damping = 0.5};
@@ -195,7 +195,7 @@ TEST(LinkedTip, EqualsPointTipForMasslessLinks) {
       plant->step(p_BH, kMillisecond);
     }
     held += static_cast<int>((point.v_BT().array() == 0).count());
-    // Friction of 0.04 N that acts for 25 us too long or too short leaves 0.4 um in 40 ms.
+    // Friction of 0.04 N that acts 25 us too long or too short causes an error of 0.4 um in 40 ms.
     ASSERT_LT((point.p_BT() - linked.p_BT()).norm(), 1e-6) << "after " << k << " ms";
   }
   EXPECT_GT(held, 10);
@@ -219,7 +219,7 @@ TEST(LinkedTip, FrictionHoldsTheLinksExactly) {
 }
 
 TEST(LinkedTip, OscillatesAgainstItsMotorOnACable) {
-  // The yaw at home: links of 1e-3 kg m^2 and a tip of 0.1 kg at 138 mm against a motor.
+  // The yaw joint at home: links of 1e-3 kg m^2 and a tip of 0.1 kg at 138 mm, against a motor.
   SimulatedArmSettings settings = free_arm();
   settings.links.inertia = {1e-3, 0, 0};
   settings.drive_train.inertia.setConstant(1e-3);
@@ -253,7 +253,7 @@ TEST(LinkedTip, RefusesImpossibleLinks) {
                         l.yaw_b = l.yaw_c = 5e-4, l.coupling = -8e-4;
                       }),
                       "negative in some pose"));
-  // Below zero on an edge alone: neither upright nor level.
+  // Negative only on an edge: neither upright nor level.
   for (const bool b : {true, false}) {
     EXPECT_TRUE(refuses(made_with([b](auto& l) {
                           l.inertia = {0, 1e-2, 1e-2};

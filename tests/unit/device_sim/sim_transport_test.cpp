@@ -62,7 +62,7 @@ TEST_F(SimTransportTest, WritesAtTheClocksTime) {
   EXPECT_EQ(arm_.firmware().watchdog_due_ns(), 100'007'777);
 }
 
-TEST_F(SimTransportTest, FirmwareRunsOnWhenUnplugged) {
+TEST_F(SimTransportTest, FirmwareContinuesWhenUnplugged) {
   transport_.write(drive_message(100, 0, 0));
   transport_.unplug();
   EXPECT_EQ(transport_.read_latest(buffer_, 5 * kOneMillisecond).status, TransportStatus::kLost);

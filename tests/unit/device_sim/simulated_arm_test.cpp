@@ -128,7 +128,7 @@ TEST(SimulatedArm, WatchdogActsAtTheExactNanosecond) {
   arm.advance_to(100'123'456);
   EXPECT_EQ(arm.plant().currents().x(), 0);
   EXPECT_EQ(arm.firmware().counters().watchdog_fired, 1U);
-  // The next message brings them back.
+  // The next message switches them on again.
   arm.put_message(drive_message(200, 0, 0));
   EXPECT_EQ(arm.plant().currents().x(), 0.2);
 }
@@ -160,7 +160,7 @@ TEST(SimulatedArm, SamplesBeforeAMessageOfTheSameMoment) {
 }
 
 TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
-  // The wall by hand: the same plant, fed by the host's law with no wire in between.
+  // The reference: the same plant, driven directly by the host's law without a wire.
   auto model = support::vintage_model();
   SimulatedArmSettings settings = phantom_like();
   SimulatedArm arm = SimulatedArm::make(model, settings, resting_at(home_tip())).value();
@@ -198,7 +198,7 @@ TEST(SimulatedArm, FollowsTheHandAlongItsPath) {
   EXPECT_LT((arm.p_BH() - 0.5 * (home_tip() + there)).norm(), 1e-12);
   arm.advance_to(2000 * kMillisecond);
   EXPECT_EQ(arm.p_BH(), there);
-  // Dry friction lets each axis rest at most c/k away.
+  // With dry friction, each axis rests at most c/k away.
   EXPECT_LE((arm.plant().p_BT() - there).cwiseAbs().maxCoeff(), 0.04 / 300 + 1e-9);
 }
 
@@ -226,7 +226,7 @@ TEST(SimulatedArm, DoesNothingForATimeInThePast) {
   EXPECT_EQ(arm.time_ns(), 5 * kMillisecond);
 }
 
-// All that happened to an arm in a busy second, as bytes.
+// Returns the values of an arm during a second with many events, to compare runs.
 std::vector<double> trace(std::uint64_t seed, double tremor) {
   SimulatedArmSettings settings = phantom_like();
   settings.hand.tremor_amplitude = tremor;

@@ -57,7 +57,7 @@ TEST(Tremor, DependsOnItsSeedOnly) {
   EXPECT_NE(one.at(1234 * kTick), other.at(1234 * kTick));
 }
 
-// By even steps, by uneven ones, by steps that change, held and going back.
+// With even, uneven and changing steps, with repeated times, and backwards.
 TEST(Tremor, IsIndependentOfTheStepSize) {
   const Tremor fresh = Tremor::make(tremulous(1), 7).value();
   Tremor tremor = fresh;

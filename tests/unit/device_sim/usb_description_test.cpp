@@ -12,8 +12,8 @@ unsigned at(const std::vector<std::byte>& bytes, std::size_t i) {
   return std::to_integer<unsigned>(bytes.at(i));
 }
 
-// Reads a report descriptor as HID 1.11, 6.2.2 describes short items; sums the bits of all inputs
-// and outputs, and says whether collections and items close.
+// Parses the short items of a report descriptor (HID 1.11, 6.2.2). Sums the bits of all inputs and
+// outputs, and returns whether collections and items are closed.
 struct ReportSizes {
   unsigned in_bits = 0, out_bits = 0;
   bool well_formed = false;

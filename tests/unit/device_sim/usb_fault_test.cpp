@@ -13,7 +13,7 @@ namespace {
 
 using Packet = std::vector<std::byte>;
 
-/// A device whose n-th packet is eight bytes of n, and which keeps what it gets.
+/// A device whose n-th packet is eight bytes of value n, and which stores received packets.
 class Numbered final : public UsbDevice {
  public:
   const UsbDescription& description() const noexcept override { return description_; }
@@ -38,7 +38,7 @@ class Numbered final : public UsbDevice {
 
 class Faulty : public testing::Test {
  protected:
-  /// Begins the next frame and polls endpoint 0x81.
+  /// Starts the next frame and polls endpoint 0x81.
   PacketResult poll() {
     device_.advance_to(++frame_ * 1'000'000);
     packet_.assign(UsbDevice::kPacketMax, std::byte{0xee});
@@ -123,7 +123,7 @@ TEST_F(Faulty, RepeatsTheLastGoodPacketWhenStale) {
     EXPECT_EQ(packet_, of(2));
   }
   poll();
-  EXPECT_EQ(packet_, of(6));  // afterwards the newest, not what was missed
+  EXPECT_EQ(packet_, of(6));  // afterwards the newest packet, not the missed ones
 }
 
 TEST_F(Faulty, SendsEveryPacketTwiceWhenDuplicating) {
@@ -144,7 +144,7 @@ TEST_F(Faulty, LosesAcceptedPackets) {
   EXPECT_EQ(poll().answer, Answer::kNak);
   EXPECT_EQ(poll().answer, Answer::kNak);
   EXPECT_EQ(poll().answer, Answer::kDone);
-  EXPECT_EQ(packet_, of(3));  // the first two are gone
+  EXPECT_EQ(packet_, of(3));  // the first two were dropped
   order("lost out");
   EXPECT_EQ(tell(5).answer, Answer::kDone);  // the host does not notice
   EXPECT_EQ(tell(6).size, 8U);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int32_t kStalled = -32, kBabble = -75, kUnlinked = -104;
 
-/// A device whose packets are easy to tell apart: each one to the host begins with its number.
+/// A device with distinguishable packets: each packet to the host begins with its number.
 class CountingDevice final : public UsbDevice {
  public:
   CountingDevice() {
@@ -111,7 +111,7 @@ TEST_F(UsbipServerTest, RefusesADeviceThatItDoesNotHave) {
   EXPECT_TRUE(host.hung_up());
 }
 
-/// A client whose socket a test has in its hand, and that reads nothing by itself.
+/// A client whose socket a test controls; it reads nothing by itself.
 class DeafClient {
  public:
   explicit DeafClient(UsbipServer& server) {
@@ -124,7 +124,7 @@ class DeafClient {
   DeafClient(const DeafClient&) = delete;
   DeafClient& operator=(const DeafClient&) = delete;
 
-  /// Sends what goes into the socket; returns how much did.
+  /// Sends as much as the socket accepts; returns the number of bytes.
   std::size_t say(std::span<const std::byte> bytes) const {
     const auto sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     return sent > 0 ? static_cast<std::size_t>(sent) : 0;
@@ -152,7 +152,7 @@ TEST_F(UsbipServerTest, StopsReadingFromClientThatDoesNotRead) {
   const auto unlink = encode_command({.kind = UsbipCommand::Kind::kUnlink, .sequence = 1});
   std::vector<std::byte> many;
   for (int i = 0; i < 100; ++i) many.insert(many.end(), unlink.begin(), unlink.end());
-  // What the sockets hold is the kernel's and bounded; beyond that nothing goes in.
+  // The kernel bounds the buffers of the sockets; beyond that they accept nothing.
   std::size_t sent = 0;
   for (int i = 0; i < 20'000; ++i) {
     sent += client.say(many);
@@ -236,7 +236,7 @@ TEST_F(AttachedHost, AnswersTheRequestsOfAnEnumeration) {
   const auto start = host_.control(
       {.request_type = 0x80, .request = 6, .value = kConfigurationDescriptor << 8, .length = 9});
   ASSERT_TRUE(start.has_value());
-  EXPECT_EQ(start->data.size(), 9U);  // no more than was asked for
+  EXPECT_EQ(start->data.size(), 9U);  // at most the requested length
   const auto chosen = host_.control({.request_type = 0x80, .request = 8, .length = 1});
   ASSERT_TRUE(chosen.has_value());
   EXPECT_EQ(chosen->data, std::vector<std::byte>{std::byte{1}});
@@ -258,7 +258,7 @@ TEST_F(AttachedHost, HandsClassAndVendorRequestsToTheDevice) {
 TEST_F(AttachedHost, PollsAnInterruptEndpointOnceInAFrame) {
   std::vector<std::uint32_t> asked;
   for (int i = 0; i < 5; ++i) asked.push_back(host_.ask(1, 8));
-  EXPECT_FALSE(host_.done(asked[0]).has_value());  // nothing moves between frames
+  EXPECT_FALSE(host_.done(asked[0]).has_value());  // no transfer completes between frames
   const std::int64_t begin = host_.frame();
   host_.frames(5);
   for (int i = 0; i < 5; ++i) {
@@ -339,7 +339,7 @@ TEST_F(AttachedHost, ReportsBabbleAndKeepsTheHostsBuffer) {
 TEST_F(AttachedHost, HaltsAStalledEndpointUntilTheHostClearsIt) {
   faulty_.order(*parse_fault("stall in for=1"));
   const std::uint32_t asked = host_.ask(1, 8);
-  // The order covers the frame that is running, the first packet falls into the next.
+  // The fault covers the current frame; the first packet is in the next one.
   faulty_.order(*parse_fault("stall in for=3"));
   host_.frames();
   EXPECT_EQ(host_.done(asked)->status, kStalled);

@@ -340,7 +340,7 @@ TEST_F(NumberedReports, RepeatedNumbersStopTheForce) {
   EXPECT_EQ(device_->wire_counters().repeated, 21u);
 }
 
-TEST_F(NumberedReports, OneDuplicateIsDropped) {
+TEST_F(NumberedReports, DuplicatesAreDroppedWithoutAFault) {
   for (int k = 0; k < 200; ++k) EXPECT_EQ(tick(1 + k / 2), k % 2 == 0);
   EXPECT_EQ(device_->fault(), Fault::kNone);
   EXPECT_EQ(device_->wire_counters().repeated, 100u);

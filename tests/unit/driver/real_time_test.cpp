@@ -54,7 +54,7 @@ TEST_F(CpuLatencyTest, ReportsARefusal) {
   EXPECT_NE(request.advice().find("thimble doctor"), std::string::npos);
 }
 
-TEST_F(CpuLatencyTest, ReportsAKernelWithoutTheInterface) {
+TEST_F(CpuLatencyTest, ReportsAnUnusableInterface) {
   fs::create_directory(file());
   const CpuLatencyRequest request(root_);
   EXPECT_FALSE(request.granted());

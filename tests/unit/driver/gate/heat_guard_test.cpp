@@ -114,7 +114,7 @@ TEST(HeatGuard, AllowedCurrentIsBitIdenticalToItsFormula) {
   EXPECT_GT(lowered, 1000);
 }
 
-TEST(HeatGuard, UnknownHeatCountsAsHot) {
+TEST(HeatGuard, UnknownHeatIsHotAndInvalidTimeIsIgnored) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   HeatSettings settings = kSettings;
   settings.at_start = {nan, 1.5, -1};

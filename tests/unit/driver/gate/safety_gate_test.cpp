@@ -234,7 +234,7 @@ TEST(EnergyGuard, FadedForceReturnsSlowly) {
   EXPECT_NEAR(last, 2, 2e-3);
 }
 
-TEST(EnergyGuard, ForceReturnsAfterTheDebtIsPaid) {
+TEST(EnergyGuard, ForceReturnsAfterADebt) {
   // As the program sets it: some energy is allowed, and one count is not damped.
   for (const double debt : {0.0045, 0.0055, 0.006, 0.012, 0.1}) {
     EnergyGuardSettings settings = passivity();
@@ -258,7 +258,7 @@ TEST(EnergyGuard, ForceReturnsAfterTheDebtIsPaid) {
   }
 }
 
-TEST(EnergyGuard, IgnoresEnergyBelowOneCount) {
+TEST(EnergyGuard, DoesNotDampSpeedsBelowOneCount) {
   EnergyGuardSettings settings = passivity();
   settings.speed_floor = 0.02;
   SafetyGate gate = open_guarded_gate(settings);

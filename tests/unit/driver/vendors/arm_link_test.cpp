@@ -168,7 +168,7 @@ TEST_F(PoseArmTest, OldPositionsUnderAForceAreDetected) {
   EXPECT_EQ(device_->fault(), Fault::kCountsUnchanged);
 }
 
-TEST_F(PoseArmTest, SpeedLimitCoversComputedAndReportedSpeed) {
+TEST_F(PoseArmTest, SpeedLimitCoversTheReportedSpeed) {
   open(settings());
   ticks(10, {0, 0, 0});
   arm_.v_BT = {4, 0, 0};  // says so, beyond 3 m/s
