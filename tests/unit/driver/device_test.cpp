@@ -24,7 +24,7 @@ std::vector<std::byte> report(std::int16_t a = 0, std::int16_t b = 0, std::int16
   return {bytes.begin(), bytes.end()};
 }
 
-/// A device at home on a scripted wire, with its own time.
+/// A device in its home pose on a scripted wire, with its own clock.
 class DeviceTest : public ::testing::Test {
  protected:
   Result<std::unique_ptr<Device>> open() {
@@ -155,7 +155,7 @@ TEST_F(DeviceTest, SilentArmIsAFault) {
   }
   EXPECT_EQ(device_->fault(), Fault::kNoReports);
   EXPECT_EQ(ticks, 21);               // silence_limit_ns of 20 ms, then the next tick
-  EXPECT_EQ(last_currents(), kZero);  // in that very tick
+  EXPECT_EQ(last_currents(), kZero);  // in that same tick
 }
 
 TEST_F(DeviceTest, CountsAndSurvivesUnknownReports) {
@@ -196,7 +196,7 @@ TEST_F(DeviceTest, SendsZeroInTheTickOfAForceThatIsNotANumber) {
   EXPECT_EQ(device_->fault(), Fault::kForceNotFinite);
   EXPECT_EQ(device_->stage(), DeviceStage::kFault);
   EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(0, 0, 0));
-  // It stays off until somebody activates the device again.
+  // It stays off until the device is activated again.
   wire_.to_host.push_back(report());
   tick({0, 0.5, 0});
   EXPECT_EQ(last_currents(), kZero);
@@ -236,7 +236,7 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfASmallerJump) {
   open_and_activate();
   settle();
   for (int k = 0; k < 2; ++k) {
-    wire_.to_host.push_back(report(600));  // 14 mm: as much as a tip may be off its home pose
+    wire_.to_host.push_back(report(600));  // 14 mm: the largest allowed distance from the home pose
     tick({0, 0.5, 0});
   }
   EXPECT_EQ(last_currents(), kZero);
@@ -293,7 +293,7 @@ TEST_F(DeviceTest, InsistsOnZeroForceOnce) {
   EXPECT_GT(insisted, 10);
   wire_.refusals = kMany;
   device_.reset();
-  EXPECT_LT(kMany - wire_.refusals, 4);  // the destructor's own zero, and no more
+  EXPECT_LT(kMany - wire_.refusals, 4);  // only the zero of the destructor
 }
 
 /// A WoodenHaptics arm, whose reports carry a number.

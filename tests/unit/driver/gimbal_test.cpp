@@ -56,8 +56,8 @@ TEST(Gimbal, TurnsAboutItsAxesOneAfterTheOther) {
   }
 }
 
-/// Where the last link points, from three positions of the tip: half of what the tip does when the
-/// link is as long again.
+/// Returns the direction of the last link: the direction in which the tip moves if the link is made
+/// longer.
 template <class Geometry>
 Vector3d direction(const Geometry& arm, double Geometry::*last, const Vector3d& q) {
   Geometry longer = arm;
@@ -110,7 +110,7 @@ TEST(Gimbal, PolhemGimbalMatchesThePublishedLibrary) {
         count = static_cast<std::int32_t>(random.uniform(-400, 400));
       }
       const ArmPose pose = arm->pose(reading);
-      if (!pose.p_BT.allFinite()) continue;  // its bars cannot meet there
+      if (!pose.p_BT.allFinite()) continue;  // its bars cannot meet in this pose
       const LinkageArm& g = std::get<LinkageArm>(model.geometry);
       const Vector3d out(std::cos(pose.q[0]), std::sin(pose.q[0]), 0);
       const Vector3d elbow = (g.length_0 / 2 + g.length_1 * std::cos(pose.q[1])) * out +
@@ -154,7 +154,7 @@ TEST(Orientation, QuaternionRoundTripKeepsEveryStep) {
     const TipQuaternion q = quaternion_of(R);
     EXPECT_LT((rotation_of(q) - R).norm(), 1e-6);
     EXPECT_GE(q[0], 0);
-    // What is recorded gives the very matrix that the law saw.
+    // The recorded quaternion gives exactly the matrix that the law got.
     EXPECT_EQ(rotation_of(q), rotation_of(TipQuaternion(q)));
   }
   EXPECT_EQ(quaternion_of(Matrix3d::Constant(NAN)), TipQuaternion{});

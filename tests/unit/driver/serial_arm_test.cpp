@@ -31,7 +31,7 @@ Eigen::Vector3d any_pose(const SerialArm& arm, support::Random& random) {
 
 TEST(SerialArm, TipMatchesPublishedPoses) {
   const SerialArm& vintage = kArms[0];
-  // Upper link level, lower link hanging: the home pose of the refit.
+  // Upper link level, lower link hanging: the home pose of the vintage PHANTOM.
   EXPECT_TRUE(vintage.forward({0, kPi / 2, 0}).isApprox(Eigen::Vector3d(0.138, 0, -0.112), 1e-15));
   // The same, a quarter turn to the user's right.
   EXPECT_TRUE(
@@ -83,7 +83,7 @@ TEST(SerialArm, TipAndJointVirtualWorkAreEqual) {
       const Eigen::Vector3d qdot = random.in_box(3);
       const Eigen::Vector3d f_T_B = random.in_box(8.5);
       constexpr double kStep = 1e-6;
-      // The tip's velocity from the geometry alone, not from the Jacobian under test.
+      // The tip's velocity from the geometry only, not from the Jacobian under test.
       const Eigen::Vector3d v_BT =
           (arm.forward(q + kStep * qdot) - arm.forward(q - kStep * qdot)) / (2 * kStep);
       const Eigen::Vector3d tau = arm.jacobian(q).transpose() * f_T_B;

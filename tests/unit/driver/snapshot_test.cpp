@@ -9,7 +9,7 @@
 namespace thimble::driver {
 namespace {
 
-/// A value whose parts must agree, so that a torn read shows.
+/// A value whose parts must agree, so that a torn read is detected.
 struct Value {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 40> copies{};

@@ -56,7 +56,7 @@ TEST_F(FalconBoot, RestartsAfterAWrongOrMissingEcho) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->attempts, 3);
   EXPECT_EQ(report->resumed_at, 2 * kBlockSize);
-  EXPECT_EQ(line_.resets, 3);  // never continues in a loader that may hold a wrong byte
+  EXPECT_EQ(line_.resets, 3);  // never continues with a loader that may have received a wrong byte
 }
 
 TEST_F(FalconBoot, GivesUpWithAReasonWhenEchoesStayWrong) {

@@ -74,7 +74,7 @@ TEST(HfabArm, ReadsFractionsOfCountsWithoutASign) {
 }
 
 TEST(HfabArm, RoundsCurrentsAsTheLibraryDoes) {
-  // whole_mA has no call; halves go away from zero, and what is just below stays.
+  // whole_mA rounds halves away from zero; values just below a half are rounded down.
   EXPECT_EQ(whole_mA(MotorCurrents())[0], 0);
   support::Random random(23);
   for (int i = 0; i < 100'000; ++i) {
@@ -98,8 +98,8 @@ TEST(HfabArm, RejectedReportLeavesTheReadingUnchanged) {
 }
 
 TEST(HfabArm, SendsOnlyForcesFromTheGate) {
-  // The one exit to the motors: neither a plain force nor plain currents can be encoded, and only
-  // SafetyGate can make a gated force that is not zero.
+  // The only path to the motors: neither a plain force nor plain currents can be encoded, and only
+  // SafetyGate can create a gated force that is not zero.
   static_assert(!std::is_convertible_v<Eigen::Vector3d, MotorCurrents>);
   static_assert(!std::is_constructible_v<MotorCurrents, Eigen::Vector3d>);
   static_assert(!std::is_constructible_v<GatedForce, Eigen::Vector3d>);

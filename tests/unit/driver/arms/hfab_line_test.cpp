@@ -17,7 +17,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 }
 
 std::int32_t any_number(support::Random& random) {
-  // Of every length, not almost always ten digits.
+  // Numbers of every length; uniform ones would almost always have ten digits.
   return static_cast<std::int32_t>(static_cast<std::int64_t>(random.bits()) >>
                                    (32 + random.bits() % 32));
 }
@@ -65,7 +65,7 @@ TEST(HfabLine, RejectsTornAndMalformedLines) {
     EXPECT_FALSE(decode_host_line(bytes_of(text))) << text;
   }
   EXPECT_TRUE(decode_host_line(bytes_of("[1,2,3]")));
-  // What the published host library sends: padded with zeros to 16 bytes.
+  // A line of the published host library, padded with zeros to 16 bytes.
   EXPECT_TRUE(decode_host_line(bytes_of(std::string_view("[0,0,0]\n\0\0\0\0\0\0\0\0", 16))));
 }
 

@@ -58,8 +58,8 @@ std::string refusal(const Board::Says& says, std::size_t size = kReportSize) {
 
 TEST(WoodyProof, AcceptsNumberedReportsWithoutSending) {
   EXPECT_EQ(refusal([](int frame) { return numbered(frame); }), "");
-  EXPECT_EQ(refusal([](int frame) { return numbered(65'530 + frame); }), "");  // over the top
-  // Half a second of silence after power-on, and the leftovers of an earlier time.
+  EXPECT_EQ(refusal([](int frame) { return numbered(65'530 + frame); }), "");  // the number wraps
+  // Half a second of silence after power-on, and reports left over from an earlier time.
   EXPECT_EQ(refusal([](int frame) -> std::optional<InputReport> {
               if (frame < 500) return {};
               return numbered(frame == 500 ? 7 : 40'000 + frame);
@@ -85,7 +85,7 @@ TEST(WoodyProof, RefusesOtherBoardsAndSendsThemNothing) {
   EXPECT_NE(refusal([](int) { return numbered(5); }), "");
   EXPECT_NE(refusal([](int frame) { return numbered(2 * frame); }), "");
   EXPECT_NE(refusal([](int frame) { return numbered(-frame); }), "");
-  EXPECT_NE(refusal([](int frame) { return numbered(frame % 20); }), "");  // 19 right steps
+  EXPECT_NE(refusal([](int frame) { return numbered(frame % 20); }), "");  // only 19 correct steps
   EXPECT_NE(refusal([](int frame) { return numbered(frame); }, 7), "");
 }
 

@@ -1,5 +1,5 @@
-// A gate counts on the time of a tick: how fast a force may rise and how far the soft start has
-// come follow from it. A time that cannot be must switch the force off, and no limit.
+// The gate uses the time of a tick: the rise limit and the soft start depend on it. An invalid time
+// must switch the force off; it must not disable a limit.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// What cannot be, or protects nobody, is refused when an arm is opened by the C++ API, with the
-// name of the value and what to do.
+// The C++ API refuses to open an arm with impossible or unsafe settings. The error names the
+// setting and the remedy.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -13,7 +13,7 @@
 namespace thimble::driver::opening_checks_test {
 namespace {
 
-/// Returns why an arm with changed settings is refused; empty if it is opened.
+/// Returns the error for an arm with changed settings; empty if it is opened.
 std::string refusal(const std::function<void(DeviceSettings&)>& change) {
   support::Moved moved;
   DeviceSettings settings = support::moved_settings();
@@ -58,7 +58,7 @@ TEST(OpeningChecks, AcceptRotationsWithEightDigits) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   EXPECT_EQ(refusal([&](auto& s) { s.R_WB = turn; }), "");
-  // Eight digits.
+  // Rounded to eight digits, as in files.
   EXPECT_EQ(refusal([&](auto& s) { s.R_WB = (1e8 * turn).array().round().matrix() / 1e8; }), "");
 }
 

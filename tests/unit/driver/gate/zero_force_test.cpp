@@ -1,4 +1,5 @@
-// The way out of a touch whose wire refuses: zero force is said again, and what stands is told.
+// The end of a run on a wire that refuses messages: zero force is sent again, and the acting force
+// is reported.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ std::vector<std::byte> report(std::int16_t yaw = 0) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// A device that pushes with 0.5 N at home, on a wire that can refuse.
+/// A device that pushes with 0.5 N in the home pose, on a wire that can refuse messages.
 class ZeroForce : public ::testing::Test {
  protected:
   void open(const DeviceSettings& settings = support::vintage_settings()) {
@@ -76,7 +77,7 @@ TEST_F(ZeroForce, IsReportedOnlyWhenAcknowledged) {
   device_->deactivate();
   EXPECT_FALSE(told_zero());
   EXPECT_FALSE(device_->zero_assured());
-  EXPECT_EQ(device_->f_sent_W(), kPush);  // it stands
+  EXPECT_EQ(device_->f_sent_W(), kPush);  // it still acts
   EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
   tick(kPush);
   EXPECT_EQ(device_->f_sent_W(), kPush);
@@ -105,7 +106,7 @@ TEST_F(ZeroForce, IsRepeatedAtTheEndOfALoopUntilTaken) {
   VirtualClock clock;
   clock.sleep_until_ns(now_ns_ + kPeriod_ns);
   const std::int64_t begin_ns = clock.now_ns();
-  // Two at once, and one in each of 30 ms.
+  // Two at once, then one in each of 30 ms.
   EXPECT_EQ(run_to_end(*device_, clock, wire_, 31), ServoEnd::kDone);
   EXPECT_TRUE(told_zero());
   EXPECT_TRUE(device_->zero_assured());
@@ -128,7 +129,7 @@ TEST_F(ZeroForce, IsRetriedUntilTheWatchdogTime) {
   EXPECT_LE(waited, 0.102);
 }
 
-/// A clock that stands still.
+/// A clock that does not advance.
 class DeadClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return 0; }
@@ -146,7 +147,7 @@ TEST_F(ZeroForce, RepetitionEndsWithAStoppedClock) {
   EXPECT_EQ(device_->fault(), Fault::kRefused);
 }
 
-/// A clock of a wire on which each message takes 60 ms to be refused.
+/// A clock for a wire on which each message takes 60 ms to be refused.
 class SlowClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }
@@ -166,12 +167,12 @@ TEST_F(ZeroForce, RepetitionEndsIfEachMessageWaits) {
   device_->deactivate();
   SlowClock clock;
   EXPECT_FALSE(device_->insist_on_zero(clock));
-  EXPECT_EQ(clock.sleeps, 2);  // after them 120 ms are over
+  EXPECT_EQ(clock.sleeps, 2);  // after them 120 ms have passed
 }
 
 TEST_F(ZeroForce, IsRepeatedByTheDestructor) {
   open();
-  wire_.refusals = 3;  // two at once and one in the next millisecond, by the clock on the wall
+  wire_.refusals = 3;  // two at once and one in the next millisecond of real time
   device_.reset();
   EXPECT_TRUE(told_zero());
 }
@@ -182,11 +183,11 @@ TEST_F(ZeroForce, IsNotAssuredByALostWire) {
   device_->deactivate();
   EXPECT_FALSE(device_->zero_assured());
   EXPECT_EQ(device_->fault(), Fault::kTransportLost);
-  EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));  // nothing goes out any more
+  EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));  // nothing is sent any more
 }
 
 TEST_F(ZeroForce, IsNotAssuredAfterARefusedForce) {
-  // The message may have arrived all the same.
+  // The message may have arrived nevertheless.
   wire_.to_host.push_back(report());
   auto opened = Device::open(
       std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
@@ -210,7 +211,7 @@ TEST_F(ZeroForce, IsNotAssuredAfterARefusedForce) {
   EXPECT_TRUE(device_->zero_assured());
 }
 
-/// A clock that lets the last message leave after `leaves_after` sleeps.
+/// A clock with which the last message is sent after `leaves_after` sleeps.
 class LeavingClock final : public Clock {
  public:
   LeavingClock(support::Wire& wire, int leaves_after, TransportStatus outcome)
@@ -237,7 +238,7 @@ TEST_F(ZeroForce, IsNotAssuredInTransit) {
   LeavingClock clock(wire_, 5, TransportStatus::kOk);
   EXPECT_TRUE(device_->insist_on_zero(clock));
   EXPECT_EQ(clock.now_ns(), 5 * kPeriod_ns);
-  EXPECT_EQ(wire_.to_arm.size(), sent) << "it is waited for, not sent again";
+  EXPECT_EQ(wire_.to_arm.size(), sent) << "the device waits for it and does not send it again";
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
@@ -271,7 +272,7 @@ TEST_F(ZeroForce, RefusedTickKeepsThePreviousForce) {
     tick({0, 4, 0});
     EXPECT_EQ(device_->f_sent_W(), kPush);
   }
-  // The arm still holds 0.5 N, and 2 N in a tick is all that may be added.
+  // The arm still holds 0.5 N, and at most 2 N per tick may be added.
   tick({0, 4, 0});
   EXPECT_NEAR(device_->f_sent_W().y(), 2.5, 1e-12);
   EXPECT_EQ(device_->fault(), Fault::kNone);
@@ -285,7 +286,7 @@ TEST_F(ZeroForce, RefusedZeroKeepsThePreviousForceInTheAccount) {
   const double before = device_->gate().energy();
   const double y_before = device_->state().p_WT.y();
   wire_.refusals = 12;
-  // The law lets go at once, the arm does not, and the hand is pushed along.
+  // The law requests zero at once, the arm keeps its force, and the hand is pushed.
   for (int k = 1; k <= 11; ++k) tick({0, 0, 0}, static_cast<std::int16_t>(-k));
   const double way = device_->state().p_WT.y() - y_before;
   EXPECT_GT(way, 2e-4);

@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeast = std::numeric_limits<double>::denorm_min();
 
-/// Equal with their signs; any NaN is any other.
+/// Equal including signs; all NaN are equal.
 void expect_same(double found, double wanted) {
   if (std::isnan(wanted)) {
     EXPECT_TRUE(std::isnan(found)) << found;
@@ -28,7 +28,7 @@ void expect_same(double found, double wanted) {
 }
 
 TEST(Elementary, IsBitIdenticalOnEveryProcessorAndCompiler) {
-  // Stored where each result was the one of MPFR (elementary_mpfr_test.cpp).
+  // Stored on a system on which each result equalled that of MPFR (elementary_mpfr_test.cpp).
   for (const Trial& trial : trials()) {
     support::Random random(std::uint64_t{11});
     support::RunHash hash;
@@ -115,7 +115,7 @@ TEST(Elementary, PowersOfTheExtremesAreThoseOfTheCLibrary) {
 }
 
 TEST(Elementary, IsMonotonicAcrossItsPieces) {
-  // Where one table entry, one series or one range of angles ends and the next begins.
+  // At the boundaries between table entries, series and ranges of angles.
   const auto uphill = [](double (*f)(double), double at) {
     double x = at;
     for (int i = 0; i < 100; ++i) x = std::nextafter(x, -kInfinity);
@@ -138,7 +138,8 @@ TEST(Elementary, IsMonotonicAcrossItsPieces) {
 }
 
 TEST(Elementary, NoProductIsFusedWithASum) {
-  // Of a square of 53 bits rounding takes 53 more: with a fused multiply-add they would be left.
+  // Rounding removes the lower 53 bits of the square of a 53-bit number; with a fused multiply-add
+  // they would remain.
   support::Random random(7);
   const auto draw = between(1, 2);
   for (int i = 0; i < 1000; ++i) {
@@ -148,7 +149,7 @@ TEST(Elementary, NoProductIsFusedWithASum) {
   }
 }
 
-/// How many doubles `found` lies away from `wanted`.
+/// Returns the distance between `found` and `wanted` in doubles.
 std::int64_t steps_apart(double found, double wanted) {
   const auto place = [](double x) {
     const auto bits = std::bit_cast<std::int64_t>(x);
@@ -202,7 +203,7 @@ TEST(RoughArc, ErrorIsWithinItsReportedBound) {
     ASSERT_LE(wrong, 1e-12 * std::abs(true_angle));
   }
   EXPECT_GT(known, 150000);
-  // The most that the series is wrong by: halfway between two eighths.
+  // The largest error of the series: halfway between two eighths.
   for (double slope = 0x1p-30; slope < 2; slope *= 1.0001) {
     const auto [angle, wrong] = rough_atan2(slope, 1);
     ASSERT_LE(std::abs(angle - atan2(slope, 1)), wrong) << slope;

@@ -28,7 +28,7 @@ TEST(ApartReader, NeverReadsBeyondItsBytes) {
       [](ApartWriter& out) {
         const double numbers[] = {1, 2, 3};
         out.write_array(numbers, 3);
-        const std::uint64_t many = 1'000'000'000'000;  // claimed by work that went wrong
+        const std::uint64_t many = 1'000'000'000'000;  // claimed by faulty work
         out.write(&many, sizeof many);
         out.write("ab", 2);
       },

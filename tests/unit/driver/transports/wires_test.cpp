@@ -1,5 +1,5 @@
-// The wires to real arms over scripted libraries: what a bus may do that a virtual machine cannot
-// time, and that no wire asks the heap for anything once it is open.
+// The wires to real arms over scripted libraries: bus events that a virtual machine cannot time,
+// and no allocation by any wire after it is opened.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <libusb-1.0/libusb.h>
@@ -93,7 +93,7 @@ TEST_F(FtdiWire, JoinsPacketsAndReturnsTheNewestMessage) {
   open();
   usb_.say("noise<01234");
   usb_.say("56789>");
-  usb_.say("");  // a packet of status alone
+  usb_.say("");  // a packet with only status bytes
   EXPECT_EQ(read(), "<0123456789>");
   usb_.say("<1><2>");
   usb_.say("<3>");
@@ -157,11 +157,11 @@ TEST_F(FtdiWire, ReportsTheResultOfTheLastMessage) {
   usb_.takes = true;
   EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
   usb_.write_status = LIBUSB_TRANSFER_STALL;
-  EXPECT_EQ(write(), TransportStatus::kOk) << "it is known later that it failed";
+  EXPECT_EQ(write(), TransportStatus::kOk) << "its failure is known only later";
   EXPECT_EQ(wire_->settled(), TransportStatus::kRefused);
   usb_.write_status = 0;
   EXPECT_EQ(write(), TransportStatus::kRefused);
-  EXPECT_EQ(wire_->settled(), TransportStatus::kOk) << "it was handed over all the same";
+  EXPECT_EQ(wire_->settled(), TransportStatus::kOk) << "it was handed to the bus nevertheless";
   usb_.takes = false;
   write();
   usb_.fail(LIBUSB_TRANSFER_NO_DEVICE);
@@ -331,7 +331,7 @@ TEST_F(HidWire, IsNotLostInAStormOfSignals) {
   hid_.interruptions = 1'000'000;
   EXPECT_EQ(wire_->read_latest(buffer_, 5'000'000).status, TransportStatus::kNothing);
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused);
-  EXPECT_GT(hid_.interruptions, 999'000) << "the loop is not held up";
+  EXPECT_GT(hid_.interruptions, 999'000) << "the loop is not delayed";
   hid_.interruptions = 0;
   hid_.reports = 1;
   EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kOk);
@@ -349,7 +349,7 @@ TEST_F(HidWire, RefusesToOpenWithAnotherMessageLength) {
 }
 
 TEST_F(HidWire, RefusesAMessageOfAnotherLength) {
-  open(0);  // messages as they are
+  open(0);  // messages are sent unchanged
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused);
   EXPECT_EQ(hid_.messages, 0u);
   EXPECT_EQ(wire_->write(bytes_of("12345678901234")), TransportStatus::kOk);
@@ -366,7 +366,7 @@ TEST_F(HidWire, ListensToAWoodenHapticsBoardBeforeItSendsAnything) {
   hid_.report_bytes = 8;
   open(8);
   hid_.coming = 1000;
-  EXPECT_FALSE(woody::listen_for_board(*wire_, WallClock()));  // numbers in the wrong place
+  EXPECT_FALSE(woody::listen_for_board(*wire_, WallClock()));  // numbers at the wrong position
   hid_.coming = 1000;
   hid_.numbered_last = true;
   EXPECT_TRUE(woody::listen_for_board(*wire_, WallClock()));

@@ -56,7 +56,7 @@ TEST_F(DhdLinkTest, ReadsPoseGripperAndButtonsAndSendsForce) {
   device_.reset();
   EXPECT_EQ(mock_->taken.back(), Vector3d(0, 0, 0));
   EXPECT_EQ(mock_->stopped, 1);
-  EXPECT_EQ(mock_->found_zero, 0) << "nobody said that it may move";
+  EXPECT_EQ(mock_->found_zero, 0) << "the user has not allowed it to move";
 }
 
 TEST_F(DhdLinkTest, UncalibratedArmGetsNoForceOrMotion) {
@@ -111,7 +111,7 @@ TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
       {"NaN from the library", nan, Fault::kNoReports, 1},
       {"library answers 60 ms late", late, Fault::kNoReports, 3},
       {"library takes no force", failing("dhdSetForce"), Fault::kTransportLost, 0},
-      // It is asked every 32nd time, and what it takes meanwhile goes to no motor.
+      // The state is queried every 32nd time; forces accepted meanwhile reach no motor.
       {"library switched the forces off", trip, Fault::kRefused, 200}};
   expect_latched_zero(rows, 30'000'000);
 }
@@ -126,7 +126,7 @@ TEST_F(DhdLinkTest, ReplugMayOpenTheNewLinkFirst) {
 
 TEST_F(DhdLinkTest, OneLinkOwnsTheLibrary) {
   expect_one_owner();
-  EXPECT_FALSE(dhd::find_zero(library_)) << "the arm would be closed at its end";
+  EXPECT_FALSE(dhd::find_zero(library_)) << "its end would close the arm";
 }
 
 TEST_F(DhdLinkTest, StalledLoopLosesItsForce) {

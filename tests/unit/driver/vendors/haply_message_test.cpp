@@ -28,7 +28,7 @@ TEST(HaplyMessage, IdentifiesAnArmByItsIdOnly) {
   ArmState state;
   EXPECT_EQ(read_state(kState, "049E", state), StateRead::kGone);
   EXPECT_EQ(read_state(R"({"inverse3":[]})", "049D", state), StateRead::kGone);
-  // A message of something else says nothing of the arm.
+  // A message about another device contains nothing about the arm.
   EXPECT_EQ(read_state(R"({"event":"battery"})", "049D", state), StateRead::kRejected);
   EXPECT_EQ(read_state("[]", "049D", state), StateRead::kRejected);
   EXPECT_EQ(read_state("", "049D", state), StateRead::kRejected);
