@@ -44,7 +44,7 @@ Eigen::Vector3d towards(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
 /// - |f'| <= |f_last_W| + rise, which follows, and |f'| <= |f_W|. Both candidates end in the ball
 ///   about 0 through f_W: the first because the ball is convex, the second because it is the
 ///   nearest point to f_W of a convex set with 0 in it.
-/// - f'.v <= f_W.v, or f'.v is no more than that of the second candidate.
+/// - f'.v <= f_W.v, or f'.v is at most that of the second candidate.
 ///
 /// Verified by tests/unit/driver/gate/rise_limit_test.cpp. Real-time: safe.
 Eigen::Vector3d limit_rise(const Eigen::Vector3d& f_W, const Eigen::Vector3d& f_last_W,

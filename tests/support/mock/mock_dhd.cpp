@@ -60,7 +60,7 @@ int dhdErrorGetLast() {
   return 2;
 }
 const char* dhdErrorGetLastStr() {
-  return "the mock was told to fail";
+  return "failure requested by the test";
 }
 int drdOpenID(char id) {
   Call call("drdOpenID", id, false);

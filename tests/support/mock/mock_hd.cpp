@@ -111,7 +111,7 @@ MockErrorInfo hdGetError() {
   return {code, 0, kDevice};
 }
 const char* hdGetErrorString(unsigned) {
-  return "the mock was told to fail";
+  return "failure requested by the test";
 }
 const char* hdGetString(unsigned) {
   return "Touch";

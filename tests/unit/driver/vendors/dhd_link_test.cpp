@@ -82,7 +82,7 @@ TEST_F(DhdLinkTest, OpenErrorNamesTheReason) {
   EXPECT_NE(message().find("found 2 arms"), std::string::npos);
   mock_->arms = 1;
   mock_->held = true;
-  EXPECT_NE(message().find("told to fail"), std::string::npos);
+  EXPECT_NE(message().find("failure requested by the test"), std::string::npos);
   mock_->held = false;
   for (const char* step :
        {"dhdSetWatchdog", "dhdSetGravityCompensation", "dhdSetBrakes", "dhdEnableForce"}) {
@@ -106,11 +106,11 @@ TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
   const auto late = [](Mock& mock) { mock.late = true; };
   const auto trip = [](Mock& mock) { mock.tripped = true; };
   const FaultRow rows[] = {
-      {"library says error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
-      {"library says error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
+      {"library reports error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
+      {"library reports error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
       {"NaN from the library", nan, Fault::kNoReports, 1},
       {"library answers 60 ms late", late, Fault::kNoReports, 3},
-      {"library takes no force", failing("dhdSetForce"), Fault::kTransportLost, 0},
+      {"library rejects the force", failing("dhdSetForce"), Fault::kTransportLost, 0},
       // The state is queried every 32nd time; forces accepted meanwhile reach no motor.
       {"library switched the forces off", trip, Fault::kRefused, 200}};
   expect_latched_zero(rows, 30'000'000);

@@ -232,13 +232,13 @@ TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
     int more;
   };
   // A message is sent every 10 ms to a service that does not answer; after 50 ms this is a fault.
-  const Row rows[] = {{"service says nothing", HaplyMischief::kSilent, Fault::kNoReports, 7},
+  const Row rows[] = {{"service sends nothing", HaplyMischief::kSilent, Fault::kNoReports, 7},
                       {"service answers 60 ms late", HaplyMischief::kLate, Fault::kNoReports, 7},
                       {"NaN from the service", HaplyMischief::kNan, Fault::kNoReports, 2},
                       {"number too large", HaplyMischief::kInfinite, Fault::kNoReports, 2},
                       {"position in mm", HaplyMischief::kMillimetres, Fault::kNoReports, 2},
                       {"position without a number", HaplyMischief::kNull, Fault::kNoReports, 2},
-                      {"no JSON", HaplyMischief::kGarbage, Fault::kNoReports, 2},
+                      {"invalid JSON", HaplyMischief::kGarbage, Fault::kNoReports, 2},
                       {"arm not ready", HaplyMischief::kNotReady, Fault::kNoReports, 2},
                       {"message of 1 MB", HaplyMischief::kHuge, Fault::kTransportLost, 2},
                       {"arm unplugged", HaplyMischief::kUnplugged, Fault::kTransportLost, 2},
