@@ -93,8 +93,9 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<ArmLink> link,
         "continuous_current from its file."};
   }
   std::unique_ptr<Device> device(new Device(std::move(link), settings));
-  // The motors start from zero, whatever message was in flight before. An arm that sends only when
-  // asked may miss the first message while it starts up, so zero is sent again with each wait.
+  // The motors start from zero, even if another message was in flight before. An arm that sends
+  // only when asked may miss the first message while it starts up, so zero is sent again with each
+  // wait.
   constexpr int kGreetings = 10;
   constexpr int kAttempts = 100;  // reports that cannot be decoded, before giving up
   int attempt = 0;

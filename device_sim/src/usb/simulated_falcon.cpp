@@ -12,7 +12,7 @@ namespace thimble::device_sim::usb {
 namespace {
 
 // The hand pulls the grip out and pushes it in; the legs pass their homes within 15 mm of the
-// middle, whatever the rest of the path is.
+// middle, for any rest of the path.
 constexpr double kHomingReach = 0.020;  // m
 constexpr double kHomingStroke = 0.5;   // s from one end to the other
 // A pinch grip [M DEVICES 3].

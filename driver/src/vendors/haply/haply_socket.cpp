@@ -152,7 +152,7 @@ class Socket::Connection {
     });
   }
 
-  /// Ends the connection soon, whatever the other side does.
+  /// Ends the connection within kFarewell, independent of the server.
   void hurry() {
     if (hurries_) return;
     hurries_ = true;
